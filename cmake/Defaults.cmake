@@ -1,0 +1,21 @@
+# What every target of ours shares, as an interface target: nothing directory-wide.
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+add_library(tetrace_options INTERFACE)
+target_compile_features(tetrace_options INTERFACE cxx_std_20)
+target_include_directories(tetrace_options INTERFACE ${CMAKE_SOURCE_DIR})
+# Without contraction everywhere: cameras and packed data are the same bits on every machine. Kernels add their own.
+target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
+
+option(TETRACE_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+if(TETRACE_SANITIZE)
+  target_compile_options(tetrace_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(tetrace_options INTERFACE -fsanitize=address,undefined)
+endif()

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace tetrace {
+
+/// What went wrong, as far as the caller's reaction and the exit code depend on it.
+enum class ErrorKind {
+    usage,         ///< an option or a value that is not accepted
+    invalid_input, ///< a file or a mesh that cannot be used
+    missing,       ///< a file, a program or a device that is required and not there
+    unsupported,   ///< possible elsewhere, not here (limits of a device, of a build)
+    internal,      ///< our own fault
+    interrupted,   ///< the user said stop
+};
+
+/// Set-up's one exception: the text says what was being done, to what, and what to do.
+class Error : public std::runtime_error {
+public:
+    Error(ErrorKind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}
+    [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
+
+private:
+    ErrorKind kind_;
+};
+
+/// The program's exit codes (DESIGN: 0 good, 1 wrong result, 2 usage or bad input, 3 missing, 4 internal).
+[[nodiscard]] constexpr int exit_code(ErrorKind kind) noexcept
+{
+    switch (kind) {
+    case ErrorKind::usage:
+    case ErrorKind::invalid_input: return 2;
+    case ErrorKind::missing:
+    case ErrorKind::unsupported: return 3;
+    case ErrorKind::internal: return 4;
+    case ErrorKind::interrupted: return 130;
+    }
+    return 4;
+}
+
+} // namespace tetrace

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace tetrace {
+
+/// XXH3, 64 bits, of raw bytes; `seed` chains hashes.
+[[nodiscard]] std::uint64_t hash_bytes(std::span<const std::byte> bytes, std::uint64_t seed = 0);
+
+/// The same over a contiguous range of plain data without padding.
+template <class Range>
+[[nodiscard]] std::uint64_t hash_of(const Range& range, std::uint64_t seed = 0)
+{
+    return hash_bytes(std::as_bytes(std::span(range)), seed);
+}
+
+/// 16 lower-case hexadecimal digits, as hashes are printed everywhere.
+[[nodiscard]] std::string hash_text(std::uint64_t hash);
+
+} // namespace tetrace

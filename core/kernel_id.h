@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+enum class Structure { cdt, bvh };
+/// How a structure is traversed: an exit-face search of the CDT, or one of Embree's entry points.
+enum class Method { maria, single, packet16 };
+/// A packed form of the mesh; `embree` is what Embree builds for itself.
+enum class Layout { tet80, tet96, embree };
+enum class MathMode { exact, fast };
+enum class RayKind { primary };
+/// The order of the tets in memory.
+enum class TetOrder { hilbert, input };
+
+/// A kernel is data: backends map it to code, or say that they have none.
+struct KernelId {
+    Structure structure = Structure::cdt;
+    Method method = Method::maria;
+    Layout layout = Layout::tet80;
+    MathMode math = MathMode::exact;
+
+    friend bool operator==(const KernelId&, const KernelId&) = default;
+};
+
+/// Every kernel that some backend can run, exact mode first; the one list that options and rows come from.
+[[nodiscard]] const std::vector<KernelId>& all_kernels();
+
+[[nodiscard]] std::string_view name_of(Structure value);
+[[nodiscard]] std::string_view name_of(Method value);
+[[nodiscard]] std::string_view name_of(Layout value);
+[[nodiscard]] std::string_view name_of(MathMode value);
+[[nodiscard]] std::string_view name_of(RayKind value);
+[[nodiscard]] std::string_view name_of(TetOrder value);
+
+/// structure/method/layout, for example "cdt/maria/tet80".
+[[nodiscard]] std::string name_of(const KernelId& kernel);
+
+} // namespace tetrace

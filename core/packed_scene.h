@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/domain.h"
+#include "core/kernel_id.h"
+#include "core/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace tetrace {
+
+/// 16 bytes as they lie in a device's buffer; floats are stored by their bits.
+struct Row {
+    std::uint32_t x, y, z, w;
+
+    friend bool operator==(const Row&, const Row&) = default;
+};
+static_assert(sizeof(Row) == 16, "rows are uvec4 / uint4 on a device");
+
+/// A scene in the form that crosses to a device. Array names are those of kernels/scene_arrays.h.
+struct PackedScene {
+    Layout layout = Layout::tet80;
+    TetOrder order = TetOrder::hilbert;
+    std::uint32_t tet_count = 0;
+    std::uint32_t divisions = 1;
+
+    std::vector<Row> tets;                    ///< TET80_ROWS or TET96_ROWS a tet
+    std::vector<Row> triangles;               ///< TRIANGLE_ROWS an input triangle
+    std::vector<std::uint32_t> lines;         ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
+    std::vector<std::uint32_t> entry_ranges;  ///< EntryGrid::ranges
+    std::vector<std::uint32_t> entry_links;   ///< EntryGrid::links, in packed order
+
+    std::vector<std::uint32_t> packed_of_mesh; ///< stays on the host: position of each tet of the scene in `tets`
+
+    [[nodiscard]] std::size_t bytes() const; ///< of all arrays that cross
+};
+
+/// Packs a scene's tets.
+/// scene: valid (see find_defect), at most MAX_TETS tets. layout: tet80 or tet96.
+/// Throws Error{unsupported} naming both numbers where the scene exceeds the layout's links.
+[[nodiscard]] PackedScene pack(const Scene& scene, Layout layout, TetOrder order);
+
+/// The tets of a packed scene again, with one vertex per corner merged by exact position; in packed order.
+/// For tests and for checking what a device was given. Links, faces and coordinates come back bit for bit.
+[[nodiscard]] TetMesh unpack(const PackedScene& packed);
+
+} // namespace tetrace

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/domain.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// Where a scene's triangles come from.
+enum class SceneSource {
+    cubes,  ///< embedded: tets made directly, no TetGen
+    banana, ///< procedural mesh, CDT by the builder
+    file,   ///< a mesh file: of Debian's libcgal-demo, or the user's
+};
+
+/// One row of the catalogue: adding a scene is adding a row.
+struct CatalogueEntry {
+    std::string name;
+    SceneSource source;
+    std::string description;
+    std::string archive_member; ///< path inside the package's data archive; empty where the scene is made here
+};
+[[nodiscard]] const std::vector<CatalogueEntry>& catalogue();
+
+/// How a scene's CDT is to be made. Part of the scene's key.
+struct BuildOptions {
+    DomainKind domain = DomainKind::tight;
+    std::uint32_t divisions = 8;
+    std::string switches = "pq5Y"; ///< TetGen's, as its manual has them; chosen in results/switches.md
+    std::uint32_t resolution = 16; ///< of `cubes`: cubes along each axis
+    double time_limit_s = 600;     ///< for the builder
+    std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
+};
+
+/// A scene that somebody asked for: a name of the catalogue, or the path of a mesh file or of a `.tet` file.
+struct SceneRequest {
+    std::string name; ///< as given; what rows call the scene is scene_label()
+    BuildOptions build;
+};
+
+/// Short name for rows: the catalogue's name, or the file's stem.
+[[nodiscard]] std::string scene_label(const std::string& name);
+
+/// Whether the scene's mesh can be had here; empty, or the reason and what would bring it.
+[[nodiscard]] std::string why_not_available(const std::string& name);
+
+/// The scenes of the main job: bunny and armadillo where their meshes are, else the embedded ones.
+[[nodiscard]] std::vector<std::string> default_scenes();
+
+} // namespace tetrace

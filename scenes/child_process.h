@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+struct ChildLimits {
+    double time_s = 0;              ///< wall clock; 0 is none
+    std::uint64_t memory_bytes = 0; ///< address space (RLIMIT_AS); 0 is none
+};
+
+/// How a child ended.
+struct ChildOutcome {
+    enum class End { exited, signalled, timed_out, interrupted } end = End::exited;
+    int code = 0;        ///< exit status, or the signal's number
+    double wall_s = 0;
+    std::string out;     ///< captured standard output, its last 64 KiB
+    std::string errors;  ///< captured standard error, its last 64 KiB
+};
+
+/// Runs a program and waits for it, killing it past its limits. SIGINT and SIGTERM sent to this process end the child
+/// too (End::interrupted), and the child dies with its parent whatever kills that one.
+/// on_error_line: each whole line of the child's standard error as it comes; on_tick: about ten times a second.
+/// Throws Error{missing} where the program cannot be started.
+[[nodiscard]] ChildOutcome run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                                     const ChildLimits& limits,
+                                     const std::function<void(const std::string&)>& on_error_line = {},
+                                     const std::function<void(double elapsed_s)>& on_tick = {});
+
+} // namespace tetrace

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/progress.h"
+#include "core/scene.h"
+#include "scenes/catalogue.h"
+
+namespace tetrace {
+
+struct LoadedScene {
+    Scene scene;
+    std::uint64_t hash = 0; ///< scene_hash(scene)
+    bool from_cache = false;
+    std::filesystem::path file;        ///< the `.tet` file; empty for `cubes`
+    std::vector<std::string> messages; ///< what a person should know: a damaged cache file rebuilt, triangles dropped
+};
+
+/// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` is made in place.
+/// Throws Error{usage} for a name that is neither of the catalogue nor a file (lists the accepted ones),
+/// Error{missing} for a mesh that cannot be had here, Error{invalid_input} with the builder's finding,
+/// Error{interrupted} after Ctrl-C (the builder is ended too).
+[[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
+
+} // namespace tetrace

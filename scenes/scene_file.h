@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/scene.h"
+
+#include <filesystem>
+
+namespace tetrace {
+
+/// Version of the `.tet` format and of what builds its content; part of the cache's key.
+inline constexpr std::uint32_t scene_file_version = 1;
+
+/// Writes a scene to a temporary name beside `path`, syncs, and renames it: a reader sees the old file or the new one.
+/// Throws Error{invalid_input} naming the path and the system's reason.
+void write_scene(const std::filesystem::path& path, const Scene& scene);
+
+/// Reads a scene and checks everything: magic, version, sizes, checksum of each section, scene hash, find_defect.
+/// Throws Error{missing} where there is no such file, Error{invalid_input} naming file, section and reason otherwise;
+/// never returns a scene that differs from the one written.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path);
+
+} // namespace tetrace
