@@ -1,0 +1,87 @@
+// A tube along an arc of a circle; its radius tapers towards both ends and closes there with round caps. Only + - * /
+// and square roots of doubles, so the same bits come out everywhere: rings and sides turn by constants, and the arc is
+// the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
+#include "scenes/procedural.h"
+
+#include <cmath>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::uint32_t rings = 125;  ///< between the two tips
+constexpr std::uint32_t sides = 100;  ///< vertices of a ring
+constexpr double arc_end = 0.62;      ///< t at a tip: tan of a quarter of the arc's angle, 127 degrees
+constexpr double thickness = 0.24;    ///< the tube's radius in its middle; the arc's is 1
+constexpr double taper = 0.5;         ///< share of it that is gone where the caps begin
+constexpr double ridge_height = 0.04; ///< of the five soft ridges along the fruit, relative
+
+/// A point of the unit circle; * adds the angles.
+struct Turn {
+    double cos = 1, sin = 0;
+
+    friend Turn operator*(Turn a, Turn b) { return {a.cos * b.cos - a.sin * b.sin, a.cos * b.sin + a.sin * b.cos}; }
+};
+constexpr Turn side_step = {0.9980267284282716, 0.06279051952931337};  ///< 2 pi / sides
+constexpr Turn ring_step = {0.9996891820008162, 0.024930691738072875}; ///< pi / (rings + 1)
+
+/// The tube's radius at s in [-1, 1] along the arc.
+double radius_at(double s)
+{
+    const double s4 = s * s * s * s;
+    return thickness * (1 - taper * s * s) * std::sqrt(1 - s4 * s4);
+}
+
+/// 1 plus five ridges: cos 5a as a polynomial of cos a.
+double ridges_at(Turn side)
+{
+    const double c = side.cos, c2 = c * c;
+    return 1 + ridge_height * c * (16 * c2 * c2 - 20 * c2 + 5);
+}
+
+/// The point of the tube at s along the arc, `distance` from its centre line towards `side`.
+Float3 tube_point(double s, double distance, Turn side)
+{
+    const double t = arc_end * s;
+    const double scale = 1 / (1 + t * t);
+    const Double3 outwards = {(1 - t * t) * scale, 2 * t * scale, 0};
+    return to_float(outwards * (1 + distance * side.cos) + Double3{0, 0, distance * side.sin});
+}
+
+std::vector<Float3> make_vertices()
+{
+    std::vector<Float3> vertices;
+    Turn ring = ring_step;
+    for (std::uint32_t i = 0; i < rings; ++i, ring = ring * ring_step) {
+        Turn side;
+        for (std::uint32_t j = 0; j < sides; ++j, side = side * side_step)
+            vertices.push_back(tube_point(ring.cos, radius_at(ring.cos) * ridges_at(side), side));
+    }
+    vertices.push_back(tube_point(1, 0, {}));
+    vertices.push_back(tube_point(-1, 0, {}));
+    return vertices;
+}
+
+} // namespace
+
+// Rings lie closer towards the tips, where the caps bend most: they are the projection of a half circle on the arc.
+TriangleMesh make_banana()
+{
+    TriangleMesh mesh;
+    mesh.vertices = make_vertices();
+    const std::uint32_t first_tip = rings * sides, last_tip = first_tip + 1;
+    for (std::uint32_t j = 0; j < sides; ++j) {
+        const std::uint32_t next = (j + 1) % sides;
+        mesh.triangles.push_back({first_tip, next, j});
+        for (std::uint32_t i = 0; i + 1 < rings; ++i) {
+            const std::uint32_t here = i * sides, there = here + sides;
+            mesh.triangles.push_back({here + j, here + next, there + j});
+            mesh.triangles.push_back({here + next, there + next, there + j});
+        }
+        const std::uint32_t last = (rings - 1) * sides;
+        mesh.triangles.push_back({last_tip, last + j, last + next});
+    }
+    return mesh;
+}
+
+} // namespace tetrace
