@@ -1,0 +1,15 @@
+// The corners of a tet's faces, for tets with det(V1-V0, V2-V0, V3-V0) < 0, as 2-bit entries of one word:
+// an array that is indexed at run time would live in memory on some devices.
+//   face 0: 1 2 3    face 1: 0 3 2    face 2: 0 1 3    face 3: 0 2 1
+// A line that enters through the face has side(c0, c1), side(c1, c2), side(c2, c0) >= 0.
+KERNEL_FN uint corner(uint face, uint index)
+{
+    return (0x634B39u >> (6u * face + 2u * index)) & 3u;
+}
+
+// Side of the ray with respect to the directed line from vertex `from` to vertex `to` (Pluecker side product), in the
+// frame of `from`: the line's moment vanishes there.
+KERNEL_FN real side_of_edge(Ray ray, Vec3 from, Vec3 to)
+{
+    return dot3(cross3(sub3(ray.origin, from), ray.direction), sub3(to, from));
+}

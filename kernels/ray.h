@@ -1,0 +1,54 @@
+// What a launch gets, what a ray is, and how a pixel becomes one.
+STRUCT(TraceParams)
+{
+    Vec3 origin;
+    Vec3 corner; // direction of pixel (0, 0)
+    Vec3 step_x; // from a pixel to its right neighbour
+    Vec3 step_y; // from a pixel to the one below
+    uint width;
+    uint height;
+    uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
+    uint max_steps;
+};
+
+STRUCT(Ray)
+{
+    Vec3 origin;
+    Vec3 direction;
+    Vec3 moment; // origin x direction: with the direction, the ray's Pluecker coordinates
+};
+
+STRUCT(Hit)
+{
+    uint face_id;
+    uint tet;
+    real t;
+    real u;
+    real v;
+    uint steps;
+};
+
+// Components below 2^-20 of the optical axis become zero: no product on the way is then denormal (SPEC.md, Numbers).
+KERNEL_FN real without_dust(real a)
+{
+    return magnitude(a) < real(9.5367431640625e-7f) ? real(0.0f) : a;
+}
+
+KERNEL_FN Ray make_ray(Vec3 origin, Vec3 direction)
+{
+    Ray ray;
+    ray.origin = origin;
+    ray.direction = direction;
+    ray.moment = cross3(origin, direction);
+    return ray;
+}
+
+KERNEL_FN Ray primary_ray(TraceParams params, uint x, uint y)
+{
+    real px = to_real(x);
+    real py = to_real(y);
+    PRECISE real dx = params.corner.x + params.step_x.x * px + params.step_y.x * py;
+    PRECISE real dy = params.corner.y + params.step_x.y * px + params.step_y.y * py;
+    PRECISE real dz = params.corner.z + params.step_x.z * px + params.step_y.z * py;
+    return make_ray(params.origin, VEC3(without_dust(dx), without_dust(dy), without_dust(dz)));
+}
