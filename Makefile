@@ -1,0 +1,54 @@
+# What a person types; everything else is CMake (see CMakePresets.json). `make` alone prints what there is.
+JOBS ?= $(shell nproc)
+CLANG_FORMAT ?= clang-format-14
+SOURCES = $(shell git ls-files '*.cpp' '*.h')
+TETRACE = build/release/bin/tetrace
+
+.PHONY: help bench test build format lint clean
+
+help:
+	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/)"
+	@echo "make test     install what is missing, build, run all tests, and the small ones under sanitizers"
+	@echo "make build    install what is missing, build build/release/bin/tetrace"
+	@echo "make format   format the sources"
+	@echo "make lint     check formatting, and the sources with clang-tidy"
+	@echo "make clean    remove build/"
+	@echo "JOBS=N        compile and test N at a time (here: $(JOBS))"
+
+build:
+	@scripts/install-packages build
+	cmake --preset release -G Ninja -DBUILD_TESTING=OFF
+	cmake --build --preset release -j $(JOBS)
+
+bench: build
+	@mkdir -p build/bench
+	$(TETRACE) bench --out build/bench/result.json
+	@if [ -e build/release/bin/tetrace_images.so ]; then \
+	    set -x; $(TETRACE) render --views 0 --picture normals,steps --out build/bench; \
+	else echo "No pictures: OpenImageIO is not installed (package libopenimageio-dev)."; fi
+	@echo "Result: build/bench/result.json (its schema: results/README.md); pictures: build/bench/*.png"
+
+test:
+	@scripts/install-packages build test
+	cmake --preset release -G Ninja -DBUILD_TESTING=ON
+	cmake --build --preset release -j $(JOBS)
+	ctest --preset release -j $(JOBS) --output-log build/release/test.log
+	cmake --preset asan -G Ninja -DBUILD_TESTING=ON
+	cmake --build --preset asan -j $(JOBS) --target sanitized_tests
+	ctest --preset asan -j $(JOBS) -L sanitized --output-log build/asan/test.log
+	@for preset in release asan; do \
+	    echo "== $$preset"; grep -A 1000 '% tests passed' build/$$preset/test.log; done
+
+format:
+	@scripts/install-packages lint
+	$(CLANG_FORMAT) -i $(SOURCES)
+
+lint:
+	@scripts/install-packages build test lint
+	$(CLANG_FORMAT) --dry-run -Werror $(SOURCES)
+	cmake --preset release -G Ninja -DBUILD_TESTING=ON
+	cmake --build --preset release -j $(JOBS)
+	run-clang-tidy -quiet -j $(JOBS) -p build/release '$(CURDIR)/(core|kernels|backends|scenes|bench|tests)/.*'
+
+clean:
+	rm -rf build
