@@ -1,0 +1,28 @@
+#include "bench/pixmap.h"
+
+#include <cmath>
+
+namespace tetrace {
+
+namespace {
+
+// IEC 61966-2-1.
+float decode_srgb(std::uint32_t byte)
+{
+    const double encoded = static_cast<double>(byte) / 255.0;
+    return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+}
+
+} // namespace
+
+Colour from_srgb(std::uint32_t bytes)
+{
+    return {decode_srgb(bytes >> 16 & 0xFFu), decode_srgb(bytes >> 8 & 0xFFu), decode_srgb(bytes & 0xFFu)};
+}
+
+Colour lost_colour()
+{
+    return {1.0f, 0.0f, 1.0f};
+}
+
+} // namespace tetrace
