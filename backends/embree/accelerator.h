@@ -1,0 +1,48 @@
+#pragma once
+
+#include "core/triangle_mesh.h"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#if TETRACE_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace tetrace::embree {
+
+/// What a query asks of Embree; the two major versions spell it differently.
+enum class Coherence { coherent, incoherent };
+
+/// A triangle mesh in an Embree scene of its own device, built with quality high.
+class Accelerator {
+public:
+    /// robust: Embree's watertight mode, which the oracle uses. threads: of the build.
+    /// Throws Error{internal} with Embree's reason.
+    Accelerator(const TriangleMesh& mesh, bool robust, unsigned threads);
+    ~Accelerator();
+    Accelerator(const Accelerator&) = delete;
+    Accelerator& operator=(const Accelerator&) = delete;
+
+    [[nodiscard]] double build_s() const { return build_s_; }
+    [[nodiscard]] std::uint64_t bytes() const { return static_cast<std::uint64_t>(bytes_.load()); }
+
+    void intersect(RTCRayHit& ray, Coherence coherence) const;
+    void intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const;
+
+private:
+    static bool count_bytes(void* accelerator, ssize_t bytes, bool post);
+
+    RTCDevice device_ = nullptr;
+    RTCScene scene_ = nullptr;
+    std::atomic<std::int64_t> bytes_ = 0;
+    double build_s_ = 0;
+};
+
+/// "Embree 3.13.5"
+[[nodiscard]] const char* version_text();
+
+} // namespace tetrace::embree

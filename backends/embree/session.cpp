@@ -1,0 +1,142 @@
+#include "backends/embree/session.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace tetrace::embree {
+namespace {
+#include "kernels/dialect_cpp.h"
+#include "kernels/vector.h"
+#include "kernels/ray.h"
+
+constexpr std::uint32_t packet_size = 4; // 4 x 4 pixels
+constexpr std::uint32_t tile_size = 8;
+
+Vec3 to_vec3(Float3 a)
+{
+    return VEC3(a.x, a.y, a.z);
+}
+
+TraceParams params_of(const TraceJob& job)
+{
+    return {to_vec3(job.view.origin), to_vec3(job.view.corner), to_vec3(job.view.step_x), to_vec3(job.view.step_y),
+            job.width, job.height, job.start_tet, job.max_steps};
+}
+
+tetrace::Hit hit_of(unsigned primitive, float t, float u, float v)
+{
+    if (primitive == RTC_INVALID_GEOMETRY_ID) return {NO_HIT, NO_TET, 0, 0, 0, 0};
+    return {primitive, NO_TET, t, u, v, 0};
+}
+
+tetrace::Hit trace_one(const Accelerator& accelerator, const TraceParams& params, std::uint32_t x, std::uint32_t y)
+{
+    const Ray ray = primary_ray(params, x, y);
+    RTCRayHit query{};
+    query.ray.org_x = ray.origin.x;
+    query.ray.org_y = ray.origin.y;
+    query.ray.org_z = ray.origin.z;
+    query.ray.dir_x = ray.direction.x;
+    query.ray.dir_y = ray.direction.y;
+    query.ray.dir_z = ray.direction.z;
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+    accelerator.intersect(query, Coherence::coherent);
+    return hit_of(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
+}
+
+void trace_packet(const Accelerator& accelerator, const TraceParams& params, std::uint32_t x0, std::uint32_t y0, tetrace::Hit* hits)
+{
+    alignas(64) int valid[16];
+    RTCRayHit16 query;
+    for (std::uint32_t i = 0; i < 16; i++) {
+        const std::uint32_t x = x0 + i % packet_size;
+        const std::uint32_t y = y0 + i / packet_size;
+        valid[i] = x < params.width && y < params.height ? -1 : 0;
+        const Ray ray = primary_ray(params, x, y);
+        query.ray.org_x[i] = ray.origin.x;
+        query.ray.org_y[i] = ray.origin.y;
+        query.ray.org_z[i] = ray.origin.z;
+        query.ray.dir_x[i] = ray.direction.x;
+        query.ray.dir_y[i] = ray.direction.y;
+        query.ray.dir_z[i] = ray.direction.z;
+        query.ray.tnear[i] = 0;
+        query.ray.tfar[i] = std::numeric_limits<float>::infinity();
+        query.ray.time[i] = 0;
+        query.ray.mask[i] = ~0u;
+        query.ray.id[i] = 0;
+        query.ray.flags[i] = 0;
+        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    accelerator.intersect16(valid, query, Coherence::coherent);
+    for (std::uint32_t i = 0; i < 16; i++) {
+        if (valid[i] == 0) continue;
+        const std::size_t pixel = std::size_t{y0 + i / packet_size} * params.width + x0 + i % packet_size;
+        hits[pixel] = hit_of(query.hit.primID[i], query.ray.tfar[i], query.hit.u[i], query.hit.v[i]);
+    }
+}
+
+void trace_tile(const Accelerator& accelerator, Method method, const TraceParams& params, std::uint32_t x0, std::uint32_t y0,
+                tetrace::Hit* hits)
+{
+    const std::uint32_t x1 = std::min(x0 + tile_size, params.width);
+    const std::uint32_t y1 = std::min(y0 + tile_size, params.height);
+    const std::uint32_t step = method == Method::packet16 ? packet_size : 1;
+    for (std::uint32_t y = y0; y < y1; y += step) {
+        for (std::uint32_t x = x0; x < x1; x += step) {
+            if (method == Method::packet16)
+                trace_packet(accelerator, params, x, y, hits);
+            else
+                hits[std::size_t{y} * params.width + x] = trace_one(accelerator, params, x, y);
+        }
+    }
+}
+
+} // namespace
+
+void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<tetrace::Hit> hits, unsigned threads)
+{
+    const TraceParams params = params_of(job);
+    const std::uint32_t tiles_x = (job.width + tile_size - 1) / tile_size;
+    const std::uint32_t tiles = tiles_x * ((job.height + tile_size - 1) / tile_size);
+#pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast<int>(threads))
+    for (std::uint32_t tile = 0; tile < tiles; tile++)
+        trace_tile(accelerator, method, params, tile % tiles_x * tile_size, tile / tiles_x * tile_size, hits.data());
+}
+
+EmbreeSession::EmbreeSession(Method method, std::shared_ptr<const Accelerator> accelerator, unsigned threads)
+    : method_(method), accelerator_(std::move(accelerator)), threads_(threads)
+{
+}
+
+void EmbreeSession::launch(const TraceJob& job)
+{
+    const tetrace::Hit poison{POISON, POISON, 0, 0, 0, POISON};
+    hits_.assign(std::size_t{job.width} * job.height, poison);
+    const auto start = std::chrono::steady_clock::now();
+    trace_image(*accelerator_, method_, job, hits_, threads_);
+    kernel_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double EmbreeSession::wait()
+{
+    return kernel_s_;
+}
+
+void EmbreeSession::read_back(std::span<tetrace::Hit> hits)
+{
+    assert(hits.size() == hits_.size());
+    std::copy(hits_.begin(), hits_.end(), hits.begin());
+}
+
+} // namespace tetrace::embree
