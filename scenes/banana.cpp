@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint32_t rings = 125;  ///< between the two tips
 constexpr std::uint32_t sides = 100;  ///< vertices of a ring
-constexpr double arc_end = 0.62;      ///< t at a tip: tan of a quarter of the arc's angle, 127 degrees
-constexpr double thickness = 0.24;    ///< the tube's radius in its middle; the arc's is 1
-constexpr double taper = 0.5;         ///< share of it that is gone where the caps begin
+constexpr double arc_end = 0.55;      ///< t at a tip: tan of a quarter of the angle of the arc, 115 degrees
+constexpr double thickness = 0.26;    ///< the tube's radius in its middle; the arc's is 1
+constexpr double taper = 0.4;         ///< share of it that is gone where the caps begin
 constexpr double ridge_height = 0.04; ///< of the five soft ridges along the fruit, relative
 
 /// A point of the unit circle; * adds the angles.

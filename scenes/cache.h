@@ -1,5 +1,7 @@
 #pragma once
 
+#include "scenes/catalogue.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -7,16 +9,30 @@
 
 namespace tetrace {
 
-/// $XDG_CACHE_HOME/tetrace, else ~/.cache/tetrace; made when first written to.
+/// $XDG_CACHE_HOME/tetrace (an absolute path, as the XDG specification demands), else $HOME/.cache/tetrace; made when
+/// first written to. Throws Error{missing} where neither variable names a folder.
 [[nodiscard]] std::filesystem::path cache_directory();
+
+/// Where the scene built from a mesh with these options lies or will lie: `<label>-<16 digits>.tet`. The digits are a
+/// hash of the mesh's bytes (mesh_hash), of what of the options decides the tets, and of scene_file_version.
+[[nodiscard]] std::filesystem::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash,
+                                                      const BuildOptions& options);
+
+/// Where a mesh that tetrace made or unpacked lies or will lie: `meshes/<16 digits>/<name>`. Makes the folder.
+[[nodiscard]] std::filesystem::path cached_mesh_path(const std::string& name, std::uint64_t key);
+
+/// Makes the cache's folder, or one in it. Throws Error{invalid_input} naming it and the system's reason.
+void make_cache_folder(const std::filesystem::path& folder);
 
 struct CachedFile {
     std::filesystem::path path;
     std::uint64_t bytes = 0;
 };
+/// Scenes, meshes and what killed builds left behind; sorted by path.
 [[nodiscard]] std::vector<CachedFile> list_cache();
 
-/// Removes what tetrace put there, and nothing else; returns how much.
+/// Removes what tetrace put there, and nothing else; returns how many bytes. Spares what another process builds just
+/// now.
 std::uint64_t clear_cache();
 
 } // namespace tetrace

@@ -21,7 +21,8 @@ struct CatalogueEntry {
     std::string name;
     SceneSource source;
     std::string description;
-    std::string archive_member; ///< path inside the package's data archive; empty where the scene is made here
+    std::string archive_member;          ///< path inside the package's data archive; empty where the scene is made here
+    std::vector<std::string> file_names; ///< what the mesh may be called in a folder that the user names
 };
 [[nodiscard]] const std::vector<CatalogueEntry>& catalogue();
 
@@ -40,6 +41,9 @@ struct SceneRequest {
     std::string name; ///< as given; what rows call the scene is scene_label()
     BuildOptions build;
 };
+
+/// The row of that name, or null.
+[[nodiscard]] const CatalogueEntry* find_in_catalogue(const std::string& name);
 
 /// Short name for rows: the catalogue's name, or the file's stem.
 [[nodiscard]] std::string scene_label(const std::string& name);

@@ -16,10 +16,10 @@ struct ChildLimits {
 /// How a child ended.
 struct ChildOutcome {
     enum class End { exited, signalled, timed_out, interrupted } end = End::exited;
-    int code = 0;        ///< exit status, or the signal's number
+    int code = 0; ///< exit status, or the signal's number
     double wall_s = 0;
-    std::string out;     ///< captured standard output, its last 64 KiB
-    std::string errors;  ///< captured standard error, its last 64 KiB
+    std::string out;    ///< captured standard output, its last 64 KiB
+    std::string errors; ///< captured standard error, its last 64 KiB
 };
 
 /// Runs a program and waits for it, killing it past its limits. SIGINT and SIGTERM sent to this process end the child

@@ -1,0 +1,178 @@
+#include "scenes/build_scene.h"
+
+#include "core/error.h"
+#include "scenes/builder_exit.h"
+#include "scenes/child_process.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+#include <sstream>
+#include <string_view>
+#include <unistd.h>
+
+namespace tetrace {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool address_space_is_shadowed = true;
+#elif defined(__has_feature)
+constexpr bool address_space_is_shadowed = __has_feature(address_sanitizer);
+#else
+constexpr bool address_space_is_shadowed = false;
+#endif
+
+bool can_execute(const fs::path& path)
+{
+    std::error_code ignored; // what cannot be looked at cannot be executed
+    return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
+}
+
+constexpr const char* builder_name = "tetrace-builder";
+
+fs::path in_search_path()
+{
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path != nullptr ? path : "");
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (!folder.empty() && can_execute(fs::path(folder) / builder_name)) return fs::path(folder) / builder_name;
+    return {};
+}
+
+/// What the builder has said so far, line by line.
+struct Report {
+    std::string stage = "starting";
+    std::vector<std::string> notes, errors;
+
+    void take(const std::string& line)
+    {
+        const auto rest = [&](std::string_view prefix) -> std::string {
+            return line.starts_with(prefix) ? line.substr(prefix.size()) : "";
+        };
+        if (const std::string text = rest("stage: "); !text.empty()) stage = text;
+        if (const std::string text = rest("note: "); !text.empty()) notes.push_back(text);
+        if (const std::string text = rest("error: "); !text.empty()) errors.push_back(text);
+    }
+};
+
+/// One way in which the builder can end without a scene.
+struct Ending {
+    ErrorKind kind;
+    std::string what; ///< it happened
+    std::string remedy;
+};
+
+constexpr const char* other_switches = "try other switches (`--switches pqY`, `--switches pq3Y`, `--switches p`)";
+
+Ending ending_of_exit(int code)
+{
+    switch (code) {
+    case BUILDER_BAD_INPUT: return {ErrorKind::invalid_input, "the mesh cannot be used", "repair the mesh"};
+    case BUILDER_MISSING_FILE: return {ErrorKind::missing, "a file is missing", "check the paths"};
+    case BUILDER_INTERNAL:
+        return {ErrorKind::internal, "the builder failed by its own fault (exit code 4)", "please report it"};
+    case BUILDER_SELF_INTERSECTION:
+        return {
+            ErrorKind::invalid_input, "the mesh intersects itself",
+            "repair the mesh so that its triangles meet only in shared edges and vertices; tetrace cannot do that yet"};
+    case BUILDER_TETGEN_REFUSED:
+        return {ErrorKind::invalid_input, "TetGen refused the mesh",
+                fmt::format("{}, or repair the mesh", other_switches)};
+    case BUILDER_ABSURD_OUTPUT:
+        return {ErrorKind::invalid_input, "TetGen's output failed the checks",
+                fmt::format("{}, or repair the mesh", other_switches)};
+    case BUILDER_OUT_OF_MEMORY:
+        return {ErrorKind::invalid_input, "the builder ran out of memory",
+                "allow more with `--memory-limit`, or simplify the mesh"};
+    default:
+        return {ErrorKind::internal, fmt::format("the builder ended with exit code {}, which is none of its own", code),
+                "check which program TETRACE_BUILDER and PATH lead to"};
+    }
+}
+
+Ending ending_of(const ChildOutcome& outcome, const BuildOptions& options)
+{
+    using End = ChildOutcome::End;
+    switch (outcome.end) {
+    case End::timed_out:
+        return {ErrorKind::invalid_input, fmt::format("the time limit of {:g} s was reached", options.time_limit_s),
+                fmt::format("allow more with `--time-limit`, or {}", other_switches)};
+    case End::interrupted: return {ErrorKind::interrupted, "interrupted", "run it again to build the scene"};
+    case End::signalled:
+        return {
+            ErrorKind::invalid_input,
+            fmt::format("the builder crashed (signal {}, {})", outcome.code, ::strsignal(outcome.code)),
+            fmt::format("{}, allow more memory with `--memory-limit`, or repair the mesh: self-intersections are the "
+                        "usual cause",
+                        other_switches)};
+    case End::exited: break;
+    }
+    return ending_of_exit(outcome.code);
+}
+
+/// The builder's own words; without any, the end of what it left on stderr.
+std::string finding(const Report& report, const ChildOutcome& outcome)
+{
+    if (!report.errors.empty()) return fmt::format(": {}", fmt::join(report.errors, "; "));
+    std::string tail = outcome.errors.substr(outcome.errors.size() - std::min<std::size_t>(outcome.errors.size(), 300));
+    while (!tail.empty() && tail.back() == '\n')
+        tail.pop_back();
+    for (char& c : tail)
+        if (c == '\n') c = '|';
+    return tail.empty() ? "" : fmt::format(", after the words `{}`", tail);
+}
+
+std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
+                                      const BuildOptions& options)
+{
+    return {"--mesh",      mesh.string(),
+            "--out",       out.string(),
+            "--name",      label,
+            "--domain",    options.domain == DomainKind::tight ? "tight" : "wide",
+            "--divisions", std::to_string(options.divisions),
+            "--switches",  options.switches};
+}
+
+} // namespace
+
+fs::path find_builder()
+{
+    if (const char* given = std::getenv("TETRACE_BUILDER"); given != nullptr && *given != '\0')
+        return can_execute(given) ? fs::path(given) : fs::path();
+    std::error_code ignored; // without /proc we only do not look there
+    const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / builder_name;
+    return can_execute(beside) ? beside : in_search_path();
+}
+
+void build_scene(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
+                 const Progress& progress, std::vector<std::string>& notes)
+{
+    const fs::path builder = find_builder();
+    if (builder.empty())
+        throw Error(
+            ErrorKind::missing,
+            fmt::format("building scene {}: no program {} beside this one, in TETRACE_BUILDER or in PATH; install "
+                        "the packages libtet1.5-dev and libcgal-dev and build tetrace again",
+                        label, builder_name));
+    Report report;
+    ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes};
+    // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
+    if (address_space_is_shadowed) limits.memory_bytes = 0;
+    const ChildOutcome outcome = run_child(
+        builder, arguments_of(mesh, out, label, options), limits, [&](const std::string& line) { report.take(line); },
+        [&](double elapsed_s) {
+            if (progress) progress(fmt::format("building {}: {} ({:.0f} s)", label, report.stage, elapsed_s), -1);
+        });
+    notes.insert(notes.end(), report.notes.begin(), report.notes.end());
+    if (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_GOOD) return;
+    const Ending ending = ending_of(outcome, options);
+    throw Error(ending.kind,
+                fmt::format("building scene {} from {} with switches {}: {}{} (last stage: {}, {:.1f} s); {}", label,
+                            mesh.string(), options.switches, ending.what, finding(report, outcome), report.stage,
+                            outcome.wall_s, ending.remedy));
+}
+
+} // namespace tetrace

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/progress.h"
+#include "scenes/catalogue.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// The program that makes CDTs: the one that TETRACE_BUILDER names, else `tetrace-builder` beside the running program,
+/// else in PATH; empty where none can be executed.
+[[nodiscard]] std::filesystem::path find_builder();
+
+/// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`.
+/// notes: the builder's remarks are appended. progress: told each stage with the seconds since the start.
+/// Throws Error whose text names the way in which the builder ended, the switches, its last stage and what to try:
+/// {missing} no builder, or it misses a file; {interrupted} after Ctrl-C; {internal} its own fault; else
+/// {invalid_input}.
+void build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
+                 const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes);
+
+} // namespace tetrace

@@ -1,0 +1,232 @@
+#include "scenes/load.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "scenes/atomic_file.h"
+#include "scenes/build_scene.h"
+#include "scenes/cache.h"
+#include "scenes/file_lock.h"
+#include "scenes/mesh_files.h"
+#include "scenes/procedural.h"
+#include "scenes/scene_file.h"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+namespace tetrace {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A folder that only this build uses, gone with it whatever happens.
+class WorkFolder {
+public:
+    explicit WorkFolder(const fs::path& scene_file) : path_(temporary_name(scene_file)) { make_cache_folder(path_); }
+    ~WorkFolder()
+    {
+        std::error_code ignored; // what cannot be removed is listed and cleared with the cache
+        fs::remove_all(path_, ignored);
+    }
+    WorkFolder(const WorkFolder&) = delete;
+    WorkFolder& operator=(const WorkFolder&) = delete;
+    [[nodiscard]] const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+/// Loads a scene that comes from a mesh: out of the cache, or built into it.
+class MeshSceneLoader {
+public:
+    MeshSceneLoader(const SceneRequest& request, fs::path mesh, const Progress& progress)
+        : request_(request), progress_(progress), label_(scene_label(request.name)), mesh_(std::move(mesh)),
+          mesh_hash_(hash_mesh()), file_(cached_scene_path(label_, mesh_hash_, request.build))
+    {
+    }
+
+    [[nodiscard]] LoadedScene load()
+    {
+        if (!read_cached()) build_alone();
+        loaded_.hash = scene_hash(loaded_.scene);
+        loaded_.file = file_;
+        return std::move(loaded_);
+    }
+
+private:
+    [[nodiscard]] std::uint64_t hash_mesh() const;
+    [[nodiscard]] std::string mismatch(const Scene& scene) const;
+    [[nodiscard]] bool read_cached();
+    [[nodiscard]] FileLock wait_for_lock() const;
+    void build_alone();
+    void build();
+    void tell(const std::string& stage) const
+    {
+        if (progress_) progress_(stage, -1);
+    }
+
+    const SceneRequest& request_;
+    const Progress& progress_;
+    std::string label_;
+    fs::path mesh_;
+    std::uint64_t mesh_hash_;
+    fs::path file_;
+    LoadedScene loaded_;
+};
+
+std::uint64_t MeshSceneLoader::hash_mesh() const
+{
+    std::error_code ignored; // then the size is of no file, and the read below says so
+    std::vector<char> bytes(fs::is_regular_file(mesh_, ignored) ? fs::file_size(mesh_, ignored) : 0);
+    std::ifstream file(mesh_, std::ios::binary);
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        throw Error(
+            ErrorKind::invalid_input,
+            fmt::format("reading mesh {}: it cannot be read as a whole; check its permissions", mesh_.string()));
+    return hash_of(bytes);
+}
+
+/// Empty where the scene is the one that was asked for, else what differs.
+std::string MeshSceneLoader::mismatch(const Scene& scene) const
+{
+    const BuildOptions& asked = request_.build;
+    if (scene.build.source_hash != mesh_hash_) return "it was made from another mesh";
+    if (scene.domain.kind != asked.domain || scene.domain.divisions != asked.divisions)
+        return "its domain is another one";
+    if (scene.build.switches != asked.switches)
+        return fmt::format("it was made with the switches {}, not {}", scene.build.switches, asked.switches);
+    return "";
+}
+
+bool MeshSceneLoader::read_cached()
+{
+    std::error_code ignored; // what cannot be looked at is reported by the attempt to write it
+    if (!fs::exists(file_, ignored)) return false;
+    tell(fmt::format("reading {} from the cache", label_));
+    try {
+        loaded_.scene = read_scene(file_);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::unsupported) throw; // not enough memory: building would not help
+        // Cleared between our look and our read: nothing to report.
+        if (error.kind() != ErrorKind::missing)
+            loaded_.messages.push_back(fmt::format("{}; the cache's file is built again", error.what()));
+        return false;
+    }
+    const std::string difference = mismatch(loaded_.scene);
+    if (!difference.empty())
+        loaded_.messages.push_back(
+            fmt::format("reading scene {}: foreign file: {}; built again", file_.string(), difference));
+    const BuildInfo& info = loaded_.scene.build;
+    if (difference.empty() && info.degenerate_triangles + info.duplicate_triangles > 0)
+        loaded_.messages.push_back(
+            fmt::format("{}: {} degenerate and {} duplicate triangles were removed when it was built", label_,
+                        info.degenerate_triangles, info.duplicate_triangles));
+    loaded_.from_cache = difference.empty();
+    return loaded_.from_cache;
+}
+
+FileLock MeshSceneLoader::wait_for_lock() const
+{
+    fs::path lock_path = file_;
+    lock_path += ".lock";
+    const Clock::time_point start = Clock::now();
+    for (;;) {
+        if (auto lock = FileLock::try_take(lock_path)) return std::move(*lock);
+        tell(fmt::format("waiting for another process that builds {} ({:.0f} s)", label_, seconds_since(start)));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+}
+
+void MeshSceneLoader::build_alone()
+{
+    make_cache_folder(file_.parent_path());
+    const FileLock lock = wait_for_lock();
+    loaded_.messages.clear();    // the second look says again what is still wrong
+    if (!read_cached()) build(); // another process may have built it while we waited
+}
+
+void MeshSceneLoader::build()
+{
+    const WorkFolder work(file_);
+    const fs::path made = work.path() / "scene.tet";
+    build_scene(mesh_, made, label_, request_.build, progress_, loaded_.messages);
+    tell(fmt::format("checking {}", label_));
+    try {
+        loaded_.scene = read_scene(made);
+    } catch (const Error& error) {
+        throw Error(ErrorKind::internal,
+                    fmt::format("building scene {} with switches {}: the builder reported success, but "
+                                "its file cannot be used: {}",
+                                label_, request_.build.switches, error.what()));
+    }
+    const std::string difference = mismatch(loaded_.scene);
+    if (!difference.empty())
+        throw Error(ErrorKind::internal, fmt::format("building scene {}: the builder made another scene than asked: {}",
+                                                     label_, difference));
+    std::error_code failure;
+    fs::rename(made, file_, failure);
+    if (failure)
+        throw Error(ErrorKind::invalid_input, fmt::format("building scene {}: {} cannot be put into the cache: {}",
+                                                          label_, file_.string(), failure.message()));
+}
+
+LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
+{
+    if (progress) progress("making cubes", -1);
+    const Clock::time_point start = Clock::now();
+    LoadedScene loaded;
+    loaded.scene = make_cubes(request.build.resolution);
+    loaded.scene.build.build_s = seconds_since(start);
+    loaded.hash = scene_hash(loaded.scene);
+    if (request.build.domain != DomainKind::tight)
+        loaded.messages.emplace_back("scene cubes: it fills a domain of its own; the domain asked for is not used");
+    return loaded;
+}
+
+LoadedScene load_scene_file(const SceneRequest& request, const Progress& progress)
+{
+    if (progress) progress(fmt::format("reading {}", request.name), -1);
+    LoadedScene loaded;
+    loaded.scene = read_scene(request.name);
+    loaded.hash = scene_hash(loaded.scene);
+    loaded.file = request.name;
+    return loaded;
+}
+
+[[noreturn]] void refuse_name(const std::string& name)
+{
+    std::string names;
+    for (const CatalogueEntry& entry : catalogue())
+        names += (names.empty() ? "" : ", ") + entry.name;
+    throw Error(ErrorKind::usage,
+                fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these "
+                            "names, or the path of a mesh (.ply, .obj, .off, .stl) or of a .tet file",
+                            name, names));
+}
+
+} // namespace
+
+LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
+{
+    if (const CatalogueEntry* entry = find_in_catalogue(request.name)) {
+        if (entry->source == SceneSource::cubes) return load_cubes(request, progress);
+        return MeshSceneLoader(request, mesh_file(*entry), progress).load();
+    }
+    const fs::path path = request.name;
+    std::error_code ignored; // what cannot be looked at is no file for us
+    if (!fs::exists(path, ignored)) refuse_name(request.name);
+    if (path.extension() == ".tet") return load_scene_file(request, progress);
+    return MeshSceneLoader(request, path, progress).load();
+}
+
+} // namespace tetrace

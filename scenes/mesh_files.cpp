@@ -1,0 +1,122 @@
+#include "scenes/mesh_files.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "scenes/archive.h"
+#include "scenes/atomic_file.h"
+#include "scenes/cache.h"
+#include "scenes/procedural.h"
+
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <iterator>
+
+namespace tetrace {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t largest_member = std::size_t{256} << 20;
+// The same place in Debian 12 (libcgal-demo 5.5.1) and 13 (6.0.1).
+constexpr const char* package_archive = "usr/share/doc/libcgal-dev/data.tar.gz";
+
+bool is_file(const fs::path& path)
+{
+    std::error_code ignored; // whatever cannot be looked at is not there for us
+    return fs::is_regular_file(path, ignored);
+}
+
+/// Looks in one folder: a mesh by one of its names, else an archive; true where something was found.
+bool locate_in(const fs::path& folder, const CatalogueEntry& entry, MeshLocation& found)
+{
+    for (const std::string& name : entry.file_names)
+        if (is_file(folder / name)) found.file = folder / name;
+    if (found.file.empty() && is_file(folder / entry.archive_member)) found.file = folder / entry.archive_member;
+    for (const fs::path& archive : {folder / "data.tar.gz", folder / package_archive})
+        if (found.file.empty() && found.archive.empty() && is_file(archive)) found.archive = archive;
+    return !found.file.empty() || !found.archive.empty();
+}
+
+std::string how_to_get(const CatalogueEntry& entry, const std::string& looked)
+{
+    return fmt::format(
+        "scene {}: its mesh is not here ({}). Install Debian's package libcgal-demo; where documentation is "
+        "left out on installing, as in slim images, unpack it: `apt-get download libcgal-demo && dpkg -x "
+        "libcgal-demo_*.deb meshes && export TETRACE_MESHES=$PWD/meshes`. Or set TETRACE_MESHES to a folder "
+        "that holds {}",
+        entry.name, looked, fmt::join(entry.file_names, " or "));
+}
+
+fs::path unpacked(const CatalogueEntry& entry, const fs::path& archive)
+{
+    // A newer package has other bytes or another date, and gets a folder of its own.
+    const auto date = fs::last_write_time(archive).time_since_epoch().count();
+    const std::string key = fmt::format("{} {} {}", archive.string(), fs::file_size(archive), date);
+    fs::path target = cached_mesh_path(fs::path(entry.archive_member).filename().string(), hash_of(key));
+    if (is_file(target)) return target;
+    const std::vector<std::byte> bytes = read_archive_member(archive, entry.archive_member, largest_member);
+    AtomicFile file(target);
+    file.write(bytes);
+    file.commit();
+    return target;
+}
+
+/// 9 significant digits bring each float back bit for bit.
+std::string off_text(const TriangleMesh& mesh)
+{
+    std::string text = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
+    for (const Float3& vertex : mesh.vertices)
+        fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} {:.9g}\n", vertex.x, vertex.y, vertex.z);
+    for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles)
+        fmt::format_to(std::back_inserter(text), "3 {} {} {}\n", triangle[0], triangle[1], triangle[2]);
+    return text;
+}
+
+fs::path banana_file()
+{
+    const std::string text = off_text(make_banana());
+    fs::path target = cached_mesh_path("banana.off", hash_of(text));
+    std::ifstream present(target, std::ios::binary);
+    if (present && std::string(std::istreambuf_iterator<char>(present), {}) == text) return target;
+    AtomicFile file(target);
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+    return target;
+}
+
+} // namespace
+
+MeshLocation locate_mesh(const CatalogueEntry& entry)
+{
+    MeshLocation found;
+    const char* given = std::getenv("TETRACE_MESHES");
+    std::string looked = "TETRACE_MESHES is not set";
+    if (given != nullptr && *given != '\0') {
+        std::error_code ignored; // what cannot be looked at is no folder for us
+        if (!fs::is_directory(given, ignored)) {
+            found.reason = how_to_get(entry, fmt::format("TETRACE_MESHES is {}, which is no folder", given));
+            return found;
+        }
+        if (locate_in(given, entry, found)) return found;
+        looked = fmt::format("TETRACE_MESHES is {}, which does not hold it", given);
+    }
+    const fs::path installed = fs::path("/") / package_archive;
+    if (is_file(installed))
+        found.archive = installed;
+    else
+        found.reason = how_to_get(entry, fmt::format("no {}, and {}", installed.string(), looked));
+    return found;
+}
+
+fs::path mesh_file(const CatalogueEntry& entry)
+{
+    if (entry.source == SceneSource::banana) return banana_file();
+    const MeshLocation found = locate_mesh(entry);
+    if (!found.reason.empty()) throw Error(ErrorKind::missing, found.reason);
+    return found.file.empty() ? unpacked(entry, found.archive) : found.file;
+}
+
+} // namespace tetrace

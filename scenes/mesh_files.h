@@ -1,0 +1,21 @@
+#pragma once
+
+#include "scenes/catalogue.h"
+
+namespace tetrace {
+
+/// The mesh file of a catalogue row whose source is `file`, or why there is none.
+struct MeshLocation {
+    std::filesystem::path file;    ///< as a plain file; empty where it has to be unpacked, or is not here
+    std::filesystem::path archive; ///< holds the row's archive_member
+    std::string reason;            ///< why neither is there, and what would bring it
+};
+
+/// Looks in the folder that TETRACE_MESHES names, then where Debian's libcgal-demo puts its data.
+[[nodiscard]] MeshLocation locate_mesh(const CatalogueEntry& entry);
+
+/// The mesh of a catalogue row as a plain file: found, unpacked into the cache, or made there (`banana`).
+/// Throws Error{missing} with the reason of locate_mesh, Error{invalid_input} where unpacking or writing fails.
+[[nodiscard]] std::filesystem::path mesh_file(const CatalogueEntry& entry);
+
+} // namespace tetrace
