@@ -1,7 +1,5 @@
 # What a person types; everything else is CMake (see CMakePresets.json). `make` alone prints what there is.
 JOBS ?= $(shell nproc)
-CLANG_FORMAT ?= clang-format-14
-SOURCES = $(shell git ls-files '*.cpp' '*.h')
 TETRACE = build/release/bin/tetrace
 
 .PHONY: help bench test build format lint clean
@@ -34,18 +32,18 @@ test:
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS) --output-log build/release/test.log
 	cmake --preset asan -G Ninja -DBUILD_TESTING=ON
-	cmake --build --preset asan -j $(JOBS) --target sanitized_tests
-	ctest --preset asan -j $(JOBS) -L sanitized --output-log build/asan/test.log
+	cmake --build --preset asan -j $(JOBS) --target small_tests
+	ctest --preset asan -j $(JOBS) -L small --output-log build/asan/test.log
 	@for preset in release asan; do \
 	    echo "== $$preset"; grep -A 1000 '% tests passed' build/$$preset/test.log; done
 
 format:
 	@scripts/install-packages lint
-	$(CLANG_FORMAT) -i $(SOURCES)
+	scripts/check-format --fix
 
 lint:
 	@scripts/install-packages build test lint
-	$(CLANG_FORMAT) --dry-run -Werror $(SOURCES)
+	scripts/check-format
 	cmake --preset release -G Ninja -DBUILD_TESTING=ON
 	cmake --build --preset release -j $(JOBS)
 	run-clang-tidy -quiet -j $(JOBS) -p build/release '$(CURDIR)/(core|kernels|backends|scenes|bench|tests)/.*'

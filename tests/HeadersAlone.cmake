@@ -1,0 +1,18 @@
+# Each header of ours compiles alone: a translation unit for each, built with the tests. Of kernels/ that is layout.h; the
+# others are parts of a kernel's source in several languages, which every backend compiles.
+file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/kernels/layout.h ${PROJECT_SOURCE_DIR}/backends/*.h
+  ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/bench/*.h)
+if(NOT TARGET tetrace_builder_parts)
+  list(FILTER headers EXCLUDE REGEX "^scenes/builder/")
+endif()
+
+set(sources "")
+foreach(header IN LISTS headers)
+  string(MAKE_C_IDENTIFIER ${header} name)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n#include \"${header}\" // guarded\n")
+  list(APPEND sources ${source})
+endforeach()
+add_library(headers_alone OBJECT ${sources})
+target_link_libraries(headers_alone PRIVATE tetrace_bench)
