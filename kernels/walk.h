@@ -73,5 +73,5 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     uint hit_triangle = face_triangle(scene, tet, face);
     if (hit_triangle != FREE_FACE) return make_hit(scene, ray, hit_triangle, tet, steps);
     bool left = face_link(scene, tet, face) == NO_LINK;
-    return make_no_hit(left ? NO_HIT : LOST, left ? NO_TET : tet, steps);
+    return make_no_hit(left ? NO_HIT : LOST, tet, steps);
 }

@@ -1,0 +1,150 @@
+#include "bench/oracle.h"
+
+#include "backends/embree/session.h"
+#include "bench/settle.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace tetrace {
+namespace {
+namespace kernel {
+#include "kernels/dialect_cpp.h"
+#include "kernels/vector.h"
+#include "kernels/ray.h"
+
+Vec3 to_vec3(Float3 a)
+{
+    return VEC3(a.x, a.y, a.z);
+}
+
+Ray pixel_ray(const View& view, std::uint32_t x, std::uint32_t y)
+{
+    const TraceParams params{to_vec3(view.origin), to_vec3(view.corner), to_vec3(view.step_x), to_vec3(view.step_y), 0, 0, 0, 0};
+    return primary_ray(params, x, y);
+}
+} // namespace kernel
+
+ExactRay exact_ray(const View& view, std::uint32_t x, std::uint32_t y)
+{
+    const auto ray = kernel::pixel_ray(view, x, y);
+    return {{ray.origin.x, ray.origin.y, ray.origin.z}, {ray.direction.x, ray.direction.y, ray.direction.z}};
+}
+
+// Whether t, u and v name one point: origin + t direction, and the barycentric point of the triangle. Both come from
+// quotients by the same determinant, so their error grows with |e1| |e2| |direction| / determinant (kernels/SPEC.md).
+bool names_one_point(const TriangleMesh& mesh, const ExactRay& ray, const Hit& hit, double bound)
+{
+    const auto& [a, b, c] = mesh.triangles[hit.face_id];
+    const Double3 v0 = to_double(mesh.vertices[a]);
+    const Double3 e1 = to_double(mesh.vertices[b]) - v0;
+    const Double3 e2 = to_double(mesh.vertices[c]) - v0;
+    const Double3 direction = to_double(ray.direction);
+    const double t = static_cast<double>(hit.t);
+    const Double3 on_triangle = v0 + e1 * static_cast<double>(hit.u) + e2 * static_cast<double>(hit.v);
+    const double apart = length(to_double(ray.origin) + direction * t - on_triangle);
+    const double condition = length(e1) * length(e2) * length(direction) / std::abs(dot(e1, cross(direction, e2)));
+    return apart <= bound * (1 + 2 * condition); // false for nan
+}
+
+} // namespace
+
+double tie_bound(Float3 origin)
+{
+    return 10 * 0x1p-24 * (length(to_double(origin)) + std::sqrt(3.0));
+}
+
+void Verdicts::add(const Verdicts& other)
+{
+    rays += other.rays;
+    agreed += other.agreed;
+    ties += other.ties;
+    settled += other.settled;
+    wrong += other.wrong;
+    lost += other.lost;
+    largest_tie_distance = std::max(largest_tie_distance, other.largest_tie_distance);
+    if (!first_wrong) first_wrong = other.first_wrong;
+}
+
+struct Oracle::Parts {
+    Parts(const TriangleMesh& triangles, unsigned thread_count)
+        : mesh(triangles), threads(thread_count != 0 ? thread_count : static_cast<unsigned>(omp_get_max_threads())),
+          accelerator(triangles, true, threads), settler(triangles)
+    {
+    }
+
+    void trace_reference(const View& view, std::uint32_t width, std::uint32_t height)
+    {
+        if (!reference.empty() && reference.size() == std::size_t{width} * height && reference_width == width &&
+            std::memcmp(&view, &reference_view, sizeof view) == 0)
+            return;
+        reference.resize(std::size_t{width} * height);
+        embree::trace_image(accelerator, Method::single, {view, width, height, NO_TET, 0}, reference, threads);
+        reference_view = view;
+        reference_width = width;
+    }
+
+    void judge_ray(Verdicts& verdicts, const View& view, std::uint32_t number, std::size_t pixel, const Hit& ours) const;
+
+    const TriangleMesh& mesh;
+    unsigned threads;
+    embree::Accelerator accelerator;
+    Settler settler;
+    std::vector<Hit> reference;
+    View reference_view{};
+    std::uint32_t reference_width = 0;
+};
+
+void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_t number, std::size_t pixel, const Hit& ours) const
+{
+    const auto x = static_cast<std::uint32_t>(pixel % reference_width);
+    const auto y = static_cast<std::uint32_t>(pixel / reference_width);
+    const Hit& theirs = reference[pixel];
+    const auto blame = [&](std::uint64_t& count, const char* reason) {
+        count++;
+        if (!verdicts.first_wrong) verdicts.first_wrong = WrongRay{number, x, y, ours, theirs.face_id, theirs.t, reason};
+    };
+    if (ours.face_id == LOST) return blame(verdicts.lost, "the walk reached its cap of steps");
+    const bool is_face = ours.face_id < mesh.triangles.size();
+    if (!is_face && ours.face_id != NO_HIT) return blame(verdicts.wrong, "it names no triangle (was the hit written at all?)");
+
+    const ExactRay ray = exact_ray(view, x, y);
+    const double bound = tie_bound(view.origin);
+    if (is_face && !names_one_point(mesh, ray, ours, bound))
+        return blame(verdicts.wrong, "its t, u and v do not name one point");
+    if (ours.face_id == theirs.face_id) {
+        verdicts.agreed++;
+        return;
+    }
+    const Settlement settlement = settler.settle(ray, ours.face_id, theirs.face_id, bound);
+    if (settlement.kind == Settlement::Kind::wrong) return blame(verdicts.wrong, settlement.reason);
+    (settlement.kind == Settlement::Kind::tie ? verdicts.ties : verdicts.settled)++;
+    verdicts.largest_tie_distance = std::max(verdicts.largest_tie_distance, settlement.distance);
+}
+
+Oracle::Oracle(const TriangleMesh& mesh, unsigned threads) : parts_(std::make_unique<Parts>(mesh, threads)) {}
+
+Oracle::~Oracle() = default;
+
+Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_t width, std::uint32_t height, std::span<const Hit> hits)
+{
+    assert(hits.size() == std::size_t{width} * height);
+    parts_->trace_reference(view, width, height);
+    std::vector<Verdicts> rows(height);
+#pragma omp parallel for schedule(dynamic, 8) num_threads(static_cast<int>(parts_->threads))
+    for (std::uint32_t y = 0; y < height; y++)
+        for (std::size_t pixel = std::size_t{y} * width; pixel < std::size_t{y + 1} * width; pixel++)
+            parts_->judge_ray(rows[y], view, view_number, pixel, hits[pixel]);
+    Verdicts all;
+    for (const Verdicts& row : rows) all.add(row);
+    all.rays = hits.size();
+    return all;
+}
+
+} // namespace tetrace
