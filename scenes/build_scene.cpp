@@ -4,9 +4,11 @@
 #include "scenes/builder_exit.h"
 #include "scenes/child_process.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sstream>
 #include <string_view>
 #include <unistd.h>
