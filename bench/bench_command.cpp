@@ -1,0 +1,43 @@
+#include "bench/bandwidth.h"
+#include "bench/bench_report.h"
+#include "bench/commands.h"
+#include "bench/progress.h"
+
+namespace tetrace {
+
+namespace {
+
+int list_rows(const std::vector<RowKey>& keys)
+{
+    std::string text;
+    for (const RowKey& key : keys)
+        text += row_name(key) + "\n";
+    print(text);
+    return 0;
+}
+
+} // namespace
+
+int bench_command(const Options& options)
+{
+    const BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
+    const auto keys =
+        selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
+    if (options.list || flags.list_tests) return list_rows(keys);
+    check_output(options);
+    BenchResult result;
+    result.missing_scenes = missing_default_scenes(options);
+    result.run = open_and_verify(keys, options);
+    result.measurement = measure_rows(result.run.rows, options, flags);
+    progress_line().show("measuring the memory's bandwidth", -1);
+    result.copy_bytes_per_s = copy_bandwidth(options.threads);
+    const Report report = bench_report(result, options);
+    // Google Benchmark has written its own form to standard output already, where it was asked to.
+    if (!flags.format)
+        deliver(options, report);
+    else if (options.out)
+        deliver_to_file(options, report);
+    return exit_code(result.run.rows);
+}
+
+} // namespace tetrace

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "bench/measure.h"
+#include "bench/report.h"
+#include "bench/scene_rows.h"
+
+namespace tetrace {
+
+/// All that `tetrace bench` has to tell.
+struct BenchResult {
+    SceneRows run;
+    Measurement measurement;
+    double copy_bytes_per_s = 0;
+    std::vector<std::string> missing_scenes; ///< sentences, see missing_default_scenes()
+};
+
+[[nodiscard]] Report bench_report(const BenchResult& result, const Options& options);
+
+/// A scene's headline: counts, size, build; shared by bench and check.
+[[nodiscard]] std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& rows);
+
+/// What the oracle found over all rows, one sentence.
+[[nodiscard]] std::string verdict_sentence(const std::vector<RowRun>& rows);
+
+/// Rows that have no answer, each with its reason, a line each.
+[[nodiscard]] std::string failure_lines(const std::vector<RowRun>& rows);
+
+} // namespace tetrace

@@ -1,0 +1,208 @@
+#include "bench/bench_report.h"
+#include "bench/commands.h"
+#include "bench/progress.h"
+#include "bench/row_json.h"
+#include "bench/text.h"
+#include "bench/walk_path.h"
+#include "core/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+Table check_table(const std::vector<RowRun>& rows)
+{
+    Table table({{"name", "row"},
+                 {"rays", "rays"},
+                 {"agreed", "agreed"},
+                 {"ties", "ties"},
+                 {"largest_tie_distance", "largest", {}, 12},
+                 {"settled", "settled"},
+                 {"wrong", "wrong"},
+                 {"lost", "lost"},
+                 {"misplaced", "misplaced"},
+                 {"different_from_openmp", "differ"},
+                 {"hit_hash", "hits"},
+                 {"status", "status"},
+                 {"reason", "reason"}});
+    for (const RowRun& row : rows) {
+        const Traced* result = traced(row);
+        const auto count = [&](std::uint64_t Verdicts::*member) {
+            return result ? Cell(result->verdicts.*member) : Cell();
+        };
+        const std::string reason = reason_of(row);
+        table.add({row_name(row.key), count(&Verdicts::rays), count(&Verdicts::agreed), count(&Verdicts::ties),
+                   result && result->verdicts.ties > 0 ? Cell(result->verdicts.largest_tie_distance) : Cell(),
+                   count(&Verdicts::settled), count(&Verdicts::wrong), count(&Verdicts::lost),
+                   result ? Cell(result->misplaced) : Cell(),
+                   result && result->compared ? Cell(result->different) : Cell(),
+                   result ? Cell(hash_text(result->hit_hash)) : Cell(), std::string(name_of(status_of(row))),
+                   reason.empty() ? Cell() : Cell(reason)});
+    }
+    return table;
+}
+
+/// For people: the row's name is given in parts, and what is the same everywhere is left to the other forms.
+std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
+{
+    Table table({{"row", "row"},
+                 {"backend", "backend"},
+                 {"rays", "rays"},
+                 {"agreed", "agreed"},
+                 {"ties", "ties"},
+                 {"largest", "largest"},
+                 {"settled", "settled"},
+                 {"wrong", "wrong"},
+                 {"lost", "lost"},
+                 {"hits", "hit hash"},
+                 {"status", "status"}});
+    for (const RowRun& row : rows) {
+        const Traced* result = traced(row);
+        if (row.key.scene != scene.label() || result == nullptr) continue;
+        const Verdicts& verdicts = result->verdicts;
+        table.add({kernel_title(row.key), row.key.backend, verdicts.rays, verdicts.agreed, verdicts.ties,
+                   verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
+                   verdicts.settled, verdicts.wrong, verdicts.lost, hash_text(result->hit_hash),
+                   std::string(name_of(status_of(row)))});
+    }
+    return scene_headline(scene, rows) + "\n" + (table.rows().empty() ? "" : table.text(2) + "\n");
+}
+
+std::string face_text(std::uint32_t face)
+{
+    if (face == NO_HIT) return "no hit";
+    if (face == LOST) return "lost";
+    return fmt::format("triangle {}", face);
+}
+
+std::string hit_text(const Hit& hit)
+{
+    return fmt::format("{}, t {:.9g}, u {:.9g}, v {:.9g}, tet {}, {} steps", face_text(hit.face_id), hit.t, hit.u,
+                       hit.v, hit.tet, hit.steps);
+}
+
+std::size_t view_index(const SceneWork& scene, std::uint32_t number)
+{
+    const auto& numbers = scene.view_numbers();
+    return static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), number) - numbers.begin());
+}
+
+std::vector<std::uint32_t> path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    if (row.packed == nullptr) return {};
+    const TraceJob job = row.scene->job(view_index(*row.scene, view), &row.packed->scene);
+    return walk_path(row.packed->scene, row.key.kernel, job, x, y);
+}
+
+std::string path_text(const std::vector<std::uint32_t>& path)
+{
+    if (path.empty()) return {};
+    constexpr std::size_t shown = 200;
+    std::string text = "  path of tets:";
+    for (std::size_t i = 0; i < std::min(path.size(), shown); ++i)
+        text += fmt::format(" {}", path[i]);
+    if (path.size() > shown) text += fmt::format(" ... ({} in all)", path.size());
+    return wrapped(text, 110, 2);
+}
+
+std::string wrong_ray_text(const RowRun& row)
+{
+    const Traced& result = *traced(row);
+    std::string text;
+    if (result.first_different) {
+        const DifferingRay& ray = *result.first_different;
+        text += fmt::format("{}: first ray that differs: view {}, pixel ({}, {})\n  ours:   {}\n  openmp: {}\n{}\n",
+                            row_name(row.key), ray.view, ray.x, ray.y, hit_text(ray.ours), hit_text(ray.openmp),
+                            path_text(path_of(row, ray.view, ray.x, ray.y)));
+    }
+    if (result.verdicts.first_wrong) {
+        const WrongRay& ray = *result.verdicts.first_wrong;
+        text += fmt::format(
+            "{}: first wrong ray: view {}, pixel ({}, {}): {}\n  ours:   {}\n  Embree: {}, t {:.9g}\n{}\n",
+            row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours), face_text(ray.reference_face),
+            ray.reference_t, path_text(path_of(row, ray.view, ray.x, ray.y)));
+    }
+    return text;
+}
+
+nlohmann::json check_row_json(const RowRun& row)
+{
+    nlohmann::json object = row_json(row, 0);
+    const Traced* result = traced(row);
+    if (result == nullptr) return object;
+    auto& verification = object["verification"];
+    if (const auto& ray = result->verdicts.first_wrong)
+        verification["first_wrong"]["path"] = path_of(row, ray->view, ray->x, ray->y);
+    if (const auto& ray = result->first_different)
+        verification["first_different"]["path"] = path_of(row, ray->view, ray->x, ray->y);
+    return object;
+}
+
+nlohmann::json check_json(const SceneRows& run, const Options& options)
+{
+    nlohmann::json section = result_head(options);
+    section["scenes"] = nlohmann::json::array();
+    for (const auto& scene : run.scenes)
+        section["scenes"].push_back(scene_json(*scene, options));
+    section["rows"] = nlohmann::json::array();
+    for (const RowRun& row : run.rows)
+        section["rows"].push_back(check_row_json(row));
+    return {{"tetrace", std::move(section)}};
+}
+
+Report check_report(const SceneRows& run, const Options& options)
+{
+    Report report{{}, check_table(run.rows), check_json(run, options)};
+    for (const auto& scene : run.scenes)
+        report.text += scene_text(*scene, run.rows);
+    report.text += failure_lines(run.rows);
+    for (const RowRun& row : run.rows)
+        if (traced(row) != nullptr) report.text += wrong_ray_text(row);
+    report.text += wrapped(verdict_sentence(run.rows), 110, 0);
+    return report;
+}
+
+/// A required backend whose rows were all selected but not judged has not been checked.
+void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
+{
+    for (const RowRun& row : rows) {
+        const bool required = std::find(backends.begin(), backends.end(), row.key.backend) != backends.end();
+        const Status status = status_of(row);
+        if (required && (status == Status::skipped || status == Status::unsupported))
+            throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
+                                                        row_name(row.key), name_of(status), reason_of(row)));
+    }
+}
+
+int check_exit_code(const std::vector<RowRun>& rows, const Options& options)
+{
+    const bool flawed =
+        std::any_of(rows.begin(), rows.end(), [](const RowRun& row) { return status_of(row) == Status::flawed; });
+    if (flawed && !options.allow_flawed) return 1;
+    return exit_code(rows);
+}
+
+} // namespace
+
+int check_command(const Options& options)
+{
+    const auto keys = selected_rows(options, [](const std::string&) { return true; });
+    if (options.list) {
+        for (const RowKey& key : keys)
+            print(row_name(key) + "\n");
+        return 0;
+    }
+    check_output(options);
+    require_devices(options.required);
+    for (const std::string& sentence : missing_default_scenes(options))
+        say(sentence);
+    const SceneRows run = open_and_verify(keys, options);
+    deliver(options, check_report(run, options));
+    require_judged(run.rows, options.required);
+    return check_exit_code(run.rows, options);
+}
+
+} // namespace tetrace

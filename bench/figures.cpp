@@ -1,0 +1,57 @@
+#include "bench/figures.h"
+
+namespace tetrace {
+
+namespace {
+
+std::optional<double> quotient(std::uint64_t steps, std::uint64_t rays)
+{
+    if (steps == 0 || rays == 0) return std::nullopt;
+    return static_cast<double>(steps) / static_cast<double>(rays);
+}
+
+} // namespace
+
+unsigned bytes_per_step(Layout layout)
+{
+    switch (layout) {
+    case Layout::tet80: return 16 * TET80_ROWS;
+    case Layout::tet96: return 16 * TET96_ROWS;
+    case Layout::embree: return 0;
+    }
+    throw Error(ErrorKind::internal, "bytes_per_step: no such layout");
+}
+
+MeanSteps mean_steps(const RayTotals& totals)
+{
+    return {quotient(totals.steps(), totals.rays), quotient(totals.hit_steps, totals.hits),
+            quotient(totals.miss_steps, totals.misses)};
+}
+
+std::optional<Figures> figures_of(const RowRun& row)
+{
+    const Status status = status_of(row);
+    if ((status != Status::ok && status != Status::flawed) || row.samples_s.empty()) return std::nullopt;
+    const RayTotals& totals = traced(row)->totals;
+    Figures figures;
+    figures.kernel_s = statistics_of(row.samples_s);
+    const double seconds = figures.kernel_s.median;
+    figures.mrays_per_s = 1e-6 * static_cast<double>(totals.rays) / seconds;
+    if (totals.steps() == 0) return figures;
+    figures.msteps_per_s = 1e-6 * static_cast<double>(totals.steps()) / seconds;
+    if (const unsigned bytes = bytes_per_step(row.key.kernel.layout); bytes > 0)
+        figures.gb_per_s = 1e-3 * *figures.msteps_per_s * bytes;
+    return figures;
+}
+
+std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows)
+{
+    const auto figures = figures_of(row);
+    for (const RowRun& other : rows)
+        if (other.key.scene == row.key.scene && other.key.kernel.method == Method::single)
+            if (const auto single = figures_of(other); figures && single)
+                return figures->mrays_per_s / single->mrays_per_s;
+    return std::nullopt;
+}
+
+} // namespace tetrace

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "bench/row_run.h"
+#include "bench/statistics.h"
+
+#include <optional>
+#include <vector>
+
+namespace tetrace {
+
+/// What a timed row comes to; there is none for a row without a rate.
+struct Figures {
+    Statistics kernel_s; ///< device seconds for all selected views
+    double mrays_per_s = 0;
+    std::optional<double> msteps_per_s; ///< structure cdt only
+    std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
+};
+
+/// Empty unless the row is ok or flawed and has samples.
+[[nodiscard]] std::optional<Figures> figures_of(const RowRun& row);
+
+/// Bytes of a layout's whole record of a tet, taken as what a step moves; 0 for Embree's, which has no steps.
+[[nodiscard]] unsigned bytes_per_step(Layout layout);
+
+/// Steps a ray; empty where there is no such ray, or the structure has no steps.
+struct MeanSteps {
+    std::optional<double> all, hit, miss;
+};
+[[nodiscard]] MeanSteps mean_steps(const RayTotals& totals);
+
+/// The row's Mrays/s over those of Embree's single rays on the same scene; empty where either has none.
+[[nodiscard]] std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows);
+
+} // namespace tetrace

@@ -1,0 +1,173 @@
+#include "bench/help.h"
+
+#include "bench/identity.h"
+#include "bench/option_table.h"
+#include "bench/text.h"
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+struct VerbHelp {
+    Verb verb;
+    const char* summary;
+    const char* description;
+    const char* examples;
+};
+
+const VerbHelp verb_help[] = {
+    {Verb::devices, "list the devices of every backend",
+     "Lists the devices of every backend of this build, usable or with the reason why not, and the optional parts of "
+     "this build with what would bring a missing one.",
+     "  tetrace devices\n"
+     "  tetrace devices --require openmp,embree   exit with 3 unless both are usable\n"},
+    {Verb::scenes, "list the catalogue and the cache of built scenes",
+     "Lists the catalogue, where each scene comes from, and whether its mesh can be had here; then the cache of built "
+     "scenes with sizes. The cache lies in $XDG_CACHE_HOME/tetrace, else in ~/.cache/tetrace.",
+     "  tetrace scenes\n"
+     "  tetrace scenes --clear                    empty the cache\n"},
+    {Verb::build, "build scenes and tell what came out",
+     "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
+     "the rays of a camera set. --domain, --divisions and --switches take lists: every combination is built. One that "
+     "fails is a row with its reason; the others go on, and the exit code is 1.",
+     "  tetrace build --scene bunny\n"
+     "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
+     "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"},
+    {Verb::bench, "verify rows, then measure them",
+     "Loads the scenes, traces every selected view once with every row and judges each ray; then takes samples with "
+     "Google Benchmark, rows interleaved at random. A row is a combination of scene, structure, method, layout, kind "
+     "of rays, math mode and backend. Defaults: maria on tet80 and tet96 with openmp, and Embree with single rays and "
+     "packets of 16.\n\n"
+     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong or lost (their number is told, the rate "
+     "stands); 'wrong', it differs from openmp's answers (no rate); 'unsupported' and 'skipped', with the reason; "
+     "'error', with the reason. 'noisy' is added where the interquartile range exceeds 5 % of the median.\n\n"
+     "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
+     "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
+     "sample.",
+     "  tetrace bench\n"
+     "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
+     "  tetrace bench --scene cubes --method maria --math exact,fast --format csv\n"
+     "  tetrace bench --filter 'tet96|embree' --list\n"
+     "  tetrace bench --scene bunny --threads 1 --benchmark_repetitions=30\n"},
+    {Verb::check, "judge every ray, without timing",
+     "Traces every selected view with every row and judges each ray: against openmp's answer for the same method, "
+     "layout and mode, and against Embree in robust mode, where each disagreement is settled in exact arithmetic on "
+     "the original triangles. Both answers right within rounding of a shared edge are a tie; Embree's being the "
+     "inexact one is settled; else the ray is wrong. The first wrong ray is printed in full. Exits with 1 where "
+     "anything is wrong or lost; --allow-flawed lets the wrong rays of a method itself pass.",
+     "  tetrace check --scene cubes --require openmp,embree\n"
+     "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
+    {Verb::render, "write pictures",
+     "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
+     "ray in false colour with a scale bar. The first selected row of each scene makes them.",
+     "  tetrace render --scene bunny --views 0 --out bunny.png\n"
+     "  tetrace render --scene armadillo --picture normals,steps --size 512\n"},
+    {Verb::help, "describe the program or a verb",
+     "Describes the program, or a verb; 'tetrace help options' prints a Markdown table of all options.",
+     "  tetrace help bench\n"},
+};
+
+const char* const exit_codes = "Exit codes\n"
+                               "  0  good\n"
+                               "  1  a wrong result, or a scene that could not be built\n"
+                               "  2  a command line or an input that is not accepted\n"
+                               "  3  something required is missing or not supported here\n"
+                               "  4  an internal error\n";
+
+constexpr std::size_t page_width = 100;
+
+std::string option_entry(const OptionRow& row)
+{
+    const std::string head = row.value.empty() ? row.name : row.name + " " + row.value;
+    return fmt::format("  {}\n{}", head, wrapped(row.help, page_width, 6));
+}
+
+std::string option_entries(Verb verb)
+{
+    std::string text, group;
+    for (const OptionRow& row : option_table()) {
+        if (!takes(verb, row)) continue;
+        if (row.group != group) text += fmt::format("{}{}\n", text.empty() ? "" : "\n", row.group);
+        group = row.group;
+        text += option_entry(row);
+    }
+    return text;
+}
+
+std::string verb_text(const VerbHelp& entry)
+{
+    const std::string_view name = name_of(entry.verb);
+    std::string text = fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}\n\n{}\n", name, entry.summary, name,
+                                   entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
+                                   wrapped(entry.description, page_width, 0));
+    if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
+    text += fmt::format("Examples\n{}\n", entry.examples);
+    return text + exit_codes;
+}
+
+std::string program_text()
+{
+    std::string text =
+        "tetrace: ray traversal through constrained Delaunay tetrahedralizations, measured and verified\n\n"
+        "Usage: tetrace VERB [OPTION]...\n\n";
+    for (const VerbHelp& entry : verb_help)
+        text += fmt::format("  {:<9}{}\n", name_of(entry.verb), entry.summary);
+    text += "\n'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options.\n"
+            "Results go to standard output or to --out FILE; messages and progress to standard error. NO_COLOR is "
+            "honoured.\n\n"
+            "Examples\n"
+            "  tetrace bench                             the main job: bunny and armadillo beside Embree\n"
+            "  tetrace check --scene cubes               is everything right on this machine?\n"
+            "  tetrace build --scene dragon.ply          your own mesh\n\n";
+    return text + exit_codes;
+}
+
+std::string verbs_of(const OptionRow& row)
+{
+    std::string text;
+    for (const VerbHelp& entry : verb_help)
+        if (takes(entry.verb, row)) text += fmt::format("{}{}", text.empty() ? "" : ", ", name_of(entry.verb));
+    return text;
+}
+
+std::string in_markdown(const std::string& text)
+{
+    std::string result;
+    for (const char c : text) {
+        if (c == '|') result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+std::string options_markdown()
+{
+    std::string text = "| option | verbs | meaning |\n|---|---|---|\n";
+    for (const OptionRow& row : option_table())
+        text += fmt::format("| `{}{}{}` | {} | {} |\n", row.name, row.value.empty() ? "" : " ", in_markdown(row.value),
+                            verbs_of(row), in_markdown(row.help));
+    return text;
+}
+
+} // namespace
+
+std::string help_text(const std::string& topic)
+{
+    if (topic.empty()) return program_text();
+    if (topic == "options") return options_markdown();
+    for (const VerbHelp& entry : verb_help)
+        if (name_of(entry.verb) == topic) return verb_text(entry);
+    throw Error(ErrorKind::internal, "help_text: no help for '" + topic + "'");
+}
+
+std::string version_text()
+{
+    const BuildIdentity build = build_identity();
+    return fmt::format("tetrace {} ({})\n{}, {}\nApache License 2.0\n", build.version, build.commit, build.compiler,
+                       build.flags);
+}
+
+} // namespace tetrace

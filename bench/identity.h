@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+namespace tetrace {
+
+/// What this program was made from and with; recorded with every result.
+struct BuildIdentity {
+    std::string version;
+    std::string commit; ///< git describe at build time; "unknown" outside a repository
+    std::string compiler;
+    std::string flags; ///< build type and compiler flags
+};
+[[nodiscard]] BuildIdentity build_identity();
+
+/// What it runs on.
+struct HostIdentity {
+    std::string cpu;
+    std::string system;   ///< the distribution's name and the kernel's release
+    unsigned threads = 1; ///< that this process may use
+};
+[[nodiscard]] HostIdentity host_identity();
+
+/// Now, in UTC: 2026-01-31T12:00:00Z.
+[[nodiscard]] std::string utc_now();
+
+} // namespace tetrace

@@ -1,0 +1,191 @@
+#include "bench/measure.h"
+
+#include "bench/progress.h"
+#include "bench/reporters.h"
+#include "bench/stopwatch.h"
+#include "core/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iostream>
+#include <sstream>
+
+namespace tetrace {
+
+namespace {
+
+constexpr unsigned fewest_samples = 3;
+
+bool is_timed(const RowRun& row)
+{
+    const Status status = status_of(row);
+    return row.session != nullptr && (status == Status::ok || status == Status::flawed);
+}
+
+double expected_sweep_s(const std::vector<RowRun>& rows)
+{
+    double sum = 0;
+    for (const RowRun& row : rows)
+        if (is_timed(row)) sum += traced(row)->wall_s;
+    return sum;
+}
+
+/// Traces all views once; device seconds.
+double trace_views(RowRun& row)
+{
+    const Stopwatch watch;
+    double kernel_s = 0;
+    for (std::size_t view = 0; view < row.scene->views().size(); ++view) {
+        row.session->launch(row.scene->job(view, row.packed ? &row.packed->scene : nullptr));
+        kernel_s += row.session->wait();
+    }
+    row.wall_samples_s.push_back(watch.seconds());
+    return kernel_s;
+}
+
+void set_counters(benchmark::State& state, const RowRun& row)
+{
+    const Traced& result = *traced(row);
+    const auto per_second = [](double millions) { return benchmark::Counter(millions, benchmark::Counter::kIsRate); };
+    state.counters["Mrays/s"] = per_second(1e-6 * static_cast<double>(result.totals.rays));
+    if (result.totals.steps() > 0)
+        state.counters["Msteps/s"] = per_second(1e-6 * static_cast<double>(result.totals.steps()));
+}
+
+/// Counts the repetitions of all rows, for the progress line.
+struct Sweep {
+    double done = 0, all = 1;
+};
+
+void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
+{
+    for ([[maybe_unused]] const auto iteration : state) {
+        progress_line().show("measuring " + row_name(row.key), sweep.done / sweep.all);
+        double seconds = 0;
+        if (traced(row) != nullptr) guarded(row, [&] { seconds = trace_views(row); });
+        if (traced(row) == nullptr) {
+            state.SkipWithError(reason_of(row).c_str());
+            return;
+        }
+        state.SetIterationTime(seconds);
+        sweep.done += 1;
+    }
+    set_counters(state, row);
+}
+
+void register_rows(std::vector<RowRun>& rows, Sweep& sweep)
+{
+    benchmark::ClearRegisteredBenchmarks();
+    for (RowRun& row : rows)
+        if (is_timed(row))
+            benchmark::RegisterBenchmark(row_name(row.key).c_str(),
+                                         [&row, &sweep](benchmark::State& state) { run_row(state, row, sweep); })
+                ->Iterations(1)
+                ->UseManualTime()
+                ->Unit(benchmark::kMillisecond);
+}
+
+void keep_sample(std::vector<RowRun>& rows, const std::string& name, double seconds)
+{
+    for (RowRun& row : rows)
+        if (row_name(row.key) == name) row.samples_s.push_back(seconds);
+}
+
+std::unique_ptr<RowReporter> make_display(std::vector<RowRun>& rows, const BenchmarkFlags& flags, std::ostream& json)
+{
+    std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
+    receivers.push_back(make_reporter("json", json));
+    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout));
+    return std::make_unique<RowReporter>(
+        std::move(receivers), [&rows](const std::string& name, double seconds) { keep_sample(rows, name, seconds); });
+}
+
+/// Google Benchmark opens --benchmark_out itself and gives its stream to the file reporter alone: the inner reporter
+/// writes to a text first.
+class FileReporter : public RowReporter {
+public:
+    explicit FileReporter(const std::string& format) : FileReporter(format, std::make_unique<std::ostringstream>()) {}
+    void Finalize() override
+    {
+        RowReporter::Finalize();
+        GetOutputStream() << text_->str();
+    }
+
+private:
+    FileReporter(const std::string& format, std::unique_ptr<std::ostringstream> text)
+        : RowReporter(one(make_reporter(format, *text)), [](const std::string&, double) {}), text_(std::move(text))
+    {
+    }
+    static std::vector<std::unique_ptr<benchmark::BenchmarkReporter>>
+    one(std::unique_ptr<benchmark::BenchmarkReporter> reporter)
+    {
+        std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> list;
+        list.push_back(std::move(reporter));
+        return list;
+    }
+
+    std::unique_ptr<std::ostringstream> text_;
+};
+
+std::vector<std::string> all_flags(const BenchmarkFlags& flags, unsigned samples)
+{
+    // The user's come last: they win. The filter was applied to the rows themselves, under the names that are reported.
+    std::vector<std::string> all = {"--benchmark_enable_random_interleaving=true",
+                                    fmt::format("--benchmark_repetitions={}", samples)};
+    all.insert(all.end(), flags.handed_on.begin(), flags.handed_on.end());
+    all.emplace_back("--benchmark_filter=all");
+    return all;
+}
+
+/// A device that answers differently under repetition must not keep its rate.
+void check_last_view(RowRun& row)
+{
+    std::vector<Hit> hits(row.scene->rays_per_view(), Hit{POISON, POISON, 0, 0, 0, 0});
+    row.session->read_back(hits);
+    if (hash_of(hits) != traced(row)->last_view_hash)
+        throw Error(ErrorKind::internal, "the hits of the last view changed between verifying and measuring");
+}
+
+void check_rows_after(std::vector<RowRun>& rows)
+{
+    for (RowRun& row : rows)
+        if (is_timed(row))
+            guarded(row, [&] {
+                if (row.samples_s.empty()) throw Error(ErrorKind::internal, "Google Benchmark took no sample of it");
+                check_last_view(row);
+            });
+}
+
+} // namespace
+
+unsigned affordable_samples(unsigned asked, double sweep_s, double budget_s)
+{
+    if (sweep_s * asked <= budget_s) return asked;
+    const auto fitting = static_cast<unsigned>(budget_s / sweep_s);
+    return std::clamp(fitting, std::min(asked, fewest_samples), asked);
+}
+
+Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags)
+{
+    Measurement result;
+    result.samples =
+        flags.repetitions.value_or(affordable_samples(options.samples, expected_sweep_s(rows), options.budget_s));
+    result.lowered = !flags.repetitions && result.samples < options.samples;
+    const auto timed = std::count_if(rows.begin(), rows.end(), is_timed);
+    if (timed == 0) return result;
+    const Stopwatch watch;
+    Sweep sweep{0, static_cast<double>(timed) * result.samples};
+    register_rows(rows, sweep);
+    initialize_benchmark(all_flags(flags, result.samples));
+    std::ostringstream json;
+    const auto display = make_display(rows, flags, json);
+    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
+    benchmark::RunSpecifiedBenchmarks(display.get(), file.get());
+    progress_line().clear();
+    check_rows_after(rows);
+    result.google_benchmark = nlohmann::json::parse(json.str());
+    result.wall_s = watch.seconds();
+    return result;
+}
+
+} // namespace tetrace

@@ -1,0 +1,240 @@
+#include "bench/option_table.h"
+
+#include "bench/option_values.h"
+#include "core/backend.h"
+
+#include <algorithm>
+#include <regex>
+
+namespace tetrace {
+
+namespace {
+
+constexpr unsigned bit(Verb verb)
+{
+    return 1u << static_cast<unsigned>(verb);
+}
+
+constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
+constexpr unsigned tracing = measuring | bit(Verb::render);
+constexpr unsigned building = bit(Verb::build) | tracing;
+constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes);
+
+/// What all kernels have at one place of their id, each once: the accepted values of an option.
+template <class T>
+std::vector<T> kernels_have(T KernelId::*member)
+{
+    std::vector<T> values;
+    for (const KernelId& kernel : all_kernels())
+        if (std::find(values.begin(), values.end(), kernel.*member) == values.end()) values.push_back(kernel.*member);
+    return values;
+}
+
+template <class T>
+std::function<void(Options&, const std::string&)> append(std::string option, std::vector<T> Options::*list,
+                                                         std::vector<T> accepted)
+{
+    return
+        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
+}
+
+std::vector<std::string> backend_names()
+{
+    std::vector<std::string> names;
+    for (const Backend* backend : all_backends())
+        names.push_back(backend->name());
+    return names;
+}
+
+std::function<void(Options&, const std::string&)> append_backend(std::string option,
+                                                                 std::vector<std::string> Options::*list)
+{
+    return [=](Options& options, const std::string& text) {
+        const auto names = backend_names();
+        if (std::find(names.begin(), names.end(), text) == names.end())
+            reject_value(option, text, join_alternatives(names));
+        (options.*list).push_back(text);
+    };
+}
+
+void set_filter(Options& options, const std::string& text)
+{
+    try {
+        const std::regex check(text);
+    } catch (const std::regex_error& problem) {
+        throw Error(ErrorKind::usage,
+                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
+    }
+    options.filter = text;
+}
+
+void set_out(Options& options, const std::string& text)
+{
+    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
+    options.out = text;
+}
+
+std::vector<OptionRow> scene_options()
+{
+    return {
+        {"Scenes", "--scene", "SCENE",
+         "A name of the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL) or a .tet file. "
+         "May be repeated; several with commas between. Default: bunny and armadillo, or the embedded scenes where "
+         "those cannot be had.",
+         building, true, [](Options& o, const std::string& v) { o.scenes.push_back(v); }},
+        {"Scenes", "--domain", "KIND",
+         "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
+         "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
+         building, true, append("--domain", &Options::domains, {DomainKind::tight, DomainKind::wide})},
+        {"Scenes", "--divisions", "N",
+         "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
+             std::to_string(BuildOptions{}.divisions) + ".",
+         building, true,
+         [](Options& o, const std::string& v) {
+             o.divisions.push_back(static_cast<std::uint32_t>(parse_count("--divisions", v, 1, 64)));
+         }},
+        {"Scenes", "--switches", "SWITCHES",
+         "TetGen's switches, as its manual has them. 'build' takes a list. Default: " + BuildOptions{}.switches + ".",
+         building, true, [](Options& o, const std::string& v) { o.switches.push_back(v); }},
+        {"Scenes", "--resolution", "N",
+         "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
+             ".",
+         building, false,
+         [](Options& o, const std::string& v) {
+             o.resolution = static_cast<std::uint32_t>(parse_count("--resolution", v, 2, 128));
+         }},
+        {"Scenes", "--time-limit", "TIME",
+         "End the scene builder after this long: seconds, or with s, m or h behind it. Default: 10m.", building, false,
+         [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
+        {"Scenes", "--memory-limit", "SIZE",
+         "Memory that the scene builder may use: bytes, or with K, M, G or T behind it. Default: 8G.", building, false,
+         [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
+        {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false,
+         [](Options& o, const std::string&) { o.clear = true; }},
+    };
+}
+
+std::vector<OptionRow> row_options()
+{
+    const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::input};
+    return {
+        {"Rows", "--structure", "NAME", "Keep the rows of this structure: cdt or bvh. Default: both.", tracing, true,
+         append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
+        {"Rows", "--method", "NAME",
+         "Keep the rows of this method: maria (exit-face search of the cdt), single or packet16 (Embree's entry "
+         "points). Default: all.",
+         tracing, true, append("--method", &Options::methods, kernels_have(&KernelId::method))},
+        {"Rows", "--layout", "NAME",
+         "Keep the rows of this packed form: tet80, tet96, or embree, what Embree builds for itself. Default: all.",
+         tracing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
+        {"Rows", "--backend", "NAME",
+         "Keep the rows of this backend ('tetrace devices' lists them). Default: all that have a usable device.",
+         tracing, true, append_backend("--backend", &Options::backends)},
+        {"Rows", "--rays", "KIND", "Keep the rows of this kind of rays: primary. Default: primary.", measuring, true,
+         append("--rays", &Options::rays, std::vector<RayKind>{RayKind::primary})},
+        {"Rows", "--math", "MODE",
+         "'exact': no contraction, the same bits everywhere; 'fast': what the compiler likes. Rows of structure cdt "
+         "only: Embree has one build. Default: exact.",
+         tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
+        {"Rows", "--order", "ORDER",
+         "Order of the tets in memory: 'hilbert', along a space-filling curve, or 'input', as TetGen wrote them. Rows "
+         "of structure cdt only. Default: hilbert.",
+         tracing, true, append("--order", &Options::orders, orders)},
+        {"Rows", "--filter", "REGEX",
+         "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.", measuring, false,
+         set_filter},
+        {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false,
+         [](Options& o, const std::string&) { o.list = true; }},
+    };
+}
+
+std::vector<OptionRow> ray_options()
+{
+    const unsigned with_rays = tracing | bit(Verb::build);
+    return {
+        {"Rays", "--camera-set", "SET",
+         "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii. "
+         "Default: smoke.",
+         with_rays, false,
+         [](Options& o, const std::string& v) {
+             o.camera_set =
+                 choose<CameraSet>("--camera-set", v, {CameraSet::smoke, CameraSet::orbit, CameraSet::flight});
+         }},
+        {"Rays", "--views", "LIST",
+         "Views of the camera set, counted from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
+         "Default: all.",
+         with_rays, true, [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
+        {"Rays", "--size", "WxH", "Image size in pixels, a ray each; N is NxN. Default: 1024x1024.", with_rays, false,
+         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
+        {"Rays", "--threads", "N", "Host threads, 0 for all that the process may use. Default: 0.", with_rays, false,
+         [](Options& o, const std::string& v) {
+             o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
+         }},
+    };
+}
+
+std::vector<OptionRow> judging_options()
+{
+    return {
+        {"Measuring", "--samples", "N",
+         "Samples a row, 3 to 10000; a sample traces all selected views once. Default: 10.", bit(Verb::bench), false,
+         [](Options& o, const std::string& v) {
+             o.samples = static_cast<unsigned>(parse_count("--samples", v, 3, 10000));
+         }},
+        {"Measuring", "--budget", "TIME",
+         "Wall clock for the timed part: where it would take longer, fewer samples are taken (never below 3), and the "
+         "rows say so. Default: 25s.",
+         bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
+        {"Judging", "--require", "BACKEND",
+         "Fail with exit code 3 unless this backend has a usable device, and no row of it is skipped.",
+         bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
+        {"Judging", "--allow-flawed", "",
+         "Exit with 0 where a method itself has wrong or lost rays, as the older methods do; rows that differ from "
+         "openmp still fail.",
+         bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
+        {"Pictures", "--picture", "KIND",
+         "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
+         "bar. Default: normals.",
+         bit(Verb::render), true, append("--picture", &Options::pictures, {Picture::normals, Picture::steps})},
+    };
+}
+
+std::vector<OptionRow> output_options()
+{
+    return {
+        {"Output", "--format", "FORMAT",
+         "Form of the result: table, json, csv or markdown. Any but table goes to FILE where --out names one, else to "
+         "standard output in place of the table. Default: table.",
+         reporting, false,
+         [](Options& o, const std::string& v) {
+             o.format = choose<Format>("--format", v, {Format::table, Format::json, Format::csv, Format::markdown});
+         }},
+        {"Output", "--out", "FILE",
+         "Also write the result to FILE; without --format, its ending chooses the form: .json, .csv, .md, or .txt for "
+         "the table. The table is printed on standard output all the same.",
+         reporting, false, set_out},
+        {"Output", "--out", "FILE",
+         "Write the picture to FILE, PNG or what its ending says; with several pictures, scene, view and kind go in "
+         "front of the ending. Default: SCENE-VIEW-KIND.png in the current folder.",
+         bit(Verb::render), false, set_out},
+    };
+}
+
+std::vector<OptionRow> make_table()
+{
+    std::vector<OptionRow> table;
+    for (auto part : {scene_options, row_options, ray_options, judging_options, output_options})
+        for (OptionRow& row : part())
+            table.push_back(std::move(row));
+    return table;
+}
+
+} // namespace
+
+const std::vector<OptionRow>& option_table()
+{
+    static const std::vector<OptionRow> table = make_table();
+    return table;
+}
+
+} // namespace tetrace

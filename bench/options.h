@@ -1,0 +1,82 @@
+#pragma once
+
+#include "core/camera.h"
+#include "core/kernel_id.h"
+#include "scenes/catalogue.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+/// What the program is asked to do; the first word of its command line.
+enum class Verb { devices, scenes, build, bench, check, render, help, version };
+
+/// The form of a result.
+enum class Format { table, json, csv, markdown };
+
+/// A picture that `render` makes.
+enum class Picture { normals, steps };
+
+/// A command line, checked. Empty lists select by default (see rows.h); all else holds its default.
+struct Options {
+    Verb verb = Verb::help;
+    std::string help_topic; ///< verb that help is about; empty: the program
+
+    std::vector<std::string> scenes; ///< catalogue names or paths, as given
+    std::vector<DomainKind> domains = {BuildOptions{}.domain};
+    std::vector<std::uint32_t> divisions = {BuildOptions{}.divisions};
+    std::vector<std::string> switches = {BuildOptions{}.switches};
+    std::uint32_t resolution = BuildOptions{}.resolution;
+    double time_limit_s = BuildOptions{}.time_limit_s;
+    std::uint64_t memory_limit_bytes = BuildOptions{}.memory_limit_bytes;
+
+    std::vector<Structure> structures;
+    std::vector<Method> methods;
+    std::vector<Layout> layouts;
+    std::vector<std::string> backends;
+    std::vector<RayKind> rays;
+    std::vector<MathMode> math;
+    std::vector<TetOrder> orders;
+    std::string filter; ///< ECMAScript regular expression on row names; empty: all
+    bool list = false;
+
+    CameraSet camera_set = CameraSet::smoke;
+    std::string views; ///< as parse_views() takes it; empty: all of the set
+    std::uint32_t width = 1024, height = 1024;
+
+    unsigned threads = 0; ///< 0: all that the process may use
+    unsigned samples = 10;
+    double budget_s = 25; ///< for the timed part
+
+    std::vector<std::string> required; ///< backends that must have a usable device
+    bool allow_flawed = false;
+    bool clear = false;
+    std::vector<Picture> pictures;
+
+    std::optional<std::filesystem::path> out;
+    std::optional<Format> format;
+    std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
+};
+
+[[nodiscard]] std::string_view name_of(Verb verb);
+[[nodiscard]] std::string_view name_of(Format format);
+[[nodiscard]] std::string_view name_of(Picture picture);
+[[nodiscard]] std::string_view name_of(DomainKind kind);
+
+/// Reads a command line, the program's name left out.
+/// Throws Error{usage} naming what is not accepted, and what is.
+[[nodiscard]] Options parse_options(const std::vector<std::string>& arguments);
+
+/// The scenes asked for with their one set of build options; the default scenes where none was named.
+/// Precondition: one domain, one number of divisions, one set of switches (parse_options sees to it but for `build`).
+[[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
+
+/// The numbers of the views asked for, ascending. Throws Error{usage} as parse_views() does.
+[[nodiscard]] std::vector<std::uint32_t> selected_views(const Options& options);
+
+} // namespace tetrace

@@ -1,0 +1,111 @@
+#include "bench/report.h"
+
+#include "bench/identity.h"
+#include "bench/progress.h"
+#include "core/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace tetrace {
+
+namespace {
+
+constexpr int schema_version = 1;
+
+Format format_of_file(const Options& options)
+{
+    if (options.format && *options.format != Format::table) return *options.format;
+    const std::string ending = options.out->extension().string();
+    if (ending == ".json") return Format::json;
+    if (ending == ".csv") return Format::csv;
+    if (ending == ".md") return Format::markdown;
+    if (ending == ".txt") return Format::table;
+    throw Error(ErrorKind::usage,
+                fmt::format("--out: the form of '{}' cannot be told from its ending; use .json, .csv, .md or .txt, or "
+                            "add --format",
+                            options.out->string()));
+}
+
+std::string in_format(const Report& report, Format format)
+{
+    switch (format) {
+    case Format::table: return report.text;
+    case Format::json: return report.json.dump(2) + "\n";
+    case Format::csv: return report.table.csv();
+    case Format::markdown: return report.table.markdown();
+    }
+    throw Error(ErrorKind::internal, "in_format: no such format");
+}
+
+[[noreturn]] void reject_file(const std::filesystem::path& path)
+{
+    throw Error(ErrorKind::invalid_input, fmt::format("writing the result to '{}': {}; name another file with --out",
+                                                      path.string(), std::strerror(errno)));
+}
+
+} // namespace
+
+void check_output(const Options& options)
+{
+    if (!options.out) return;
+    static_cast<void>(format_of_file(options));
+    const bool existed = std::filesystem::exists(*options.out);
+    if (!std::ofstream(*options.out, std::ios::app)) reject_file(*options.out);
+    if (!existed) std::filesystem::remove(*options.out);
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text)
+{
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file << text;
+    file.close();
+    if (!file) reject_file(path);
+}
+
+void deliver_to_file(const Options& options, const Report& report)
+{
+    write_text(*options.out, in_format(report, format_of_file(options)));
+}
+
+void deliver(const Options& options, const Report& report)
+{
+    if (options.out) deliver_to_file(options, report);
+    const Format format = options.format.value_or(Format::table);
+    if (format == Format::table || !options.out) print(in_format(report, format));
+}
+
+nlohmann::json to_json(const Table& table)
+{
+    nlohmann::json rows = nlohmann::json::array();
+    for (const auto& row : table.rows()) {
+        nlohmann::json object = nlohmann::json::object();
+        for (std::size_t c = 0; c < row.size(); ++c)
+            std::visit(
+                [&](const auto& value) {
+                    if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+                        object[table.columns()[c].key] = value;
+                },
+                row[c]);
+        rows.push_back(std::move(object));
+    }
+    return rows;
+}
+
+nlohmann::json result_head(const Options& options)
+{
+    const BuildIdentity build = build_identity();
+    const HostIdentity host = host_identity();
+    return {{"schema_version", schema_version},
+            {"verb", name_of(options.verb)},
+            {"date", utc_now()},
+            {"version", build.version},
+            {"commit", build.commit},
+            {"compiler", build.compiler},
+            {"flags", build.flags},
+            {"host", {{"cpu", host.cpu}, {"system", host.system}, {"threads", host.threads}}}};
+}
+
+} // namespace tetrace

@@ -1,0 +1,65 @@
+#include "bench/reporters.h"
+
+#include "core/error.h"
+
+namespace tetrace {
+
+namespace {
+
+/// Google Benchmark 1.7 has a flag, 1.8 an enumeration.
+template <class Run>
+bool has_failed(const Run& run)
+{
+    if constexpr (requires { run.error_occurred; })
+        return run.error_occurred;
+    else
+        return static_cast<int>(run.skipped) != 0;
+}
+
+} // namespace
+
+bool RowReporter::ReportContext(const Context& context)
+{
+    bool go_on = true;
+    for (const auto& receiver : receivers_)
+        go_on = receiver->ReportContext(context) && go_on;
+    return go_on;
+}
+
+void RowReporter::ReportRuns(const std::vector<Run>& runs)
+{
+    std::vector<Run> renamed = runs;
+    for (Run& run : renamed) {
+        run.run_name.iterations.clear();
+        run.run_name.repetitions.clear();
+        run.run_name.time_type.clear();
+        if (run.run_type == Run::RT_Iteration && !has_failed(run) && run.iterations > 0)
+            sample_seen_(run.run_name.function_name, run.real_accumulated_time / static_cast<double>(run.iterations));
+    }
+    for (const auto& receiver : receivers_)
+        receiver->ReportRuns(renamed);
+}
+
+void RowReporter::Finalize()
+{
+    for (const auto& receiver : receivers_)
+        receiver->Finalize();
+}
+
+std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& format, std::ostream& stream)
+{
+    std::unique_ptr<benchmark::BenchmarkReporter> reporter;
+    if (format == "console") reporter = std::make_unique<benchmark::ConsoleReporter>();
+    if (format == "json") reporter = std::make_unique<benchmark::JSONReporter>();
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations" // of the console's CSV; its flag still offers it
+    if (format == "csv") reporter = std::make_unique<benchmark::CSVReporter>();
+#pragma GCC diagnostic pop
+    if (reporter == nullptr)
+        throw Error(ErrorKind::usage,
+                    "Google Benchmark has no format '" + format + "'; accepted: console, json or csv");
+    reporter->SetOutputStream(&stream);
+    return reporter;
+}
+
+} // namespace tetrace

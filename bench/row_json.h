@@ -1,0 +1,19 @@
+#pragma once
+
+#include "bench/row_run.h"
+
+#include <nlohmann/json.hpp>
+
+namespace tetrace {
+
+/// A scene as results record it: identity, build, counts, views.
+[[nodiscard]] nlohmann::json scene_json(const SceneWork& scene, const Options& options);
+
+/// A row as results record it: key, device, status, verification, counts, and, where it was timed, times and rates.
+/// copy_bytes_per_s: the memory's copy bandwidth measured in the same run; 0 where it was not.
+[[nodiscard]] nlohmann::json row_json(const RowRun& row, double copy_bytes_per_s);
+
+/// A ray's answer.
+[[nodiscard]] nlohmann::json hit_json(const Hit& hit);
+
+} // namespace tetrace

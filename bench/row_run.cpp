@@ -1,0 +1,141 @@
+#include "bench/row_run.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <new>
+
+namespace tetrace {
+
+namespace {
+
+Backend& backend_named(const std::string& name)
+{
+    for (Backend* backend : all_backends())
+        if (backend->name() == name) return *backend;
+    throw Error(ErrorKind::internal, "no backend is named " + name);
+}
+
+std::optional<std::size_t> first_usable(const std::vector<Device>& devices)
+{
+    for (std::size_t i = 0; i < devices.size(); ++i)
+        if (devices[i].usable) return i;
+    return std::nullopt;
+}
+
+std::string no_device_reason(const std::vector<Device>& devices)
+{
+    if (devices.empty()) return "no device";
+    return fmt::format("{}: {}", devices.front().name, devices.front().reason);
+}
+
+void open_session(RowRun& row, const Options& options)
+{
+    row.backend = &backend_named(row.key.backend);
+    const auto devices = row.backend->devices();
+    const auto device = first_usable(devices);
+    if (!device) {
+        row.outcome = Skipped{Status::skipped, no_device_reason(devices)};
+        return;
+    }
+    row.device = devices[*device];
+    if (row.key.kernel.structure == Structure::cdt)
+        row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
+    const SceneData data{&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr};
+    row.session = row.backend->open(*device, row.key.kernel, data, SessionOptions{options.threads});
+}
+
+std::string traced_reason(const Traced& traced)
+{
+    if (traced.different > 0) return fmt::format("{} rays differ from openmp's", traced.different);
+    std::string text;
+    const auto add = [&](std::uint64_t count, const char* what) {
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+    };
+    add(traced.verdicts.wrong, "wrong");
+    add(traced.verdicts.lost, "lost");
+    add(traced.misplaced, "misplaced");
+    return text;
+}
+
+} // namespace
+
+std::string_view name_of(Status status)
+{
+    switch (status) {
+    case Status::ok: return "ok";
+    case Status::flawed: return "flawed";
+    case Status::wrong: return "wrong";
+    case Status::unsupported: return "unsupported";
+    case Status::skipped: return "skipped";
+    case Status::error: return "error";
+    }
+    throw Error(ErrorKind::internal, "name_of(Status): no such status");
+}
+
+const Traced* traced(const RowRun& row)
+{
+    return std::get_if<Traced>(&row.outcome);
+}
+
+Status status_of(const RowRun& row)
+{
+    if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->status;
+    const Traced* result = traced(row);
+    if (result == nullptr) return Status::error;
+    if (result->different > 0) return Status::wrong;
+    return result->flawed_rays() > 0 ? Status::flawed : Status::ok;
+}
+
+std::string reason_of(const RowRun& row)
+{
+    if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->reason;
+    if (const auto* failed = std::get_if<Failed>(&row.outcome)) return failed->what;
+    return traced_reason(std::get<Traced>(row.outcome));
+}
+
+void guarded(RowRun& row, const std::function<void()>& work)
+{
+    try {
+        work();
+        return;
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
+        if (error.kind() == ErrorKind::unsupported)
+            row.outcome = Skipped{Status::unsupported, error.what()};
+        else
+            row.outcome = Failed{error.kind(), error.what()};
+    } catch (const std::bad_alloc&) {
+        row.outcome = Skipped{Status::unsupported, "out of memory; use a smaller --size or fewer rows"};
+    } catch (const std::exception& error) {
+        row.outcome = Failed{ErrorKind::internal, error.what()};
+    }
+    row.session.reset();
+}
+
+RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options)
+{
+    RowRun row;
+    row.key = key;
+    row.scene = &scene;
+    guarded(row, [&] { open_session(row, options); });
+    return row;
+}
+
+RowRun failed_row(const RowKey& key, const Error& error)
+{
+    RowRun row;
+    row.key = key;
+    guarded(row, [&] { throw error; });
+    return row;
+}
+
+int exit_code(const std::vector<RowRun>& rows)
+{
+    if (std::any_of(rows.begin(), rows.end(), [](const RowRun& row) { return status_of(row) == Status::wrong; }))
+        return 1;
+    for (const RowRun& row : rows)
+        if (const auto* failed = std::get_if<Failed>(&row.outcome)) return exit_code(failed->kind);
+    return 0;
+}
+
+} // namespace tetrace

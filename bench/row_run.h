@@ -1,0 +1,87 @@
+#pragma once
+
+#include "bench/hit_checks.h"
+#include "bench/oracle.h"
+#include "bench/rows.h"
+#include "bench/scene_work.h"
+#include "core/error.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tetrace {
+
+/// How a row ended; see `tetrace help bench`.
+enum class Status { ok, flawed, wrong, unsupported, skipped, error };
+[[nodiscard]] std::string_view name_of(Status status);
+
+/// The first ray on which a backend differs from openmp.
+struct DifferingRay {
+    std::uint32_t view = 0, x = 0, y = 0;
+    Hit ours{}, openmp{};
+};
+
+/// What the untimed pass over all selected views found out.
+struct Traced {
+    RayTotals totals;
+    Verdicts verdicts;
+    bool compared = false;       ///< with openmp; openmp's own rows and Embree's have nothing to compare with
+    std::uint64_t different = 0; ///< rays that differ from openmp's
+    std::optional<DifferingRay> first_different;
+    std::uint64_t misplaced = 0; ///< hits whose t, u and v do not name one point
+    std::uint64_t hit_hash = 0;  ///< of all hits, view after view
+    std::uint64_t last_view_hash = 0;
+    double kernel_s = 0; ///< device seconds of this first pass
+    double wall_s = 0;   ///< launch to end, on the host's clock
+    double download_s = 0;
+
+    /// Rays that the method itself has wrong or lost.
+    [[nodiscard]] std::uint64_t flawed_rays() const { return verdicts.wrong + verdicts.lost + misplaced; }
+};
+struct Skipped {
+    Status status = Status::skipped; ///< or unsupported
+    std::string reason;
+};
+struct Failed {
+    ErrorKind kind = ErrorKind::internal;
+    std::string what;
+};
+using Outcome = std::variant<Traced, Skipped, Failed>;
+
+/// A row from its selection to its result. Failures end as its outcome.
+struct RowRun {
+    RowKey key;
+    SceneWork* scene = nullptr; ///< null where the scene could not be loaded
+    Backend* backend = nullptr;
+    Device device;
+    const Packed* packed = nullptr; ///< null for structure bvh
+    std::unique_ptr<Session> session;
+    Outcome outcome = Traced{};
+    std::vector<double> samples_s;      ///< device seconds for all selected views, one a repetition
+    std::vector<double> wall_samples_s; ///< the same on the host's clock, launches included
+};
+
+[[nodiscard]] Status status_of(const RowRun& row);
+/// Why, in one line; empty where the status is ok.
+[[nodiscard]] std::string reason_of(const RowRun& row);
+/// What was traced; null where the row failed or was skipped.
+[[nodiscard]] const Traced* traced(const RowRun& row);
+
+/// Opens a row's session on the first usable device of its backend. Never throws but Error{interrupted}.
+[[nodiscard]] RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options);
+
+/// A row that could not be opened since its scene could not be loaded.
+[[nodiscard]] RowRun failed_row(const RowKey& key, const Error& error);
+
+/// Does a part of a row's work. What is thrown ends as the row's outcome and frees its session; Error{interrupted} goes
+/// on.
+void guarded(RowRun& row, const std::function<void()>& work);
+
+/// The exit code that the rows' statuses come to: 1 for a wrong one, else that of the first error.
+[[nodiscard]] int exit_code(const std::vector<RowRun>& rows);
+
+} // namespace tetrace

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "bench/options.h"
+#include "core/backend.h"
+
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// What is measured, one combination; its name is its key in every result.
+struct RowKey {
+    std::string scene;   ///< label, see scene_label()
+    std::string backend; ///< name, see all_backends()
+    KernelId kernel;
+    RayKind rays = RayKind::primary;
+    TetOrder order = TetOrder::hilbert;
+
+    friend bool operator==(const RowKey&, const RowKey&) = default;
+};
+
+/// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; no device and no counts in
+/// it. Rows of another order than hilbert have "order:input" before the api.
+[[nodiscard]] std::string row_name(const RowKey& key);
+
+/// Name without the scene, for tables headed by it: "maria tet80 exact".
+[[nodiscard]] std::string kernel_title(const RowKey& key);
+
+/// The rows that the options select, scene after scene, rows of one scene in the order of kernels and backends.
+/// Math mode and order select among rows of structure cdt only; without those options, exact and hilbert.
+/// Throws Error{usage} where nothing is selected: it names the options, and what there would be without them.
+[[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels);
+
+/// Whether Google Benchmark's --benchmark_filter would keep the name: a regular expression found anywhere, negated by a
+/// leading '-'; "all" and "" keep everything. Throws Error{usage} where it is no regular expression.
+[[nodiscard]] bool benchmark_filter_keeps(const std::string& filter, const std::string& name);
+
+} // namespace tetrace

@@ -1,0 +1,82 @@
+#include "bench/scene_work.h"
+
+#include "bench/identity.h"
+#include "bench/progress.h"
+#include "bench/stopwatch.h"
+#include "core/locate.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+/// Some devices end loops silently at 65,535 iterations (lavapipe of Mesa 22.3): the cap stays below, everywhere alike.
+constexpr std::uint32_t largest_step_cap = 60'000;
+
+} // namespace
+
+SceneWork::SceneWork(LoadedScene loaded, const Options& options)
+    : loaded_(std::move(loaded)), counts_(count_faces(loaded_.scene.tets)), width_(options.width),
+      height_(options.height), view_numbers_(selected_views(options))
+{
+    const auto cameras = make_cameras(options.camera_set, bounding_sphere(loaded_.scene.mesh));
+    const Stopwatch watch;
+    for (const std::uint32_t number : view_numbers_) {
+        View view = make_view(cameras.at(number), width_, height_);
+        const Start start = find_start(loaded_.scene, view.origin);
+        view.origin = start.origin; // every structure traces from there
+        views_.push_back(view);
+        start_tets_.push_back(start.tet);
+    }
+    locate_s_ = watch.seconds();
+}
+
+const Packed& SceneWork::packed(Layout layout, TetOrder order)
+{
+    const std::pair key{layout, order};
+    if (const auto found = packed_.find(key); found != packed_.end()) return found->second;
+    const Stopwatch watch;
+    PackedScene scene = pack(loaded_.scene, layout, order);
+    return packed_.emplace(key, Packed{std::move(scene), watch.seconds()}).first->second;
+}
+
+TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
+{
+    TraceJob job;
+    job.view = views_.at(index);
+    job.width = width_;
+    job.height = height_;
+    if (packed != nullptr && start_tets_[index] != NO_TET) job.start_tet = packed->packed_of_mesh[start_tets_[index]];
+    job.max_steps = static_cast<std::uint32_t>(std::min<std::uint64_t>(counts_.tets + 1, largest_step_cap));
+    return job;
+}
+
+SceneWork load_work(const SceneRequest& request, const Options& options)
+{
+    LoadedScene loaded = load_scene(request, progress_line().callback());
+    progress_line().clear();
+    loaded.scene.name = scene_label(request.name);
+    for (const std::string& message : loaded.messages)
+        say(fmt::format("{}: {}", loaded.scene.name, message));
+    progress_line().show("preparing " + loaded.scene.name, -1);
+    return {std::move(loaded), options};
+}
+
+std::vector<std::string> missing_default_scenes(const Options& options)
+{
+    std::vector<std::string> reasons;
+    if (!options.scenes.empty()) return reasons;
+    for (const char* const name : {"bunny", "armadillo"})
+        if (const std::string reason = why_not_available(name); !reason.empty())
+            reasons.push_back(fmt::format("{} is left out: {}", name, reason));
+    return reasons;
+}
+
+unsigned resolved_threads(const Options& options)
+{
+    return options.threads != 0 ? options.threads : host_identity().threads;
+}
+
+} // namespace tetrace

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "bench/options.h"
+#include "core/backend.h"
+#include "scenes/load.h"
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// A scene in packed form, and what packing it took.
+struct Packed {
+    PackedScene scene;
+    double pack_s = 0;
+};
+
+/// A loaded scene with all that its rows share: packed forms, views, start tets.
+class SceneWork {
+public:
+    /// Takes the views that the options select, and finds where their rays start.
+    SceneWork(LoadedScene loaded, const Options& options);
+
+    [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
+    [[nodiscard]] const std::string& label() const { return loaded_.scene.name; }
+    [[nodiscard]] const TetMeshCounts& counts() const { return counts_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& view_numbers() const { return view_numbers_; }
+    [[nodiscard]] const std::vector<View>& views() const { return views_; }
+    [[nodiscard]] std::uint32_t width() const { return width_; }
+    [[nodiscard]] std::uint32_t height() const { return height_; }
+    [[nodiscard]] std::size_t rays_per_view() const { return std::size_t{width_} * height_; }
+    /// Seconds that locating the origins of all views took.
+    [[nodiscard]] double locate_s() const { return locate_s_; }
+
+    /// Packs at the first call; later calls return the same. Throws Error{unsupported} as pack() does.
+    [[nodiscard]] const Packed& packed(Layout layout, TetOrder order);
+
+    /// The job of the view at `index` of views(). packed: null for kernels of structure bvh.
+    [[nodiscard]] TraceJob job(std::size_t index, const PackedScene* packed) const;
+
+private:
+    LoadedScene loaded_;
+    TetMeshCounts counts_;
+    std::uint32_t width_, height_;
+    std::vector<std::uint32_t> view_numbers_;
+    std::vector<View> views_;
+    std::vector<std::uint32_t> start_tets_; ///< as the tet mesh numbers them
+    double locate_s_ = 0;
+    std::map<std::pair<Layout, TetOrder>, Packed> packed_;
+};
+
+/// Loads a scene, says its messages, and makes it ready. Throws what load_scene() throws.
+[[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options);
+
+/// Which defaults cannot be had here, and how to get them, a sentence each; empty where scenes were named.
+[[nodiscard]] std::vector<std::string> missing_default_scenes(const Options& options);
+
+/// Threads that work uses: those asked for, else all that the process may use.
+[[nodiscard]] unsigned resolved_threads(const Options& options);
+
+} // namespace tetrace

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+namespace tetrace {
+
+/// Samples above this spread make a row noisy.
+inline constexpr double noisy_spread = 0.05;
+
+/// What a row's samples come to.
+struct Statistics {
+    double median = 0;
+    double lower_quartile = 0;
+    double upper_quartile = 0;
+
+    /// Interquartile range / median.
+    [[nodiscard]] double spread() const { return (upper_quartile - lower_quartile) / median; }
+    [[nodiscard]] bool noisy() const { return spread() > noisy_spread; }
+};
+
+/// The p-quantile by linear interpolation between the order statistics around (n - 1) p: definition 7 of Hyndman and
+/// Fan, "Sample Quantiles in Statistical Packages" (1996), the default of R and NumPy.
+/// Throws Error{internal} for no samples. p in [0, 1].
+[[nodiscard]] double quantile(std::vector<double> samples, double p);
+
+/// Median and quartiles by quantile(). Throws Error{internal} for no samples, or one that is not positive and finite.
+[[nodiscard]] Statistics statistics_of(const std::vector<double>& samples);
+
+} // namespace tetrace

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace tetrace {
+
+/// A cell: nothing (printed as a dash), text, a whole number or a real one.
+using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
+
+/// A column: `key` names it in CSV and JSON, unit included (`build_s`); people read title and unit.
+struct Column {
+    std::string key;
+    std::string title;
+    std::string unit = {};
+    int decimals = 2; ///< of real numbers, in text and Markdown; CSV keeps all digits
+};
+
+/// A table that prints itself as aligned text, CSV or Markdown. Numbers stand right-aligned, texts left.
+class Table {
+public:
+    explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+    /// Throws Error{internal} where the number of cells is not that of the columns.
+    void add(std::vector<Cell> cells);
+
+    [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+    [[nodiscard]] const std::vector<std::vector<Cell>>& rows() const { return rows_; }
+
+    /// Lines indented by `indent` blanks: titles, units where a column has one, rows. Columns without a cell are left
+    /// out.
+    [[nodiscard]] std::string text(std::size_t indent = 0) const;
+    /// RFC 4180 but for line ends, which are \n: keys, then rows; an empty cell is empty.
+    [[nodiscard]] std::string csv() const;
+    /// A GitHub table; units stand in the header behind the title.
+    [[nodiscard]] std::string markdown() const;
+
+private:
+    [[nodiscard]] bool has_cells(std::size_t column) const;
+    [[nodiscard]] bool is_number(std::size_t column) const;
+
+    std::vector<Column> columns_;
+    std::vector<std::vector<Cell>> rows_;
+};
+
+/// A cell as people read it; a dash where it is empty, or a real number that is not finite.
+[[nodiscard]] std::string cell_text(const Cell& cell, const Column& column);
+
+} // namespace tetrace

@@ -1,0 +1,67 @@
+#include "bench/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <sstream>
+
+namespace tetrace {
+
+std::size_t display_width(const std::string& text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+namespace {
+
+std::string filled(const std::string& paragraph, std::size_t width, const std::string& margin)
+{
+    std::istringstream words(paragraph);
+    std::string text, line, word;
+    while (words >> word) {
+        if (!line.empty() && margin.size() + display_width(line) + 1 + display_width(word) > width) {
+            text += margin + line + "\n";
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return line.empty() ? text : text + margin + line + "\n";
+}
+
+} // namespace
+
+std::string wrapped(const std::string& text, std::size_t width, std::size_t indent)
+{
+    std::string result;
+    std::size_t begin = 0;
+    while (begin <= text.size()) {
+        const std::size_t end = std::min(text.find("\n\n", begin), text.size());
+        result += (begin > 0 ? "\n" : "") + filled(text.substr(begin, end - begin), width, std::string(indent, ' '));
+        begin = end + 2;
+    }
+    return result;
+}
+
+std::string with_commas(std::uint64_t value)
+{
+    std::string digits = std::to_string(value);
+    for (std::size_t at = digits.size(); at > 3; at -= 3)
+        digits.insert(at - 3, ",");
+    return digits;
+}
+
+std::string size_text(std::uint64_t bytes)
+{
+    const double size = static_cast<double>(bytes);
+    return bytes < 100'000 ? fmt::format("{:.1f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
+}
+
+std::string seconds_text(double seconds)
+{
+    if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+    const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
+    return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+}
+
+} // namespace tetrace
