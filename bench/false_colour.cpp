@@ -45,9 +45,9 @@ Colour colour_of(const Hit& hit, std::uint32_t end)
     return hit.steps == 0 ? Colour{} : false_colour(static_cast<double>(hit.steps) / end);
 }
 
-std::string title_of(const std::string& scene, const StepSummary& summary)
+std::string title_of(const std::string& subject, const StepSummary& summary)
 {
-    std::string title = fmt::format("steps per ray, {}, mean {:.1f}, max {}", scene, summary.mean, summary.most);
+    std::string title = fmt::format("steps per ray, {}, mean {:.1f}, max {}", subject, summary.mean, summary.most);
     if (summary.lost > 0) {
         title += fmt::format(", lost {} (magenta)", summary.lost);
     }
@@ -131,11 +131,11 @@ StepSummary summarize_steps(std::span<const Hit> hits)
     return summary;
 }
 
-Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height, const std::string& scene)
+Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height, const std::string& subject)
 {
     const StepSummary summary = summarize_steps(hits);
     const std::uint32_t scale = std::max(1u, width / 448);
-    const std::string title = title_of(scene, summary);
+    const std::string title = title_of(subject, summary);
     const std::uint32_t full_width = std::max(width, text_width(title, scale) + 2 * margin * scale);
     const Colour paper = from_srgb(0x16181C), ink = from_srgb(0xE8EAED);
 

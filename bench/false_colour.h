@@ -28,8 +28,9 @@ struct StepSummary {
 
 /// The picture of a view in false colour, a pixel per ray, with a title and a scale bar below it. Rays without a step
 /// are black, lost rays magenta, rays beyond the scale's end have the colour of its end.
-/// hits: width * height, row after row. The picture is `width` wide, or wider where the title needs it.
+/// subject: the scene and view, for the title. hits: width * height, row after row. The picture is `width` wide, or
+/// wider where the title needs it.
 [[nodiscard]] Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height,
-                                const std::string& scene);
+                                const std::string& subject);
 
 } // namespace tetrace

@@ -38,7 +38,9 @@ std::vector<Hit> trace(RowRun& row, std::size_t view)
 
 Pixmap draw(Picture picture, std::span<const Hit> hits, const SceneWork& scene, std::size_t view)
 {
-    if (picture == Picture::steps) return draw_steps(hits, scene.width(), scene.height(), scene.label());
+    if (picture == Picture::steps)
+        return draw_steps(hits, scene.width(), scene.height(),
+                          fmt::format("{}, view {}", scene.label(), scene.view_numbers()[view]));
     return shade_hits(hits, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
 }
 
