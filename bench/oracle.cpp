@@ -16,8 +16,8 @@ namespace tetrace {
 namespace {
 namespace kernel {
 #include "kernels/dialect_cpp.h"
-#include "kernels/vector.h"
 #include "kernels/ray.h"
+#include "kernels/vector.h"
 
 Vec3 to_vec3(Float3 a)
 {
@@ -26,7 +26,8 @@ Vec3 to_vec3(Float3 a)
 
 Ray pixel_ray(const View& view, std::uint32_t x, std::uint32_t y)
 {
-    const TraceParams params{to_vec3(view.origin), to_vec3(view.corner), to_vec3(view.step_x), to_vec3(view.step_y), 0, 0, 0, 0};
+    const TraceParams params{
+        to_vec3(view.origin), to_vec3(view.corner), to_vec3(view.step_x), to_vec3(view.step_y), 0, 0, 0, 0};
     return primary_ray(params, x, y);
 }
 } // namespace kernel
@@ -90,7 +91,8 @@ struct Oracle::Parts {
         reference_width = width;
     }
 
-    void judge_ray(Verdicts& verdicts, const View& view, std::uint32_t number, std::size_t pixel, const Hit& ours) const;
+    void judge_ray(Verdicts& verdicts, const View& view, std::uint32_t number, std::size_t pixel,
+                   const Hit& ours) const;
 
     const TriangleMesh& mesh;
     unsigned threads;
@@ -101,18 +103,21 @@ struct Oracle::Parts {
     std::uint32_t reference_width = 0;
 };
 
-void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_t number, std::size_t pixel, const Hit& ours) const
+void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_t number, std::size_t pixel,
+                              const Hit& ours) const
 {
     const auto x = static_cast<std::uint32_t>(pixel % reference_width);
     const auto y = static_cast<std::uint32_t>(pixel / reference_width);
     const Hit& theirs = reference[pixel];
     const auto blame = [&](std::uint64_t& count, const char* reason) {
         count++;
-        if (!verdicts.first_wrong) verdicts.first_wrong = WrongRay{number, x, y, ours, theirs.face_id, theirs.t, reason};
+        if (!verdicts.first_wrong)
+            verdicts.first_wrong = WrongRay{number, x, y, ours, theirs.face_id, theirs.t, reason};
     };
     if (ours.face_id == LOST) return blame(verdicts.lost, "the walk reached its cap of steps");
     const bool is_face = ours.face_id < mesh.triangles.size();
-    if (!is_face && ours.face_id != NO_HIT) return blame(verdicts.wrong, "it names no triangle (was the hit written at all?)");
+    if (!is_face && ours.face_id != NO_HIT)
+        return blame(verdicts.wrong, "it names no triangle (was the hit written at all?)");
 
     const ExactRay ray = exact_ray(view, x, y);
     const double bound = tie_bound(view.origin);
@@ -132,17 +137,19 @@ Oracle::Oracle(const TriangleMesh& mesh, unsigned threads) : parts_(std::make_un
 
 Oracle::~Oracle() = default;
 
-Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_t width, std::uint32_t height, std::span<const Hit> hits)
+Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_t width, std::uint32_t height,
+                       std::span<const Hit> hits)
 {
     assert(hits.size() == std::size_t{width} * height);
     parts_->trace_reference(view, width, height);
     std::vector<Verdicts> rows(height);
-#pragma omp parallel for schedule(dynamic, 8) num_threads(static_cast<int>(parts_->threads))
+#pragma omp parallel for schedule(dynamic, 8) num_threads(static_cast <int>(parts_->threads))
     for (std::uint32_t y = 0; y < height; y++)
         for (std::size_t pixel = std::size_t{y} * width; pixel < std::size_t{y + 1} * width; pixel++)
             parts_->judge_ray(rows[y], view, view_number, pixel, hits[pixel]);
     Verdicts all;
-    for (const Verdicts& row : rows) all.add(row);
+    for (const Verdicts& row : rows)
+        all.add(row);
     all.rays = hits.size();
     return all;
 }

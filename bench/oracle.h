@@ -29,7 +29,7 @@ struct Verdicts {
     std::uint64_t settled = 0; ///< another triangle, and exact arithmetic says ours is the nearest of the candidates
     std::uint64_t wrong = 0;
     std::uint64_t lost = 0;
-    double largest_tie_distance = 0; ///< in domain units, over all ties
+    double largest_tie_distance = 0;     ///< in domain units, over all ties
     std::optional<WrongRay> first_wrong; ///< the first wrong or lost ray
 
     void add(const Verdicts& other);

@@ -29,12 +29,15 @@ Settler::Settler(const TriangleMesh& mesh) : mesh_(mesh)
 {
     ranges_.assign(mesh.vertices.size() + 1, 0);
     for (const auto& triangle : mesh.triangles)
-        for (const auto v : triangle) ranges_[v + 1]++;
-    for (std::size_t v = 1; v < ranges_.size(); v++) ranges_[v] += ranges_[v - 1];
+        for (const auto v : triangle)
+            ranges_[v + 1]++;
+    for (std::size_t v = 1; v < ranges_.size(); v++)
+        ranges_[v] += ranges_[v - 1];
     incident_.resize(ranges_.back());
     auto next = ranges_;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); i++)
-        for (const auto v : mesh.triangles[i]) incident_[next[v]++] = i;
+        for (const auto v : mesh.triangles[i])
+            incident_[next[v]++] = i;
 }
 
 std::vector<std::uint32_t> Settler::triangles_at(std::uint32_t vertex) const
@@ -138,7 +141,8 @@ Settlement Settler::settle(const ExactRay& ray, std::uint32_t ours, std::uint32_
     const bool met = ours != NO_HIT && meets(ray, ours);
     if (ours != NO_HIT && !met) {
         distance = distance_to_outline(ray, ours);
-        if (distance > bound) return {Kind::wrong, distance, "the exact ray passes its triangle by more than the bound"};
+        if (distance > bound)
+            return {Kind::wrong, distance, "the exact ray passes its triangle by more than the bound"};
     }
     bool is_nearest = true;
     for (const auto candidate : candidates(ours, reference)) {

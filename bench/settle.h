@@ -27,16 +27,18 @@ struct Settlement {
 /// Settles disagreements about which triangle a ray meets first, by exact arithmetic on the triangles concerned.
 ///
 /// The candidates are the triangles of both answers and all that share a vertex with them. Our answer stands if it is
-/// the nearest candidate that the exact ray meets. It is a tie if the ray is within the bound of our triangle, and every
-/// candidate that the exact ray meets before it can be escaped within the bound: over an edge or vertex that it shares
-/// with our triangle, or over a silhouette (an edge whose triangles all lie on one side as seen along the ray, or that
-/// has only one). Between two triangles that continue each other there is no gap to slip through: that is wrong.
+/// the nearest candidate that the exact ray meets. It is a tie if the ray is within the bound of our triangle, and
+/// every candidate that the exact ray meets before it can be escaped within the bound: over an edge or vertex that it
+/// shares with our triangle, or over a silhouette (an edge whose triangles all lie on one side as seen along the ray,
+/// or that has only one). Between two triangles that continue each other there is no gap to slip through: that is
+/// wrong.
 class Settler {
 public:
     explicit Settler(const TriangleMesh& mesh);
 
     /// ours, reference: triangle indices, or NO_HIT. bound: in domain units.
-    [[nodiscard]] Settlement settle(const ExactRay& ray, std::uint32_t ours, std::uint32_t reference, double bound) const;
+    [[nodiscard]] Settlement settle(const ExactRay& ray, std::uint32_t ours, std::uint32_t reference,
+                                    double bound) const;
 
 private:
     [[nodiscard]] std::vector<std::uint32_t> candidates(std::uint32_t a, std::uint32_t b) const;
@@ -46,7 +48,8 @@ private:
     [[nodiscard]] double distance_to_edge(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] double distance_to_outline(const ExactRay& ray, std::uint32_t triangle) const;
     [[nodiscard]] bool is_silhouette(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const;
-    [[nodiscard]] double escape_distance(const ExactRay& ray, std::uint32_t triangle, std::uint32_t ours, double bound) const;
+    [[nodiscard]] double escape_distance(const ExactRay& ray, std::uint32_t triangle, std::uint32_t ours,
+                                         double bound) const;
     [[nodiscard]] std::vector<std::uint32_t> triangles_at(std::uint32_t vertex) const;
 
     const TriangleMesh& mesh_;

@@ -22,7 +22,8 @@ TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
 
 } // namespace
 
-std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job, std::uint32_t x, std::uint32_t y)
+std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,
+                                     std::uint32_t x, std::uint32_t y)
 {
     const auto session = openmp_backend().open(0, kernel, {nullptr, &packed}, {1});
     TraceJob pixel = single_pixel(job, x, y);
@@ -37,7 +38,8 @@ std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& 
     // A walk that is cut off after k steps says in which tet it stood.
     std::vector<std::uint32_t> path;
     const std::uint32_t steps = trace(job.max_steps).steps;
-    for (std::uint32_t cap = 1; cap < steps; cap++) path.push_back(trace(cap).tet);
+    for (std::uint32_t cap = 1; cap < steps; cap++)
+        path.push_back(trace(cap).tet);
     const Hit last = trace(job.max_steps);
     if (last.tet != NO_TET) path.push_back(last.tet);
     return path;

@@ -7,8 +7,9 @@
 
 namespace tetrace {
 
-/// The tets that the walk of one pixel leaves, in order, as positions in the packed scene; traced by the openmp backend.
-[[nodiscard]] std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,
-                                                   std::uint32_t x, std::uint32_t y);
+/// The tets that the walk of one pixel leaves, in order, as positions in the packed scene; traced by the openmp
+/// backend.
+[[nodiscard]] std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel,
+                                                   const TraceJob& job, std::uint32_t x, std::uint32_t y);
 
 } // namespace tetrace

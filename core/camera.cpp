@@ -50,7 +50,8 @@ std::vector<Camera> smoke(const BoundingSphere& sphere)
     // A view from the front and above, and three from all round; rational directions of length 1.
     constexpr Double3 directions[] = {{0.36, 0.48, 0.8}, {-0.8, 0.36, -0.48}, {0.64, -0.48, -0.6}, {-0.6, 0.64, 0.48}};
     std::vector<Camera> cameras;
-    for (const Double3 direction : directions) cameras.push_back(look_at(sphere, direction, 2.0));
+    for (const Double3 direction : directions)
+        cameras.push_back(look_at(sphere, direction, 2.0));
     return cameras;
 }
 
@@ -67,7 +68,7 @@ std::vector<Camera> orbit(const BoundingSphere& sphere)
 
 std::vector<Camera> flight(const BoundingSphere& sphere)
 {
-    constexpr double sweeps = 7; // near to far to near
+    constexpr double sweeps = 7;                                 // near to far to near
     Turning turning(0x1.fd8ad1927d417p-1, 0x1.90da982df13d1p-4); // 20 turns in 1,282 views
     std::vector<Camera> cameras;
     for (std::size_t i = 0; i < lattice_views; i++, turning.advance()) {

@@ -17,7 +17,7 @@ enum class CameraSet {
 
 /// A pinhole camera, 60 degrees field of view along the image's larger side.
 struct Camera {
-    Float3 origin;          ///< a multiple of 2^-40 per coordinate, so that no product on the way is denormal
+    Float3 origin;              ///< a multiple of 2^-40 per coordinate, so that no product on the way is denormal
     Double3 forward, right, up; ///< orthonormal
 };
 

@@ -116,7 +116,8 @@ void for_each_square(const Domain& domain, const BoundaryFace& face, std::uint32
         range[k] = overlapped(domain.lines[static_cast<std::size_t>(axis)], low, high);
     }
     for (std::uint32_t j = range[1].first; j < range[1].second; j++)
-        for (std::uint32_t i = range[0].first; i < range[0].second; i++) visit((side * n + j) * n + i);
+        for (std::uint32_t i = range[0].first; i < range[0].second; i++)
+            visit((side * n + j) * n + i);
 }
 
 } // namespace
@@ -148,8 +149,9 @@ Domain make_domain(const TriangleMesh& mesh, DomainKind kind, std::uint32_t divi
         const double margin = tight_margin * extent;
         const double half = wide_half_size * sphere.radius;
         const bool tight = kind == DomainKind::tight;
-        domain.lines[static_cast<std::size_t>(axis)] = make_lines(tight ? low[axis] - margin : centre[axis] - half,
-                                                                  tight ? high[axis] + margin : centre[axis] + half, divisions, axis);
+        domain.lines[static_cast<std::size_t>(axis)] =
+            make_lines(tight ? low[axis] - margin : centre[axis] - half,
+                       tight ? high[axis] + margin : centre[axis] + half, divisions, axis);
     }
     return domain;
 }
@@ -160,7 +162,8 @@ TriangleMesh domain_surface(const Domain& domain)
     for (std::size_t axis = 0; axis < 3; axis++)
         for (const bool high : {false, true})
             for (std::uint32_t j = 0; j < domain.divisions; j++)
-                for (std::uint32_t i = 0; i < domain.divisions; i++) builder.add_square(axis, high, i, j);
+                for (std::uint32_t i = 0; i < domain.divisions; i++)
+                    builder.add_square(axis, high, i, j);
     return builder.take();
 }
 
@@ -180,12 +183,15 @@ EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh)
     const auto empty = std::find(grid.ranges.begin() + 1, grid.ranges.end(), 0U);
     if (empty != grid.ranges.end())
         throw Error(ErrorKind::invalid_input, "making the entry grid: square " +
-                                                  std::to_string(empty - grid.ranges.begin() - 1) + " of the domain has no boundary face");
-    for (std::size_t i = 1; i < grid.ranges.size(); i++) grid.ranges[i] += grid.ranges[i - 1];
+                                                  std::to_string(empty - grid.ranges.begin() - 1) +
+                                                  " of the domain has no boundary face");
+    for (std::size_t i = 1; i < grid.ranges.size(); i++)
+        grid.ranges[i] += grid.ranges[i - 1];
     grid.links.resize(grid.ranges.back());
     auto next = grid.ranges;
     for (std::size_t i = 0; i < faces.size(); i++)
-        for_each_square(domain, faces[i], sides[i], [&](std::uint32_t square) { grid.links[next[square]++] = faces[i].link; });
+        for_each_square(domain, faces[i], sides[i],
+                        [&](std::uint32_t square) { grid.links[next[square]++] = faces[i].link; });
     return grid;
 }
 

@@ -15,8 +15,8 @@ enum class DomainKind {
 };
 
 /// The box that the CDT fills, its sides cut into divisions x divisions squares.
-/// lines[axis] holds divisions + 1 ascending coordinates; the first and last are the box's own. Every corner of a square
-/// is a vertex of the tet mesh, bit for bit, so that a ray's square and a face's square cannot disagree.
+/// lines[axis] holds divisions + 1 ascending coordinates; the first and last are the box's own. Every corner of a
+/// square is a vertex of the tet mesh, bit for bit, so that a ray's square and a face's square cannot disagree.
 struct Domain {
     DomainKind kind = DomainKind::tight;
     std::uint32_t divisions = 1;

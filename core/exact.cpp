@@ -11,8 +11,9 @@ namespace {
 using boost::multiprecision::int256_t;
 using boost::multiprecision::int512_t;
 
-constexpr double points_per_unit = 0x1p40;     // 1 / coordinate_grid
-constexpr double directions_per_unit = 0x1p44; // kernels keep no component in (0, 2^-20): floats there are multiples of 2^-43
+constexpr double points_per_unit = 0x1p40; // 1 / coordinate_grid
+constexpr double directions_per_unit =
+    0x1p44; // kernels keep no component in (0, 2^-20): floats there are multiples of 2^-43
 
 template <class Integer>
 struct Vector {
@@ -94,7 +95,8 @@ ExactCrossing cross_exactly(Float3 origin, Float3 direction, Float3 v0, Float3 v
     const auto d = wide(to_integers(direction, directions_per_unit));
     const Vector<int256_t> corners[3] = {difference(v0, origin), difference(v1, origin), difference(v2, origin)};
     ExactCrossing crossing;
-    for (int i = 0; i < 3; i++) crossing.edge_side[i] = dot(d, cross(corners[i], corners[(i + 1) % 3])).sign();
+    for (int i = 0; i < 3; i++)
+        crossing.edge_side[i] = dot(d, cross(corners[i], corners[(i + 1) % 3])).sign();
     const auto [least, most] = std::minmax({crossing.edge_side[0], crossing.edge_side[1], crossing.edge_side[2]});
 
     const auto distance = distance_to_plane(origin, direction, v0, v1, v2);

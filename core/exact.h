@@ -19,14 +19,16 @@ inline constexpr double coordinate_grid = 0x1p-40;
 
 /// Where an exact ray meets an exact triangle.
 struct ExactCrossing {
-    bool met = false;    ///< the closed triangle is met at t >= 0; never for a ray in the triangle's plane
-    double t = 0;        ///< rounded to nearest only at the end; for messages
-    /// Signs of the ray's position with respect to the edges v0v1, v1v2, v2v0; all >= 0 or all <= 0 where the line meets it.
+    bool met = false; ///< the closed triangle is met at t >= 0; never for a ray in the triangle's plane
+    double t = 0;     ///< rounded to nearest only at the end; for messages
+    /// Signs of the ray's position with respect to the edges v0v1, v1v2, v2v0; all >= 0 or all <= 0 where the line
+    /// meets it.
     int edge_side[3] = {0, 0, 0};
 };
 [[nodiscard]] ExactCrossing cross_exactly(Float3 origin, Float3 direction, Float3 v0, Float3 v1, Float3 v2);
 
 /// Compares the exact ray parameters at the planes of two triangles that the ray meets.
-[[nodiscard]] std::strong_ordering compare_distance(Float3 origin, Float3 direction, const Float3 (&a)[3], const Float3 (&b)[3]);
+[[nodiscard]] std::strong_ordering compare_distance(Float3 origin, Float3 direction, const Float3 (&a)[3],
+                                                    const Float3 (&b)[3]);
 
 } // namespace tetrace

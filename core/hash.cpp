@@ -13,7 +13,8 @@ std::uint64_t hash_bytes(std::span<const std::byte> bytes, std::uint64_t seed)
 std::string hash_text(std::uint64_t hash)
 {
     std::string text(16, '0');
-    for (auto digit = text.rbegin(); digit != text.rend(); ++digit, hash >>= 4) *digit = "0123456789abcdef"[hash & 15];
+    for (auto digit = text.rbegin(); digit != text.rend(); ++digit, hash >>= 4)
+        *digit = "0123456789abcdef"[hash & 15];
     return text;
 }
 

@@ -38,11 +38,13 @@ std::uint64_t hilbert_index(Double3 unit_point)
     std::uint32_t gray = 0;
     for (std::uint32_t level = 1u << (bits - 1); level > 1; level >>= 1)
         if ((x[2] & level) != 0) gray ^= level - 1;
-    for (auto& axis : x) axis ^= gray;
+    for (auto& axis : x)
+        axis ^= gray;
 
     std::uint64_t index = 0;
     for (int bit = bits - 1; bit >= 0; bit--)
-        for (const auto axis : x) index = index << 1 | (axis >> bit & 1u);
+        for (const auto axis : x)
+            index = index << 1 | (axis >> bit & 1u);
     return index;
 }
 

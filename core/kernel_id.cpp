@@ -7,8 +7,8 @@ const std::vector<KernelId>& all_kernels()
     using enum Method;
     using enum Layout;
     static const std::vector<KernelId> kernels = {
-        {Structure::cdt, maria, tet80, MathMode::exact},   {Structure::cdt, maria, tet96, MathMode::exact},
-        {Structure::cdt, maria, tet80, MathMode::fast},    {Structure::cdt, maria, tet96, MathMode::fast},
+        {Structure::cdt, maria, tet80, MathMode::exact},  {Structure::cdt, maria, tet96, MathMode::exact},
+        {Structure::cdt, maria, tet80, MathMode::fast},   {Structure::cdt, maria, tet96, MathMode::fast},
         {Structure::bvh, single, embree, MathMode::fast}, {Structure::bvh, packet16, embree, MathMode::fast},
     };
     return kernels;

@@ -56,13 +56,15 @@ double clearance(const TetMesh& mesh, std::uint32_t tet, Float3 point)
     return least;
 }
 
-constexpr float nudges[] = {0x1p-20f, 0x1p-18f, 0x1p-17f};
+constexpr double enough = 0x1p-16; // several times tie_bound() for a camera in the domain
+constexpr float nudges[] = {0x1p-15f, 0x1p-13f, 0x1p-12f};
 
 Float3 nudged(Float3 point, int choice, float by)
 {
     // 26 neighbours in a cube, as digits of base 3.
     const int digit[3] = {choice % 3 - 1, choice / 3 % 3 - 1, choice / 9 - 1};
-    for (int axis = 0; axis < 3; axis++) point[axis] += static_cast<float>(digit[axis]) * by;
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] += static_cast<float>(digit[axis]) * by;
     return snap_to_grid(point);
 }
 
@@ -92,11 +94,10 @@ Start find_start(const Scene& scene, Float3 origin)
 {
     if (!scene.domain.contains(origin)) return {origin, NO_TET};
     const std::uint32_t tet = locate(scene.tets, origin);
-    if (tet == NO_TET || clearance(scene.tets, tet, origin) > 0) return {origin, tet};
-
     Start best{origin, tet};
-    double most = 0;
+    double most = tet == NO_TET ? 0 : clearance(scene.tets, tet, origin);
     for (const float by : nudges) {
+        if (most >= enough) break;
         for (int choice = 0; choice < 27; choice++) {
             const Float3 candidate = nudged(origin, choice, by);
             if (!scene.domain.contains(candidate)) continue;
@@ -105,7 +106,6 @@ Start find_start(const Scene& scene, Float3 origin)
             if (room > most) best = {candidate, at};
             most = std::max(most, room);
         }
-        if (most > 0) break;
     }
     return best;
 }

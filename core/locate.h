@@ -15,9 +15,9 @@ struct Start {
     std::uint32_t tet = NO_TET; ///< holds the origin in its interior; NO_TET: outside, rays enter by the entry grid
 };
 
-/// Locates a camera. A camera on a face, an edge or a vertex moves by at most 2^-17 in each coordinate to the interior of
-/// a tet that touches it (of a few candidates the one with the largest clearance), so that its rays have one tet to start
-/// in; every structure then traces from the same moved origin.
+/// Locates a camera. One that is nearer than 2^-16 to a face of its tet (on a face, an edge or a vertex, say) is within
+/// the rounding of a walk's decisions: it moves by at most 2^-12 in each coordinate to a place with more clearance, the
+/// best of a few candidates. Every structure then traces from the same moved origin.
 [[nodiscard]] Start find_start(const Scene& scene, Float3 origin);
 
 } // namespace tetrace

@@ -39,7 +39,8 @@ std::uint32_t word(const std::vector<Row>& rows, std::size_t index)
 Double3 unit_centroid(const Scene& scene, const Tet& tet)
 {
     Double3 sum;
-    for (const auto v : tet.vertices) sum = sum + to_double(scene.tets.vertices[v]);
+    for (const auto v : tet.vertices)
+        sum = sum + to_double(scene.tets.vertices[v]);
     const Double3 low = to_double(scene.domain.low());
     const Double3 size = to_double(scene.domain.high()) - low;
     const Double3 offset = sum * 0.25 - low;
@@ -71,7 +72,8 @@ void pack_tet(PackedScene& packed, std::size_t position, const Scene& scene, con
     for (std::size_t i = 0; i < 4; i++) {
         const Float3 vertex = scene.tets.vertices[tet.vertices[i]];
         for (int axis = 0; axis < 3; axis++)
-            word(packed.tets, first + map.vertex_stride * i + static_cast<std::size_t>(axis)) = std::bit_cast<std::uint32_t>(vertex[axis]);
+            word(packed.tets, first + map.vertex_stride * i + static_cast<std::size_t>(axis)) =
+                std::bit_cast<std::uint32_t>(vertex[axis]);
         word(packed.tets, first + map.first_face + 2 * i) = renumbered(tet.links[i], packed.packed_of_mesh);
         word(packed.tets, first + map.first_face + 2 * i + 1) = tet.faces[i];
     }
@@ -100,10 +102,12 @@ void pack_domain(PackedScene& packed, const Scene& scene)
 {
     packed.divisions = scene.domain.divisions;
     for (const auto& lines : scene.domain.lines)
-        for (const float line : lines) packed.lines.push_back(std::bit_cast<std::uint32_t>(line));
+        for (const float line : lines)
+            packed.lines.push_back(std::bit_cast<std::uint32_t>(line));
     EntryGrid grid = make_entry_grid(scene.domain, scene.tets);
     packed.entry_ranges = std::move(grid.ranges);
-    for (const auto link : grid.links) packed.entry_links.push_back(renumbered(link, packed.packed_of_mesh));
+    for (const auto link : grid.links)
+        packed.entry_links.push_back(renumbered(link, packed.packed_of_mesh));
 }
 
 } // namespace
@@ -118,8 +122,8 @@ PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
 {
     if (scene.tets.tets.size() > MAX_TETS)
         throw Error(ErrorKind::unsupported, "packing " + scene.name + " as " + std::string(name_of(layout)) + ": " +
-                                                std::to_string(scene.tets.tets.size()) + " tets, and its links name at most " +
-                                                std::to_string(MAX_TETS));
+                                                std::to_string(scene.tets.tets.size()) +
+                                                " tets, and its links name at most " + std::to_string(MAX_TETS));
     PackedScene packed;
     packed.layout = layout;
     packed.order = order;
@@ -127,7 +131,8 @@ PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
 
     const auto tets = packing_order(scene, order);
     packed.packed_of_mesh.resize(tets.size());
-    for (std::uint32_t position = 0; position < tets.size(); position++) packed.packed_of_mesh[tets[position]] = position;
+    for (std::uint32_t position = 0; position < tets.size(); position++)
+        packed.packed_of_mesh[tets[position]] = position;
     packed.tets.assign(tets.size() * rows_of(layout), Row{});
     for (std::size_t position = 0; position < tets.size(); position++)
         pack_tet(packed, position, scene, scene.tets.tets[tets[position]]);

@@ -24,11 +24,11 @@ struct PackedScene {
     std::uint32_t tet_count = 0;
     std::uint32_t divisions = 1;
 
-    std::vector<Row> tets;                    ///< TET80_ROWS or TET96_ROWS a tet
-    std::vector<Row> triangles;               ///< TRIANGLE_ROWS an input triangle
-    std::vector<std::uint32_t> lines;         ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
-    std::vector<std::uint32_t> entry_ranges;  ///< EntryGrid::ranges
-    std::vector<std::uint32_t> entry_links;   ///< EntryGrid::links, in packed order
+    std::vector<Row> tets;                   ///< TET80_ROWS or TET96_ROWS a tet
+    std::vector<Row> triangles;              ///< TRIANGLE_ROWS an input triangle
+    std::vector<std::uint32_t> lines;        ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
+    std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
+    std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
 
     std::vector<std::uint32_t> packed_of_mesh; ///< stays on the host: position of each tet of the scene in `tets`
 

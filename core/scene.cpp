@@ -10,7 +10,8 @@ std::uint64_t scene_hash(const Scene& scene)
     hash = hash_of(scene.mesh.triangles, hash);
     hash = hash_of(scene.tets.vertices, hash);
     hash = hash_of(scene.tets.tets, hash);
-    for (const auto& lines : scene.domain.lines) hash = hash_of(lines, hash);
+    for (const auto& lines : scene.domain.lines)
+        hash = hash_of(lines, hash);
     const std::uint32_t kind[] = {static_cast<std::uint32_t>(scene.domain.kind), scene.domain.divisions};
     return hash_of(kind, hash);
 }

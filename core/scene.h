@@ -11,12 +11,12 @@ namespace tetrace {
 
 /// How a scene came to be; recorded with every result.
 struct BuildInfo {
-    std::string source;               ///< the mesh file's name, or the generator
-    std::uint64_t source_hash = 0;    ///< XXH3 of the mesh file's bytes
-    std::string switches;             ///< TetGen's switches as passed; empty where no TetGen ran
-    std::string tool;                 ///< program and version that made the tets
-    double build_s = 0;               ///< seconds from mesh file to checked tets
-    int scale_exponent = 0;           ///< domain units = mesh units * 2^scale_exponent
+    std::string source;            ///< the mesh file's name, or the generator
+    std::uint64_t source_hash = 0; ///< XXH3 of the mesh file's bytes
+    std::string switches;          ///< TetGen's switches as passed; empty where no TetGen ran
+    std::string tool;              ///< program and version that made the tets
+    double build_s = 0;            ///< seconds from mesh file to checked tets
+    int scale_exponent = 0;        ///< domain units = mesh units * 2^scale_exponent
     std::uint64_t merged_vertices = 0;
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t duplicate_triangles = 0;

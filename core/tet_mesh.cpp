@@ -20,7 +20,8 @@ struct Finding {
     }
     [[nodiscard]] TetMeshDefect defect(Kind kind, const std::string& text) const
     {
-        return {kind, first, count, text + " (first: " + std::to_string(first) + ", " + std::to_string(count) + " in all)"};
+        return {kind, first, count,
+                text + " (first: " + std::to_string(first) + ", " + std::to_string(count) + " in all)"};
     }
 };
 
@@ -111,7 +112,8 @@ std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triang
         return TetMeshDefect{Kind::bad_index, MAX_TETS, 1, "more tets than a link of 30 bits can name"};
     for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
         if (!indices_exist(mesh, mesh.tets[i], triangle_count)) bad_index.add(i);
-    if (bad_index.count > 0) return bad_index.defect(Kind::bad_index, "a tet names a vertex, tet or triangle that is not there");
+    if (bad_index.count > 0)
+        return bad_index.defect(Kind::bad_index, "a tet names a vertex, tet or triangle that is not there");
 
     for (std::uint32_t i = 0; i < mesh.tets.size(); i++) {
         if (!links_are_symmetric(mesh, i)) asymmetric_link.add(i);
@@ -121,7 +123,8 @@ std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triang
         if (sign == 0) flat.add(i);
     }
     if (asymmetric_link.count > 0)
-        return asymmetric_link.defect(Kind::asymmetric_link, "a tet's neighbour does not name it back over the same face");
+        return asymmetric_link.defect(Kind::asymmetric_link,
+                                      "a tet's neighbour does not name it back over the same face");
     if (asymmetric_face.count > 0)
         return asymmetric_face.defect(Kind::asymmetric_face, "the two sides of a face name different input triangles");
     if (inverted.count > 0) return inverted.defect(Kind::inverted, "a tet is inverted");
@@ -140,10 +143,12 @@ std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& t
         if (std::abs(covered[i] - wanted) > 1e-4 * wanted + 1e-12 * box_area) uncovered.add(i);
     }
     if (uncovered.count > 0)
-        return uncovered.defect(Kind::uncovered_triangle, "the faces that belong to an input triangle do not add up to its area");
+        return uncovered.defect(Kind::uncovered_triangle,
+                                "the faces that belong to an input triangle do not add up to its area");
 
     double sum = 0;
-    for (const Tet& tet : mesh.tets) sum += volume(mesh, tet);
+    for (const Tet& tet : mesh.tets)
+        sum += volume(mesh, tet);
     const double box_volume = box_size.x * box_size.y * box_size.z;
     if (std::abs(sum - box_volume) > 1e-6 * box_volume)
         return TetMeshDefect{Kind::open_boundary, 0, 1,

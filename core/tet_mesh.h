@@ -67,7 +67,8 @@ struct TetMeshDefect {
 
 /// Checks that the occlusive faces of each input triangle add up to its area (relative 1e-4 of its area, or 1e-12 of
 /// the domain's: Steiner points are rounded to float), and that the tets' volumes sum to the box's (relative 1e-6).
-[[nodiscard]] std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& triangles, Double3 box_size);
+[[nodiscard]] std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& triangles,
+                                                    Double3 box_size);
 
 /// Faces are counted once, not once a side; the domain's boundary is not counted as free.
 struct TetMeshCounts {

@@ -1,6 +1,6 @@
 // From outside: where a ray meets the domain's box, and the boundary face that it enters by.
-// Only products are compared, never a quotient: position <= line is |direction| (line - origin) <= |gap| direction_a, whose
-// left side is monotone in the line, so that the squares of one side never contradict each other.
+// Only products are compared, never a quotient: position <= line is |direction| (line - origin) <= |gap| direction_a,
+// whose left side is monotone in the line, so that the squares of one side never contradict each other.
 
 // Index of the domain's line `index` along `axis`.
 KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
@@ -8,14 +8,18 @@ KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
     return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
 }
 
-// The interval of lines along `axis` that holds the ray's position on a side of the box; `divisions` where it is off the side.
-KERNEL_FN uint line_interval(SceneView scene, uint axis, real origin, real slope, real reach)
+// The interval of lines along `axis` that holds the ray's position on a side of the box; `divisions` where it is off
+// the side. On the side's border the ray must be moving inwards: one that only grazes the box, in the plane of a side,
+// has missed it.
+KERNEL_FN uint line_interval(SceneView scene, uint axis, real origin, real direction, real slope, real reach)
 {
     uint low = 0u;
     uint high = scene.divisions;
     PRECISE real first = (domain_line(scene, axis, low) - origin) * slope;
     PRECISE real last = (domain_line(scene, axis, high) - origin) * slope;
     if (first > reach || last < reach) return scene.divisions;
+    if (first == reach && direction <= real(0.0f)) return scene.divisions;
+    if (last == reach && direction >= real(0.0f)) return scene.divisions;
     while (high - low > 1u) {
         uint middle = (low + high) >> 1u;
         PRECISE real product = (domain_line(scene, axis, middle) - origin) * slope;
@@ -41,10 +45,12 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
         bool ahead = from_high ? gap < real(0.0f) : (direction > real(0.0f) && gap > real(0.0f));
         if (!ahead) continue;
         real slope = magnitude(direction);
-        PRECISE real reach_a = magnitude(gap) * component(ray.direction, axis_a);
-        PRECISE real reach_b = magnitude(gap) * component(ray.direction, axis_b);
-        uint i = line_interval(scene, axis_a, component(ray.origin, axis_a), slope, reach_a);
-        uint j = line_interval(scene, axis_b, component(ray.origin, axis_b), slope, reach_b);
+        real direction_a = component(ray.direction, axis_a);
+        real direction_b = component(ray.direction, axis_b);
+        PRECISE real reach_a = magnitude(gap) * direction_a;
+        PRECISE real reach_b = magnitude(gap) * direction_b;
+        uint i = line_interval(scene, axis_a, component(ray.origin, axis_a), direction_a, slope, reach_a);
+        uint j = line_interval(scene, axis_b, component(ray.origin, axis_b), direction_b, slope, reach_b);
         if (i < n && j < n) square = ((2u * axis + (from_high ? 1u : 0u)) * n + j) * n + i;
     }
     return square;

@@ -21,8 +21,8 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 }
 
 // In the tet that holds the origin there is no entry face; three side products decide among four faces. Each edge
-// excludes one of its two faces; edges 23 and 01 leave one face of {0, 1} and one of {2, 3}, and the edge that those two
-// share decides.
+// excludes one of its two faces; edges 23 and 01 leave one face of {0, 1} and one of {2, 3}, and the edge that those
+// two share decides.
 KERNEL_FN uint start_face(SceneView scene, uint tet, Ray ray)
 {
     real side = side_of_edge(ray, vertex(scene, tet, 2u), vertex(scene, tet, 3u));

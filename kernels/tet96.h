@@ -1,4 +1,5 @@
-// Layout tet96 (the paper, section 4.1): a tet holds four vertices in a row of 16 bytes each, then {link, triangle} per face.
+// Layout tet96 (the paper, section 4.1): a tet holds four vertices in a row of 16 bytes each, then {link, triangle} per
+// face.
 KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
 {
     uint4 row = FETCH(scene, tet_rows, TET96_ROWS * tet + corner);

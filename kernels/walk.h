@@ -1,6 +1,7 @@
 // The walk from tet to tet, and the hit at its end. A method brings exit_face() and start_face().
 
-// t, u, v on the input triangle (Moeller and Trumbore 1997). A ray within rounding of the triangle's plane gets the centroid.
+// t, u, v on the input triangle (Moeller and Trumbore 1997). A ray within rounding of the triangle's plane gets the
+// centroid.
 KERNEL_FN Hit make_hit(SceneView scene, Ray ray, uint triangle, uint tet, uint steps)
 {
     uint4 r0 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle);

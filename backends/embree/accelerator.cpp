@@ -23,13 +23,15 @@ void attach_mesh(RTCDevice device, RTCScene scene, const TriangleMesh& mesh)
                                                                  3 * sizeof(float), mesh.vertices.size()));
     auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-    if (vertices == nullptr || triangles == nullptr) throw Error(ErrorKind::unsupported, "Embree: out of memory for the mesh");
+    if (vertices == nullptr || triangles == nullptr)
+        throw Error(ErrorKind::unsupported, "Embree: out of memory for the mesh");
     for (const Float3 v : mesh.vertices) {
         *vertices++ = v.x;
         *vertices++ = v.y;
         *vertices++ = v.z;
     }
-    for (const auto& triangle : mesh.triangles) triangles = std::copy(triangle.begin(), triangle.end(), triangles);
+    for (const auto& triangle : mesh.triangles)
+        triangles = std::copy(triangle.begin(), triangle.end(), triangles);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);

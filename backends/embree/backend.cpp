@@ -24,7 +24,8 @@ public:
 
     [[nodiscard]] std::string why_not(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree ? "" : "Embree traces its own BVH only";
+        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree ? ""
+                                                                                     : "Embree traces its own BVH only";
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData& scene,

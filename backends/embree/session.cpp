@@ -12,8 +12,8 @@
 namespace tetrace::embree {
 namespace {
 #include "kernels/dialect_cpp.h"
-#include "kernels/vector.h"
 #include "kernels/ray.h"
+#include "kernels/vector.h"
 
 constexpr std::uint32_t packet_size = 4; // 4 x 4 pixels
 constexpr std::uint32_t tile_size = 8;
@@ -25,8 +25,14 @@ Vec3 to_vec3(Float3 a)
 
 TraceParams params_of(const TraceJob& job)
 {
-    return {to_vec3(job.view.origin), to_vec3(job.view.corner), to_vec3(job.view.step_x), to_vec3(job.view.step_y),
-            job.width, job.height, job.start_tet, job.max_steps};
+    return {to_vec3(job.view.origin),
+            to_vec3(job.view.corner),
+            to_vec3(job.view.step_x),
+            to_vec3(job.view.step_y),
+            job.width,
+            job.height,
+            job.start_tet,
+            job.max_steps};
 }
 
 tetrace::Hit hit_of(unsigned primitive, float t, float u, float v)
@@ -53,7 +59,8 @@ tetrace::Hit trace_one(const Accelerator& accelerator, const TraceParams& params
     return hit_of(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
 }
 
-void trace_packet(const Accelerator& accelerator, const TraceParams& params, std::uint32_t x0, std::uint32_t y0, tetrace::Hit* hits)
+void trace_packet(const Accelerator& accelerator, const TraceParams& params, std::uint32_t x0, std::uint32_t y0,
+                  tetrace::Hit* hits)
 {
     alignas(64) int valid[16];
     RTCRayHit16 query;
@@ -86,8 +93,8 @@ void trace_packet(const Accelerator& accelerator, const TraceParams& params, std
     }
 }
 
-void trace_tile(const Accelerator& accelerator, Method method, const TraceParams& params, std::uint32_t x0, std::uint32_t y0,
-                tetrace::Hit* hits)
+void trace_tile(const Accelerator& accelerator, Method method, const TraceParams& params, std::uint32_t x0,
+                std::uint32_t y0, tetrace::Hit* hits)
 {
     const std::uint32_t x1 = std::min(x0 + tile_size, params.width);
     const std::uint32_t y1 = std::min(y0 + tile_size, params.height);
@@ -104,12 +111,13 @@ void trace_tile(const Accelerator& accelerator, Method method, const TraceParams
 
 } // namespace
 
-void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<tetrace::Hit> hits, unsigned threads)
+void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<tetrace::Hit> hits,
+                 unsigned threads)
 {
     const TraceParams params = params_of(job);
     const std::uint32_t tiles_x = (job.width + tile_size - 1) / tile_size;
     const std::uint32_t tiles = tiles_x * ((job.height + tile_size - 1) / tile_size);
-#pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast<int>(threads))
+#pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(threads))
     for (std::uint32_t tile = 0; tile < tiles; tile++)
         trace_tile(accelerator, method, params, tile % tiles_x * tile_size, tile / tiles_x * tile_size, hits.data());
 }

@@ -26,6 +26,7 @@ private:
 };
 
 /// Traces a whole image into hits, row after row.
-void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<Hit> hits, unsigned threads);
+void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<Hit> hits,
+                 unsigned threads);
 
 } // namespace tetrace::embree

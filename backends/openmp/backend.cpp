@@ -14,7 +14,8 @@ namespace {
 const openmp::CompiledKernel* find_kernel(const KernelId& id)
 {
     const auto& kernels = openmp::compiled_kernels();
-    const auto found = std::find_if(kernels.begin(), kernels.end(), [&](const auto& kernel) { return kernel.id == id; });
+    const auto found =
+        std::find_if(kernels.begin(), kernels.end(), [&](const auto& kernel) { return kernel.id == id; });
     return found == kernels.end() ? nullptr : &*found;
 }
 
@@ -45,7 +46,8 @@ public:
         const auto* found = find_kernel(kernel);
         if (const auto reason = why_not(kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
         if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
-            throw Error(ErrorKind::internal, "opening openmp: the scene is not packed as " + std::string(name_of(kernel.layout)));
+            throw Error(ErrorKind::internal,
+                        "opening openmp: the scene is not packed as " + std::string(name_of(kernel.layout)));
         const unsigned threads = options.threads != 0 ? options.threads : devices().front().threads;
         return std::make_unique<openmp::OpenmpSession>(found->trace, *scene.packed, threads);
     }

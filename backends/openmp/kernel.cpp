@@ -11,10 +11,10 @@
 
 namespace {
 #include "kernels/dialect_cpp.h"
+#include "kernels/faces.h"
+#include "kernels/ray.h"
 #include "kernels/scene_view_cpp.h"
 #include "kernels/vector.h"
-#include "kernels/ray.h"
-#include "kernels/faces.h"
 #include KERNEL_LAYOUT_HEADER
 #include KERNEL_METHOD_HEADER
 #include "kernels/entry.h"
@@ -29,8 +29,14 @@ Vec3 to_vec3(tetrace::Float3 a)
 
 TraceParams params_of(const tetrace::TraceJob& job)
 {
-    return {to_vec3(job.view.origin), to_vec3(job.view.corner), to_vec3(job.view.step_x), to_vec3(job.view.step_y),
-            job.width, job.height, job.start_tet, job.max_steps};
+    return {to_vec3(job.view.origin),
+            to_vec3(job.view.corner),
+            to_vec3(job.view.step_x),
+            to_vec3(job.view.step_y),
+            job.width,
+            job.height,
+            job.start_tet,
+            job.max_steps};
 }
 
 void trace_tile(const SceneView& scene, const TraceParams& params, uint tile, tetrace::Hit* hits)
@@ -56,13 +62,14 @@ void KERNEL_SYMBOL(const PackedScene& packed, const TraceJob& job, Hit* hits, un
     const SceneView scene = view_of(packed);
     const TraceParams params = params_of(job);
     const uint tiles = ((job.width + tile_size - 1) / tile_size) * ((job.height + tile_size - 1) / tile_size);
-#pragma omp parallel num_threads(static_cast<int>(threads))
+#pragma omp parallel num_threads(static_cast <int>(threads))
     {
         std::fenv_t environment;
         std::fegetenv(&environment);
         std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
 #pragma omp for schedule(dynamic, 4)
-        for (uint tile = 0; tile < tiles; tile++) trace_tile(scene, params, tile, hits);
+        for (uint tile = 0; tile < tiles; tile++)
+            trace_tile(scene, params, tile, hits);
         std::fesetenv(&environment);
     }
 }

@@ -5,7 +5,8 @@
 
 namespace tetrace::openmp {
 
-/// Runs one kernel on the host's memory: nothing is compiled, nothing copied; launch() traces, wait() tells how long it took.
+/// Runs one kernel on the host's memory: nothing is compiled, nothing copied; launch() traces, wait() tells how long it
+/// took.
 class OpenmpSession : public Session {
 public:
     OpenmpSession(TraceFunction trace, const PackedScene& scene, unsigned threads);

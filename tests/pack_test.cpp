@@ -1,0 +1,116 @@
+#include "core/packed_scene.h"
+
+#include "core/hilbert.h"
+#include "scenes/procedural.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+namespace tetrace {
+namespace {
+
+// The scene's tets in packed order, with vertices by position, as unpack() gives them.
+void expect_same_tets(const Scene& scene, const PackedScene& packed)
+{
+    const TetMesh back = unpack(packed);
+    ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
+    for (std::size_t i = 0; i < scene.tets.tets.size(); i++) {
+        const Tet& tet = scene.tets.tets[i];
+        const Tet& other = back.tets[packed.packed_of_mesh[i]];
+        for (std::size_t k = 0; k < 4; k++) {
+            ASSERT_EQ(scene.tets.vertices[tet.vertices[k]], back.vertices[other.vertices[k]]);
+            ASSERT_EQ(tet.faces[k], other.faces[k]);
+            const auto link = tet.links[k];
+            const auto expected =
+                link == NO_LINK ? NO_LINK : make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
+            ASSERT_EQ(other.links[k], expected);
+        }
+    }
+    EXPECT_EQ(find_defect(back, scene.mesh.triangles.size()), std::nullopt);
+}
+
+class Packing : public testing::TestWithParam<std::tuple<Layout, TetOrder>> {};
+
+TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
+{
+    const Scene scene = make_cubes(6);
+    expect_same_tets(scene, pack(scene, std::get<0>(GetParam()), std::get<1>(GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(EachLayoutAndOrder, Packing,
+                         testing::Combine(testing::Values(Layout::tet80, Layout::tet96),
+                                          testing::Values(TetOrder::hilbert, TetOrder::input)),
+                         [](const auto& row) {
+                             return std::string(name_of(std::get<0>(row.param))) + "_" +
+                                    std::string(name_of(std::get<1>(row.param)));
+                         });
+
+TEST(Pack, sizes_are_those_of_the_layout)
+{
+    const Scene scene = make_cubes(3);
+    const auto tets = scene.tets.tets.size();
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Row), 80 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Row), 96 * tets);
+}
+
+TEST(Pack, both_layouts_number_the_tets_alike)
+{
+    const Scene scene = make_cubes(5);
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).packed_of_mesh,
+              pack(scene, Layout::tet96, TetOrder::hilbert).packed_of_mesh);
+}
+
+// One flipped bit anywhere in the tets' rows must be visible after unpacking: no word is ignored but tet96's w.
+TEST(Pack, every_word_of_a_tet_matters)
+{
+    const Scene scene = make_cubes(2);
+    for (const auto layout : {Layout::tet80, Layout::tet96}) {
+        const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
+        const TetMesh whole = unpack(packed);
+        const std::size_t words = layout == Layout::tet80 ? 20 : 24;
+        for (std::size_t word = 0; word < words; word++) {
+            if (layout == Layout::tet96 && word < 16 && word % 4 == 3) continue; // padding
+            PackedScene spoilt = packed;
+            Row& row = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            *at[word % 4] ^= 1u;
+            EXPECT_FALSE(unpack(spoilt) == whole) << name_of(layout) << " word " << word;
+        }
+    }
+}
+
+TEST(Pack, triangles_hold_a_corner_and_two_edges)
+{
+    const Scene scene = make_cubes(3);
+    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
+    ASSERT_EQ(packed.triangles.size(), 3 * scene.mesh.triangles.size());
+    const auto& [a, b, c] = scene.mesh.triangles[1];
+    const auto x = [](const Row& row) { return std::bit_cast<float>(row.x); };
+    EXPECT_EQ(x(packed.triangles[3]), scene.mesh.vertices[a].x);
+    EXPECT_EQ(x(packed.triangles[4]), scene.mesh.vertices[b].x - scene.mesh.vertices[a].x);
+    EXPECT_EQ(x(packed.triangles[5]), scene.mesh.vertices[c].x - scene.mesh.vertices[a].x);
+}
+
+TEST(Hilbert, neighbouring_cells_follow_each_other)
+{
+    // Through the centres of an 8^3 grid the curve visits every cell once, and each step goes to a neighbour.
+    std::vector<std::pair<std::uint64_t, std::array<int, 3>>> cells;
+    for (int x = 0; x < 8; x++)
+        for (int y = 0; y < 8; y++)
+            for (int z = 0; z < 8; z++)
+                cells.push_back({hilbert_index({(x + 0.5) / 8, (y + 0.5) / 8, (z + 0.5) / 8}), {x, y, z}});
+    std::sort(cells.begin(), cells.end());
+    for (std::size_t i = 1; i < cells.size(); i++) {
+        int apart = 0;
+        for (std::size_t axis = 0; axis < 3; axis++)
+            apart += std::abs(cells[i].second[axis] - cells[i - 1].second[axis]);
+        EXPECT_EQ(apart, 1) << "at cell " << i;
+    }
+}
+
+} // namespace
+} // namespace tetrace
