@@ -1,0 +1,162 @@
+#include "scenes/builder/build.h"
+
+#include "core/error.h"
+#include "scenes/builder/failure.h"
+#include "scenes/builder/mesh_reader.h"
+#include "scenes/builder/place.h"
+#include "scenes/builder/self_intersection.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+namespace {
+
+using Kind = TetMeshDefect::Kind;
+
+void note_clean_up(const CleanUp& cleaned, const std::string& why, const BuilderTalk& talk)
+{
+    const auto note = [&](std::uint64_t count, const char* what) {
+        if (count > 0) talk.note(fmt::format("{} {}{}", count, what, why));
+    };
+    note(cleaned.merged_vertices, "vertices merged with one at the same place");
+    note(cleaned.unused_vertices, "vertices of no triangle dropped");
+    note(cleaned.degenerate_triangles, "triangles without area dropped");
+    note(cleaned.duplicate_triangles, "duplicate triangles dropped");
+}
+
+void clean(Scene& scene, const std::string& why, const BuilderTalk& talk)
+{
+    const CleanUp cleaned = clean_up(scene.mesh);
+    note_clean_up(cleaned, why, talk);
+    scene.build.merged_vertices += cleaned.merged_vertices;
+    scene.build.degenerate_triangles += cleaned.degenerate_triangles;
+    scene.build.duplicate_triangles += cleaned.duplicate_triangles;
+    if (scene.mesh.triangles.empty())
+        throw Error(
+            ErrorKind::invalid_input,
+            fmt::format("cleaning {}: no triangle has an area; check the mesh's coordinates", scene.build.source));
+}
+
+void place_in_domain(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
+{
+    const Placement placement = place(scene.mesh, options.domain);
+    scene.build.scale_exponent = placement.scale_exponent;
+    scene.build.snapped_coordinates = placement.snapped_coordinates;
+    if (placement.snapped_coordinates > 0) {
+        talk.note(fmt::format("{} coordinates near 0 rounded to the grid of 2^-40", placement.snapped_coordinates));
+        clean(scene, " after rounding to the grid", talk);
+    }
+    scene.domain = make_domain(scene.mesh, options.domain, options.divisions);
+    const Float3 low = scene.domain.low(), high = scene.domain.high();
+    for (int axis = 0; axis < 3; axis++)
+        if (low[axis] < -1 || high[axis] > 1)
+            throw Error(ErrorKind::internal,
+                        "placing the mesh: its domain does not fit [-1, 1]^3; please report this mesh");
+}
+
+void require_no_self_intersection(const Scene& scene)
+{
+    const SelfIntersections found = find_self_intersections(scene.mesh);
+    if (found.count > 0)
+        throw BuilderFailure(BUILDER_SELF_INTERSECTION,
+                             fmt::format("checking {}: {}", scene.build.source,
+                                         describe(found, scene.mesh, scene.build.scale_exponent)));
+}
+
+const char* name_of(Kind kind)
+{
+    switch (kind) {
+    case Kind::bad_index: return "indices";
+    case Kind::asymmetric_link: return "asymmetric neighbours";
+    case Kind::inverted: return "inverted tets";
+    case Kind::flat: return "flat tets";
+    case Kind::asymmetric_face: return "asymmetric faces";
+    case Kind::uncovered_triangle: return "missing input triangles";
+    case Kind::open_boundary: return "volume of the domain";
+    }
+    return "unknown";
+}
+
+// Slivers that TetGen itself left without volume, and those that rounding to float made, ask for different switches.
+std::string origin_of(const TetMeshDefect& defect, const TetgenOutput& output, const Rounding& rounding)
+{
+    if (defect.kind != Kind::inverted && defect.kind != Kind::flat) return "";
+    const std::uint64_t left = rounding.damaged - rounding.repaired;
+    return fmt::format("; {} tets are flat or inverted: {} were so in TetGen's double coordinates already, the rest by "
+                       "rounding to float",
+                       left, std::min(left, output.flat_tets));
+}
+
+void require_sound(const Scene& scene, const TetgenOutput& output, const Rounding& rounding)
+{
+    auto defect = find_defect(scene.tets, scene.mesh.triangles.size());
+    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
+    if (!defect) defect = find_gap(scene.tets, scene.mesh, size);
+    if (!defect) return;
+    throw BuilderFailure(
+        BUILDER_ABSURD_OUTPUT,
+        fmt::format("checking TetGen's output: {}: {}{}; try other --switches (pq5YMT1e-13, pq5, p), or "
+                    "repair the mesh",
+                    name_of(defect->kind), defect->what, origin_of(*defect, output, rounding)));
+}
+
+void require_entry_grid(const Scene& scene)
+{
+    try {
+        static_cast<void>(make_entry_grid(scene.domain, scene.tets));
+    } catch (const Error& error) {
+        throw BuilderFailure(BUILDER_ABSURD_OUTPUT,
+                             fmt::format("checking TetGen's output: the domain's sides: {}", error.what()));
+    }
+}
+
+} // namespace
+
+std::string builder_tool()
+{
+    return "tetrace-builder " TETRACE_VERSION ", TetGen " TETRACE_TETGEN_VERSION ", CGAL " TETRACE_CGAL_VERSION;
+}
+
+PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk)
+{
+    PreparedScene prepared;
+    prepared.begun = std::chrono::steady_clock::now();
+    Scene& scene = prepared.scene;
+    scene.name = options.name.empty() ? options.mesh.stem().string() : options.name;
+    scene.build.source = options.mesh.filename().string();
+    scene.build.switches = options.switches;
+    scene.build.tool = builder_tool();
+
+    talk.stage("reading " + scene.build.source);
+    MeshSoup soup = read_mesh(options.mesh);
+    if (soup.skipped_faces > 0)
+        talk.note(fmt::format("{} faces of fewer than three corners skipped", soup.skipped_faces));
+    scene.mesh = std::move(soup.mesh);
+    scene.build.source_hash = soup.source_hash;
+
+    talk.stage("cleaning and placing");
+    clean(scene, "", talk);
+    place_in_domain(scene, options, talk);
+    prepared.surface = domain_surface(scene.domain);
+    talk.stage("looking for self-intersections");
+    require_no_self_intersection(scene);
+    return prepared;
+}
+
+Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const BuilderTalk& talk)
+{
+    Scene scene = std::move(prepared.scene);
+    talk.stage(fmt::format("converting and checking {} tets", output.tets.size()));
+    Rounding rounding;
+    scene.tets = convert_tets(output, scene.domain, rounding);
+    if (rounding.damaged > 0)
+        talk.note(fmt::format(
+            "{} tets flat or inverted after rounding to float, {} of them mended by moving {} Steiner points",
+            rounding.damaged, rounding.repaired, rounding.moved_points));
+    require_sound(scene, output, rounding);
+    require_entry_grid(scene);
+    scene.build.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - prepared.begun).count();
+    return scene;
+}
+
+} // namespace tetrace

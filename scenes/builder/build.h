@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/scene.h"
+#include "scenes/builder/clean.h"
+#include "scenes/builder/convert_tets.h"
+#include "scenes/builder/run_tetgen.h"
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace tetrace {
+
+/// What the command line asks for.
+struct BuilderOptions {
+    std::filesystem::path mesh, out;
+    std::string name; ///< empty: the mesh file's name without extension
+    DomainKind domain = DomainKind::tight;
+    std::uint32_t divisions = 8;
+    std::string switches = "pq5Y";
+};
+
+/// Told the stage that begins, and what a person should know, one line each.
+struct BuilderTalk {
+    std::function<void(const std::string&)> stage, note;
+};
+
+/// Everything that TetGen needs; scene.tets is empty.
+struct PreparedScene {
+    Scene scene;
+    TriangleMesh surface; ///< the domain's
+    std::chrono::steady_clock::time_point begun;
+};
+
+/// This program and the libraries that decide a scene, with their versions.
+[[nodiscard]] std::string builder_tool();
+
+/// Reads, cleans, places and checks a mesh and makes its domain.
+/// Throws Error as read_mesh and make_domain do, and BuilderFailure{BUILDER_SELF_INTERSECTION} with the first pairs.
+[[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);
+
+/// Converts TetGen's output and checks it: structure, orientation, every input triangle covered, the domain filled, the
+/// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed.
+[[nodiscard]] Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const BuilderTalk& talk);
+
+} // namespace tetrace

@@ -1,0 +1,201 @@
+#include "scenes/builder/convert_tets.h"
+
+#include "core/exact.h"
+#include "scenes/builder/failure.h"
+#include "scenes/builder/steiner_rounding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace tetrace {
+namespace {
+
+constexpr double on_side = 1e-9; // TetGen's Steiner points on a side are this near to its plane, and no others
+constexpr std::uint32_t surface_steps =
+    2; // a Steiner point on an input triangle stays where rounding could have put it
+constexpr std::uint32_t interior_steps = 1 << 12; // one that only free faces share may go further
+
+[[noreturn]] void absurd(const std::string& what)
+{
+    throw BuilderFailure(BUILDER_ABSURD_OUTPUT, "checking TetGen's output: " + what +
+                                                    "; try other --switches (pq5YMT1e-13, pq5, p), or repair the mesh");
+}
+
+using Triple = std::array<std::int32_t, 3>;
+
+struct TripleHash {
+    std::size_t operator()(const Triple& key) const
+    {
+        std::uint64_t hash = 0;
+        for (const std::int32_t word : key)
+            hash = (hash ^ static_cast<std::uint32_t>(word)) * 0x9E3779B97F4A7C15u + (hash >> 29);
+        return hash;
+    }
+};
+
+Triple sorted(Triple corners)
+{
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
+Triple face_of(const std::array<std::int32_t, 4>& tet, std::size_t face)
+{
+    Triple corners{};
+    for (std::size_t i = 0, n = 0; i < 4; i++)
+        if (i != face) corners[n++] = tet[i];
+    return sorted(corners);
+}
+
+void require_indices(const TetgenOutput& output)
+{
+    const auto points = static_cast<std::int32_t>(output.points.size());
+    const auto tets = static_cast<std::int32_t>(output.tets.size());
+    if (output.tets.empty()) absurd("it has no tets");
+    if (output.tets.size() > MAX_TETS) absurd(fmt::format("{} tets are more than a link of 30 bits can name", tets));
+    for (std::size_t i = 0; i < output.tets.size(); i++)
+        for (std::size_t k = 0; k < 4; k++)
+            if (output.tets[i][k] < 0 || output.tets[i][k] >= points || output.neighbours[i][k] < -1 ||
+                output.neighbours[i][k] >= tets)
+                absurd(fmt::format("tet {} names a vertex or a neighbour that is not there", i));
+}
+
+std::uint32_t link_across(const TetgenOutput& output, std::size_t tet, std::size_t face)
+{
+    const std::int32_t neighbour = output.neighbours[tet][face];
+    if (neighbour < 0) return NO_LINK;
+    const auto other = static_cast<std::size_t>(neighbour);
+    for (std::uint32_t i = 0; i < 4; i++)
+        if (output.neighbours[other][i] == static_cast<std::int32_t>(tet) &&
+            face_of(output.tets[other], i) == face_of(output.tets[tet], face))
+            return make_link(static_cast<std::uint32_t>(neighbour), i);
+    absurd(fmt::format("asymmetric neighbours: tet {} has neighbour {} over face {}, which does not name it back", tet,
+                       neighbour, face));
+}
+
+std::vector<Tet> connect(const TetgenOutput& output)
+{
+    std::vector<Tet> tets(output.tets.size());
+    for (std::size_t i = 0; i < tets.size(); i++) {
+        tets[i].faces.fill(FREE_FACE);
+        for (std::size_t k = 0; k < 4; k++) {
+            tets[i].vertices[k] = static_cast<std::uint32_t>(output.tets[i][k]);
+            tets[i].links[k] = link_across(output, i, k);
+        }
+    }
+    return tets;
+}
+
+void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
+{
+    std::unordered_map<Triple, std::int32_t, TripleHash> triangles;
+    triangles.reserve(output.surface_faces.size());
+    for (const auto& face : output.surface_faces)
+        if (face.triangle >= 0) triangles.emplace(sorted(face.corners), face.triangle);
+    std::uint64_t sides = 0;
+    for (std::size_t i = 0; i < tets.size(); i++) {
+        for (std::size_t k = 0; k < 4; k++) {
+            const auto found = triangles.find(face_of(output.tets[i], k));
+            if (found == triangles.end()) continue;
+            tets[i].faces[k] = static_cast<std::uint32_t>(found->second);
+            sides++;
+        }
+    }
+    if (sides != 2 * triangles.size())
+        absurd(fmt::format("of {} faces on input triangles only {} sides belong to tets", triangles.size(), sides));
+}
+
+// TetGen's tets are all of one orientation; core wants det < 0.
+void orient(std::vector<Tet>& tets)
+{
+    const auto moved = [](std::uint32_t link) {
+        if (link == NO_LINK || link_face(link) > 1) return link;
+        return make_link(link_tet(link), 1 - link_face(link));
+    };
+    for (Tet& tet : tets) {
+        std::swap(tet.vertices[0], tet.vertices[1]);
+        std::swap(tet.links[0], tet.links[1]);
+        std::swap(tet.faces[0], tet.faces[1]);
+        for (std::uint32_t& link : tet.links)
+            link = moved(link);
+    }
+}
+
+// Rounded points, and how far each may move.
+class Points {
+public:
+    Points(const TetgenOutput& output, const Domain& domain, const std::vector<Tet>& tets)
+        : freedom(output.points.size())
+    {
+        for (const Double3 point : output.points)
+            rounded.push_back(snap_to_grid(to_float(point)));
+        for (std::size_t i = output.input_points; i < rounded.size(); i++)
+            freedom[i] = {{true, true, true}, interior_steps};
+        for (const Tet& tet : tets)
+            for (std::size_t face = 0; face < 4; face++)
+                for (std::size_t corner = 0; corner < 4; corner++)
+                    if (corner != face) restrict_vertex(domain, tet, face, tet.vertices[corner]);
+    }
+
+    std::vector<Float3> rounded;
+    std::vector<Freedom> freedom;
+
+private:
+    void restrict_vertex(const Domain& domain, const Tet& tet, std::size_t face, std::uint32_t vertex)
+    {
+        if (freedom[vertex].steps == 0) return;
+        if (tet.faces[face] != FREE_FACE) freedom[vertex].steps = surface_steps;
+        if (tet.links[face] != NO_LINK) return;
+        for (int axis = 0; axis < 3; axis++)
+            for (const float plane : {domain.low()[axis], domain.high()[axis]})
+                hold_on_side(vertex, axis, plane);
+    }
+    void hold_on_side(std::uint32_t vertex, int axis, float plane)
+    {
+        float& coordinate = rounded[vertex][axis];
+        if (std::abs(static_cast<double>(coordinate) - static_cast<double>(plane)) > on_side) return;
+        coordinate = plane;
+        freedom[vertex].axes[static_cast<std::size_t>(axis)] = false;
+    }
+};
+
+// Drops points that no tet has (TetGen's J keeps them), in order.
+void drop_unused(TetMesh& mesh)
+{
+    std::vector<std::uint32_t> place(mesh.vertices.size(), 0);
+    for (const Tet& tet : mesh.tets)
+        for (const std::uint32_t vertex : tet.vertices)
+            place[vertex] = 1;
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < place.size(); i++) {
+        if (place[i] == 0) continue;
+        mesh.vertices[kept] = mesh.vertices[i];
+        place[i] = kept++;
+    }
+    mesh.vertices.resize(kept);
+    for (Tet& tet : mesh.tets)
+        for (std::uint32_t& vertex : tet.vertices)
+            vertex = place[vertex];
+}
+
+} // namespace
+
+TetMesh convert_tets(const TetgenOutput& output, const Domain& domain, Rounding& rounding)
+{
+    require_indices(output);
+    TetMesh mesh;
+    mesh.tets = connect(output);
+    mark_faces(output, mesh.tets);
+    Points points(output, domain, mesh.tets);
+    orient(mesh.tets);
+    mesh.vertices = std::move(points.rounded);
+    const auto [before, after, moved] = mend_tets(mesh, points.freedom);
+    rounding = {before, before - after, moved};
+    drop_unused(mesh);
+    return mesh;
+}
+
+} // namespace tetrace

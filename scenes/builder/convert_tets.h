@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/domain.h"
+#include "core/tet_mesh.h"
+#include "scenes/builder/run_tetgen.h"
+
+namespace tetrace {
+
+/// What rounding Steiner points to float did.
+struct Rounding {
+    std::uint64_t damaged = 0;  ///< tets that rounding to nearest alone would leave flat or inverted
+    std::uint64_t repaired = 0; ///< of these, mended by another float near the Steiner point
+    std::uint64_t moved_points = 0;
+
+    friend bool operator==(const Rounding&, const Rounding&) = default;
+};
+
+/// Makes a tet mesh of TetGen's output: links from its neighbours, input triangles from its surface faces, the
+/// orientation of core/tet_mesh.h. Steiner points are rounded to float and grid; those on a side of the domain stay in
+/// its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of the input
+/// never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} where an
+/// index, a neighbour or a surface face makes no sense.
+[[nodiscard]] TetMesh convert_tets(const TetgenOutput& output, const Domain& domain, Rounding& rounding);
+
+} // namespace tetrace

@@ -1,0 +1,121 @@
+#include "core/error.h"
+#include "scenes/builder/build.h"
+#include "scenes/builder/failure.h"
+#include "scenes/scene_file.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+
+namespace {
+
+using namespace tetrace;
+
+void say(const char* kind, const std::string& text)
+{
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const auto end = std::min(text.find('\n', begin), text.size());
+        fmt::print(stderr, "{}: {}\n", kind, text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+}
+
+BuilderTalk talk()
+{
+    return {[](const std::string& text) { say("stage", text); }, [](const std::string& text) { say("note", text); }};
+}
+
+// Runs one part of the work and says why it failed, where it did.
+template <class Work>
+int guarded(const Work& work)
+{
+    try {
+        work();
+        return BUILDER_GOOD;
+    } catch (const Error& error) {
+        say("error", error.what());
+        return exit_code(error.kind());
+    } catch (const BuilderFailure& failure) {
+        say("error", failure.what());
+        return failure.code();
+    } catch (const std::bad_alloc&) {
+        say("error", "out of memory; give the builder more, or simplify the mesh");
+        return BUILDER_OUT_OF_MEMORY;
+    } catch (const std::exception& unexpected) {
+        say("error", fmt::format("internal: {}; please report it with the mesh", unexpected.what()));
+        return BUILDER_INTERNAL;
+    }
+}
+
+// Nothing where the command line is complete, else the exit code.
+std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
+{
+    CLI::App app{"Builds a tetrace scene: reads a triangle mesh (PLY, OBJ, OFF, STL), checks it, tetrahedralizes its "
+                 "domain with\n"
+                 "TetGen and writes a .tet file. `tetrace build` runs it; it links CGAL (GPL) and TetGen (AGPL), "
+                 "tetrace does not.",
+                 "tetrace-builder"};
+    app.set_version_flag("--version", builder_tool());
+    app.add_option("--mesh", options.mesh, "mesh file to read")->required()->type_name("FILE");
+    app.add_option("--out", options.out, "scene file to write, replaced as a whole")->required()->type_name("FILE.tet");
+    app.add_option("--name", options.name, "name of the scene; default: the mesh file's")->type_name("NAME");
+    std::string domain = "tight";
+    app.add_option("--domain", domain,
+                   "tight: the mesh's box grown by 2 %; wide: a cube of half-size 3 radii; default: tight")
+        ->check(CLI::IsMember({"tight", "wide"}).description(""))
+        ->type_name("tight|wide");
+    app.add_option("--divisions", options.divisions, "squares along each side of the domain, 1 to 256; default: 8")
+        ->check(CLI::Range(1, 256).description(""))
+        ->type_name("N");
+    app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
+    app.footer("Exit codes: 0 good; 2 usage or bad mesh; 3 file missing; 4 internal; 10 self-intersections; 11 TetGen "
+               "refused;\n"
+               "12 TetGen's output failed a check; 13 out of memory.");
+    try {
+        app.parse(argc, argv);
+        options.domain = domain == "wide" ? DomainKind::wide : DomainKind::tight;
+        return std::nullopt;
+    } catch (const CLI::Success& asked) {
+        return app.exit(asked);
+    } catch (const CLI::ParseError& wrong) {
+        say("error", fmt::format("reading the command line: {}; see tetrace-builder --help", wrong.what()));
+        return BUILDER_BAD_INPUT;
+    }
+}
+
+void require_out_folder(const std::filesystem::path& out)
+{
+    const auto folder = out.has_parent_path() ? out.parent_path() : std::filesystem::path(".");
+    if (!std::filesystem::is_directory(folder))
+        throw Error(ErrorKind::missing,
+                    fmt::format("writing {}: there is no folder {}; make it first", out.string(), folder.string()));
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    BuilderOptions options;
+    if (const auto code = parse(argc, argv, options)) return *code;
+    PreparedScene prepared;
+    int code = guarded([&] {
+        require_switches(options.switches);
+        require_out_folder(options.out);
+        prepared = prepare_scene(options, talk());
+    });
+    if (code != BUILDER_GOOD) return code;
+
+    say("stage", "TetGen " + options.switches);
+    std::set_terminate(explain_tetgen_failure); // and no handler round the call: see run_tetgen
+    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, options.switches);
+    return guarded([&] {
+        const Scene scene = finish_scene(std::move(prepared), output, talk());
+        talk().stage("writing " + options.out.filename().string());
+        write_scene(options.out, scene);
+    });
+}

@@ -1,0 +1,56 @@
+#include "scenes/builder/mesh_reader.h"
+
+#include "core/hash.h"
+#include "scenes/builder/mesh_source.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <span>
+
+namespace tetrace {
+namespace {
+
+std::string read_bytes(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+        throw Error(ErrorKind::missing, "reading " + path.string() + ": there is no such file; check the path");
+    if (std::filesystem::is_directory(path, ignored))
+        throw Error(ErrorKind::invalid_input, "reading " + path.string() + ": it is a folder; name a mesh file");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(ErrorKind::missing, "reading " + path.string() + ": " + std::strerror(errno));
+    std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (file.bad()) throw Error(ErrorKind::missing, "reading " + path.string() + ": the device reports an error");
+    return bytes;
+}
+
+void read_as(const std::string& extension, MeshSource& source)
+{
+    if (extension == ".ply") return read_ply(source);
+    if (extension == ".obj") return read_obj(source);
+    if (extension == ".off") return read_off(source);
+    if (extension == ".stl") return read_stl(source);
+    source.fail("name", "the format '" + extension + "' is not known",
+                "use a file with the extension .ply, .obj, .off or .stl");
+}
+
+} // namespace
+
+MeshSoup read_mesh(const std::filesystem::path& path)
+{
+    const std::string bytes = read_bytes(path);
+    MeshSource source(path.string(), bytes);
+    if (bytes.empty()) source.fail("file", "it is empty");
+    read_as(lower_case(path.extension().string()), source);
+    MeshSoup& soup = source.soup();
+    if (soup.mesh.vertices.empty())
+        source.fail("mesh", "it has no vertices", "export the mesh again, with its geometry");
+    if (soup.mesh.triangles.empty())
+        source.fail("mesh", "it has no triangles", "a point cloud or a curve has no surface: reconstruct one first");
+    soup.source_hash = hash_bytes(std::as_bytes(std::span(bytes)));
+    return std::move(soup);
+}
+
+} // namespace tetrace

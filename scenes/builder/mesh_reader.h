@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/triangle_mesh.h"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace tetrace {
+
+/// Triangles as a file has them: nothing merged, nothing removed but what has no area by its very form.
+struct MeshSoup {
+    TriangleMesh mesh;
+    std::uint64_t skipped_faces = 0; ///< faces of fewer than three corners
+    std::uint64_t source_hash = 0;   ///< XXH3 of the file's bytes
+};
+
+/// Reads PLY (ascii, binary of either byte order), OBJ, OFF (with C, N and ST prefixes) or STL (ascii, binary), chosen
+/// by the extension and verified by the content. Polygons are cut into fans; coordinates are rounded to the nearest
+/// float. Throws Error{missing} where there is no such file, and Error{invalid_input} that names file, element and
+/// remedy for: an unknown format, a truncated file, a count that the file cannot hold, a NaN, infinite or too large
+/// coordinate, an index out of range, a mesh without triangles.
+[[nodiscard]] MeshSoup read_mesh(const std::filesystem::path& path);
+
+} // namespace tetrace

@@ -1,0 +1,196 @@
+#include "scenes/builder/run_tetgen.h"
+
+#include "core/error.h"
+#include "scenes/builder_exit.h"
+
+#define TETLIBRARY
+#include <tetgen.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fmt/format.h>
+#include <memory>
+#include <new>
+
+namespace tetrace {
+namespace {
+
+constexpr int domain_marker = -1;
+// z: count from 0; n: neighbours; J: input points keep their numbers; Q: no chatter. Each triangle has a marker of its
+// own, and TetGen merges only coplanar facets of equal markers: so no triangle's faces are taken for another's, with or
+// without M.
+constexpr const char* our_switches = "znJQ";
+
+void add_points(tetgenio& input, const std::vector<Float3>& vertices, int& next)
+{
+    for (const Float3 vertex : vertices)
+        for (int axis = 0; axis < 3; axis++)
+            input.pointlist[next++] = static_cast<double>(vertex[axis]);
+}
+
+// TetGen's destructor frees with delete[]: plain new it is.
+void add_facet(tetgenio& input, int index, const std::array<std::uint32_t, 3>& triangle, std::size_t first_vertex,
+               int marker)
+{
+    tetgenio::facet& facet = input.facetlist[index];
+    tetgenio::init(&facet);
+    facet.numberofpolygons = 1;
+    facet.polygonlist = new tetgenio::polygon[1];
+    tetgenio::init(facet.polygonlist);
+    facet.polygonlist->numberofvertices = 3;
+    facet.polygonlist->vertexlist = new int[3];
+    for (std::size_t i = 0; i < 3; i++)
+        facet.polygonlist->vertexlist[i] = static_cast<int>(first_vertex + triangle[i]);
+    input.facetmarkerlist[index] = marker;
+}
+
+void fill(tetgenio& input, const TriangleMesh& mesh, const TriangleMesh& surface)
+{
+    input.firstnumber = 0;
+    input.numberofpoints = static_cast<int>(mesh.vertices.size() + surface.vertices.size());
+    input.pointlist = new double[3 * static_cast<std::size_t>(input.numberofpoints)];
+    int next = 0;
+    add_points(input, mesh.vertices, next);
+    add_points(input, surface.vertices, next);
+    input.numberoffacets = static_cast<int>(mesh.triangles.size() + surface.triangles.size());
+    input.facetlist = new tetgenio::facet[static_cast<std::size_t>(input.numberoffacets)];
+    input.facetmarkerlist = new int[static_cast<std::size_t>(input.numberoffacets)];
+    int facet = 0;
+    for (const auto& triangle : mesh.triangles) {
+        add_facet(input, facet, triangle, 0, facet + 1);
+        facet++;
+    }
+    // Unlike markers on the domain's sides too: each square stays two triangles unless TetGen must split it.
+    int marker = domain_marker;
+    for (const auto& triangle : surface.triangles)
+        add_facet(input, facet++, triangle, mesh.vertices.size(), marker--);
+}
+
+template <std::size_t size>
+std::vector<std::array<std::int32_t, size>> rows(const int* from, int count)
+{
+    std::vector<std::array<std::int32_t, size>> result(static_cast<std::size_t>(count));
+    for (auto& row : result)
+        for (auto& value : row)
+            value = *from++;
+    return result;
+}
+
+// Tets are positive for TetGen where orient3d of its corners is negative.
+std::uint64_t count_flat(tetgenio& output)
+{
+    std::uint64_t flat = 0;
+    for (int i = 0; i < output.numberoftetrahedra; i++) {
+        double* corner[4];
+        for (int k = 0; k < 4; k++)
+            corner[k] = output.pointlist + 3 * output.tetrahedronlist[4 * i + k];
+        if (orient3d(corner[0], corner[1], corner[2], corner[3]) >= 0) flat++;
+    }
+    return flat;
+}
+
+TetgenOutput take(tetgenio& output, std::size_t input_points)
+{
+    TetgenOutput result;
+    result.input_points = input_points;
+    for (int i = 0; i < output.numberofpoints; i++)
+        result.points.push_back({output.pointlist[3 * i], output.pointlist[3 * i + 1], output.pointlist[3 * i + 2]});
+    result.tets = rows<4>(output.tetrahedronlist, output.numberoftetrahedra);
+    result.neighbours = rows<4>(output.neighborlist, output.numberoftetrahedra);
+    const auto corners = rows<3>(output.trifacelist, output.numberoftrifaces);
+    for (std::size_t i = 0; i < corners.size(); i++) {
+        const int marker = output.trifacemarkerlist[i];
+        result.surface_faces.push_back({corners[i], marker > 0 ? marker - 1 : domain_marker});
+    }
+    result.flat_tets = count_flat(output);
+    return result;
+}
+
+const char* meaning_of(int code)
+{
+    switch (code) {
+    case 2: return "an internal error (a known weakness of TetGen 1.5)";
+    case 3: return "it sees facets that intersect";
+    case 4: return "a feature is too small for its tolerance";
+    case 5: return "two facets are very close to each other";
+    case 10: return "it does not accept the input";
+    default: return "a code that it does not document";
+    }
+}
+
+const char* remedy_for(int code)
+{
+    switch (code) {
+    case 3: return "repair the mesh in another program (MeshLab, CGAL)";
+    case 4: return "try --switches pq5YMT1e-13, or --switches p, or repair the mesh (merge nearly equal vertices)";
+    case 5: return "try --switches with Y, for example pq5Y";
+    default: return "try other --switches (pq5YMT1e-13, pq5, p), or repair the mesh";
+    }
+}
+
+[[noreturn]] void end_process(int code, const std::string& text)
+{
+    std::fflush(stdout);
+    fmt::print(stderr, "error: {}\n", text);
+    std::fflush(stderr);
+    std::_Exit(code);
+}
+
+} // namespace
+
+void require_switches(const std::string& switches)
+{
+    const auto fail = [&](const std::string& why) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("reading --switches: '{}' {}; TetGen's switches begin with p and may hold "
+                                "q a A Y M T O S D C V X with their numbers, for example pq5Y",
+                                switches, why));
+    };
+    if (!switches.starts_with('p')) fail("does not begin with p");
+    const auto bad = switches.find_first_not_of("pqaAYMTOSDCVX0123456789./e-");
+    if (bad != std::string::npos) fail(fmt::format("holds '{}'", switches[bad]));
+    // TetGen copies its command line into a fixed buffer.
+    if (switches.size() > 200) fail("is longer than 200 characters");
+    tetgenbehavior behavior;
+    std::string text = switches;
+    if (!behavior.parse_commandline(text.data())) fail("is refused by TetGen");
+}
+
+TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& switches)
+{
+    // Not on the stack: where TetGen throws, nothing may be unwound.
+    auto* const input = new tetgenio;
+    auto* const output = new tetgenio;
+    fill(*input, mesh, surface);
+    std::string text = switches + our_switches;
+    tetgenbehavior behavior;
+    behavior.parse_commandline(text.data());
+    tetrahedralize(&behavior, input, output);
+    TetgenOutput result = take(*output, static_cast<std::size_t>(input->numberofpoints));
+    delete input;
+    delete output;
+    return result;
+}
+
+void explain_tetgen_failure()
+{
+    if (const std::exception_ptr current = std::current_exception()) {
+        try {
+            std::rethrow_exception(current);
+        } catch (const int code) {
+            if (code == 1)
+                end_process(BUILDER_OUT_OF_MEMORY, "TetGen: out of memory; give it more, or simplify the mesh");
+            end_process(BUILDER_TETGEN_REFUSED,
+                        fmt::format("TetGen gave up with code {}: {}; {}", code, meaning_of(code), remedy_for(code)));
+        } catch (const std::bad_alloc&) {
+            end_process(BUILDER_OUT_OF_MEMORY, "TetGen: out of memory; give it more, or simplify the mesh");
+        } catch (const std::exception& unexpected) {
+            end_process(BUILDER_INTERNAL, fmt::format("an exception that nothing handles: {}", unexpected.what()));
+        } catch (...) {
+        }
+    }
+    std::abort();
+}
+
+} // namespace tetrace

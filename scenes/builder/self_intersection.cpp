@@ -1,0 +1,125 @@
+#include "scenes/builder/self_intersection.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+// The cases by shared vertices are those of Loriot, Rouxel-Labbe, Tournois, Yaz, "Polygon Mesh Processing", CGAL
+// manual, self-intersections.
+
+namespace tetrace {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Triple = std::array<std::uint32_t, 3>;
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
+
+std::vector<Point> to_points(const TriangleMesh& mesh)
+{
+    std::vector<Point> points;
+    points.reserve(mesh.vertices.size());
+    for (const Float3 vertex : mesh.vertices) {
+        const Double3 v = to_double(vertex);
+        points.emplace_back(v.x, v.y, v.z);
+    }
+    return points;
+}
+
+// Turned so that the corners that `other` has come first.
+Triple shared_first(const Triple& triangle, const Triple& other, int& shared)
+{
+    const auto is_shared = [&](std::uint32_t v) { return std::find(other.begin(), other.end(), v) != other.end(); };
+    Triple turned = triangle;
+    const auto middle = std::stable_partition(turned.begin(), turned.end(), is_shared);
+    shared = static_cast<int>(middle - turned.begin());
+    return turned;
+}
+
+class PairTest {
+public:
+    explicit PairTest(const TriangleMesh& mesh) : mesh_(mesh), points_(to_points(mesh)) {}
+
+    [[nodiscard]] bool meet_elsewhere(std::uint32_t first, std::uint32_t second) const
+    {
+        int shared = 0;
+        const Triple a = shared_first(mesh_.triangles[first], mesh_.triangles[second], shared);
+        const Triple b = shared_first(mesh_.triangles[second], mesh_.triangles[first], shared);
+        if (shared == 0) return CGAL::do_intersect(triangle(a), triangle(b));
+        // What two triangles share beyond a common corner ends on the edge opposite it, of one or the other.
+        if (shared == 1)
+            return CGAL::do_intersect(edge(a[1], a[2]), triangle(b)) ||
+                   CGAL::do_intersect(edge(b[1], b[2]), triangle(a));
+        return folded(points_[a[0]], points_[a[1]], points_[a[2]], points_[b[2]]);
+    }
+    [[nodiscard]] std::vector<Box> boxes() const
+    {
+        std::vector<Box> boxes;
+        boxes.reserve(mesh_.triangles.size());
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); i++)
+            boxes.emplace_back(triangle(mesh_.triangles[i]).bbox(), i);
+        return boxes;
+    }
+
+private:
+    [[nodiscard]] Kernel::Triangle_3 triangle(const Triple& t) const
+    {
+        return {points_[t[0]], points_[t[1]], points_[t[2]]};
+    }
+    [[nodiscard]] Kernel::Segment_3 edge(std::uint32_t a, std::uint32_t b) const { return {points_[a], points_[b]}; }
+    // Two triangles over the edge pq: folded onto each other in one plane.
+    static bool folded(const Point& p, const Point& q, const Point& r, const Point& s)
+    {
+        return CGAL::coplanar(p, q, r, s) && CGAL::coplanar_orientation(p, q, r, s) == CGAL::POSITIVE;
+    }
+
+    const TriangleMesh& mesh_;
+    std::vector<Point> points_;
+};
+
+std::string corners_text(const TriangleMesh& mesh, std::uint32_t triangle, int scale_exponent)
+{
+    std::string text;
+    for (const std::uint32_t vertex : mesh.triangles[triangle]) {
+        const Float3 v = mesh.vertices[vertex];
+        const auto unscaled = [&](float x) { return std::ldexp(static_cast<double>(x), -scale_exponent); };
+        text += fmt::format(" ({:.9g}, {:.9g}, {:.9g})", unscaled(v.x), unscaled(v.y), unscaled(v.z));
+    }
+    return text;
+}
+
+} // namespace
+
+SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t listed)
+{
+    const PairTest test(mesh);
+    std::vector<Box> boxes = test.boxes();
+    SelfIntersections found;
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+        const auto [low, high] = std::minmax({a.info(), b.info()});
+        if (!test.meet_elsewhere(low, high)) return;
+        found.count++;
+        const std::pair<std::uint32_t, std::uint32_t> pair{low, high};
+        found.first.insert(std::upper_bound(found.first.begin(), found.first.end(), pair), pair);
+        if (found.first.size() > listed) found.first.pop_back();
+    });
+    return found;
+}
+
+std::string describe(const SelfIntersections& found, const TriangleMesh& mesh, int scale_exponent)
+{
+    std::string text =
+        fmt::format("{} pairs of triangles intersect elsewhere than in a shared vertex or edge", found.count);
+    for (const auto& [a, b] : found.first)
+        text += fmt::format("\n  triangle {}{}\n  triangle {}{}", a, corners_text(mesh, a, scale_exponent), b,
+                            corners_text(mesh, b, scale_exponent));
+    if (found.first.size() < found.count) text += "\n  ...";
+    return text +
+           "\ntetrace does not repair meshes yet: remove the intersections in another program (MeshLab: Filters, "
+           "Cleaning and Repairing; CGAL: autorefine) and try again";
+}
+
+} // namespace tetrace
