@@ -86,13 +86,13 @@ private:
 
 std::uint64_t MeshSceneLoader::hash_mesh() const
 {
-    std::error_code ignored; // then the size is of no file, and the read below says so
-    std::vector<char> bytes(fs::is_regular_file(mesh_, ignored) ? fs::file_size(mesh_, ignored) : 0);
-    std::ifstream file(mesh_, std::ios::binary);
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-        throw Error(
-            ErrorKind::invalid_input,
-            fmt::format("reading mesh {}: it cannot be read as a whole; check its permissions", mesh_.string()));
+    std::error_code failure; // opening a folder works, and a pipe would wait for its writer
+    std::vector<char> bytes(fs::is_regular_file(mesh_, failure) ? fs::file_size(mesh_, failure) : 0);
+    std::ifstream file;
+    if (!bytes.empty() && !failure) file.open(mesh_, std::ios::binary);
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || bytes.empty())
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("reading mesh {}: it is empty, no regular file, or may not be read", mesh_.string()));
     return hash_of(bytes);
 }
 

@@ -43,6 +43,7 @@ public:
         if (const char* before = std::getenv(name)) before_ = before, was_set_ = true;
         set(value);
     }
+    ScopedVariable(const char* name, const std::string& value) : ScopedVariable(name, value.c_str()) {}
     ScopedVariable(const char* name, const std::filesystem::path& value) : ScopedVariable(name, value.c_str()) {}
     ~ScopedVariable() { set(was_set_ ? before_.c_str() : nullptr); }
     ScopedVariable(const ScopedVariable&) = delete;
