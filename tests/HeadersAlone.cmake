@@ -3,7 +3,7 @@
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/kernels/layout.h ${PROJECT_SOURCE_DIR}/backends/*.h
   ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/bench/*.h)
-if(NOT TARGET tetrace_builder_parts)
+if(NOT TARGET tetrace_builder_lib)
   list(FILTER headers EXCLUDE REGEX "^scenes/builder/")
 endif()
 
