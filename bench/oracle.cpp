@@ -15,14 +15,7 @@
 namespace tetrace {
 namespace {
 namespace kernel {
-#include "kernels/dialect_cpp.h"
-#include "kernels/ray.h"
-#include "kernels/vector.h"
-
-Vec3 to_vec3(Float3 a)
-{
-    return VEC3(a.x, a.y, a.z);
-}
+#include "kernels/rays_cpp.h"
 
 Ray pixel_ray(const View& view, std::uint32_t x, std::uint32_t y)
 {

@@ -15,7 +15,9 @@
 
 namespace {
 
-#include "tests/kernel_under_test.h"
+#define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
+#define KERNEL_METHOD_HEADER "kernels/maria.h"
+#include "kernels/kernel_cpp.h"
 
 using tetrace::Float3;
 

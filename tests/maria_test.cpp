@@ -34,7 +34,9 @@ struct Counted {
 };
 
 #define KERNEL_REAL Counted
-#include "tests/kernel_under_test.h"
+#define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
+#define KERNEL_METHOD_HEADER "kernels/maria.h"
+#include "kernels/kernel_cpp.h"
 
 using tetrace::Float3;
 using tetrace::orientation;

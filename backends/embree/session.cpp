@@ -11,17 +11,10 @@
 
 namespace tetrace::embree {
 namespace {
-#include "kernels/dialect_cpp.h"
-#include "kernels/ray.h"
-#include "kernels/vector.h"
+#include "kernels/rays_cpp.h"
 
 constexpr std::uint32_t packet_size = 4; // 4 x 4 pixels
 constexpr std::uint32_t tile_size = 8;
-
-Vec3 to_vec3(Float3 a)
-{
-    return VEC3(a.x, a.y, a.z);
-}
 
 TraceParams params_of(const TraceJob& job)
 {

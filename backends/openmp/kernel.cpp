@@ -10,22 +10,9 @@
 #include <cstdint>
 
 namespace {
-#include "kernels/dialect_cpp.h"
-#include "kernels/faces.h"
-#include "kernels/ray.h"
-#include "kernels/scene_view_cpp.h"
-#include "kernels/vector.h"
-#include KERNEL_LAYOUT_HEADER
-#include KERNEL_METHOD_HEADER
-#include "kernels/entry.h"
-#include "kernels/walk.h"
+#include "kernels/kernel_cpp.h"
 
 constexpr uint tile_size = 8; // pixels of a tile share most of their way
-
-Vec3 to_vec3(tetrace::Float3 a)
-{
-    return VEC3(a.x, a.y, a.z);
-}
 
 TraceParams params_of(const tetrace::TraceJob& job)
 {
