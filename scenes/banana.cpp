@@ -39,13 +39,20 @@ double ridges_at(Turn side)
     return 1 + ridge_height * c * (16 * c2 * c2 - 20 * c2 + 5);
 }
 
+/// To a multiple of 2^-30: what ought to be 0 is, and no reader has to round it.
+double tidy(double coordinate)
+{
+    return std::round(coordinate * 0x1p30) * 0x1p-30;
+}
+
 /// The point of the tube at s along the arc, `distance` from its centre line towards `side`.
 Float3 tube_point(double s, double distance, Turn side)
 {
     const double t = arc_end * s;
     const double scale = 1 / (1 + t * t);
     const Double3 outwards = {(1 - t * t) * scale, 2 * t * scale, 0};
-    return to_float(outwards * (1 + distance * side.cos) + Double3{0, 0, distance * side.sin});
+    const double reach = 1 + distance * side.cos;
+    return to_float({tidy(outwards.x * reach), tidy(outwards.y * reach), tidy(distance * side.sin)});
 }
 
 std::vector<Float3> make_vertices()
