@@ -40,7 +40,11 @@ void read_as(const std::string& extension, MeshSource& source)
 
 MeshSoup read_mesh(const std::filesystem::path& path)
 {
-    const std::string bytes = read_bytes(path);
+    return parse_mesh(path, read_bytes(path));
+}
+
+MeshSoup parse_mesh(const std::filesystem::path& path, std::string_view bytes)
+{
     MeshSource source(path.string(), bytes);
     if (bytes.empty()) source.fail("file", "it is empty");
     read_as(lower_case(path.extension().string()), source);

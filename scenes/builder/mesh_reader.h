@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 namespace tetrace {
 
@@ -20,5 +21,8 @@ struct MeshSoup {
 /// remedy for: an unknown format, a truncated file, a count that the file cannot hold, a NaN, infinite or too large
 /// coordinate, an index out of range, a mesh without triangles.
 [[nodiscard]] MeshSoup read_mesh(const std::filesystem::path& path);
+
+/// The same from a file's bytes; the path serves for its extension and for messages only.
+[[nodiscard]] MeshSoup parse_mesh(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace tetrace

@@ -94,7 +94,9 @@ void read_stl(MeshSource& source)
     const std::uint64_t facets = bytes.size() >= header_bytes ? little_endian_word(bytes, 80) : 0;
     if (bytes.size() >= header_bytes && bytes.size() == header_bytes + facet_bytes * facets) return read_binary(source);
     const auto begin = bytes.find_first_not_of(" \t\r\n");
-    if (begin != std::string_view::npos && lower_case(bytes.substr(begin, 5)) == "solid") return read_ascii(source);
+    const bool is_text = bytes.find('\0') == std::string_view::npos;
+    if (is_text && begin != std::string_view::npos && lower_case(bytes.substr(begin, 5)) == "solid")
+        return read_ascii(source);
     if (bytes.size() < header_bytes)
         source.fail("header", "it is neither ascii STL ('solid') nor as long as binary STL's header");
     source.fail("header", fmt::format("it announces {} facets, which take {} bytes, but the file has {}", facets,
