@@ -1,0 +1,104 @@
+#include "bench/hit_checks.h"
+
+#include "core/error.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace tetrace;
+
+namespace {
+
+/// The triangle (0,0,1) (1,0,1) (0,1,1), seen from the origin along z.
+const TriangleMesh triangle{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}}};
+
+/// A view of one pixel whose ray goes from the origin to (0.25, 0.5, 1).
+const View view{{0, 0, 0}, {0.25f, 0.5f, 1}, {0, 0, 0}, {0, 0, 0}};
+
+constexpr Hit right{0, 7, 1.0f, 0.25f, 0.5f, 3};
+
+} // namespace
+
+TEST(compare_hits, equal_hits_do_not_differ)
+{
+    const std::vector<Hit> hits = {right, {NO_HIT, 3, 0, 0, 0, 9}};
+    EXPECT_EQ(compare_hits(hits, hits).count, 0u);
+}
+
+TEST(compare_hits, face_tet_and_steps_must_be_the_same_bits)
+{
+    for (std::uint32_t Hit::*member : {&Hit::face_id, &Hit::tet, &Hit::steps}) {
+        std::vector<Hit> hits(5, right);
+        hits[3].*member += 1;
+        const Differences found = compare_hits(hits, std::vector<Hit>(5, right));
+        EXPECT_EQ(found.count, 1u);
+        EXPECT_EQ(found.first, 3u);
+    }
+}
+
+TEST(compare_hits, parameters_may_differ_by_three_units_in_the_last_place_and_no_more)
+{
+    for (float Hit::*member : {&Hit::t, &Hit::u, &Hit::v}) {
+        std::vector<Hit> hits(1, right);
+        for (int ulp = 1; ulp <= 4; ++ulp) {
+            hits[0].*member = std::nextafter(hits[0].*member, 2.0f);
+            EXPECT_EQ(compare_hits(hits, std::vector<Hit>(1, right)).count, ulp <= 3 ? 0u : 1u) << ulp;
+        }
+    }
+}
+
+TEST(compare_hits, images_of_different_sizes_are_an_error)
+{
+    EXPECT_THROW(static_cast<void>(compare_hits(std::vector<Hit>(2), std::vector<Hit>(3))), Error);
+}
+
+TEST(ulps_between, counts_floats_between_and_knows_signs)
+{
+    EXPECT_EQ(ulps_between(1.0f, 1.0f), 0u);
+    EXPECT_EQ(ulps_between(0.0f, -0.0f), 0u);
+    EXPECT_EQ(ulps_between(1.0f, std::nextafter(1.0f, 0.0f)), 1u);
+    EXPECT_EQ(ulps_between(-1.0f, std::nextafter(-1.0f, -2.0f)), 1u);
+    EXPECT_GT(ulps_between(1.0f, -1.0f), 1000u);
+    EXPECT_GT(ulps_between(1.0f, std::numeric_limits<float>::quiet_NaN()), 1000u);
+}
+
+TEST(count_misplaced, a_right_hit_is_in_place)
+{
+    EXPECT_EQ(count_misplaced(triangle, view, 1, std::vector<Hit>{right}), 0u);
+}
+
+TEST(count_misplaced, a_wrong_parameter_is_found)
+{
+    for (float Hit::*member : {&Hit::t, &Hit::u, &Hit::v})
+        for (const float factor : {0.0f, 0.999f, 1.001f, std::numeric_limits<float>::quiet_NaN()}) {
+            Hit hit = right;
+            hit.*member *= factor;
+            EXPECT_EQ(count_misplaced(triangle, view, 1, std::vector<Hit>{hit}), 1u) << factor;
+        }
+}
+
+TEST(count_misplaced, a_face_that_does_not_exist_is_found_and_misses_are_left_out)
+{
+    EXPECT_EQ(count_misplaced(triangle, view, 1, std::vector<Hit>{{1, 7, 1.0f, 0.25f, 0.5f, 3}}), 1u);
+    EXPECT_EQ(
+        count_misplaced(triangle, view, 3,
+                        std::vector<Hit>{{NO_HIT, 0, 0, 0, 0, 0}, {LOST, 0, 0, 0, 0, 0}, {POISON, 0, 0, 0, 0, 0}}),
+        0u);
+}
+
+TEST(count_rays, tells_what_became_of_each)
+{
+    const std::vector<Hit> hits = {
+        right, right, {NO_HIT, 0, 0, 0, 0, 5}, {LOST, 0, 0, 0, 0, 100}, {POISON, 0, 0, 0, 0, 0}};
+    RayTotals totals = count_rays(hits);
+    totals.add(count_rays(hits));
+    EXPECT_EQ(totals.rays, 10u);
+    EXPECT_EQ(totals.hits, 4u);
+    EXPECT_EQ(totals.misses, 2u);
+    EXPECT_EQ(totals.lost, 2u);
+    EXPECT_EQ(totals.unwritten, 2u);
+    EXPECT_EQ(totals.hit_steps, 12u);
+    EXPECT_EQ(totals.miss_steps, 10u);
+    EXPECT_EQ(totals.steps(), 222u);
+}

@@ -1,0 +1,224 @@
+#include "tests/temporary_folder.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sys/wait.h>
+
+using namespace tetrace;
+
+namespace {
+
+struct Ended {
+    int code = -1;
+    std::string out, errors;
+};
+
+/// The program in a folder of its own, with a cache of its own.
+class program : public testing::Test {
+protected:
+    Ended run(const std::string& arguments)
+    {
+        const auto out = folder_.path() / "stdout", errors = folder_.path() / "stderr";
+        const std::string command =
+            fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' '{1}' {2} > '{3}' 2> '{4}'", folder_.path().string(),
+                        TETRACE_PROGRAM, arguments, out.string(), errors.string());
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(errors)};
+    }
+
+    Ended bench(const std::string& arguments)
+    {
+        return run("bench --scene cubes --resolution 6 --size 24 --samples 3 " + arguments);
+    }
+
+    [[nodiscard]] std::string file(const char* name) const { return read_text(folder_.path() / name); }
+
+    TemporaryFolder folder_;
+};
+
+} // namespace
+
+TEST_F(program, describes_itself)
+{
+    EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
+    EXPECT_TRUE(contains(run("--version").out, "tetrace "));
+    for (const char* const verb : {"devices", "scenes", "build", "bench", "check", "render", "help"}) {
+        const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
+        EXPECT_EQ(help.code, 0);
+        EXPECT_TRUE(contains(help.out, "Examples")) << verb;
+        EXPECT_EQ(help.errors, "");
+    }
+    EXPECT_TRUE(contains(run("help options").out, "| `--scene SCENE` |"));
+}
+
+TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)
+{
+    for (const char* const bad :
+         {"draw", "bench --sizes 3", "bench --size 0", "bench --scene nothing-of-that-name", "check --filter '('",
+          "bench --scene cubes --filter nothing", "bench --benchmark_bogus=1", "bench --benchmark_format=xml",
+          "bench --scene cubes --out result.xyz", "bench --scene cubes,cubes",
+          "bench --scene cubes --benchmark_filter=nothing"}) {
+        const Ended ended = run(bad);
+        EXPECT_EQ(ended.code, 2) << bad << ended.errors;
+        EXPECT_EQ(ended.out, "") << bad;
+        EXPECT_NE(ended.errors, "") << bad;
+    }
+    EXPECT_TRUE(contains(run("bench --scene cubes --filter nothing").errors, "matches none of the 4 rows"));
+}
+
+TEST_F(program, lists_devices_with_their_backends)
+{
+    const Ended ended = run("devices --require openmp,embree --format json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto section = nlohmann::json::parse(ended.out)["tetrace"];
+    EXPECT_EQ(section["devices"][0]["backend"], "openmp");
+    EXPECT_EQ(section["devices"][0]["status"], "usable");
+    EXPECT_EQ(section["parts"].size(), 2u);
+    EXPECT_TRUE(contains(run("devices").out, "openmp"));
+}
+
+TEST_F(program, lists_scenes_and_clears_the_cache)
+{
+    const Ended table = run("scenes");
+    EXPECT_EQ(table.code, 0) << table.errors;
+    for (const char* const name : {"cubes", "banana", "bunny", "armadillo"})
+        EXPECT_TRUE(contains(table.out, name));
+    const Ended cleared = run("scenes --clear --format json");
+    ASSERT_EQ(cleared.code, 0) << cleared.errors;
+    EXPECT_EQ(nlohmann::json::parse(cleared.out)["tetrace"]["cache"]["files"].size(), 0u);
+}
+
+TEST_F(program, benches_and_writes_the_table_and_the_json)
+{
+    const Ended ended = bench("--out result.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "Mrays/s"));
+    EXPECT_TRUE(contains(ended.out, "Verified: 9,216 rays"));
+    const auto json = nlohmann::json::parse(file("result.json"));
+    EXPECT_EQ(json["tetrace"]["schema_version"], 1);
+    ASSERT_EQ(json["tetrace"]["rows"].size(), 4u);
+    std::set<std::string> benchmarked;
+    for (const auto& entry : json["benchmarks"])
+        benchmarked.insert(entry["run_name"].get<std::string>());
+    for (const auto& row : json["tetrace"]["rows"]) {
+        EXPECT_EQ(row["status"], "ok") << row;
+        EXPECT_EQ(row["times"]["samples_s"].size(), 3u);
+        EXPECT_GT(row["rates"]["mrays_per_s"].get<double>(), 0);
+        EXPECT_EQ(row["verification"]["rays"], 4 * 24 * 24);
+        EXPECT_EQ(row["hit_hash"].get<std::string>().size(), 16u);
+        EXPECT_EQ(benchmarked.count(row["name"].get<std::string>()), 1u) << row["name"];
+    }
+    EXPECT_EQ(json["tetrace"]["rows"][0]["hit_hash"], json["tetrace"]["rows"][1]["hit_hash"]) << "tet80 and tet96";
+    EXPECT_EQ(json["tetrace"]["scenes"][0]["views"].size(), 4u);
+    EXPECT_EQ(json["tetrace"]["scenes"][0]["hash"].get<std::string>().size(), 16u);
+}
+
+TEST_F(program, the_same_rays_give_the_same_hashes_whatever_the_number_of_threads)
+{
+    const auto hash = [&](const std::string& more) {
+        return nlohmann::json::parse(
+            bench("--layout tet80 --format json " + more).out)["tetrace"]["rows"][0]["hit_hash"];
+    };
+    const auto first = hash("--threads 1");
+    EXPECT_EQ(first, hash("--threads 3"));
+    EXPECT_NE(first, hash("--views 0"));
+}
+
+TEST_F(program, benches_as_csv_and_markdown)
+{
+    const Ended csv = bench("--format csv");
+    ASSERT_EQ(csv.code, 0) << csv.errors;
+    EXPECT_EQ(csv.out.rfind("name,scene,structure,method,", 0), 0u);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 5);
+    EXPECT_EQ(bench("--format markdown").out.rfind("| name | scene |", 0), 0u);
+    const Ended to_file = bench("--format csv --out table.csv");
+    EXPECT_EQ(to_file.out, "");
+    EXPECT_EQ(file("table.csv").rfind("name,scene", 0), 0u);
+}
+
+TEST_F(program, lists_rows_without_loading_scenes)
+{
+    const Ended ours = run("bench --scene bunny,armadillo --list");
+    EXPECT_EQ(ours.code, 0) << ours.errors;
+    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 8);
+    EXPECT_EQ(run("bench --scene bunny,armadillo --benchmark_list_tests").out, ours.out);
+    EXPECT_EQ(
+        run("bench --scene bunny --benchmark_list_tests=true --benchmark_filter=-embree").out,
+        "cdt/maria/tet80/bunny/primary/math:exact/api:openmp\ncdt/maria/tet96/bunny/primary/math:exact/api:openmp\n");
+}
+
+TEST_F(program, google_benchmarks_flags_keep_their_meaning)
+{
+    const Ended ended = bench("--benchmark_filter='tet80.*openmp$' --benchmark_repetitions=5 --benchmark_out=gb.json "
+                              "--out ours.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto ours = nlohmann::json::parse(file("ours.json"));
+    ASSERT_EQ(ours["tetrace"]["rows"].size(), 1u);
+    EXPECT_EQ(ours["tetrace"]["rows"][0]["times"]["samples_s"].size(), 5u);
+    const auto theirs = nlohmann::json::parse(file("gb.json"));
+    EXPECT_EQ(theirs["benchmarks"][0]["name"], "cdt/maria/tet80/cubes/primary/math:exact/api:openmp");
+    EXPECT_EQ(theirs["benchmarks"].size(), ours["benchmarks"].size());
+    EXPECT_EQ(bench("--benchmark_format=csv").out.rfind("name,iterations,", 0), 0u);
+}
+
+TEST_F(program, checks_every_ray)
+{
+    const Ended ended = run("check --scene cubes --resolution 6 --size 24 --math exact,fast --order hilbert,input "
+                            "--require openmp,embree --out check.json");
+    ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
+    const auto rows = nlohmann::json::parse(file("check.json"))["tetrace"]["rows"];
+    EXPECT_EQ(rows.size(), 10u);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row["status"], "ok") << row;
+        const auto& found = row["verification"];
+        EXPECT_EQ(found["rays"].get<int>(), found["agreed"].get<int>() + found["ties"].get<int>() +
+                                                found["settled"].get<int>() + found["wrong"].get<int>() +
+                                                found["lost"].get<int>());
+    }
+}
+
+TEST_F(program, builds_every_combination_and_goes_on_after_a_failure)
+{
+    std::ofstream(folder_.path() / "broken.tet") << "no scene";
+    const Ended ended = run("build --scene cubes,broken.tet --resolution 6 --size 24 --format json");
+    EXPECT_EQ(ended.code, 1) << ended.errors;
+    const auto builds = nlohmann::json::parse(ended.out)["tetrace"]["builds"];
+    ASSERT_EQ(builds.size(), 2u);
+    EXPECT_EQ(builds[0]["status"], "ok");
+    EXPECT_EQ(builds[0]["tets"], 6 * 6 * 6 * 6);
+    EXPECT_GT(builds[0]["mean_steps_hit"].get<double>(), 1);
+    EXPECT_EQ(builds[1]["status"], "error");
+    EXPECT_TRUE(contains(builds[1]["reason"].get<std::string>(), "broken.tet")) << builds[1];
+}
+
+TEST_F(program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
+{
+    std::ofstream(folder_.path() / "broken.tet") << "no scene";
+    const Ended ended = run("bench --scene cubes,broken.tet --resolution 6 --size 24 --samples 3 --format json");
+    EXPECT_NE(ended.code, 0);
+    const auto rows = nlohmann::json::parse(ended.out)["tetrace"]["rows"];
+    ASSERT_EQ(rows.size(), 8u);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row["status"], row["scene"] == "cubes" ? "ok" : "error") << row;
+        EXPECT_EQ(row.contains("rates"), row["scene"] == "cubes");
+    }
+}
+
+TEST_F(program, a_result_that_cannot_be_written_is_told_before_any_work)
+{
+    const Ended ended = bench("--out no/such/folder/result.json");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "no/such/folder/result.json")) << ended.errors;
+}
+
+TEST_F(program, no_progress_line_without_a_terminal)
+{
+    const Ended ended = bench("");
+    EXPECT_FALSE(contains(ended.errors, "\r")) << ended.errors;
+}
