@@ -5,6 +5,7 @@
 #include "bench/text.h"
 #include "core/backend.h"
 #include "core/error.h"
+#include "scenes/build_scene.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -35,25 +36,26 @@ Table device_table()
 
 struct Part {
     const char* name;
-    const char* file; ///< beside the program
+    bool present;
     const char* use;
     const char* remedy;
 };
-constexpr Part parts[] = {
-    {"builder", "tetrace-builder", "reads meshes, makes scenes",
-     "install libtet1.5-dev and libcgal-dev, configure and build again"},
-    {"images", "tetrace_images.so", "writes pictures", "install libopenimageio-dev, configure and build again"},
-};
+
+std::vector<Part> parts()
+{
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    return {{"builder", !find_builder().empty(), "reads meshes, makes scenes",
+             "install libtet1.5-dev and libcgal-dev, configure and build again"},
+            {"images", std::filesystem::exists(folder / "tetrace_images.so"), "writes pictures",
+             "install libopenimageio-dev, configure and build again"}};
+}
 
 Table part_table()
 {
     Table table({{"part", "part"}, {"use", "use"}, {"status", "status"}, {"remedy", "remedy"}});
-    const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    for (const Part& part : parts) {
-        const bool present = std::filesystem::exists(folder / part.file);
-        table.add({std::string(part.name), std::string(part.use), std::string(present ? "present" : "missing"),
-                   present ? Cell() : Cell(part.remedy)});
-    }
+    for (const Part& part : parts())
+        table.add({std::string(part.name), std::string(part.use), std::string(part.present ? "present" : "missing"),
+                   part.present ? Cell() : Cell(part.remedy)});
     return table;
 }
 

@@ -125,11 +125,11 @@ std::string Table::csv() const
 {
     std::string result;
     for (std::size_t c = 0; c < columns_.size(); ++c)
-        result += (c ? "," : "") + quoted(columns_[c].key);
+        result.append(c ? "," : "").append(quoted(columns_[c].key));
     result += "\n";
     for (const auto& row : rows_) {
         for (std::size_t c = 0; c < row.size(); ++c)
-            result += (c ? "," : "") + csv_cell(row[c]);
+            result.append(c ? "," : "").append(csv_cell(row[c]));
         result += "\n";
     }
     return result;
@@ -147,7 +147,7 @@ std::string Table::markdown() const
     for (const auto& row : rows_) {
         result += "|";
         for (std::size_t c = 0; c < row.size(); ++c)
-            result += " " + in_markdown(cell_text(row[c], columns_[c])) + " |";
+            result.append(" ").append(in_markdown(cell_text(row[c], columns_[c]))).append(" |");
         result += "\n";
     }
     return result;

@@ -37,7 +37,8 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
     std::size_t begin = 0;
     while (begin <= text.size()) {
         const std::size_t end = std::min(text.find("\n\n", begin), text.size());
-        result += (begin > 0 ? "\n" : "") + filled(text.substr(begin, end - begin), width, std::string(indent, ' '));
+        result.append(begin > 0 ? "\n" : "")
+            .append(filled(text.substr(begin, end - begin), width, std::string(indent, ' ')));
         begin = end + 2;
     }
     return result;
@@ -45,10 +46,13 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
 
 std::string with_commas(std::uint64_t value)
 {
-    std::string digits = std::to_string(value);
-    for (std::size_t at = digits.size(); at > 3; at -= 3)
-        digits.insert(at - 3, ",");
-    return digits;
+    const std::string digits = std::to_string(value);
+    std::string text;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+        text += digits[i];
+    }
+    return text;
 }
 
 std::string size_text(std::uint64_t bytes)
