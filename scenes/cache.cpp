@@ -6,13 +6,12 @@
 #include "scenes/scene_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <optional>
-#include <regex>
+#include <string_view>
 
 namespace tetrace {
 
@@ -20,21 +19,40 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What we put there, and so may remove. The lock and the work folder of a build carry the scene's name in front.
-const std::regex& scene_pattern()
+bool all_in(std::string_view text, std::string_view accepted)
 {
-    static const std::regex pattern(R"(([A-Za-z0-9._-]+-[0-9a-f]{16}\.tet)(\.lock|\.[0-9]+-[0-9]+\.tmp)?)");
-    return pattern;
+    return text.find_first_not_of(accepted) == std::string_view::npos;
 }
-const std::regex& mesh_folder_pattern()
+
+constexpr std::string_view digits = "0123456789";
+constexpr std::string_view label_characters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+
+bool is_key(std::string_view text)
 {
-    static const std::regex pattern("[0-9a-f]{16}");
-    return pattern;
+    return text.size() == 16 && all_in(text, "0123456789abcdef");
 }
-const std::regex& temporary_pattern()
+
+/// The process of a temporary name, `<name>.<pid>-<number>.tmp` (see temporary_name); empty for other names.
+std::optional<pid_t> writer_of(std::string_view name)
 {
-    static const std::regex pattern(R"(.*\.([0-9]+)-[0-9]+\.tmp)");
-    return pattern;
+    if (!name.ends_with(".tmp")) return std::nullopt;
+    name.remove_suffix(4);
+    const std::string_view suffix = name.substr(name.rfind('.') + 1); // the whole name where there is no dot
+    const std::size_t dash = suffix.find('-');
+    if (dash == 0 || dash == std::string_view::npos || dash + 1 == suffix.size()) return std::nullopt;
+    if (suffix.size() == name.size() || !all_in(suffix.substr(0, dash), digits) ||
+        !all_in(suffix.substr(dash + 1), digits))
+        return std::nullopt;
+    return static_cast<pid_t>(std::strtol(suffix.data(), nullptr, 10));
+}
+
+/// Length of `<label>-<16 digits>.tet` at the beginning of a name; 0 where it does not begin so.
+std::size_t scene_name_length(std::string_view name)
+{
+    for (std::size_t dot = name.find(".tet"); dot != std::string_view::npos; dot = name.find(".tet", dot + 1))
+        if (dot >= 18 && name[dot - 17] == '-' && is_key(name.substr(dot - 16, 16)))
+            return all_in(name.substr(0, dot), label_characters) ? dot + 4 : 0;
+    return 0;
 }
 
 struct OwnEntry {
@@ -67,16 +85,20 @@ std::uint64_t bytes_of(const fs::path& path)
     return ignored ? 0 : size;
 }
 
+/// What we put there, and so may remove: a scene, the lock or the work folder of its build.
 std::optional<OwnEntry> scene_entry(const fs::path& path)
 {
-    std::smatch parts;
     const std::string name = path.filename().string();
-    if (!std::regex_match(name, parts, scene_pattern())) return std::nullopt;
-    const std::string rest = parts[2].str();
-    const auto kind = rest.empty()      ? OwnEntry::Kind::scene
-                      : rest == ".lock" ? OwnEntry::Kind::lock
-                                        : OwnEntry::Kind::work;
-    return OwnEntry{path, path.parent_path() / parts[1].str(), kind, bytes_of(path)};
+    const std::size_t length = scene_name_length(name);
+    const std::string rest = name.substr(length);
+    OwnEntry entry{path, path.parent_path() / name.substr(0, length), OwnEntry::Kind::scene, bytes_of(path)};
+    if (rest == ".lock")
+        entry.kind = OwnEntry::Kind::lock;
+    else if (writer_of(rest) && rest.find('.', 1) == rest.size() - 4)
+        entry.kind = OwnEntry::Kind::work;
+    else if (!rest.empty())
+        return std::nullopt;
+    return length > 0 ? std::optional(entry) : std::nullopt;
 }
 
 std::vector<OwnEntry> own_entries(const fs::path& cache)
@@ -85,7 +107,7 @@ std::vector<OwnEntry> own_entries(const fs::path& cache)
     for (const fs::path& path : children(cache))
         if (auto entry = scene_entry(path)) entries.push_back(*entry);
     for (const fs::path& folder : children(cache / "meshes"))
-        if (std::regex_match(folder.filename().string(), mesh_folder_pattern()))
+        if (is_key(folder.filename().string()))
             for (const fs::path& path : children(folder))
                 entries.push_back({path, {}, OwnEntry::Kind::mesh, bytes_of(path)});
     return entries;
@@ -94,11 +116,8 @@ std::vector<OwnEntry> own_entries(const fs::path& cache)
 /// Whether a process that still lives is writing that mesh.
 bool being_written(const fs::path& path)
 {
-    std::smatch parts;
-    const std::string name = path.filename().string();
-    if (!std::regex_match(name, parts, temporary_pattern())) return false;
-    const long pid = std::strtol(parts[1].str().c_str(), nullptr, 10);
-    return ::kill(static_cast<pid_t>(pid), 0) == 0 || errno == EPERM;
+    const std::optional<pid_t> writer = writer_of(path.filename().string());
+    return writer && (::kill(*writer, 0) == 0 || errno == EPERM);
 }
 
 std::uint64_t remove_all(const OwnEntry& entry)
@@ -126,7 +145,7 @@ std::uint64_t remove_entry(const OwnEntry& entry)
 std::string safe_name(std::string label)
 {
     for (char& c : label)
-        if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_' && c != '-') c = '_';
+        if (label_characters.find(c) == std::string_view::npos) c = '_';
     return label.empty() ? "scene" : label.substr(0, 100);
 }
 
@@ -190,7 +209,7 @@ std::uint64_t clear_cache()
         freed += remove_entry(entry);
     std::error_code not_empty; // then somebody else put something there, and it stays
     for (const fs::path& folder : children(cache / "meshes"))
-        if (std::regex_match(folder.filename().string(), mesh_folder_pattern())) fs::remove(folder, not_empty);
+        if (is_key(folder.filename().string())) fs::remove(folder, not_empty);
     fs::remove(cache / "meshes", not_empty);
     fs::remove(cache, not_empty);
     return freed;

@@ -96,7 +96,7 @@ TEST_F(Cache, lists_scenes_meshes_and_leftovers_with_their_sizes)
 
 TEST_F(Cache, clears_what_is_its_own_and_nothing_else)
 {
-    write_text(cache / ("bunny" + key), "12345");
+    write_text(cache / ("a.tet-b" + key), "12345");
     write_text(cache / ("bunny" + key + ".lock"), "");
     write_text(cache / ("bunny" + key + ".4194305-0.tmp") / "scene.tet", "123");
     write_text(cached_mesh_path("bunny00.off", 7), "12");
@@ -106,6 +106,13 @@ TEST_F(Cache, clears_what_is_its_own_and_nothing_else)
                                         cache / "bunny-0123.tet",
                                         cache / "meshes" / "my.off",
                                         cache / ("bunny" + key + ".bak"),
+                                        cache / key,
+                                        cache / "bunny-0123456789ABCDEF.tet",
+                                        cache / ("bunny" + key + ".x.1-2.tmp"),
+                                        cache / ("bunny" + key + ".1-.tmp"),
+                                        cache / ("bunny" + key + ".-2.tmp"),
+                                        cache / ("bunny" + key + ".1-x.tmp"),
+                                        cache / ("a b" + key),
                                         folder / "xdg" / "other" / ("bunny" + key)};
     for (const fs::path& path : foreign)
         write_text(path, "mine");
