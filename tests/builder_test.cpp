@@ -401,7 +401,7 @@ TEST_F(AbsurdOutput, names_faces_of_another_triangle)
 TEST_F(AbsurdOutput, names_surface_faces_that_no_tet_has)
 {
     output_.surface_faces.push_back({{0, 1, static_cast<std::int32_t>(output_.points.size()) - 1}, 0});
-    expect_absurd("faces on input triangles");
+    expect_absurd("faces lie on input triangles");
 }
 
 TEST_F(AbsurdOutput, names_inverted_tets_and_who_made_them)
@@ -478,6 +478,27 @@ TEST_F(Builder, lists_self_intersections_with_code_10)
     EXPECT_EQ(ended.code, BUILDER_SELF_INTERSECTION);
     EXPECT_NE(ended.errors.find("error:   triangle 1 (1, 1, -1) (1, 1, 1) (2, 1, 1)\n"), std::string::npos)
         << ended.errors;
+}
+
+TEST_F(Builder, tells_tetgens_refusal_with_code_11)
+{
+    // Two triangles over one edge, so close to each other that TetGen takes them for one.
+    const TriangleMesh hinge{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}, {0.5f, 1, 1e-9f}}, {{0, 1, 2}, {0, 1, 3}}};
+    const auto ended = run_on(write("a.off", to_off(hinge)));
+    EXPECT_EQ(ended.code, BUILDER_TETGEN_REFUSED) << ended.errors;
+    EXPECT_NE(ended.errors.find("error: TetGen gave up with code 3"), std::string::npos) << ended.errors;
+}
+
+TEST_F(Builder, tells_exhausted_memory_with_code_13)
+{
+#if defined(__SANITIZE_ADDRESS__)
+    GTEST_SKIP() << "AddressSanitizer reserves more address space than any limit";
+#endif
+    const auto mesh = write("a.off", to_off(tetrahedron()));
+    std::filesystem::resize_file(mesh, 400u << 20); // a hole: it takes no room on disk
+    const auto ended = run_on(mesh, "", "ulimit -v 200000; ");
+    EXPECT_EQ(ended.code, BUILDER_OUT_OF_MEMORY) << ended.errors;
+    EXPECT_NE(ended.errors.find("out of memory"), std::string::npos) << ended.errors;
 }
 
 } // namespace

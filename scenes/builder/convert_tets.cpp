@@ -105,7 +105,8 @@ void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
         }
     }
     if (sides != 2 * triangles.size())
-        absurd(fmt::format("of {} faces on input triangles only {} sides belong to tets", triangles.size(), sides));
+        absurd(fmt::format("{} faces lie on input triangles, but tets have {} sides of them instead of {}",
+                           triangles.size(), sides, 2 * triangles.size()));
 }
 
 // TetGen's tets are all of one orientation; core wants det < 0.

@@ -111,7 +111,7 @@ const char* meaning_of(int code)
 {
     switch (code) {
     case 2: return "an internal error (a known weakness of TetGen 1.5)";
-    case 3: return "it sees facets that intersect";
+    case 3: return "it takes two facets for intersecting (exactly none do: some are closer than its tolerance)";
     case 4: return "a feature is too small for its tolerance";
     case 5: return "two facets are very close to each other";
     case 10: return "it does not accept the input";
@@ -122,7 +122,7 @@ const char* meaning_of(int code)
 const char* remedy_for(int code)
 {
     switch (code) {
-    case 3: return "repair the mesh in another program (MeshLab, CGAL)";
+    case 3:
     case 4: return "try --switches pq5YMT1e-13, or --switches p, or repair the mesh (merge nearly equal vertices)";
     case 5: return "try --switches with Y, for example pq5Y";
     default: return "try other --switches (pq5YMT1e-13, pq5, p), or repair the mesh";
