@@ -4,6 +4,7 @@
 
 #include <archive.h>
 #include <archive_entry.h>
+#include <cstdint>
 #include <fmt/format.h>
 #include <memory>
 #include <string_view>

@@ -48,15 +48,22 @@ fs::path in_search_path()
 struct Report {
     std::string stage = "starting";
     std::vector<std::string> notes, errors;
+    std::string last_words; ///< the last line that is none of these, as a failed assertion leaves it
 
     void take(const std::string& line)
     {
         const auto rest = [&](std::string_view prefix) -> std::string {
-            return line.starts_with(prefix) ? line.substr(prefix.size()) : "";
+            if (!line.starts_with(prefix)) return "";
+            return line.substr(std::min(line.size(), line.find_first_not_of(' ', prefix.size())));
         };
-        if (const std::string text = rest("stage: "); !text.empty()) stage = text;
-        if (const std::string text = rest("note: "); !text.empty()) notes.push_back(text);
-        if (const std::string text = rest("error: "); !text.empty()) errors.push_back(text);
+        if (const std::string text = rest("stage: "); !text.empty())
+            stage = text;
+        else if (const std::string note = rest("note: "); !note.empty())
+            notes.push_back(note);
+        else if (const std::string error = rest("error: "); !error.empty())
+            errors.push_back(error);
+        else if (!line.empty())
+            last_words = line.substr(0, 300);
     }
 };
 
@@ -65,6 +72,7 @@ struct Ending {
     ErrorKind kind;
     std::string what; ///< it happened
     std::string remedy;
+    bool builder_knows = false; ///< the builder's own words hold the remedy; ours is for when it said nothing
 };
 
 constexpr const char* other_switches = "try other switches (`--switches pqY`, `--switches pq3Y`, `--switches p`)";
@@ -72,14 +80,13 @@ constexpr const char* other_switches = "try other switches (`--switches pqY`, `-
 Ending ending_of_exit(int code)
 {
     switch (code) {
-    case BUILDER_BAD_INPUT: return {ErrorKind::invalid_input, "the mesh cannot be used", "repair the mesh"};
-    case BUILDER_MISSING_FILE: return {ErrorKind::missing, "a file is missing", "check the paths"};
+    case BUILDER_BAD_INPUT: return {ErrorKind::invalid_input, "the mesh cannot be used", "repair the mesh", true};
+    case BUILDER_MISSING_FILE: return {ErrorKind::missing, "a file is missing", "check the paths", true};
     case BUILDER_INTERNAL:
         return {ErrorKind::internal, "the builder failed by its own fault (exit code 4)", "please report it"};
     case BUILDER_SELF_INTERSECTION:
-        return {
-            ErrorKind::invalid_input, "the mesh intersects itself",
-            "repair the mesh so that its triangles meet only in shared edges and vertices; tetrace cannot do that yet"};
+        return {ErrorKind::invalid_input, "the mesh intersects itself",
+                "repair the mesh so that its triangles meet only in shared edges and vertices", true};
     case BUILDER_TETGEN_REFUSED:
         return {ErrorKind::invalid_input, "TetGen refused the mesh",
                 fmt::format("{}, or repair the mesh", other_switches)};
@@ -115,16 +122,31 @@ Ending ending_of(const ChildOutcome& outcome, const BuildOptions& options)
     return ending_of_exit(outcome.code);
 }
 
-/// The builder's own words; without any, the end of what it left on stderr.
-std::string finding(const Report& report, const ChildOutcome& outcome)
+/// The builder's own words.
+std::string finding(const Report& report)
 {
     if (!report.errors.empty()) return fmt::format(": {}", fmt::join(report.errors, "; "));
-    std::string tail = outcome.errors.substr(outcome.errors.size() - std::min<std::size_t>(outcome.errors.size(), 300));
-    while (!tail.empty() && tail.back() == '\n')
-        tail.pop_back();
-    for (char& c : tail)
-        if (c == '\n') c = '|';
-    return tail.empty() ? "" : fmt::format(", after the words `{}`", tail);
+    return report.last_words.empty() ? "" : fmt::format(", its last words: {}", report.last_words);
+}
+
+[[noreturn]] void fail(const std::string& doing, const Ending& ending, const Report& report, double wall_s)
+{
+    const bool remedy_needed = !ending.builder_knows || report.errors.empty();
+    throw Error(ending.kind,
+                fmt::format("{}: {}{} (last stage: {}, {:.1f} s){}{}", doing, ending.what, finding(report),
+                            report.stage, wall_s, remedy_needed ? "; " : "", remedy_needed ? ending.remedy : ""));
+}
+
+[[noreturn]] void fail_without_builder(const std::string& label)
+{
+    const char* given = std::getenv("TETRACE_BUILDER");
+    const std::string looked = given != nullptr && *given != '\0'
+                                   ? fmt::format("TETRACE_BUILDER names {}, which cannot be executed", given)
+                                   : fmt::format("no program {} beside this one or in PATH", builder_name);
+    throw Error(ErrorKind::missing,
+                fmt::format("building scene {}: {}; install the packages libtet1.5-dev and libcgal-dev "
+                            "and build tetrace again, or let TETRACE_BUILDER name the program",
+                            label, looked));
 }
 
 std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
@@ -153,12 +175,7 @@ void build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
                  const Progress& progress, std::vector<std::string>& notes)
 {
     const fs::path builder = find_builder();
-    if (builder.empty())
-        throw Error(
-            ErrorKind::missing,
-            fmt::format("building scene {}: no program {} beside this one, in TETRACE_BUILDER or in PATH; install "
-                        "the packages libtet1.5-dev and libcgal-dev and build tetrace again",
-                        label, builder_name));
+    if (builder.empty()) fail_without_builder(label);
     Report report;
     ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes};
     // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
@@ -170,11 +187,8 @@ void build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
         });
     notes.insert(notes.end(), report.notes.begin(), report.notes.end());
     if (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_GOOD) return;
-    const Ending ending = ending_of(outcome, options);
-    throw Error(ending.kind,
-                fmt::format("building scene {} from {} with switches {}: {}{} (last stage: {}, {:.1f} s); {}", label,
-                            mesh.string(), options.switches, ending.what, finding(report, outcome), report.stage,
-                            outcome.wall_s, ending.remedy));
+    fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), options.switches),
+         ending_of(outcome, options), report, outcome.wall_s);
 }
 
 } // namespace tetrace

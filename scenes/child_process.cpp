@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <mutex>
 #include <poll.h>
+#include <string_view>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <fmt/format.h>
+#include <utility>
 
 namespace tetrace {
 

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <fstream>
 #include <iterator>
+#include <span>
 
 namespace tetrace {
 

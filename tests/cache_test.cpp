@@ -6,6 +6,8 @@
 #include "scenes/scene_file.h"
 #include "tests/temporary_folder.h"
 
+#include <csignal>
+#include <iterator>
 #include <set>
 #include <span>
 #include <sys/wait.h>

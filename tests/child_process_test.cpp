@@ -2,10 +2,12 @@
 
 #include "tests/temporary_folder.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <iterator>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -229,6 +230,12 @@ TEST_F(Load, maps_each_exit_code_to_its_own_error)
     }
 }
 
+TEST_F(Load, gives_a_remedy_where_the_builder_has_none)
+{
+    for (const int code : {BUILDER_BAD_INPUT, BUILDER_SELF_INTERSECTION, BUILDER_TETGEN_REFUSED, BUILDER_ABSURD_OUTPUT})
+        EXPECT_TRUE(contains(error_with("exit " + std::to_string(code)), "repair the mesh"));
+}
+
 TEST_F(Load, tells_a_crash)
 {
     const std::string error = error_with("echo 'stage: tetgen' >&2; echo 'Assertion x failed' >&2; kill -SEGV $$");
@@ -290,6 +297,7 @@ TEST_F(Load, names_what_brings_a_missing_builder)
     EXPECT_TRUE(contains(error, "missing: building scene thing"));
     EXPECT_TRUE(contains(error, "libtet1.5-dev"));
     EXPECT_TRUE(contains(error, "libcgal-dev"));
+    EXPECT_TRUE(contains(error, "TETRACE_BUILDER names " + (folder / "none").string()));
 }
 
 TEST_F(Load, finds_the_builder_in_the_search_path_last)

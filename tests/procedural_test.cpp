@@ -3,7 +3,9 @@
 #include "core/hash.h"
 #include "tests/temporary_folder.h"
 
-#include <map>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 
 namespace tetrace {

@@ -4,6 +4,7 @@
 #include "scenes/procedural.h"
 #include "tests/temporary_folder.h"
 
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <random>
