@@ -214,8 +214,8 @@ std::vector<OptionRow> output_options()
          "the table. The table is printed on standard output all the same.",
          reporting, false, set_out},
         {"Output", "--out", "FILE",
-         "Write the picture to FILE, PNG or what its ending says; with several pictures, scene, view and kind go in "
-         "front of the ending. Default: SCENE-VIEW-KIND.png in the current folder.",
+         "Write the picture to FILE, which ends in .png or .exr; with several pictures, scene, view and kind go in "
+         "front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png.",
          bit(Verb::render), false, set_out},
     };
 }
