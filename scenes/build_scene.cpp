@@ -182,8 +182,8 @@ void build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
     if (address_space_is_shadowed) limits.memory_bytes = 0;
     const ChildOutcome outcome = run_child(
         builder, arguments_of(mesh, out, label, options), limits, [&](const std::string& line) { report.take(line); },
-        [&](double elapsed_s) {
-            if (progress) progress(fmt::format("building {}: {} ({:.0f} s)", label, report.stage, elapsed_s), -1);
+        [&](double) {
+            if (progress) progress(fmt::format("building {}: {}", label, report.stage), -1);
         });
     notes.insert(notes.end(), report.notes.begin(), report.notes.end());
     if (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_GOOD) return;

@@ -14,7 +14,7 @@ namespace tetrace {
 [[nodiscard]] std::filesystem::path find_builder();
 
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`.
-/// notes: the builder's remarks are appended. progress: told each stage with the seconds since the start.
+/// notes: the builder's remarks are appended. progress: told each stage about ten times a second.
 /// Throws Error whose text names the way in which the builder ended, the switches, its last stage and what to try:
 /// {missing} no builder, or it misses a file; {interrupted} after Ctrl-C; {internal} its own fault; else
 /// {invalid_input}.
