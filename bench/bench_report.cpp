@@ -130,27 +130,34 @@ Table flat_table(const BenchResult& result)
     return table;
 }
 
-std::string closing_lines(const BenchResult& result, const Options& options)
+std::string timed_sentence(const BenchResult& result, const Options& options)
 {
     const Measurement& measurement = result.measurement;
-    std::string text = verdict_sentence(result.run.rows);
-    if (measurement.wall_s > 0)
-        text += fmt::format(
-            "\n\nTimed: medians of {} samples a row{}, rows interleaved, {}; a sample is all {} views of {} "
-            "at {}x{}. spread: interquartile range / median. x single: against Embree's single rays, "
-            "same run.",
-            measurement.samples,
-            measurement.lowered ? fmt::format(" ({} asked for, --budget {:.0f}s)", options.samples, options.budget_s)
-                                : "",
-            seconds_text(measurement.wall_s), selected_views(options).size(), name_of(options.camera_set),
-            options.width, options.height);
-    if (result.copy_bytes_per_s > 0)
-        text += fmt::format(" GB/s: steps times the layout's whole record; copying memory reaches {:.1f} GB/s here.",
-                            1e-9 * result.copy_bytes_per_s);
+    const std::string instead = measurement.lowered ? fmt::format(" ({} asked for; --budget {})", options.samples,
+                                                                  seconds_text(options.budget_s))
+                                                    : "";
+    return fmt::format(
+        "medians of {} samples a row{}, rows interleaved at random, {} in all. A sample is {} views of {} "
+        "at {}x{} on {} threads.",
+        measurement.samples, instead, seconds_text(measurement.wall_s), selected_views(options).size(),
+        name_of(options.camera_set), options.width, options.height, resolved_threads(options));
+}
+
+std::string closing_lines(const BenchResult& result, const Options& options)
+{
+    std::string text = labelled("Verified", verdict_sentence(result.run.rows));
+    if (result.measurement.wall_s > 0) {
+        text += labelled("Timed", timed_sentence(result, options));
+        text +=
+            labelled("Columns", fmt::format("x single: rate over that of Embree's single rays. GB/s: steps times the "
+                                            "layout's whole record; copying memory reaches {:.1f} GB/s here. spread: "
+                                            "interquartile range over median, noisy above {:.0f} %.",
+                                            1e-9 * result.copy_bytes_per_s, 100 * noisy_spread));
+    }
     for (const std::string& sentence : result.missing_scenes)
-        text += "\n\n" + sentence;
-    if (options.out) text += fmt::format("\n\nResult: {}", options.out->string());
-    return wrapped(text, 110, 0);
+        text += labelled("Missing", sentence);
+    if (options.out) text += labelled("Result", options.out->string());
+    return text;
 }
 
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
@@ -187,17 +194,23 @@ std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& ro
     std::string how = fmt::format("{} {}x{}", name_of(loaded.scene.domain.kind), loaded.scene.domain.divisions,
                                   loaded.scene.domain.divisions);
     if (!loaded.scene.build.switches.empty()) how += ", -" + loaded.scene.build.switches;
-    if (loaded.from_cache) how += ", from the cache";
-    return fmt::format("{}: {} tets, {} occlusive and {} free faces, {}built in {} ({})\n", scene.label(),
+    if (loaded.from_cache) how += ", cached";
+    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({})\n", scene.label(),
                        with_commas(scene.counts().tets), with_commas(scene.counts().occlusive_faces),
                        with_commas(scene.counts().free_faces), sizes, seconds_text(loaded.scene.build.build_s), how);
+}
+
+std::string labelled(const std::string& label, const std::string& text)
+{
+    constexpr std::size_t width = 110, margin = 10;
+    return fmt::format("{:<{}}", label, margin) + wrapped(text, width, margin).substr(margin);
 }
 
 std::string verdict_sentence(const std::vector<RowRun>& rows)
 {
     const Verdicts sum = all_verdicts(rows);
-    if (sum.rays == 0) return "Verified: nothing.";
-    std::string text = fmt::format("Verified: {} rays against Embree in robust mode, disagreements settled exactly: {} "
+    if (sum.rays == 0) return "nothing.";
+    std::string text = fmt::format("{} rays against Embree in robust mode, disagreements settled exactly: {} "
                                    "agree, {} ties",
                                    with_commas(sum.rays), with_commas(sum.agreed), with_commas(sum.ties));
     if (sum.ties > 0) text += fmt::format(" (at most {:.1e} from an edge)", sum.largest_tie_distance);

@@ -19,6 +19,9 @@ struct BenchResult {
 /// A scene's headline: counts, size, build; shared by bench and check.
 [[nodiscard]] std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& rows);
 
+/// A closing line: a label, and text filled beside it.
+[[nodiscard]] std::string labelled(const std::string& label, const std::string& text);
+
 /// What the oracle found over all rows, one sentence.
 [[nodiscard]] std::string verdict_sentence(const std::vector<RowRun>& rows);
 

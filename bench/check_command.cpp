@@ -80,8 +80,9 @@ std::string face_text(std::uint32_t face)
 
 std::string hit_text(const Hit& hit)
 {
-    return fmt::format("{}, t {:.9g}, u {:.9g}, v {:.9g}, tet {}, {} steps", face_text(hit.face_id), hit.t, hit.u,
-                       hit.v, hit.tet, hit.steps);
+    const std::string tet = hit.tet == NO_TET ? "no tet" : fmt::format("tet {}", hit.tet);
+    return fmt::format("{}, t {:.9g}, u {:.9g}, v {:.9g}, {}, {} steps", face_text(hit.face_id), hit.t, hit.u, hit.v,
+                       tet, hit.steps);
 }
 
 std::size_t view_index(const SceneWork& scene, std::uint32_t number)
@@ -114,16 +115,17 @@ std::string wrong_ray_text(const RowRun& row)
     std::string text;
     if (result.first_different) {
         const DifferingRay& ray = *result.first_different;
-        text += fmt::format("{}: first ray that differs: view {}, pixel ({}, {})\n  ours:   {}\n  openmp: {}\n{}\n",
+        text += fmt::format("{}: first ray that differs: view {}, pixel ({}, {})\n  this row: {}\n  openmp:   {}\n{}\n",
                             row_name(row.key), ray.view, ray.x, ray.y, hit_text(ray.ours), hit_text(ray.openmp),
                             path_text(path_of(row, ray.view, ray.x, ray.y)));
     }
     if (result.verdicts.first_wrong) {
         const WrongRay& ray = *result.verdicts.first_wrong;
-        text += fmt::format(
-            "{}: first wrong ray: view {}, pixel ({}, {}): {}\n  ours:   {}\n  Embree: {}, t {:.9g}\n{}\n",
-            row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours), face_text(ray.reference_face),
-            ray.reference_t, path_text(path_of(row, ray.view, ray.x, ray.y)));
+        text += fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:      {}\n  Embree robust: "
+                            "{}, t {:.9g}\n{}\n",
+                            row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours),
+                            face_text(ray.reference_face), ray.reference_t,
+                            path_text(path_of(row, ray.view, ray.x, ray.y)));
     }
     return text;
 }
@@ -161,7 +163,8 @@ Report check_report(const SceneRows& run, const Options& options)
     report.text += failure_lines(run.rows);
     for (const RowRun& row : run.rows)
         if (traced(row) != nullptr) report.text += wrong_ray_text(row);
-    report.text += wrapped(verdict_sentence(run.rows), 110, 0);
+    report.text += labelled("Verified", verdict_sentence(run.rows));
+    if (options.out) report.text += labelled("Result", options.out->string());
     return report;
 }
 

@@ -89,8 +89,8 @@ std::string row_name(const RowKey& key)
 
 std::string kernel_title(const RowKey& key)
 {
-    if (key.kernel.structure == Structure::bvh) return std::string(name_of(key.kernel.method));
-    return fmt::format("{} {}{}{}", name_of(key.kernel.method), name_of(key.kernel.layout),
+    if (key.kernel.structure == Structure::bvh) return fmt::format("bvh {}", name_of(key.kernel.method));
+    return fmt::format("cdt {} {}{}{}", name_of(key.kernel.method), name_of(key.kernel.layout),
                        key.kernel.math == MathMode::exact ? "" : " fast",
                        key.order == TetOrder::hilbert ? "" : " input order");
 }

@@ -23,7 +23,7 @@ struct RowKey {
 /// it. Rows of another order than hilbert have "order:input" before the api.
 [[nodiscard]] std::string row_name(const RowKey& key);
 
-/// Name without the scene, for tables headed by it: "maria tet80 exact".
+/// Name without the scene, for tables headed by it: "cdt maria tet80".
 [[nodiscard]] std::string kernel_title(const RowKey& key);
 
 /// The rows that the options select, scene after scene, rows of one scene in the order of kernels and backends.

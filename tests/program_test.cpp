@@ -99,7 +99,7 @@ TEST_F(program, benches_and_writes_the_table_and_the_json)
     const Ended ended = bench("--out result.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "Mrays/s"));
-    EXPECT_TRUE(contains(ended.out, "Verified: 9,216 rays"));
+    EXPECT_TRUE(contains(ended.out, "Verified  9,216 rays"));
     const auto json = nlohmann::json::parse(file("result.json"));
     EXPECT_EQ(json["tetrace"]["schema_version"], 1);
     ASSERT_EQ(json["tetrace"]["rows"].size(), 4u);
