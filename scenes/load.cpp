@@ -140,10 +140,9 @@ FileLock MeshSceneLoader::wait_for_lock() const
 {
     fs::path lock_path = file_;
     lock_path += ".lock";
-    const Clock::time_point start = Clock::now();
     for (;;) {
         if (auto lock = FileLock::try_take(lock_path)) return std::move(*lock);
-        tell(fmt::format("waiting for another process that builds {} ({:.0f} s)", label_, seconds_since(start)));
+        tell(fmt::format("waiting for another process that builds {}", label_));
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
 }

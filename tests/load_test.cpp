@@ -336,7 +336,7 @@ TEST_F(Load, lets_the_second_of_two_processes_wait_for_the_first)
 
 TEST_F(Load, builds_itself_where_the_first_of_two_processes_is_killed)
 {
-    use_builder("[ -e " + (folder / "second").string() + " ] || sleep 60");
+    use_builder("[ -e " + (folder / "second").string() + " ] || exec sleep 60");
     const pid_t other = ::fork();
     ASSERT_GE(other, 0);
     if (other == 0) {
