@@ -58,7 +58,7 @@ struct Sweep {
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
 {
     for ([[maybe_unused]] const auto iteration : state) {
-        progress_line().show("measuring " + row_name(row.key), sweep.done / sweep.all);
+        progress_line().show("measuring, rows interleaved", sweep.done / sweep.all);
         double seconds = 0;
         if (traced(row) != nullptr) guarded(row, [&] { seconds = trace_views(row); });
         if (traced(row) == nullptr) {

@@ -145,7 +145,7 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
     double done = 0;
     for (std::size_t view = 0; view < scene.views().size(); ++view)
         for (RowRun* row : rows) {
-            progress_line().show(fmt::format("verifying {}, {}", scene.label(), kernel_title(row->key)), done / images);
+            progress_line().show("verifying " + scene.label(), done / images);
             done += 1;
             if (row->session == nullptr) continue;
             guarded(*row, [&] {
