@@ -11,7 +11,7 @@ namespace tetrace {
 namespace {
 
 constexpr double line_grid = 0x1p-20;
-constexpr double tight_margin = 0.02; // of the largest extent, on each side
+constexpr double tight_margin = 0.01; // of the largest extent, on each side: 2 % in all
 constexpr double wide_half_size = 3;  // bounding-sphere radii
 
 std::vector<float> make_lines(double low, double high, std::uint32_t divisions, int axis)

@@ -13,10 +13,7 @@ BoundingSphere bounding_sphere(const TriangleMesh& mesh)
         low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
         high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
     }
-    BoundingSphere sphere{(low + high) * 0.5, 0.0};
-    for (const Float3 vertex : mesh.vertices)
-        sphere.radius = std::max(sphere.radius, length(to_double(vertex) - sphere.centre));
-    return sphere;
+    return {(low + high) * 0.5, 0.5 * length(high - low)};
 }
 
 } // namespace tetrace

@@ -16,7 +16,8 @@ struct TriangleMesh {
     friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;
 };
 
-/// Centre and radius of the sphere round the mesh: the centre of its box, the largest distance of a vertex from it.
+/// The sphere round the mesh's bounding box: its centre and half its diagonal. What camera distances and wide domains
+/// count in.
 struct BoundingSphere {
     Double3 centre;
     double radius = 0;

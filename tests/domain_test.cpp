@@ -17,9 +17,9 @@ const TriangleMesh triangle{{{0.1f, 0.2f, 0.3f}, {0.5f, 0.25f, 0.3f}, {0.3f, 0.6
 TEST(Domain, tight_is_the_box_grown_by_2_percent_of_its_largest_extent)
 {
     const Domain domain = make_domain(triangle, DomainKind::tight, 8);
-    EXPECT_NEAR(domain.low().x, 0.1 - 0.02 * 0.4, 2e-6);
-    EXPECT_NEAR(domain.high().y, 0.6 + 0.02 * 0.4, 2e-6);
-    EXPECT_NEAR(domain.high().z - domain.low().z, 2 * 0.02 * 0.4, 4e-6) << "a flat mesh still gets a box";
+    EXPECT_NEAR(domain.low().x, 0.1 - 0.01 * 0.4, 2e-6);
+    EXPECT_NEAR(domain.high().y, 0.6 + 0.01 * 0.4, 2e-6);
+    EXPECT_NEAR(domain.high().z - domain.low().z, 2 * 0.01 * 0.4, 4e-6) << "a flat mesh still gets a box";
     for (const Float3 v : triangle.vertices)
         EXPECT_TRUE(domain.contains(v));
 }
