@@ -66,7 +66,8 @@ struct TetMeshDefect {
 [[nodiscard]] std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triangle_count);
 
 /// Checks that the occlusive faces of each input triangle add up to its area (relative 1e-4 of its area, or 1e-12 of
-/// the domain's: Steiner points are rounded to float), and that the tets' volumes sum to the box's (relative 1e-6).
+/// the domain's, and 2^-21 of its perimeter: Steiner points are rounded to float) and that it has some, and that the
+/// tets' volumes sum to the box's (relative 1e-6).
 [[nodiscard]] std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& triangles,
                                                     Double3 box_size);
 

@@ -148,7 +148,7 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
     Scene scene = std::move(prepared.scene);
     talk.stage(fmt::format("converting and checking {} tets", output.tets.size()));
     Rounding rounding;
-    scene.tets = convert_tets(output, scene.domain, rounding);
+    scene.tets = convert_tets(output, scene.mesh, scene.domain, rounding);
     if (rounding.damaged > 0)
         talk.note(fmt::format(
             "{} tets flat or inverted after rounding to float, {} of them mended by moving {} Steiner points",

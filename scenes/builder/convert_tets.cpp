@@ -56,6 +56,10 @@ void require_indices(const TetgenOutput& output)
     const auto tets = static_cast<std::int32_t>(output.tets.size());
     if (output.tets.empty()) absurd("it has no tets");
     if (output.tets.size() > MAX_TETS) absurd(fmt::format("{} tets are more than a link of 30 bits can name", tets));
+    for (const auto& face : output.surface_faces)
+        for (const std::int32_t corner : face.corners)
+            if (corner < 0 || corner >= points)
+                absurd(fmt::format("a face of triangle {} names a vertex that is not there", face.triangle));
     for (std::size_t i = 0; i < output.tets.size(); i++)
         for (std::size_t k = 0; k < 4; k++)
             if (output.tets[i][k] < 0 || output.tets[i][k] >= points || output.neighbours[i][k] < -1 ||
@@ -107,6 +111,34 @@ void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
     if (sides != 2 * triangles.size())
         absurd(fmt::format("{} faces lie on input triangles, but tets have {} sides of them instead of {}",
                            triangles.size(), sides, 2 * triangles.size()));
+}
+
+double area(const TetgenOutput& output, const Triple& corners)
+{
+    const auto point = [&](std::size_t i) { return output.points[static_cast<std::size_t>(corners[i])]; };
+    return length(cross(point(1) - point(0), point(2) - point(0))) / 2;
+}
+
+// In TetGen's own coordinates, where a needle's area is not yet blurred by rounding.
+void require_coverage(const TetgenOutput& output, const TriangleMesh& triangles)
+{
+    std::vector<double> covered(triangles.triangles.size(), 0.0);
+    for (const auto& face : output.surface_faces)
+        if (face.triangle >= 0) covered[static_cast<std::size_t>(face.triangle)] += area(output, face.corners);
+    std::uint64_t count = 0;
+    std::size_t first = 0;
+    for (std::size_t i = covered.size(); i-- > 0;) {
+        const auto& [a, b, c] = triangles.triangles[i];
+        const double wanted =
+            area(output, {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
+        if (covered[i] > 0 && std::abs(covered[i] - wanted) <= 1e-6 * wanted + 1e-15) continue;
+        count++;
+        first = i;
+    }
+    if (count > 0)
+        absurd(
+            fmt::format("missing input triangles: the faces on {} triangles do not add up to their areas (first: {})",
+                        count, first));
 }
 
 // TetGen's tets are all of one orientation; core wants det < 0.
@@ -184,9 +216,11 @@ void drop_unused(TetMesh& mesh)
 
 } // namespace
 
-TetMesh convert_tets(const TetgenOutput& output, const Domain& domain, Rounding& rounding)
+TetMesh convert_tets(const TetgenOutput& output, const TriangleMesh& triangles, const Domain& domain,
+                     Rounding& rounding)
 {
     require_indices(output);
+    require_coverage(output, triangles);
     TetMesh mesh;
     mesh.tets = connect(output);
     mark_faces(output, mesh.tets);

@@ -20,6 +20,7 @@ struct Rounding {
 /// its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of the input
 /// never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} where an
 /// index, a neighbour or a surface face makes no sense.
-[[nodiscard]] TetMesh convert_tets(const TetgenOutput& output, const Domain& domain, Rounding& rounding);
+[[nodiscard]] TetMesh convert_tets(const TetgenOutput& output, const TriangleMesh& triangles, const Domain& domain,
+                                   Rounding& rounding);
 
 } // namespace tetrace
