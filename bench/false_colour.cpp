@@ -145,7 +145,8 @@ Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t 
             pixmap.at(x, y) = colour_of(hits[std::size_t{y} * width + x], summary.top);
         }
     }
-    draw_text(pixmap, margin * scale, height + margin * scale, title, ink, scale);
+    draw_text(pixmap, std::int64_t{margin} * scale, std::int64_t{height} + std::int64_t{margin} * scale, title, ink,
+              scale);
     const ScaleBar bar{scale,      margin * scale, height + 24 * scale, full_width - 2 * margin * scale,
                        14 * scale, summary.top};
     draw_bar(pixmap, bar);

@@ -22,7 +22,7 @@ unsigned char encode_srgb(float linear)
     return static_cast<unsigned char>(std::lround(encoded * 255.0f));
 }
 
-OIIO::ImageSpec spec_of(unsigned width, unsigned height, OIIO::TypeDesc type, const char* colour_space)
+OIIO::ImageSpec spec_of(unsigned width, unsigned height, const OIIO::TypeDesc& type, const char* colour_space)
 {
     OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, type);
     spec.attribute("oiio:ColorSpace", colour_space);
@@ -30,7 +30,7 @@ OIIO::ImageSpec spec_of(unsigned width, unsigned height, OIIO::TypeDesc type, co
     return spec;
 }
 
-void write(const std::string& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels)
+void write(const std::string& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type, const void* pixels)
 {
     const auto output = OIIO::ImageOutput::create(path);
     if (!output) {
