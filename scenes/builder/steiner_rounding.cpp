@@ -3,11 +3,13 @@
 #include "core/exact.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tetrace {
 namespace {
 
-constexpr float step_size = 0x1p-24f; // the spacing of floats in [1/2, 1)
+constexpr std::uint64_t most_tests = 20'000'000; // a second or two; a mesh that needs more is beyond mending
+constexpr float step_size = 0x1p-24f;            // the spacing of floats in [1/2, 1)
 
 bool is_bad(const TetMesh& mesh, const Tet& tet)
 {
@@ -30,17 +32,22 @@ public:
             for (const std::uint32_t vertex : mesh.tets[i].vertices)
                 tets_[next[vertex]++] = i;
     }
-    [[nodiscard]] std::size_t count_bad(const TetMesh& mesh, std::uint32_t vertex) const
+    // Counts up to `limit`; what is spent comes off the budget.
+    [[nodiscard]] std::size_t count_bad(const TetMesh& mesh, std::uint32_t vertex, std::size_t limit)
     {
         std::size_t bad = 0;
-        for (auto i = ranges_[vertex]; i < ranges_[vertex + 1]; i++)
+        for (auto i = ranges_[vertex]; i < ranges_[vertex + 1] && bad < limit; i++) {
             bad += is_bad(mesh, mesh.tets[tets_[i]]) ? 1 : 0;
+            budget_ -= budget_ > 0 ? 1 : 0;
+        }
         return bad;
     }
+    [[nodiscard]] bool exhausted() const { return budget_ == 0; }
 
 private:
     std::vector<std::size_t> ranges_;
     std::vector<std::uint32_t> tets_;
+    std::uint64_t budget_ = most_tests;
 };
 
 // The 26 directions of a step, those along one axis first.
@@ -61,19 +68,19 @@ bool allowed(const Freedom& freedom, const std::array<int, 3>& direction)
     return true;
 }
 
-bool move_vertex(TetMesh& mesh, const Stars& stars, std::uint32_t vertex, const Freedom& freedom)
+bool move_vertex(TetMesh& mesh, Stars& stars, std::uint32_t vertex, const Freedom& freedom)
 {
     static const auto all_directions = directions();
     const Float3 home = mesh.vertices[vertex];
-    const std::size_t bad = stars.count_bad(mesh, vertex);
-    for (std::uint32_t steps = 1; steps <= freedom.steps; steps *= 2) {
+    const std::size_t bad = stars.count_bad(mesh, vertex, std::numeric_limits<std::size_t>::max());
+    for (std::uint32_t steps = 1; steps <= freedom.steps && !stars.exhausted(); steps *= 2) {
         for (const auto& direction : all_directions) {
             if (!allowed(freedom, direction)) continue;
             for (int axis = 0; axis < 3; axis++)
                 mesh.vertices[vertex][axis] =
                     snap_to_grid(home[axis] + static_cast<float>(direction[static_cast<std::size_t>(axis)]) *
                                                   static_cast<float>(steps) * step_size);
-            if (stars.count_bad(mesh, vertex) < bad) return true;
+            if (stars.count_bad(mesh, vertex, bad) < bad) return true;
         }
     }
     mesh.vertices[vertex] = home;
@@ -97,7 +104,7 @@ std::array<std::uint64_t, 3> mend_tets(TetMesh& mesh, const std::vector<Freedom>
     const std::uint64_t before = bad.size();
     std::uint64_t moved = 0;
     if (bad.empty()) return {0, 0, 0};
-    const Stars stars(mesh);
+    Stars stars(mesh);
     for (int pass = 0; pass < most_passes && !bad.empty(); pass++) {
         const std::uint64_t moved_before = moved;
         for (const std::uint32_t tet : bad)
