@@ -66,6 +66,8 @@ void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
             return;
         }
         state.SetIterationTime(seconds);
+        // Taken here: reporters see aggregates only, where Google Benchmark is asked for them.
+        row.samples_s.push_back(seconds);
         sweep.done += 1;
     }
     set_counters(state, row);
@@ -83,19 +85,12 @@ void register_rows(std::vector<RowRun>& rows, Sweep& sweep)
                 ->Unit(benchmark::kMillisecond);
 }
 
-void keep_sample(std::vector<RowRun>& rows, const std::string& name, double seconds)
-{
-    for (RowRun& row : rows)
-        if (row_name(row.key) == name) row.samples_s.push_back(seconds);
-}
-
-std::unique_ptr<RowReporter> make_display(std::vector<RowRun>& rows, const BenchmarkFlags& flags, std::ostream& json)
+std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& json)
 {
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
     receivers.push_back(make_reporter("json", json));
     if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout));
-    return std::make_unique<RowReporter>(
-        std::move(receivers), [&rows](const std::string& name, double seconds) { keep_sample(rows, name, seconds); });
+    return std::make_unique<RowReporter>(std::move(receivers));
 }
 
 /// Google Benchmark opens --benchmark_out itself and gives its stream to the file reporter alone: the inner reporter
@@ -111,7 +106,7 @@ public:
 
 private:
     FileReporter(const std::string& format, std::unique_ptr<std::ostringstream> text)
-        : RowReporter(one(make_reporter(format, *text)), [](const std::string&, double) {}), text_(std::move(text))
+        : RowReporter(one(make_reporter(format, *text))), text_(std::move(text))
     {
     }
     static std::vector<std::unique_ptr<benchmark::BenchmarkReporter>>
@@ -176,7 +171,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     register_rows(rows, sweep);
     initialize_benchmark(all_flags(flags, result.samples));
     std::ostringstream json;
-    const auto display = make_display(rows, flags, json);
+    const auto display = make_display(flags, json);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
     benchmark::RunSpecifiedBenchmarks(display.get(), file.get());
     progress_line().clear();

@@ -4,20 +4,6 @@
 
 namespace tetrace {
 
-namespace {
-
-/// Google Benchmark 1.7 has a flag, 1.8 an enumeration.
-template <class Run>
-bool has_failed(const Run& run)
-{
-    if constexpr (requires { run.error_occurred; })
-        return run.error_occurred;
-    else
-        return static_cast<int>(run.skipped) != 0;
-}
-
-} // namespace
-
 bool RowReporter::ReportContext(const Context& context)
 {
     bool go_on = true;
@@ -33,8 +19,6 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs)
         run.run_name.iterations.clear();
         run.run_name.repetitions.clear();
         run.run_name.time_type.clear();
-        if (run.run_type == Run::RT_Iteration && !has_failed(run) && run.iterations > 0)
-            sample_seen_(run.run_name.function_name, run.real_accumulated_time / static_cast<double>(run.iterations));
     }
     for (const auto& receiver : receivers_)
         receiver->ReportRuns(renamed);

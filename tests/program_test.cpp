@@ -164,6 +164,7 @@ TEST_F(program, google_benchmarks_flags_keep_their_meaning)
     const auto theirs = nlohmann::json::parse(file("gb.json"));
     EXPECT_EQ(theirs["benchmarks"][0]["name"], "cdt/maria/tet80/cubes/primary/math:exact/api:openmp");
     EXPECT_EQ(theirs["benchmarks"].size(), ours["benchmarks"].size());
+    EXPECT_EQ(bench("--benchmark_report_aggregates_only=true --format csv").code, 0);
     EXPECT_EQ(bench("--benchmark_format=csv").out.rfind("name,iterations,", 0), 0u);
 }
 
