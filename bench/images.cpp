@@ -44,8 +44,8 @@ ImageWriter::ImageWriter(const std::filesystem::path& module)
 void ImageWriter::write(const std::filesystem::path& path, const Pixmap& pixmap) const
 {
     std::array<char, 512> reason{};
-    if (write_image_(path.c_str(), pixmap.width, pixmap.height, &pixmap.pixels.data()->r, reason.data(),
-                     static_cast<unsigned>(reason.size())) != 0) {
+    if (write_image_(path.c_str(), pixmap.width, pixmap.height, reinterpret_cast<const float*>(pixmap.pixels.data()),
+                     reason.data(), static_cast<unsigned>(reason.size())) != 0) {
         throw Error(ErrorKind::invalid_input, fmt::format("writing the picture {}: {}", path.string(), reason.data()));
     }
 }
