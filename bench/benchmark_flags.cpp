@@ -46,13 +46,13 @@ bool take_flag(BenchmarkFlags& flags, const std::string& name, const std::string
 
 void initialize_benchmark(const std::vector<std::string>& flags)
 {
-    std::vector<std::string> texts = {"tetrace"};
-    texts.insert(texts.end(), flags.begin(), flags.end());
-    std::vector<char*> arguments;
+    static char program[] = "tetrace"; // Google Benchmark keeps this pointer to the end
+    std::vector<std::string> texts = flags;
+    std::vector<char*> arguments = {program};
     for (std::string& text : texts)
         arguments.push_back(text.data());
     arguments.push_back(nullptr);
-    int count = static_cast<int>(texts.size());
+    int count = static_cast<int>(arguments.size()) - 1;
     benchmark::Initialize(&count, arguments.data());
     if (count > 1)
         throw Error(ErrorKind::usage, std::string("Google Benchmark does not accept '") + arguments[1] +
