@@ -23,7 +23,6 @@ Table check_table(const std::vector<RowRun>& rows)
                  {"settled", "settled"},
                  {"wrong", "wrong"},
                  {"lost", "lost"},
-                 {"misplaced", "misplaced"},
                  {"different_from_openmp", "differ"},
                  {"hit_hash", "hits"},
                  {"status", "status"},
@@ -37,7 +36,6 @@ Table check_table(const std::vector<RowRun>& rows)
         table.add({row_name(row.key), count(&Verdicts::rays), count(&Verdicts::agreed), count(&Verdicts::ties),
                    result && result->verdicts.ties > 0 ? Cell(result->verdicts.largest_tie_distance) : Cell(),
                    count(&Verdicts::settled), count(&Verdicts::wrong), count(&Verdicts::lost),
-                   result ? Cell(result->misplaced) : Cell(),
                    result && result->compared ? Cell(result->different) : Cell(),
                    result ? Cell(hash_text(result->hit_hash)) : Cell(), std::string(name_of(status_of(row))),
                    reason.empty() ? Cell() : Cell(reason)});

@@ -11,29 +11,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr double unit_roundoff = 0x1p-24;
-constexpr double roundings = 64;
 constexpr std::uint64_t ulps_of_division = 3;
-
-Double3 pixel_direction(const View& view, std::size_t x, std::size_t y)
-{
-    return to_double(view.corner) + to_double(view.step_x) * static_cast<double>(x) +
-           to_double(view.step_y) * static_cast<double>(y);
-}
-
-bool misplaced(const TriangleMesh& mesh, Double3 origin, Double3 direction, const Hit& hit)
-{
-    if (hit.face_id >= mesh.triangles.size()) return true;
-    const auto& corners = mesh.triangles[hit.face_id];
-    const Double3 v0 = to_double(mesh.vertices[corners[0]]);
-    const Double3 e1 = to_double(mesh.vertices[corners[1]]) - v0;
-    const Double3 e2 = to_double(mesh.vertices[corners[2]]) - v0;
-    const Double3 gap = origin + direction * double{hit.t} - (v0 + e1 * double{hit.u} + e2 * double{hit.v});
-    const double det = std::abs(dot(direction, cross(e1, e2)));
-    const double lengths = length(origin - v0) + length(e1) + length(e2);
-    // Both sides times det: no division, and a triangle seen edge-on is bounded by nothing, as it must be.
-    return !(length(gap) * det <= roundings * unit_roundoff * lengths * length(direction) * length(e1) * length(e2));
-}
 
 } // namespace
 
@@ -89,17 +67,6 @@ Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> referen
         if (!differences.first) differences.first = i;
     }
     return differences;
-}
-
-std::uint64_t count_misplaced(const TriangleMesh& mesh, const View& view, std::uint32_t width,
-                              std::span<const Hit> hits)
-{
-    std::uint64_t count = 0;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        if (hits[i].face_id >= POISON) continue; // no face: counted by count_rays()
-        if (misplaced(mesh, to_double(view.origin), pixel_direction(view, i % width, i / width), hits[i])) ++count;
-    }
-    return count;
 }
 
 } // namespace tetrace

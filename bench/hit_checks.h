@@ -1,8 +1,6 @@
 #pragma once
 
-#include "core/camera.h"
 #include "core/hit.h"
-#include "core/triangle_mesh.h"
 
 #include <cstdint>
 #include <optional>
@@ -38,13 +36,5 @@ struct Differences {
 
 /// Units in the last place between two floats; huge where a sign differs or one is not finite.
 [[nodiscard]] std::uint64_t ulps_between(float a, float b);
-
-/// Counts hits whose point on the ray (by t) and on the triangle (by u and v) are further apart than rounding explains.
-/// With o the origin, d the direction, e1 and e2 the triangle's edges from v0, and m = |o - v0| + |e1| + |e2|, each of
-/// t |d|, u |e1| and v |e2| is a quotient of products of at most three lengths over det(d, e1, e2). Evaluated in float,
-/// each is off by some 12 roundings of m |d| |e1| |e2| / |det|; three of them, and sums of three components: 64 is the
-/// bound taken. hits: width * height, row after row. Faces beyond the mesh are counted as misplaced.
-[[nodiscard]] std::uint64_t count_misplaced(const TriangleMesh& mesh, const View& view, std::uint32_t width,
-                                            std::span<const Hit> hits);
 
 } // namespace tetrace

@@ -63,15 +63,10 @@ json wrong_ray_json(const WrongRay& ray)
 json verification_json(const Traced& result)
 {
     const Verdicts& verdicts = result.verdicts;
-    json object = {{"rays", verdicts.rays},
-                   {"agreed", verdicts.agreed},
-                   {"ties", verdicts.ties},
-                   {"largest_tie_distance", verdicts.largest_tie_distance},
-                   {"settled", verdicts.settled},
-                   {"wrong", verdicts.wrong},
-                   {"lost", verdicts.lost},
-                   {"misplaced", result.misplaced},
-                   {"compared_with_openmp", result.compared}};
+    json object = {{"rays", verdicts.rays},       {"agreed", verdicts.agreed},
+                   {"ties", verdicts.ties},       {"largest_tie_distance", verdicts.largest_tie_distance},
+                   {"settled", verdicts.settled}, {"wrong", verdicts.wrong},
+                   {"lost", verdicts.lost},       {"compared_with_openmp", result.compared}};
     if (result.compared) object["different_from_openmp"] = result.different;
     if (result.first_different) {
         const DifferingRay& ray = *result.first_different;

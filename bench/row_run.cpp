@@ -53,7 +53,6 @@ std::string traced_reason(const Traced& traced)
     };
     add(traced.verdicts.wrong, "wrong");
     add(traced.verdicts.lost, "lost");
-    add(traced.misplaced, "misplaced");
     return text;
 }
 

@@ -32,15 +32,14 @@ struct Traced {
     bool compared = false;       ///< with openmp; openmp's own rows and Embree's have nothing to compare with
     std::uint64_t different = 0; ///< rays that differ from openmp's
     std::optional<DifferingRay> first_different;
-    std::uint64_t misplaced = 0; ///< hits whose t, u and v do not name one point
-    std::uint64_t hit_hash = 0;  ///< of all hits, view after view
+    std::uint64_t hit_hash = 0; ///< of all hits, view after view
     std::uint64_t last_view_hash = 0;
     double kernel_s = 0; ///< device seconds of this first pass
     double wall_s = 0;   ///< launch to end, on the host's clock
     double download_s = 0;
 
     /// Rays that the method itself has wrong or lost.
-    [[nodiscard]] std::uint64_t flawed_rays() const { return verdicts.wrong + verdicts.lost + misplaced; }
+    [[nodiscard]] std::uint64_t flawed_rays() const { return verdicts.wrong + verdicts.lost; }
 };
 struct Skipped {
     Status status = Status::skipped; ///< or unsupported

@@ -84,8 +84,6 @@ public:
         result.last_view_hash = hash_of(hits_);
         result.hit_hash = hash_of(hits_, result.hit_hash);
         if (needs_reference(row.key)) compare(row, result, view);
-        const auto& mesh = scene_->loaded().scene.mesh;
-        result.misplaced += count_misplaced(mesh, scene_->views()[view], scene_->width(), hits_);
         result.verdicts.add(oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(),
                                           scene_->height(), hits_));
     }

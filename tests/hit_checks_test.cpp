@@ -10,12 +10,6 @@ using namespace tetrace;
 
 namespace {
 
-/// The triangle (0,0,1) (1,0,1) (0,1,1), seen from the origin along z.
-const TriangleMesh triangle{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}}};
-
-/// A view of one pixel whose ray goes from the origin to (0.25, 0.5, 1).
-const View view{{0, 0, 0}, {0.25f, 0.5f, 1}, {0, 0, 0}, {0, 0, 0}};
-
 constexpr Hit right{0, 7, 1.0f, 0.25f, 0.5f, 3};
 
 } // namespace
@@ -61,30 +55,6 @@ TEST(ulps_between, counts_floats_between_and_knows_signs)
     EXPECT_EQ(ulps_between(-1.0f, std::nextafter(-1.0f, -2.0f)), 1u);
     EXPECT_GT(ulps_between(1.0f, -1.0f), 1000u);
     EXPECT_GT(ulps_between(1.0f, std::numeric_limits<float>::quiet_NaN()), 1000u);
-}
-
-TEST(count_misplaced, a_right_hit_is_in_place)
-{
-    EXPECT_EQ(count_misplaced(triangle, view, 1, std::vector<Hit>{right}), 0u);
-}
-
-TEST(count_misplaced, a_wrong_parameter_is_found)
-{
-    for (float Hit::*member : {&Hit::t, &Hit::u, &Hit::v})
-        for (const float factor : {0.0f, 0.999f, 1.001f, std::numeric_limits<float>::quiet_NaN()}) {
-            Hit hit = right;
-            hit.*member *= factor;
-            EXPECT_EQ(count_misplaced(triangle, view, 1, std::vector<Hit>{hit}), 1u) << factor;
-        }
-}
-
-TEST(count_misplaced, a_face_that_does_not_exist_is_found_and_misses_are_left_out)
-{
-    EXPECT_EQ(count_misplaced(triangle, view, 1, std::vector<Hit>{{1, 7, 1.0f, 0.25f, 0.5f, 3}}), 1u);
-    EXPECT_EQ(
-        count_misplaced(triangle, view, 3,
-                        std::vector<Hit>{{NO_HIT, 0, 0, 0, 0, 0}, {LOST, 0, 0, 0, 0, 0}, {POISON, 0, 0, 0, 0, 0}}),
-        0u);
 }
 
 TEST(count_rays, tells_what_became_of_each)

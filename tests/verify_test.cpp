@@ -122,7 +122,7 @@ TEST_F(verify, a_wrong_parameter_makes_a_row_flawed)
     const RowRun row =
         verified("openmp", [](std::span<Hit> hits) { damage_first_hit(hits, [](Hit& hit) { hit.t *= 1.01f; }); });
     EXPECT_EQ(status_of(row), Status::flawed);
-    EXPECT_GE(traced(row)->misplaced, 2u);
+    EXPECT_GE(traced(row)->verdicts.wrong, 2u);
 }
 
 TEST_F(verify, a_ray_that_was_never_written_is_an_error)
