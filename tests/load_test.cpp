@@ -336,16 +336,16 @@ TEST_F(Load, lets_the_second_of_two_processes_wait_for_the_first)
 
 TEST_F(Load, builds_itself_where_the_first_of_two_processes_is_killed)
 {
-    use_builder("[ -e " + (folder / "second").string() + " ] || exec sleep 60");
+    const auto stuck = folder / "stuck"; // made by the first builder, which then does not end; the second one works
+    use_builder("[ -e " + stuck.string() + " ] || { touch " + stuck.string() + "; exec sleep 60; }");
     const pid_t other = ::fork();
     ASSERT_GE(other, 0);
     if (other == 0) {
         (void)error_of([&] { (void)load(); });
         ::_exit(0);
     }
-    while (builder_runs() == 0)
+    while (!std::filesystem::exists(stuck))
         ::usleep(1000);
-    write_text(folder / "second", "");
     std::thread killer([&] {
         ::usleep(300000);
         ::kill(other, SIGKILL);
