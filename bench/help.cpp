@@ -57,9 +57,10 @@ const VerbHelp verb_help[] = {
      "layout and mode, and against Embree in robust mode, where each disagreement is settled in exact arithmetic on "
      "the original triangles. Both answers right within rounding of a shared edge are a tie; Embree's being the "
      "inexact one is settled; else the ray is wrong. The first wrong ray is printed in full. Exits with 1 where "
-     "anything is wrong or lost; --allow-flawed lets the wrong rays of a method itself pass.",
-     "  tetrace check --scene cubes --require openmp,embree\n"
-     "  tetrace check --scene bunny --backend openmp    Embree's own fast rows may be flawed\n"
+     "anything is wrong or lost; --allow-flawed lets the wrong rays of a method itself pass. Embree's own rows, which "
+     "may be flawed, are judged where an option names them.",
+     "  tetrace check --scene cubes --require openmp\n"
+     "  tetrace check --scene bunny --structure cdt,bvh --allow-flawed\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "

@@ -184,6 +184,14 @@ TEST_F(program, checks_every_ray)
     }
 }
 
+TEST_F(program, checks_embree_where_it_is_asked_for)
+{
+    const auto rows_of = [&](const std::string& options) { return run("check --scene cubes --list" + options).out; };
+    EXPECT_FALSE(contains(rows_of(""), "api:embree"));
+    EXPECT_TRUE(contains(rows_of(" --structure cdt,bvh"), "api:embree"));
+    EXPECT_TRUE(contains(rows_of(" --require embree"), "api:embree"));
+}
+
 TEST_F(program, builds_every_combination_and_goes_on_after_a_failure)
 {
     std::ofstream(folder_.path() / "broken.tet") << "no scene";
