@@ -96,6 +96,8 @@ std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh)
 // The side of the box that holds all three corners; 6 where there is none.
 std::uint32_t side_of(const Domain& domain, const BoundaryFace& face)
 {
+    for (const Float3 corner : face.corners)
+        if (!domain.contains(corner)) return 6;
     for (std::uint32_t side = 0; side < 6; side++) {
         const auto axis = side / 2;
         const float plane = side % 2 == 0 ? domain.lines[axis].front() : domain.lines[axis].back();

@@ -60,6 +60,8 @@ constexpr std::array<SectionKind, 6> kinds = {{{"information", 1},
                                                {"domain lines", sizeof(float)}}};
 enum SectionId : std::size_t { information, mesh_vertices, triangles, tet_vertices, tets, domain_lines };
 
+constexpr std::uint32_t most_divisions = 128; // those of the finest cubes; the entry grid grows with their square
+
 using Table = std::array<SectionEntry, kinds.size()>;
 constexpr std::size_t header_bytes = sizeof(FileHeader) + sizeof(Table) + sizeof(std::uint64_t);
 
@@ -194,6 +196,7 @@ private:
     [[nodiscard]] std::vector<Element> read_section(SectionId id);
     void set_lines(Domain& domain, const std::vector<float>& lines) const;
     void check_mesh(const Scene& scene) const;
+    void check_domain(const Scene& scene) const;
     void check_coordinates(SectionId id, const std::vector<Float3>& points) const;
     void read_bytes(std::span<std::byte> bytes, std::string_view section) const;
     [[noreturn]] void refuse(std::string_view section, std::string_view reason) const;
@@ -268,6 +271,7 @@ void SceneReader::check_table() const
         if (entry.offset != end || entry.bytes > file_bytes_ - end) refuse(kinds[i].name, "it lies outside the file");
         if (entry.bytes % kinds[i].element_bytes != 0 || entry.bytes / kinds[i].element_bytes != entry.elements)
             refuse(kinds[i].name, "its bytes and its number of elements do not agree");
+        if (entry.elements == 0) refuse(kinds[i].name, "it is empty; every scene has some");
         end += entry.bytes;
     }
     if (end != file_bytes_) refuse("file", fmt::format("{} bytes follow the last section", file_bytes_ - end));
@@ -287,7 +291,7 @@ std::vector<Element> SceneReader::read_section(SectionId id)
 void SceneReader::set_lines(Domain& domain, const std::vector<float>& lines) const
 {
     const std::uint64_t per_axis = std::uint64_t{domain.divisions} + 1;
-    if (domain.divisions == 0 || lines.size() != 3 * per_axis)
+    if (domain.divisions == 0 || domain.divisions > most_divisions || lines.size() != 3 * per_axis)
         refuse("domain lines", fmt::format("{} lines for {} divisions", lines.size(), domain.divisions));
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto first = lines.begin() + static_cast<std::ptrdiff_t>(axis * per_axis);
@@ -325,6 +329,17 @@ void SceneReader::check_mesh(const Scene& scene) const
     if (scene_hash(scene) != header_.scene_hash) refuse("header", "the scene's hash is not the one that it states");
 }
 
+void SceneReader::check_domain(const Scene& scene) const
+{
+    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
+    if (const auto gap = find_gap(scene.tets, scene.mesh, size)) refuse("tets", gap->what);
+    try {
+        static_cast<void>(make_entry_grid(scene.domain, scene.tets));
+    } catch (const Error& error) {
+        refuse("domain lines", error.what());
+    }
+}
+
 Scene SceneReader::read()
 {
     read_header();
@@ -337,6 +352,7 @@ Scene SceneReader::read()
     scene.tets.tets = read_section<Tet>(tets);
     set_lines(scene.domain, read_section<float>(domain_lines));
     check_mesh(scene);
+    check_domain(scene);
     return scene;
 }
 

@@ -13,7 +13,8 @@ inline constexpr std::uint32_t scene_file_version = 2;
 /// Throws Error{invalid_input} naming the path and the system's reason.
 void write_scene(const std::filesystem::path& path, const Scene& scene);
 
-/// Reads a scene and checks everything: magic, version, sizes, checksum of each section, scene hash, find_defect.
+/// Reads a scene and checks everything: magic, version, sizes, checksum of each section, scene hash, find_defect,
+/// find_gap, the entry grid; no section may be empty.
 /// Throws Error{missing} where there is no such file, Error{invalid_input} naming file, section and reason otherwise;
 /// never returns a scene that differs from the one written.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);

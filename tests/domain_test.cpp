@@ -96,5 +96,22 @@ TEST(EntryGrid, a_boundary_face_inside_the_domain_is_refused)
     EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
 }
 
+TEST(EntryGrid, a_boundary_face_that_reaches_beyond_its_side_is_refused)
+{
+    Scene scene = make_cubes(2);
+    for (float& line : scene.domain.lines[1])
+        line *= 0.5f; // the sides across x keep their planes, and the tets stick out of them
+    EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
+}
+
+TEST(EntryGrid, a_square_without_a_face_is_refused)
+{
+    Scene scene = make_cubes(2);
+    for (Tet& tet : scene.tets.tets)
+        for (std::uint32_t& link : tet.links)
+            if (link == NO_LINK) link = 0; // no boundary is left
+    EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
+}
+
 } // namespace
 } // namespace tetrace

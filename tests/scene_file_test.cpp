@@ -223,6 +223,51 @@ TEST_F(SceneFile, refuses_content_that_no_scene_has)
     EXPECT_TRUE(contains(error_of_written(path, bad), "section `information`"));
 }
 
+TEST_F(SceneFile, refuses_a_scene_of_nothing)
+{
+    const auto expect_empty = [&](const auto& spoil, const std::string& section) {
+        Scene bad = sample_scene();
+        spoil(bad);
+        EXPECT_TRUE(contains(error_of_written(path, bad),
+                             "reading scene " + path.string() + ": section `" + section + "`: it is empty"));
+    };
+    const auto free_all = [](Scene& s) {
+        for (Tet& tet : s.tets.tets)
+            tet.faces.fill(FREE_FACE);
+        s.mesh.triangles.clear();
+    };
+    expect_empty(free_all, "triangles");
+    const auto clear_mesh = [&](Scene& s) {
+        free_all(s);
+        s.mesh.vertices.clear();
+    };
+    expect_empty(clear_mesh, "mesh vertices");
+    expect_empty([](Scene& s) { s.tets.tets.clear(); }, "tets");
+    expect_empty([](Scene& s) { s.tets.vertices.clear(); }, "tet vertices");
+}
+
+TEST_F(SceneFile, refuses_a_triangle_that_no_face_covers)
+{
+    Scene bad = sample_scene();
+    for (Tet& tet : bad.tets.tets)
+        for (std::uint32_t& face : tet.faces)
+            if (face == 1) face = FREE_FACE;
+    const std::string error = error_of_written(path, bad);
+    EXPECT_TRUE(contains(error, "invalid_input: reading scene " + path.string() + ": section `tets`: the faces that"));
+    EXPECT_TRUE(contains(error, "(first: 1, 1 in all)"));
+}
+
+TEST_F(SceneFile, refuses_another_domain_than_the_tets_fill)
+{
+    Scene bad = sample_scene();
+    bad.domain.lines[0].back() += 0.01f;
+    EXPECT_TRUE(contains(error_of_written(path, bad), "section `tets`: the tets' volumes sum to"));
+    bad = sample_scene();
+    for (float& line : bad.domain.lines[0])
+        line += 0.25f; // as large, so that only the sides tell
+    EXPECT_TRUE(contains(error_of_written(path, bad), "section `domain lines`: making the entry grid: tet"));
+}
+
 TEST_F(SceneFile, keeps_the_old_file_and_no_temporary_where_writing_fails)
 {
     const std::string error = error_of([&] { write_scene(folder / "no/such/folder.tet", sample_scene()); });
