@@ -9,7 +9,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 namespace tetrace {
@@ -19,9 +18,7 @@ namespace kernel {
 
 Ray pixel_ray(const View& view, std::uint32_t x, std::uint32_t y)
 {
-    const TraceParams params{
-        to_vec3(view.origin), to_vec3(view.corner), to_vec3(view.step_x), to_vec3(view.step_y), 0, 0, 0, 0};
-    return primary_ray(params, x, y);
+    return primary_ray(params_of({view, 0, 0, NO_TET, 0}), x, y);
 }
 } // namespace kernel
 
@@ -76,7 +73,7 @@ struct Oracle::Parts {
     void trace_reference(const View& view, std::uint32_t width, std::uint32_t height)
     {
         if (!reference.empty() && reference.size() == std::size_t{width} * height && reference_width == width &&
-            std::memcmp(&view, &reference_view, sizeof view) == 0)
+            view == reference_view)
             return;
         reference.resize(std::size_t{width} * height);
         embree::trace_image(accelerator, Method::single, {view, width, height, NO_TET, 0}, reference, threads);

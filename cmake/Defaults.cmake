@@ -11,8 +11,12 @@ endif()
 add_library(tetrace_options INTERFACE)
 target_compile_features(tetrace_options INTERFACE cxx_std_20)
 target_include_directories(tetrace_options INTERFACE ${CMAKE_SOURCE_DIR})
-# Without contraction everywhere: cameras and packed data are the same bits on every machine. Kernels add their own.
-target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
+target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+
+# All but the kernels of math mode fast: cameras, packed data and answers are the same bits on every machine.
+add_library(tetrace_exact INTERFACE)
+target_link_libraries(tetrace_exact INTERFACE tetrace_options)
+target_compile_options(tetrace_exact INTERFACE -ffp-contract=off)
 
 option(TETRACE_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
 if(TETRACE_SANITIZE)

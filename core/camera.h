@@ -26,6 +26,8 @@ struct Camera {
 /// along the optical axis.
 struct View {
     Float3 origin, corner, step_x, step_y;
+
+    friend bool operator==(const View&, const View&) = default;
 };
 
 [[nodiscard]] std::vector<Camera> make_cameras(CameraSet set, const BoundingSphere& sphere);

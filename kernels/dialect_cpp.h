@@ -1,6 +1,6 @@
 // The kernels' language as host C++. Include it, and the kernel headers after it, inside an unnamed namespace: every
 // kernel is compiled once per layout and math mode, and none of these names may meet another's.
-// The including file has <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/packed_scene.h before it.
+// The including file has <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/backend.h before it.
 #define KERNEL_FN [[maybe_unused]] inline
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name

@@ -1,5 +1,5 @@
+#include "core/backend.h"
 #include "core/exact.h"
-#include "core/packed_scene.h"
 #include "scenes/procedural.h"
 #include "tests/random.h"
 
@@ -143,6 +143,34 @@ TEST(Entry, rays_in_the_plane_of_a_side_or_along_an_edge_of_the_box_miss_it)
     // Through an edge of the box and on inside, the ray does enter.
     EXPECT_NE(look_up({low.x - 1, 0, high.z + 1}, {1, 0, -1}), NO_LINK);
     expect_brute_force({low.x - 1, 0, high.z + 1}, {1, 0, -1});
+}
+
+TEST(Entry, a_ray_through_a_line_belongs_to_the_square_above_it)
+{
+    const auto& lines = box().scene.domain.lines;
+    const uint n = box().packed.divisions;
+    for (uint i = 0; i < n; i++) {
+        const float y = 0.5f * (lines[1][2] + lines[1][3]);
+        const Ray ray = make_ray(VEC3(lines[0][i] - 0.25f, y, lines[2][n] + 1), VEC3(0.25f, 0, -1));
+        EXPECT_EQ(entry_square(view_of(box().packed), ray), ((2 * 2 + 1) * n + 2) * n + i);
+    }
+}
+
+TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
+{
+    const auto& mesh = box().scene.mesh;
+    const auto& [a, b, c] = mesh.triangles.front();
+    const auto centroid = [&](int axis) {
+        return (mesh.vertices[a][axis] + mesh.vertices[b][axis] + mesh.vertices[c][axis]) / 3;
+    };
+    tetrace::PackedScene packed = box().packed;
+    for (std::size_t row = 0; row < 3; row++)
+        packed.triangles[row].z = 0; // the first triangle, flattened into z = 0
+    const Hit hit = make_hit(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7);
+    EXPECT_NEAR(hit.t, 2, 1e-6);
+    EXPECT_FLOAT_EQ(hit.u, 1.0f / 3);
+    EXPECT_FLOAT_EQ(hit.v, 1.0f / 3);
+    EXPECT_EQ(hit.steps, 7u);
 }
 
 TEST(Entry, tiny_direction_components_are_dropped)

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
-#include <stdlib.h>
+#include <cstdlib>
 #include <string>
 
 namespace tetrace {

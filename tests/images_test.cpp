@@ -7,7 +7,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <iterator>
-#include <stdlib.h>
+#include <cstdlib>
 #include <string>
 
 namespace tetrace {

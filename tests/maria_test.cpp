@@ -1,5 +1,5 @@
+#include "core/backend.h"
 #include "core/exact.h"
-#include "core/packed_scene.h"
 #include "tests/random.h"
 
 #include <gtest/gtest.h>
@@ -164,6 +164,56 @@ TEST(Maria, leaves_by_the_face_that_the_exact_line_leaves_by)
     }
     EXPECT_GT(compared, 15000);
     EXPECT_LE(differing, compared / 10000) << "only a line within rounding of an edge may leave by its other face";
+}
+
+// A tet with corners on a coarse grid, where the whole step is exact: what falls on an edge, falls on it in float too.
+RandomTet coarse_tet(tetrace::test::Random& random)
+{
+    for (;;) {
+        RandomTet tet;
+        for (Float3& corner_point : tet.corners)
+            for (int axis = 0; axis < 3; axis++)
+                corner_point[axis] = 0x1p-8f * 12 * (static_cast<float>(random.below(5)) - 2);
+        const int sign = orientation(tet.corners[0], tet.corners[1], tet.corners[2], tet.corners[3]);
+        if (sign > 0) std::swap(tet.corners[2], tet.corners[3]);
+        if (sign != 0) return tet;
+    }
+}
+
+// The tie rule of the paper's Table 1: a product of zero counts as "not negative" in both tests.
+TEST(Maria, a_line_through_an_edge_leaves_by_the_face_that_the_tie_rule_names)
+{
+    tetrace::test::Random random(9);
+    constexpr uint excluded[] = {1, 2,
+                                 0}; // the exit is opposite this corner when the line meets the edge of c0, c1, c2
+    for (int i = 0; i < 500; i++) {
+        const RandomTet tet = coarse_tet(random);
+        const auto packed = packed_tet(tet);
+        for (uint entry = 0; entry < 4; entry++) {
+            for (uint on_edge = 0; on_edge < 3; on_edge++) {
+                Float3 inside_face, on_apex_edge, direction, origin;
+                for (int axis = 0; axis < 3; axis++) {
+                    const auto at = [&](uint k) { return tet.corners[corner(entry, k)][axis]; };
+                    inside_face[axis] = (at(0) + at(1) + 2 * at(2)) / 4;
+                    on_apex_edge[axis] = (at(on_edge) + tet.corners[entry][axis]) / 2;
+                    direction[axis] = on_apex_edge[axis] - inside_face[axis];
+                    origin[axis] = inside_face[axis] - direction[axis];
+                }
+                ASSERT_EQ(exit_face(view_of(packed), 0, entry, ray_of(origin, direction)),
+                          corner(entry, excluded[on_edge]))
+                    << "entry " << entry << ", edge of corner " << on_edge;
+            }
+        }
+    }
+}
+
+TEST(Ray, a_pixel_s_tiny_direction_components_are_dropped)
+{
+    TraceParams params{};
+    params.corner = VEC3(Counted(0x1p-21f), Counted(0x1p-20f), Counted(1));
+    const Ray ray = primary_ray(params, 0, 0);
+    EXPECT_EQ(ray.direction.x.value, 0.0f);
+    EXPECT_EQ(ray.direction.y.value, 0x1p-20f);
 }
 
 TEST(Maria, starts_by_the_face_that_the_exact_ray_leaves_by)

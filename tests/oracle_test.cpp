@@ -7,6 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
 namespace tetrace {
 namespace {
 
@@ -35,9 +41,9 @@ struct Traced {
         job.width = job.height = size;
         job.max_steps = packed.tet_count + 1;
     }
-    void trace(const KernelId& kernel)
+    void trace(const KernelId& kernel, unsigned threads = 2)
     {
-        const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {2});
+        const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {threads});
         session->launch(job);
         (void)session->wait();
         session->read_back(hits);
@@ -135,7 +141,42 @@ TEST(Walk, layouts_and_threads_do_not_change_a_bit)
     traced.packed = pack(traced.scene, Layout::tet96, TetOrder::hilbert);
     traced.trace({Structure::cdt, Method::maria, Layout::tet96, MathMode::exact});
     EXPECT_TRUE(traced.hits == reference);
+    for (const unsigned threads : {1u, 3u}) {
+        traced.trace({Structure::cdt, Method::maria, Layout::tet96, MathMode::exact}, threads);
+        EXPECT_TRUE(traced.hits == reference) << threads << " threads";
+    }
 }
+
+#if defined(__SSE2__)
+// A scene so small that every product is denormal: it tells whether the walk's thread flushes them, as Embree and TBB
+// leave their threads.
+TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
+{
+    constexpr KernelId kernel{Structure::cdt, Method::maria, Layout::tet80, MathMode::exact};
+    Traced tiny;
+    const auto shrink = [](std::uint32_t& bits) {
+        bits = std::bit_cast<std::uint32_t>(std::bit_cast<float>(bits) * 0x1p-66f);
+    };
+    for (std::size_t word = 0; word < 4 * tiny.packed.tets.size(); word++)
+        if (word % 20 < 12) shrink(reinterpret_cast<std::uint32_t*>(tiny.packed.tets.data())[word]);
+    for (auto& line : tiny.packed.lines)
+        shrink(line);
+    for (int axis = 0; axis < 3; axis++)
+        tiny.job.view.origin[axis] *= 0x1p-66f;
+    tiny.trace(kernel, 1);
+    const auto reference = tiny.hits;
+    EXPECT_LT(reference[tiny.hit_pixel()].face_id, tiny.scene.mesh.triangles.size());
+
+    const unsigned before = _mm_getcsr();
+    _mm_setcsr(before | 0x8040); // flush to zero, denormals are zero
+    tiny.trace(kernel, 1);
+    const unsigned after = _mm_getcsr();
+    _mm_setcsr(before);
+    EXPECT_EQ(after & 0x8040, 0x8040u) << "the thread gets its own environment back";
+    for (std::size_t i = 0; i < reference.size(); i++)
+        ASSERT_EQ(tiny.hits[i].steps, reference[i].steps) << "ray " << i;
+}
+#endif
 
 TEST(Walk, order_of_tets_changes_their_numbers_only)
 {

@@ -57,6 +57,21 @@ TEST(Pack, sizes_are_those_of_the_layout)
     EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Row), 96 * tets);
 }
 
+// Along the curve no two tets that follow each other are far apart; row after row of cubes, the ends of rows are.
+TEST(Pack, hilbert_order_has_no_long_jumps)
+{
+    const Scene scene = make_cubes(12);
+    const auto longest_jump = [&](TetOrder order) {
+        const TetMesh mesh = unpack(pack(scene, Layout::tet80, order));
+        double longest = 0;
+        for (std::size_t i = 1; i < mesh.tets.size(); i++)
+            longest = std::max(longest, length(to_double(mesh.vertices[mesh.tets[i].vertices[0]]) -
+                                               to_double(mesh.vertices[mesh.tets[i - 1].vertices[0]])));
+        return longest;
+    };
+    EXPECT_LT(longest_jump(TetOrder::hilbert), 0.5 * longest_jump(TetOrder::input));
+}
+
 TEST(Pack, both_layouts_number_the_tets_alike)
 {
     const Scene scene = make_cubes(5);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,18 +14,6 @@ namespace {
 
 constexpr std::uint32_t packet_size = 4; // 4 x 4 pixels
 constexpr std::uint32_t tile_size = 8;
-
-TraceParams params_of(const TraceJob& job)
-{
-    return {to_vec3(job.view.origin),
-            to_vec3(job.view.corner),
-            to_vec3(job.view.step_x),
-            to_vec3(job.view.step_y),
-            job.width,
-            job.height,
-            job.start_tet,
-            job.max_steps};
-}
 
 tetrace::Hit hit_of(unsigned primitive, float t, float u, float v)
 {
@@ -120,24 +107,9 @@ EmbreeSession::EmbreeSession(Method method, std::shared_ptr<const Accelerator> a
 {
 }
 
-void EmbreeSession::launch(const TraceJob& job)
+void EmbreeSession::trace(const TraceJob& job, std::span<tetrace::Hit> hits)
 {
-    const tetrace::Hit poison{POISON, POISON, 0, 0, 0, POISON};
-    hits_.assign(std::size_t{job.width} * job.height, poison);
-    const auto start = std::chrono::steady_clock::now();
-    trace_image(*accelerator_, method_, job, hits_, threads_);
-    kernel_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double EmbreeSession::wait()
-{
-    return kernel_s_;
-}
-
-void EmbreeSession::read_back(std::span<tetrace::Hit> hits)
-{
-    assert(hits.size() == hits_.size());
-    std::copy(hits_.begin(), hits_.end(), hits.begin());
+    trace_image(*accelerator_, method_, job, hits, threads_);
 }
 
 } // namespace tetrace::embree

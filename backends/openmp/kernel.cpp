@@ -14,18 +14,6 @@ namespace {
 
 constexpr uint tile_size = 8; // pixels of a tile share most of their way
 
-TraceParams params_of(const tetrace::TraceJob& job)
-{
-    return {to_vec3(job.view.origin),
-            to_vec3(job.view.corner),
-            to_vec3(job.view.step_x),
-            to_vec3(job.view.step_y),
-            job.width,
-            job.height,
-            job.start_tet,
-            job.max_steps};
-}
-
 void trace_tile(const SceneView& scene, const TraceParams& params, uint tile, tetrace::Hit* hits)
 {
     const uint tiles_x = (params.width + tile_size - 1) / tile_size;

@@ -1,39 +1,15 @@
 #include "backends/openmp/session.h"
 
-#include <algorithm>
-#include <cassert>
-#include <chrono>
-
 namespace tetrace::openmp {
 
-OpenmpSession::OpenmpSession(TraceFunction trace, const PackedScene& scene, unsigned threads)
-    : trace_(trace), scene_(scene), threads_(threads)
+OpenmpSession::OpenmpSession(TraceFunction kernel, const PackedScene& scene, unsigned threads)
+    : kernel_(kernel), scene_(scene), threads_(threads)
 {
 }
 
-void OpenmpSession::launch(const TraceJob& job)
+void OpenmpSession::trace(const TraceJob& job, std::span<Hit> hits)
 {
-    const Hit poison{POISON, POISON, 0, 0, 0, POISON};
-    hits_.assign(std::size_t{job.width} * job.height, poison);
-    const auto start = std::chrono::steady_clock::now();
-    trace_(scene_, job, hits_.data(), threads_);
-    kernel_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double OpenmpSession::wait()
-{
-    return kernel_s_;
-}
-
-void OpenmpSession::read_back(std::span<Hit> hits)
-{
-    assert(hits.size() == hits_.size());
-    std::copy(hits_.begin(), hits_.end(), hits.begin());
-}
-
-std::uint64_t OpenmpSession::bytes() const
-{
-    return scene_.bytes();
+    kernel_(scene_, job, hits.data(), threads_);
 }
 
 } // namespace tetrace::openmp

@@ -1,27 +1,23 @@
 #pragma once
 
 #include "backends/openmp/kernels.h"
-#include "core/backend.h"
+#include "core/host_session.h"
 
 namespace tetrace::openmp {
 
-/// Runs one kernel on the host's memory: nothing is compiled, nothing copied; launch() traces, wait() tells how long it
-/// took.
-class OpenmpSession : public Session {
+/// Runs one compiled kernel on the packed scene where it lies: nothing is compiled, nothing copied.
+class OpenmpSession : public HostSession {
 public:
-    OpenmpSession(TraceFunction trace, const PackedScene& scene, unsigned threads);
-    void launch(const TraceJob& job) override;
-    [[nodiscard]] double wait() override;
-    void read_back(std::span<Hit> hits) override;
+    OpenmpSession(TraceFunction kernel, const PackedScene& scene, unsigned threads);
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
-    [[nodiscard]] std::uint64_t bytes() const override;
+    [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
 private:
-    TraceFunction trace_;
+    void trace(const TraceJob& job, std::span<Hit> hits) override;
+
+    TraceFunction kernel_;
     const PackedScene& scene_;
     unsigned threads_;
-    std::vector<Hit> hits_;
-    double kernel_s_ = 0;
 };
 
 } // namespace tetrace::openmp

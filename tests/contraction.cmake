@@ -1,0 +1,10 @@
+# Looks for fused multiply-adds in the machine code of a kernel: exact mode must have none, fast mode must have some.
+execute_process(COMMAND ${OBJDUMP} -d ${OBJECTS} OUTPUT_VARIABLE code COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "vfn?m(add|sub)" fused "${code}")
+list(LENGTH fused count)
+message(STATUS "${MATH}: ${count} fused operations")
+if(MATH STREQUAL "exact" AND count GREATER 0)
+  message(FATAL_ERROR "exact kernels must not contract")
+elseif(MATH STREQUAL "fast" AND count EQUAL 0)
+  message(FATAL_ERROR "fast kernels do not contract: another flag overrides -ffp-contract=fast")
+endif()
