@@ -248,7 +248,8 @@ TEST(SelfIntersection, finds_every_way_in_which_two_triangles_meet)
     EXPECT_EQ(count({{0, 1, 2}, {3, 4, 5}}), 1u) << "crossing";
     EXPECT_EQ(count({{0, 1, 2}, {6, 4, 5}}), 1u) << "a vertex inside the other";
     EXPECT_EQ(count({{0, 1, 2}, {6, 7, 8}}), 1u) << "overlap in a plane";
-    EXPECT_EQ(count({{0, 1, 2}, {0, 3, 4}}), 1u) << "through a shared vertex and beyond";
+    EXPECT_EQ(count({{0, 1, 2}, {0, 3, 4}}), 1u) << "the second's far edge through the first";
+    EXPECT_EQ(count({{0, 3, 4}, {0, 1, 2}}), 1u) << "the first's far edge through the second";
     EXPECT_EQ(count({{0, 1, 2}, {0, 6, 10}}), 1u) << "along an edge from a shared vertex";
     EXPECT_EQ(count({{0, 1, 2}, {0, 1, 6}}), 1u) << "folded onto each other over an edge";
     EXPECT_EQ(count({{0, 1, 2}, {1, 2, 9}}), 0u) << "neighbours in a plane";
@@ -390,6 +391,51 @@ TEST_F(AbsurdOutput, names_asymmetric_neighbours)
 {
     std::swap(output_.neighbours[7][0], output_.neighbours[7][1]);
     expect_absurd("asymmetric neighbours");
+}
+
+// Two pairs of neighbours change partners: each names the other back, over faces that have other vertices.
+TEST_F(AbsurdOutput, names_neighbours_that_share_other_vertices)
+{
+    const auto exchange = [&](std::size_t tet, std::int32_t from, std::int32_t to) {
+        auto& row = output_.neighbours[tet];
+        const auto at = std::find(row.begin(), row.end(), from);
+        ASSERT_NE(at, row.end());
+        *at = to;
+    };
+    const auto inner = [&](std::int32_t tet) {
+        const auto& row = output_.neighbours[static_cast<std::size_t>(tet)];
+        return *std::find_if(row.begin(), row.end(), [](std::int32_t n) { return n >= 0; });
+    };
+    const std::int32_t a = 0, c = static_cast<std::int32_t>(output_.tets.size()) - 1;
+    const std::int32_t b = inner(a), d = inner(c);
+    ASSERT_TRUE(b != c && b != d && a != d);
+    exchange(static_cast<std::size_t>(a), b, d);
+    exchange(static_cast<std::size_t>(d), c, a);
+    exchange(static_cast<std::size_t>(c), d, b);
+    exchange(static_cast<std::size_t>(b), a, c);
+    expect_absurd("which does not name it back");
+}
+
+TEST_F(AbsurdOutput, names_a_domain_that_is_not_filled)
+{
+    const std::size_t hole = output_.tets.size() - 1;
+    for (const auto& face : output_.surface_faces) // a tet of free faces, so that only the volume tells
+        for (const std::int32_t corner : face.corners) {
+            const auto& tet = output_.tets[hole];
+            ASSERT_TRUE(face.triangle < 0 || std::find(tet.begin(), tet.end(), corner) == tet.end());
+        }
+    output_.tets.pop_back();
+    output_.neighbours.pop_back();
+    for (auto& row : output_.neighbours)
+        std::replace(row.begin(), row.end(), static_cast<std::int32_t>(hole), -1);
+    expect_absurd("volume of the domain: the tets' volumes sum to");
+}
+
+TEST_F(AbsurdOutput, names_a_boundary_beside_the_domain_s_sides)
+{
+    for (float& line : prepared_.scene.domain.lines[0])
+        line += 0.0625f; // as large, so that the volume does not tell
+    expect_absurd("the domain's sides: making the entry grid: tet");
 }
 
 TEST_F(AbsurdOutput, names_missing_triangles)

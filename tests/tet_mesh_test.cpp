@@ -68,6 +68,28 @@ TEST(TetMesh, an_asymmetric_link_is_found)
               Kind::asymmetric_link);
 }
 
+// Two pairs of neighbours change partners: each names the other back, over faces that have other vertices.
+TEST(TetMesh, neighbours_that_share_other_vertices_are_found)
+{
+    EXPECT_EQ(defect_after([](Scene& s) {
+                  const auto link_of = [&](std::uint32_t tet) {
+                      const std::uint32_t face = inner_face_of(s.tets.tets[tet]);
+                      EXPECT_EQ(s.tets.tets[tet].faces[face], FREE_FACE);
+                      return make_link(tet, face);
+                  };
+                  const auto partner = [&](std::uint32_t link) -> std::uint32_t& {
+                      return s.tets.tets[link_tet(link)].links[link_face(link)];
+                  };
+                  const std::uint32_t a = link_of(0), c = link_of(100);
+                  const std::uint32_t b = partner(a), d = partner(c);
+                  EXPECT_EQ(s.tets.tets[link_tet(b)].faces[link_face(b)], FREE_FACE);
+                  EXPECT_EQ(s.tets.tets[link_tet(d)].faces[link_face(d)], FREE_FACE);
+                  partner(a) = d, partner(d) = a;
+                  partner(c) = b, partner(b) = c;
+              }),
+              Kind::asymmetric_link);
+}
+
 TEST(TetMesh, an_inverted_and_a_flat_tet_are_told_apart)
 {
     // Two vertices change places, with their faces: links stay symmetric, only the orientation turns.
