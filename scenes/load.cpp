@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <optional>
 #include <thread>
@@ -180,6 +181,32 @@ void MeshSceneLoader::build()
                                                           label_, file_.string(), failure.message()));
 }
 
+/// Which of these options differ from their defaults, in the options' own words.
+struct Unused {
+    const BuildOptions& asked;
+    std::vector<std::string> options;
+    const BuildOptions standard{};
+
+    void add_build()
+    {
+        if (asked.domain != standard.domain) options.emplace_back("--domain");
+        if (asked.divisions != standard.divisions) options.emplace_back("--divisions");
+        if (asked.switches != standard.switches) options.emplace_back("--switches");
+    }
+    void add_resolution()
+    {
+        if (asked.resolution != standard.resolution) options.emplace_back("--resolution");
+    }
+    /// why: what the scene is, that it does not heed them.
+    void tell(const std::string& name, const std::string& why, LoadedScene& loaded) const
+    {
+        if (options.empty()) return;
+        const bool one = options.size() == 1;
+        loaded.messages.push_back(
+            fmt::format("scene {}: {}: {} {} not used", name, why, fmt::join(options, ", "), one ? "is" : "are"));
+    }
+};
+
 LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
 {
     if (progress) progress("making cubes", -1);
@@ -188,8 +215,9 @@ LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
     loaded.scene = make_cubes(request.build.resolution);
     loaded.scene.build.build_s = seconds_since(start);
     loaded.hash = scene_hash(loaded.scene);
-    if (request.build.domain != DomainKind::tight)
-        loaded.messages.emplace_back("scene cubes: it fills a domain of its own; the domain asked for is not used");
+    Unused unused{request.build, {}};
+    unused.add_build();
+    unused.tell("cubes", "it is made in place, in a domain of its own", loaded);
     return loaded;
 }
 
@@ -200,6 +228,19 @@ LoadedScene load_scene_file(const SceneRequest& request, const Progress& progres
     loaded.scene = read_scene(request.name);
     loaded.hash = scene_hash(loaded.scene);
     loaded.file = request.name;
+    Unused unused{request.build, {}};
+    unused.add_build();
+    unused.add_resolution();
+    unused.tell(request.name, "the file is its own scene", loaded);
+    return loaded;
+}
+
+LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, const Progress& progress)
+{
+    LoadedScene loaded = MeshSceneLoader(request, mesh, progress).load();
+    Unused unused{request.build, {}};
+    unused.add_resolution();
+    unused.tell(request.name, "it is made of a mesh, and only cubes have a resolution", loaded);
     return loaded;
 }
 
@@ -220,13 +261,13 @@ LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
 {
     if (const CatalogueEntry* entry = find_in_catalogue(request.name)) {
         if (entry->source == SceneSource::cubes) return load_cubes(request, progress);
-        return MeshSceneLoader(request, mesh_file(*entry), progress).load();
+        return load_mesh_scene(request, mesh_file(*entry), progress);
     }
     const fs::path path = request.name;
     std::error_code ignored; // what cannot be looked at is no file for us
     if (!fs::exists(path, ignored)) refuse_name(request.name);
     if (path.extension() == ".tet") return load_scene_file(request, progress);
-    return MeshSceneLoader(request, path, progress).load();
+    return load_mesh_scene(request, path, progress);
 }
 
 } // namespace tetrace

@@ -10,8 +10,9 @@ struct LoadedScene {
     Scene scene;
     std::uint64_t hash = 0; ///< scene_hash(scene)
     bool from_cache = false;
-    std::filesystem::path file;        ///< the `.tet` file; empty for `cubes`
-    std::vector<std::string> messages; ///< what a person should know: a damaged cache file rebuilt, triangles dropped
+    std::filesystem::path file; ///< the `.tet` file; empty for `cubes`
+    std::vector<std::string>
+        messages; ///< what a person should know: a damaged cache file rebuilt, triangles dropped, options not used
 };
 
 /// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` is made in place.

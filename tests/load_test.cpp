@@ -83,7 +83,7 @@ protected:
 TEST_F(Load, makes_cubes_in_place)
 {
     request.name = "cubes";
-    request.build.resolution = 5;
+    request.build = {.resolution = 5};
     std::vector<std::string> stages;
     const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double) { stages.push_back(stage); });
     EXPECT_EQ(loaded.hash, scene_hash(make_cubes(5)));
@@ -93,8 +93,49 @@ TEST_F(Load, makes_cubes_in_place)
     EXPECT_FALSE(stages.empty());
     EXPECT_EQ(builder_runs(), 0u);
     EXPECT_FALSE(fs::exists(folder / "cache"));
-    request.build.domain = DomainKind::wide;
-    EXPECT_EQ(load().messages.size(), 1u);
+}
+
+TEST_F(Load, tells_which_options_cubes_do_not_heed)
+{
+    request.name = "cubes";
+    const auto expect_unused = [&](const BuildOptions& options, const std::string& unused) {
+        request.build = options;
+        EXPECT_EQ(load().messages,
+                  std::vector<std::string>{"scene cubes: it is made in place, in a domain of its own: " + unused +
+                                           " not used"});
+    };
+    expect_unused({.domain = DomainKind::wide, .resolution = 3}, "--domain is");
+    expect_unused({.divisions = 3}, "--divisions is");
+    expect_unused({.switches = "p"}, "--switches is");
+    expect_unused({.domain = DomainKind::wide, .divisions = 3, .switches = "p"},
+                  "--domain, --divisions, --switches are");
+}
+
+TEST_F(Load, tells_which_options_a_tet_file_does_not_heed)
+{
+    request.name = prepared.string();
+    const auto expect_unused = [&](const BuildOptions& options, const std::string& unused) {
+        request.build = options;
+        EXPECT_EQ(load().messages, std::vector<std::string>{"scene " + request.name +
+                                                            ": the file is its own scene: " + unused + " not used"});
+    };
+    expect_unused({.domain = DomainKind::wide}, "--domain is");
+    expect_unused({.divisions = 3}, "--divisions is");
+    expect_unused({.switches = "p"}, "--switches is");
+    expect_unused({.resolution = 3}, "--resolution is");
+    request.build = {};
+    EXPECT_TRUE(load().messages.empty());
+}
+
+TEST_F(Load, tells_that_a_mesh_has_no_resolution)
+{
+    request.build.resolution = 3;
+    EXPECT_EQ(load().messages.back(), "scene " + mesh.string() +
+                                          ": it is made of a mesh, and only cubes have a resolution: --resolution is "
+                                          "not used");
+    request.build.resolution = BuildOptions{}.resolution;
+    for (const std::string& message : load().messages)
+        EXPECT_FALSE(contains(message, "--resolution")) << message;
 }
 
 TEST_F(Load, builds_a_mesh_once_and_then_finds_it_in_the_cache)
