@@ -179,11 +179,6 @@ std::string_view name_of(Picture picture)
     return picture == Picture::normals ? "normals" : "steps";
 }
 
-std::string_view name_of(DomainKind kind)
-{
-    return kind == DomainKind::tight ? "tight" : "wide";
-}
-
 Options parse_options(const std::vector<std::string>& arguments)
 {
     if (arguments.empty()) return {};

@@ -66,7 +66,6 @@ struct Options {
 [[nodiscard]] std::string_view name_of(Verb verb);
 [[nodiscard]] std::string_view name_of(Format format);
 [[nodiscard]] std::string_view name_of(Picture picture);
-[[nodiscard]] std::string_view name_of(DomainKind kind);
 
 /// Reads a command line, the program's name left out.
 /// Throws Error{usage} naming what is not accepted, and what is.

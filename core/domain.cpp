@@ -124,6 +124,11 @@ void for_each_square(const Domain& domain, const BoundaryFace& face, std::uint32
 
 } // namespace
 
+std::string_view name_of(DomainKind kind)
+{
+    return kind == DomainKind::tight ? "tight" : "wide";
+}
+
 bool Domain::contains(Float3 p) const
 {
     for (int axis = 0; axis < 3; axis++) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -13,6 +14,8 @@ enum class DomainKind {
     tight, ///< the mesh's bounding box grown by 2 % of its largest extent; rays mostly enter from outside
     wide,  ///< a cube of half-size 3 bounding-sphere radii; cameras are inside, as in the paper
 };
+
+[[nodiscard]] std::string_view name_of(DomainKind kind);
 
 /// The box that the CDT fills, its sides cut into divisions x divisions squares.
 /// lines[axis] holds divisions + 1 ascending coordinates; the first and last are the box's own. Every corner of a
