@@ -75,12 +75,11 @@ struct Ending {
     bool builder_knows = false; ///< the builder's own words hold the remedy; ours is for when it said nothing
 };
 
-constexpr const char* other_switches = "try other switches (`--switches pqY`, `--switches pq3Y`, `--switches p`)";
-
 Ending ending_of_exit(int code)
 {
     switch (code) {
-    case BUILDER_BAD_INPUT: return {ErrorKind::invalid_input, "the mesh cannot be used", "repair the mesh", true};
+    case BUILDER_USAGE: return {ErrorKind::usage, "an option is not accepted", "check `--switches`", true};
+    case BUILDER_BAD_MESH: return {ErrorKind::invalid_input, "the mesh cannot be used", "repair the mesh", true};
     case BUILDER_MISSING_FILE: return {ErrorKind::missing, "a file is missing", "check the paths", true};
     case BUILDER_INTERNAL:
         return {ErrorKind::internal, "the builder failed by its own fault (exit code 4)", "please report it"};
@@ -89,13 +88,12 @@ Ending ending_of_exit(int code)
                 "repair the mesh so that its triangles meet only in shared edges and vertices", true};
     case BUILDER_TETGEN_REFUSED:
         return {ErrorKind::invalid_input, "TetGen refused the mesh",
-                fmt::format("{}, or repair the mesh", other_switches)};
+                fmt::format("{}, or repair the mesh", try_other_switches), true};
     case BUILDER_ABSURD_OUTPUT:
         return {ErrorKind::invalid_input, "TetGen's output failed the checks",
-                fmt::format("{}, or repair the mesh", other_switches)};
+                fmt::format("{}, or repair the mesh", try_other_switches), true};
     case BUILDER_OUT_OF_MEMORY:
-        return {ErrorKind::invalid_input, "the builder ran out of memory",
-                "allow more with `--memory-limit`, or simplify the mesh"};
+        return {ErrorKind::invalid_input, "the builder ran out of memory", std::string(allow_more_memory), true};
     default:
         return {ErrorKind::internal, fmt::format("the builder ended with exit code {}, which is none of its own", code),
                 "check which program TETRACE_BUILDER and PATH lead to"};
@@ -108,7 +106,7 @@ Ending ending_of(const ChildOutcome& outcome, const BuildOptions& options)
     switch (outcome.end) {
     case End::timed_out:
         return {ErrorKind::invalid_input, fmt::format("the time limit of {:g} s was reached", options.time_limit_s),
-                fmt::format("allow more with `--time-limit`, or {}", other_switches)};
+                fmt::format("allow more with `--time-limit`, or {}", try_other_switches)};
     case End::interrupted: return {ErrorKind::interrupted, "interrupted", "run it again to build the scene"};
     case End::signalled:
         return {
@@ -116,7 +114,7 @@ Ending ending_of(const ChildOutcome& outcome, const BuildOptions& options)
             fmt::format("the builder crashed (signal {}, {})", outcome.code, ::strsignal(outcome.code)),
             fmt::format("{}, allow more memory with `--memory-limit`, or repair the mesh: self-intersections are the "
                         "usual cause",
-                        other_switches)};
+                        try_other_switches)};
     case End::exited: break;
     }
     return ending_of_exit(outcome.code);

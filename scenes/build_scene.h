@@ -16,8 +16,8 @@ namespace tetrace {
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`.
 /// notes: the builder's remarks are appended. progress: told each stage about ten times a second.
 /// Throws Error whose text names the way in which the builder ended, the switches, its last stage and what to try:
-/// {missing} no builder, or it misses a file; {interrupted} after Ctrl-C; {internal} its own fault; else
-/// {invalid_input}.
+/// {missing} no builder, or it misses a file; {interrupted} after Ctrl-C; {internal} its own fault;
+/// {usage} switches or divisions that it does not accept; else {invalid_input}.
 void build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
                  const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes);
 

@@ -16,7 +16,8 @@ struct LoadedScene {
 };
 
 /// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` is made in place.
-/// Throws Error{usage} for a name that is neither of the catalogue nor a file (lists the accepted ones),
+/// Throws Error{usage} for a name that is neither of the catalogue nor a file (lists the accepted ones) and for
+/// switches that the builder does not accept,
 /// Error{missing} for a mesh that cannot be had here, Error{invalid_input} with the builder's finding,
 /// Error{interrupted} after Ctrl-C (the builder is ended too).
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);

@@ -366,6 +366,7 @@ protected:
         } catch (const BuilderFailure& failure) {
             EXPECT_EQ(failure.code(), BUILDER_ABSURD_OUTPUT);
             EXPECT_NE(std::string(failure.what()).find(part), std::string::npos) << failure.what();
+            EXPECT_NE(std::string(failure.what()).find(try_other_switches), std::string::npos) << failure.what();
         }
     }
 
@@ -499,23 +500,22 @@ TEST_F(Builder, answers_help_and_version)
 TEST_F(Builder, refuses_wrong_options_with_code_2)
 {
     const auto mesh = write("a.off", to_off(tetrahedron()));
-    EXPECT_EQ(run("").code, BUILDER_BAD_INPUT);
+    EXPECT_EQ(run("").code, BUILDER_USAGE);
     for (const std::string wrong :
-         {"--domian tight", "--domain square", "--divisions 0", "--divisions 1000", "--divisions two", "--switches q5",
+         {"--domian tight", "--domain square", "--divisions 0", "--divisions 65", "--divisions two", "--switches q5",
           "--switches pr", "--switches pq5Yo2", "extra"}) {
         const auto ended = run_on(mesh, wrong);
-        EXPECT_EQ(ended.code, BUILDER_BAD_INPUT) << wrong;
+        EXPECT_EQ(ended.code, BUILDER_USAGE) << wrong;
         EXPECT_EQ(ended.errors.rfind("error: ", 0), 0u) << wrong << ": " << ended.errors;
     }
 }
 
-TEST_F(Builder, refuses_bad_meshes_with_code_2)
+TEST_F(Builder, refuses_bad_meshes_with_code_5)
 {
     const auto ended = run_on(write("a.off", "OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n"));
-    EXPECT_EQ(ended.code, BUILDER_BAD_INPUT);
+    EXPECT_EQ(ended.code, BUILDER_BAD_MESH);
     EXPECT_NE(ended.errors.find("a.off: vertex 1 (line 4)"), std::string::npos) << ended.errors;
-    EXPECT_EQ(run_on(write("b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n")).code, BUILDER_BAD_INPUT)
-        << "no area";
+    EXPECT_EQ(run_on(write("b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n")).code, BUILDER_BAD_MESH) << "no area";
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.tet"));
 }
 
@@ -542,6 +542,7 @@ TEST_F(Builder, tells_tetgens_refusal_with_code_11)
     const auto ended = run_on(write("a.off", to_off(hinge)));
     EXPECT_EQ(ended.code, BUILDER_TETGEN_REFUSED) << ended.errors;
     EXPECT_NE(ended.errors.find("error: TetGen gave up with code 3"), std::string::npos) << ended.errors;
+    EXPECT_NE(ended.errors.find(try_other_switches), std::string::npos) << ended.errors;
 }
 
 TEST_F(Builder, tells_exhausted_memory_with_code_13)
@@ -552,6 +553,7 @@ TEST_F(Builder, tells_exhausted_memory_with_code_13)
     const auto ended = run_on(mesh, "", "ulimit -v 200000; ");
     EXPECT_EQ(ended.code, BUILDER_OUT_OF_MEMORY) << ended.errors;
     EXPECT_NE(ended.errors.find("out of memory"), std::string::npos) << ended.errors;
+    EXPECT_NE(ended.errors.find(allow_more_memory), std::string::npos) << ended.errors;
 }
 
 } // namespace

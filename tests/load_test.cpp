@@ -252,13 +252,14 @@ TEST_F(Load, maps_each_exit_code_to_its_own_error)
         int code;
         const char* kind;
         const char* what;
-    } cases[] = {{BUILDER_BAD_INPUT, "invalid_input: ", "the mesh cannot be used"},
+    } cases[] = {{BUILDER_USAGE, "usage: ", "an option is not accepted"},
+                 {BUILDER_BAD_MESH, "invalid_input: ", "the mesh cannot be used"},
                  {BUILDER_MISSING_FILE, "missing: ", "a file is missing"},
                  {BUILDER_INTERNAL, "internal: ", "its own fault"},
                  {BUILDER_SELF_INTERSECTION, "invalid_input: ", "the mesh intersects itself"},
                  {BUILDER_TETGEN_REFUSED, "invalid_input: ", "TetGen refused the mesh"},
                  {BUILDER_ABSURD_OUTPUT, "invalid_input: ", "TetGen's output failed the checks"},
-                 {BUILDER_OUT_OF_MEMORY, "invalid_input: ", "--memory-limit"},
+                 {BUILDER_OUT_OF_MEMORY, "invalid_input: ", "the builder ran out of memory"},
                  {77, "internal: ", "exit code 77"}};
     for (const auto& c : cases) {
         const std::string error =
@@ -273,8 +274,24 @@ TEST_F(Load, maps_each_exit_code_to_its_own_error)
 
 TEST_F(Load, gives_a_remedy_where_the_builder_has_none)
 {
-    for (const int code : {BUILDER_BAD_INPUT, BUILDER_SELF_INTERSECTION, BUILDER_TETGEN_REFUSED, BUILDER_ABSURD_OUTPUT})
+    for (const int code : {BUILDER_BAD_MESH, BUILDER_SELF_INTERSECTION, BUILDER_TETGEN_REFUSED, BUILDER_ABSURD_OUTPUT})
         EXPECT_TRUE(contains(error_with("exit " + std::to_string(code)), "repair the mesh"));
+}
+
+TEST_F(Load, says_each_remedy_once)
+{
+    const std::pair<int, std::string> cases[] = {{BUILDER_TETGEN_REFUSED, std::string(try_other_switches)},
+                                                 {BUILDER_ABSURD_OUTPUT, std::string(try_other_switches)},
+                                                 {BUILDER_OUT_OF_MEMORY, std::string(allow_more_memory)}};
+    for (const auto& [code, remedy] : cases) {
+        const std::string exit = "exit " + std::to_string(code);
+        for (const std::string& script : {"echo \"error: a finding; " + remedy + "\" >&2; " + exit, exit}) {
+            const std::string error = error_with(script);
+            EXPECT_TRUE(contains(error, remedy));
+            EXPECT_EQ(error.find(remedy), error.rfind(remedy)) << error;
+            EXPECT_EQ(error.find("switches ("), error.rfind("switches (")) << error;
+        }
+    }
 }
 
 TEST_F(Load, tells_a_crash)

@@ -93,11 +93,10 @@ void require_sound(const Scene& scene, const TetgenOutput& output, const Roundin
     const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
     if (!defect) defect = find_gap(scene.tets, scene.mesh, size);
     if (!defect) return;
-    throw BuilderFailure(
-        BUILDER_ABSURD_OUTPUT,
-        fmt::format("checking TetGen's output: {}: {}{}; try other --switches (pq5YMT1e-13, pq5, p), or "
-                    "repair the mesh",
-                    name_of(defect->kind), defect->what, origin_of(*defect, output, rounding)));
+    throw BuilderFailure(BUILDER_ABSURD_OUTPUT,
+                         fmt::format("checking TetGen's output: {}: {}{}; {}, or repair the mesh",
+                                     name_of(defect->kind), defect->what, origin_of(*defect, output, rounding),
+                                     try_other_switches));
 }
 
 void require_entry_grid(const Scene& scene)
@@ -105,8 +104,8 @@ void require_entry_grid(const Scene& scene)
     try {
         static_cast<void>(make_entry_grid(scene.domain, scene.tets));
     } catch (const Error& error) {
-        throw BuilderFailure(BUILDER_ABSURD_OUTPUT,
-                             fmt::format("checking TetGen's output: the domain's sides: {}", error.what()));
+        throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking TetGen's output: the domain's sides: {}; {}",
+                                                                error.what(), try_other_switches));
     }
 }
 

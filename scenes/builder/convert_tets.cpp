@@ -20,8 +20,8 @@ constexpr std::uint32_t interior_steps = 1 << 12; // one that only free faces sh
 
 [[noreturn]] void absurd(const std::string& what)
 {
-    throw BuilderFailure(BUILDER_ABSURD_OUTPUT, "checking TetGen's output: " + what +
-                                                    "; try other --switches (pq5YMT1e-13, pq5, p), or repair the mesh");
+    throw BuilderFailure(BUILDER_ABSURD_OUTPUT,
+                         fmt::format("checking TetGen's output: {}; {}, or repair the mesh", what, try_other_switches));
 }
 
 using Triple = std::array<std::int32_t, 3>;

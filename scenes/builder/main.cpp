@@ -30,6 +30,14 @@ BuilderTalk talk()
     return {[](const std::string& text) { say("stage", text); }, [](const std::string& text) { say("note", text); }};
 }
 
+int code_of(ErrorKind kind)
+{
+    return kind == ErrorKind::invalid_input ? BUILDER_BAD_MESH : exit_code(kind);
+}
+static_assert(exit_code(ErrorKind::usage) == BUILDER_USAGE && exit_code(ErrorKind::missing) == BUILDER_MISSING_FILE &&
+                  exit_code(ErrorKind::internal) == BUILDER_INTERNAL,
+              "the program's codes are the builder's, but for a bad mesh");
+
 // Runs one part of the work and says why it failed, where it did.
 template <class Work>
 int guarded(const Work& work)
@@ -39,12 +47,12 @@ int guarded(const Work& work)
         return BUILDER_GOOD;
     } catch (const Error& error) {
         say("error", error.what());
-        return exit_code(error.kind());
+        return code_of(error.kind());
     } catch (const BuilderFailure& failure) {
         say("error", failure.what());
         return failure.code();
     } catch (const std::bad_alloc&) {
-        say("error", "out of memory; give the builder more, or simplify the mesh");
+        say("error", fmt::format("out of memory; {}", allow_more_memory));
         return BUILDER_OUT_OF_MEMORY;
     } catch (const std::exception& unexpected) {
         say("error", fmt::format("internal: {}; please report it with the mesh", unexpected.what()));
@@ -69,11 +77,11 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                    "tight: the mesh's box grown by 2 %; wide: a cube of half-size 3 radii; default: tight")
         ->check(CLI::IsMember({"tight", "wide"}).description(""))
         ->type_name("tight|wide");
-    app.add_option("--divisions", options.divisions, "squares along each side of the domain, 1 to 256; default: 8")
-        ->check(CLI::Range(1, 256).description(""))
+    app.add_option("--divisions", options.divisions, "squares along each side of the domain, 1 to 64; default: 8")
+        ->check(CLI::Range(1, 64).description(""))
         ->type_name("N");
     app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
-    app.footer("Exit codes: 0 good; 2 usage or bad mesh; 3 file missing; 4 internal; 10 self-intersections; 11 TetGen "
+    app.footer("Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
                "refused;\n"
                "12 TetGen's output failed a check; 13 out of memory.");
     try {
@@ -84,7 +92,7 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
         return app.exit(asked);
     } catch (const CLI::ParseError& wrong) {
         say("error", fmt::format("reading the command line: {}; see tetrace-builder --help", wrong.what()));
-        return BUILDER_BAD_INPUT;
+        return BUILDER_USAGE;
     }
 }
 

@@ -119,14 +119,12 @@ const char* meaning_of(int code)
     }
 }
 
-const char* remedy_for(int code)
+std::string remedy_for(int code)
 {
-    switch (code) {
-    case 3:
-    case 4: return "try --switches pq5YMT1e-13, or --switches p, or repair the mesh (merge nearly equal vertices)";
-    case 5: return "try --switches with Y, for example pq5Y";
-    default: return "try other --switches (pq5YMT1e-13, pq5, p), or repair the mesh";
-    }
+    if (code == 5) return "try --switches with Y, for example pq5Y"; // TetGen's own hint
+    const bool too_near = code == 3 || code == 4;
+    return fmt::format("{}, or repair the mesh{}", try_other_switches,
+                       too_near ? " (merge nearly equal vertices)" : "");
 }
 
 [[noreturn]] void end_process(int code, const std::string& text)
@@ -180,11 +178,11 @@ void explain_tetgen_failure()
             std::rethrow_exception(current);
         } catch (const int code) {
             if (code == 1)
-                end_process(BUILDER_OUT_OF_MEMORY, "TetGen: out of memory; give it more, or simplify the mesh");
+                end_process(BUILDER_OUT_OF_MEMORY, fmt::format("TetGen: out of memory; {}", allow_more_memory));
             end_process(BUILDER_TETGEN_REFUSED,
                         fmt::format("TetGen gave up with code {}: {}; {}", code, meaning_of(code), remedy_for(code)));
         } catch (const std::bad_alloc&) {
-            end_process(BUILDER_OUT_OF_MEMORY, "TetGen: out of memory; give it more, or simplify the mesh");
+            end_process(BUILDER_OUT_OF_MEMORY, fmt::format("TetGen: out of memory; {}", allow_more_memory));
         } catch (const std::exception& unexpected) {
             end_process(BUILDER_INTERNAL, fmt::format("an exception that nothing handles: {}", unexpected.what()));
         } catch (...) {
