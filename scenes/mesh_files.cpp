@@ -34,7 +34,7 @@ bool is_file(const fs::path& path)
 bool locate_in(const fs::path& folder, const CatalogueEntry& entry, MeshLocation& found)
 {
     for (const std::string& name : entry.file_names)
-        if (is_file(folder / name)) found.file = folder / name;
+        if (found.file.empty() && is_file(folder / name)) found.file = folder / name;
     if (found.file.empty() && is_file(folder / entry.archive_member)) found.file = folder / entry.archive_member;
     for (const fs::path& archive : {folder / "data.tar.gz", folder / package_archive})
         if (found.file.empty() && found.archive.empty() && is_file(archive)) found.archive = archive;

@@ -69,6 +69,14 @@ TEST_F(Catalogue, prefers_a_mesh_in_the_folder_that_the_user_names)
     EXPECT_EQ(why_not_available("bunny"), "");
 }
 
+TEST_F(Catalogue, takes_the_first_of_a_mesh_s_names)
+{
+    const ScopedVariable given("TETRACE_MESHES", meshes);
+    write_text(meshes / "bun_zipper.ply", "Stanford's own");
+    write_text(meshes / "bunny00.off", "the one that results are of");
+    EXPECT_EQ(mesh_file(row("bunny")), meshes / "bunny00.off");
+}
+
 TEST_F(Catalogue, finds_the_archive_in_an_unpacked_package)
 {
     const ScopedVariable given("TETRACE_MESHES", meshes);

@@ -129,6 +129,19 @@ TEST_F(MeshReader, reads_off_with_comments_and_colours)
         read("c.OFF", "NOFF 3 1 0\r\n0 0 0 0 0 1\r\n1 0 0 0 0 1\r\n0 1 0 0 0 1\r\n3 0 1 2\r\n"));
 }
 
+TEST_F(MeshReader, skips_a_byte_order_mark)
+{
+    const std::string mark = "\xEF\xBB\xBF", obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    EXPECT_EQ(read("a.off", mark + tetrahedron_off), read("b.off", tetrahedron_off));
+    EXPECT_EQ(read("a.obj", mark + obj), read("b.obj", obj));
+    for (const auto& format : ply_formats)
+        EXPECT_EQ(read("a.ply", mark + stanford_ply(format)), read("b.ply", stanford_ply(format))) << format;
+    std::string stl = binary_stl();
+    stl.replace(0, mark.size(), mark); // a binary header may hold anything, and keeps its place
+    EXPECT_EQ(read("a.stl", stl), read("b.stl", binary_stl()));
+    expect_error("c.off", mark, {"header", "no text"});
+}
+
 TEST_F(MeshReader, cuts_polygons_into_fans)
 {
     const std::vector<std::array<std::uint32_t, 3>> fan = {{0, 1, 2}, {0, 2, 3}};

@@ -26,6 +26,13 @@ std::string read_bytes(const std::filesystem::path& path)
     return bytes;
 }
 
+// Some editors put UTF-8's mark before text. A binary STL may begin with any bytes, and its offsets count from them.
+std::string_view without_byte_order_mark(std::string_view bytes, const std::string& extension)
+{
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    return bytes.starts_with(mark) && extension != ".stl" ? bytes.substr(mark.size()) : bytes;
+}
+
 void read_as(const std::string& extension, MeshSource& source)
 {
     if (extension == ".ply") return read_ply(source);
@@ -45,9 +52,10 @@ MeshSoup read_mesh(const std::filesystem::path& path)
 
 MeshSoup parse_mesh(const std::filesystem::path& path, std::string_view bytes)
 {
-    MeshSource source(path.string(), bytes);
+    const std::string extension = lower_case(path.extension().string());
+    MeshSource source(path.string(), without_byte_order_mark(bytes, extension));
     if (bytes.empty()) source.fail("file", "it is empty");
-    read_as(lower_case(path.extension().string()), source);
+    read_as(extension, source);
     MeshSoup& soup = source.soup();
     if (soup.mesh.vertices.empty())
         source.fail("mesh", "it has no vertices", "export the mesh again, with its geometry");

@@ -16,10 +16,10 @@ struct MeshSoup {
 };
 
 /// Reads PLY (ascii, binary of either byte order), OBJ, OFF (with C, N and ST prefixes) or STL (ascii, binary), chosen
-/// by the extension and verified by the content. Polygons are cut into fans; coordinates are rounded to the nearest
-/// float. Throws Error{missing} where there is no such file, and Error{invalid_input} that names file, element and
-/// remedy for: an unknown format, a truncated file, a count that the file cannot hold, a NaN, infinite or too large
-/// coordinate, an index out of range, a mesh without triangles.
+/// by the extension and verified by the content; a UTF-8 byte order mark is skipped, but in STL. Polygons are cut into
+/// fans; coordinates are rounded to the nearest float. Throws Error{missing} where there is no such file, and
+/// Error{invalid_input} that names file, element and remedy for: an unknown format, a truncated file, a count that the
+/// file cannot hold, a NaN, infinite or too large coordinate, an index out of range, a mesh without triangles.
 [[nodiscard]] MeshSoup read_mesh(const std::filesystem::path& path);
 
 /// The same from a file's bytes; the path serves for its extension and for messages only.
