@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <omp.h>
 
 namespace tetrace {
 
@@ -26,7 +25,7 @@ void copy_words(std::uint64_t* to, const std::uint64_t* from, int threads)
 
 double copy_bandwidth(unsigned threads)
 {
-    const int team = threads != 0 ? static_cast<int>(threads) : omp_get_max_threads();
+    const int team = static_cast<int>(threads);
     // Not initialised here: each page belongs to the thread that touches it first.
     const std::unique_ptr<std::uint64_t[]> a(new std::uint64_t[words]), b(new std::uint64_t[words]);
 #pragma omp parallel for schedule(static) num_threads(team)

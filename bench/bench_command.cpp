@@ -25,19 +25,20 @@ int bench_command(const Options& options)
         selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
     if (options.list || flags.list_tests) return list_rows(keys);
     check_output(options);
+    if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
     BenchResult result;
     result.missing_scenes = missing_default_scenes(options);
     result.run = open_and_verify(keys, options);
     result.measurement = measure_rows(result.run.rows, options, flags);
     progress_line().show("measuring the memory's bandwidth", -1);
-    result.copy_bytes_per_s = copy_bandwidth(options.threads);
+    result.copy_bytes_per_s = copy_bandwidth(resolved_threads(options));
     const Report report = bench_report(result, options);
     // Google Benchmark has written its own form to standard output already, where it was asked to.
     if (!flags.format)
         deliver(options, report);
     else if (options.out)
         deliver_to_file(options, report);
-    return exit_code(result.run.rows);
+    return exit_code(result.run.rows, true);
 }
 
 } // namespace tetrace

@@ -42,12 +42,12 @@ bool take_flag(BenchmarkFlags& flags, const std::string& name, const std::string
     return true;
 }
 
-} // namespace
-
+/// Calls benchmark::Initialize, once only: each call would add the flags' context again.
 void initialize_benchmark(const std::vector<std::string>& flags)
 {
     static char program[] = "tetrace"; // Google Benchmark keeps this pointer to the end
-    std::vector<std::string> texts = flags;
+    std::vector<std::string> texts = {"--benchmark_enable_random_interleaving=true"};
+    texts.insert(texts.end(), flags.begin(), flags.end()); // the user's come last: they win
     std::vector<char*> arguments = {program};
     for (std::string& text : texts)
         arguments.push_back(text.data());
@@ -64,19 +64,22 @@ void initialize_benchmark(const std::vector<std::string>& flags)
                                           "--benchmark_perf_counters, --benchmark_time_unit, --benchmark_min_time");
 }
 
+} // namespace
+
 BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments)
 {
     BenchmarkFlags flags;
+    std::vector<std::string> handed_on;
     for (const std::string& argument : arguments) {
         const auto equals = argument.find('=');
         const std::string name = argument.substr(0, equals);
         const std::string value = equals == std::string::npos ? "" : argument.substr(equals + 1);
         if (take_flag(flags, name, value)) continue;
         if (name == "--benchmark_out") flags.out = value;
-        flags.handed_on.push_back(argument);
+        handed_on.push_back(argument);
     }
     static_cast<void>(benchmark_filter_keeps(flags.filter, "")); // is it an expression?
-    initialize_benchmark(flags.handed_on);
+    initialize_benchmark(handed_on);
     return flags;
 }
 

@@ -14,14 +14,11 @@ struct BenchmarkFlags {
     std::optional<std::string> format;   ///< --benchmark_format: its output on standard output in place of the table
     std::string out;                     ///< --benchmark_out
     std::string out_format = "json";     ///< --benchmark_out_format
-    std::vector<std::string> handed_on;  ///< to benchmark::Initialize
 };
 
-/// Reads them and lets Google Benchmark check the others.
+/// Reads them, and initialises Google Benchmark with the others; rows are interleaved at random unless they say
+/// otherwise. To be called once: Google Benchmark keeps its flags to the program's end.
 /// Throws Error{usage} naming a flag that it does not know, or a value that is not accepted.
 [[nodiscard]] BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments);
-
-/// Calls benchmark::Initialize; throws Error{usage} naming a flag that it leaves.
-void initialize_benchmark(const std::vector<std::string>& flags);
 
 } // namespace tetrace

@@ -177,6 +177,17 @@ Options with_default_structure(Options options)
     return options;
 }
 
+/// A required backend without a selected row would pass unseen.
+void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
+{
+    for (const std::string& name : backends)
+        if (std::none_of(keys.begin(), keys.end(), [&](const RowKey& key) { return key.backend == name; }))
+            throw Error(ErrorKind::missing,
+                        fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace check "
+                                    "--list' with the same options prints those that are",
+                                    name));
+}
+
 /// A required backend whose rows were all selected but not judged has not been checked.
 void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
 {
@@ -187,14 +198,6 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
             throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
                                                         row_name(row.key), name_of(status), reason_of(row)));
     }
-}
-
-int check_exit_code(const std::vector<RowRun>& rows, const Options& options)
-{
-    const bool flawed =
-        std::any_of(rows.begin(), rows.end(), [](const RowRun& row) { return status_of(row) == Status::flawed; });
-    if (flawed && !options.allow_flawed) return 1;
-    return exit_code(rows);
 }
 
 } // namespace
@@ -210,12 +213,13 @@ int check_command(const Options& asked)
     }
     check_output(options);
     require_devices(options.required);
+    require_selected(keys, options.required);
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
     const SceneRows run = open_and_verify(keys, options);
     deliver(options, check_report(run, options));
     require_judged(run.rows, options.required);
-    return check_exit_code(run.rows, options);
+    return exit_code(run.rows, options.allow_flawed);
 }
 
 } // namespace tetrace

@@ -41,9 +41,11 @@ const VerbHelp verb_help[] = {
      "Google Benchmark, rows interleaved at random. A row is a combination of scene, structure, method, layout, kind "
      "of rays, math mode and backend. Defaults: maria on tet80 and tet96 with openmp, and Embree with single rays and "
      "packets of 16.\n\n"
-     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong or lost (their number is told, the rate "
-     "stands); 'wrong', it differs from openmp's answers (no rate); 'unsupported' and 'skipped', with the reason; "
-     "'error', with the reason. 'noisy' is added where the interquartile range exceeds 5 % of the median.\n\n"
+     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong (their number is told, the rate "
+     "stands); 'wrong', it differs from openmp's answers, or a walk reached its cap of steps and its ray is lost (no "
+     "rate, exit code 1); 'unsupported', the host or the device cannot run this kernel, and 'skipped', there is no "
+     "usable device here, with the reason; 'error', with the reason. 'noisy' is added where the interquartile range "
+     "exceeds 5 % of the median.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
      "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
      "sample.",
@@ -57,8 +59,9 @@ const VerbHelp verb_help[] = {
      "layout and mode, and against Embree in robust mode, where each disagreement is settled in exact arithmetic on "
      "the original triangles. Both answers right within rounding of a shared edge are a tie; Embree's being the "
      "inexact one is settled; else the ray is wrong. The first wrong ray is printed in full. Exits with 1 where "
-     "anything is wrong or lost; --allow-flawed lets the wrong rays of a method itself pass. Embree's own rows, which "
-     "may be flawed, are judged where an option names them.",
+     "anything is wrong or lost; --allow-flawed lets the wrong rays of a method itself pass, but no lost ones. Rows of "
+     "structure cdt are judged by default; Embree's own, which may be flawed, where --structure, --method, --layout, "
+     "--backend, --filter or --require names them.",
      "  tetrace check --scene cubes --require openmp\n"
      "  tetrace check --scene bunny --structure cdt,bvh --allow-flawed\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},

@@ -6,7 +6,6 @@
 #include "core/hash.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 #include <iostream>
 #include <sstream>
 
@@ -30,19 +29,6 @@ double expected_sweep_s(const std::vector<RowRun>& rows)
     return sum;
 }
 
-/// Traces all views once; device seconds.
-double trace_views(RowRun& row)
-{
-    const Stopwatch watch;
-    double kernel_s = 0;
-    for (std::size_t view = 0; view < row.scene->views().size(); ++view) {
-        row.session->launch(row.scene->job(view, row.packed ? &row.packed->scene : nullptr));
-        kernel_s += row.session->wait();
-    }
-    row.wall_samples_s.push_back(watch.seconds());
-    return kernel_s;
-}
-
 /// The same counters for every row: Google Benchmark's CSV ends the program otherwise. Steps are in our own section.
 void set_counters(benchmark::State& state, const RowRun& row)
 {
@@ -55,12 +41,30 @@ struct Sweep {
     double done = 0, all = 1;
 };
 
+/// Traces all views once; device seconds.
+double trace_views(RowRun& row, const Sweep& sweep)
+{
+    const std::size_t views = row.scene->views().size();
+    double kernel_s = 0, wall_s = 0;
+    for (std::size_t view = 0; view < views; ++view) {
+        // Between the clocks: a sample may take minutes, and what is drawn costs no row anything.
+        progress_line().show("measuring, rows interleaved",
+                             (sweep.done + static_cast<double>(view) / static_cast<double>(views)) / sweep.all);
+        const TraceJob job = row.scene->job(view, row.packed ? &row.packed->scene : nullptr);
+        const Stopwatch watch;
+        row.session->launch(job);
+        kernel_s += row.session->wait();
+        wall_s += watch.seconds();
+    }
+    row.wall_samples_s.push_back(wall_s);
+    return kernel_s;
+}
+
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
 {
     for ([[maybe_unused]] const auto iteration : state) {
-        progress_line().show("measuring, rows interleaved", sweep.done / sweep.all);
         double seconds = 0;
-        if (traced(row) != nullptr) guarded(row, [&] { seconds = trace_views(row); });
+        if (traced(row) != nullptr) guarded(row, [&] { seconds = trace_views(row, sweep); });
         if (traced(row) == nullptr) {
             state.SkipWithError(reason_of(row).c_str());
             return;
@@ -73,7 +77,7 @@ void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
     set_counters(state, row);
 }
 
-void register_rows(std::vector<RowRun>& rows, Sweep& sweep)
+void register_rows(std::vector<RowRun>& rows, unsigned samples, Sweep& sweep)
 {
     benchmark::ClearRegisteredBenchmarks();
     for (RowRun& row : rows)
@@ -81,6 +85,7 @@ void register_rows(std::vector<RowRun>& rows, Sweep& sweep)
             benchmark::RegisterBenchmark(row_name(row.key).c_str(),
                                          [&row, &sweep](benchmark::State& state) { run_row(state, row, sweep); })
                 ->Iterations(1)
+                ->Repetitions(static_cast<int>(samples))
                 ->UseManualTime()
                 ->Unit(benchmark::kMillisecond);
 }
@@ -120,16 +125,6 @@ private:
     std::unique_ptr<std::ostringstream> text_;
 };
 
-std::vector<std::string> all_flags(const BenchmarkFlags& flags, unsigned samples)
-{
-    // The user's come last: they win. The filter was applied to the rows themselves, under the names that are reported.
-    std::vector<std::string> all = {"--benchmark_enable_random_interleaving=true",
-                                    fmt::format("--benchmark_repetitions={}", samples)};
-    all.insert(all.end(), flags.handed_on.begin(), flags.handed_on.end());
-    all.emplace_back("--benchmark_filter=all");
-    return all;
-}
-
 /// A device that answers differently under repetition must not keep its rate.
 void check_last_view(RowRun& row)
 {
@@ -168,12 +163,12 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     if (timed == 0) return result;
     const Stopwatch watch;
     Sweep sweep{0, static_cast<double>(timed) * result.samples};
-    register_rows(rows, sweep);
-    initialize_benchmark(all_flags(flags, result.samples));
+    register_rows(rows, result.samples, sweep);
     std::ostringstream json;
     const auto display = make_display(flags, json);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
-    benchmark::RunSpecifiedBenchmarks(display.get(), file.get());
+    // The filter was applied to the rows themselves, under the names that are reported.
+    benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
     progress_line().clear();
     check_rows_after(rows);
     result.google_benchmark = nlohmann::json::parse(json.str());

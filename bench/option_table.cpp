@@ -118,17 +118,22 @@ std::vector<OptionRow> row_options()
 {
     const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::input};
     return {
-        {"Rows", "--structure", "NAME", "Keep the rows of this structure: cdt or bvh. Default: both.", tracing, true,
-         append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
+        {"Rows", "--structure", "NAME",
+         "Keep the rows of this structure: cdt or bvh. Default: both; of 'check', cdt, unless another option "
+         "selects rows.",
+         tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: maria (exit-face search of the cdt), single or packet16 (Embree's entry "
-         "points). Default: all.",
+         "points). Default: all of the structures kept.",
          tracing, true, append("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this packed form: tet80, tet96, or embree, what Embree builds for itself. Default: all.",
+         "Keep the rows of this packed form: tet80, tet96, or embree, what Embree builds for itself. Default: all "
+         "of the structures kept.",
          tracing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
-         "Keep the rows of this backend ('tetrace devices' lists them). Default: all that have a usable device.",
+         "Keep the rows of this backend ('tetrace devices' lists them). Default: all that have a kernel of the "
+         "structures "
+         "kept.",
          tracing, true, append_backend("--backend", &Options::backends)},
         {"Rows", "--rays", "KIND", "Keep the rows of this kind of rays: primary. Default: primary.", measuring, true,
          append("--rays", &Options::rays, std::vector<RayKind>{RayKind::primary})},
@@ -166,7 +171,9 @@ std::vector<OptionRow> ray_options()
          with_rays, true, [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH", "Image size in pixels, a ray each; N is NxN. Default: 1024x1024.", with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
-        {"Rays", "--threads", "N", "Host threads, 0 for all that the process may use. Default: 0.", with_rays, false,
+        {"Rays", "--threads", "N",
+         "Host threads; 0 for OMP_NUM_THREADS, where it is set, else all that the process may use. Default: 0.",
+         with_rays, false,
          [](Options& o, const std::string& v) {
              o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
          }},
@@ -186,11 +193,12 @@ std::vector<OptionRow> judging_options()
          "rows say so. Default: 25s.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
         {"Judging", "--require", "BACKEND",
-         "Fail with exit code 3 unless this backend has a usable device, and no row of it is skipped.",
+         "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
+         "none is "
+         "skipped or unsupported.",
          bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
         {"Judging", "--allow-flawed", "",
-         "Exit with 0 where a method itself has wrong or lost rays, as the older methods do; rows that differ from "
-         "openmp still fail.",
+         "Exit with 0 where a method itself has wrong rays; lost rays, and rows that differ from openmp, still fail.",
          bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "

@@ -40,10 +40,10 @@ std::string in_format(const Report& report, Format format)
     throw Error(ErrorKind::internal, "in_format: no such format");
 }
 
-[[noreturn]] void reject_file(const std::filesystem::path& path)
+[[noreturn]] void reject_file(const char* option, const std::filesystem::path& path)
 {
-    throw Error(ErrorKind::invalid_input, fmt::format("writing the result to '{}': {}; name another file with --out",
-                                                      path.string(), std::strerror(errno)));
+    throw Error(ErrorKind::invalid_input, fmt::format("writing the result to '{}': {}; name another file with {}",
+                                                      path.string(), std::strerror(errno), option));
 }
 
 } // namespace
@@ -52,9 +52,14 @@ void check_output(const Options& options)
 {
     if (!options.out) return;
     static_cast<void>(format_of_file(options));
-    const bool existed = std::filesystem::exists(*options.out);
-    if (!std::ofstream(*options.out, std::ios::app)) reject_file(*options.out);
-    if (!existed) std::filesystem::remove(*options.out);
+    check_writable("--out", *options.out);
+}
+
+void check_writable(const char* option, const std::filesystem::path& path)
+{
+    const bool existed = std::filesystem::exists(path);
+    if (!std::ofstream(path, std::ios::app)) reject_file(option, path);
+    if (!existed) std::filesystem::remove(path);
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text)
@@ -62,7 +67,7 @@ void write_text(const std::filesystem::path& path, const std::string& text)
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file << text;
     file.close();
-    if (!file) reject_file(path);
+    if (!file) reject_file("--out", path);
 }
 
 void deliver_to_file(const Options& options, const Report& report)

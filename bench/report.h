@@ -19,6 +19,10 @@ struct Report {
 /// Throws Error{usage} or Error{invalid_input} naming the file.
 void check_output(const Options& options);
 
+/// Leaves no file behind that was not there. Throws Error{invalid_input} naming the option, the file and the system's
+/// reason where it cannot be written.
+void check_writable(const char* option, const std::filesystem::path& path);
+
 /// Writes the report where --format and --out say: standard output, the file, or both.
 /// Throws Error{invalid_input} naming the file and the system's reason.
 void deliver(const Options& options, const Report& report);

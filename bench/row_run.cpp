@@ -41,18 +41,18 @@ void open_session(RowRun& row, const Options& options)
     if (row.key.kernel.structure == Structure::cdt)
         row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
     const SceneData data{&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr};
-    row.session = row.backend->open(*device, row.key.kernel, data, SessionOptions{options.threads});
+    row.session = row.backend->open(*device, row.key.kernel, data, SessionOptions{resolved_threads(options)});
 }
 
 std::string traced_reason(const Traced& traced)
 {
-    if (traced.different > 0) return fmt::format("{} rays differ from openmp's", traced.different);
     std::string text;
     const auto add = [&](std::uint64_t count, const char* what) {
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
     };
-    add(traced.verdicts.wrong, "wrong");
+    add(traced.different, "different from openmp's");
     add(traced.verdicts.lost, "lost");
+    add(traced.verdicts.wrong, "wrong");
     return text;
 }
 
@@ -81,8 +81,8 @@ Status status_of(const RowRun& row)
     if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->status;
     const Traced* result = traced(row);
     if (result == nullptr) return Status::error;
-    if (result->different > 0) return Status::wrong;
-    return result->flawed_rays() > 0 ? Status::flawed : Status::ok;
+    if (result->different > 0 || result->verdicts.lost > 0) return Status::wrong;
+    return result->verdicts.wrong > 0 ? Status::flawed : Status::ok;
 }
 
 std::string reason_of(const RowRun& row)
@@ -128,10 +128,13 @@ RowRun failed_row(const RowKey& key, const Error& error)
     return row;
 }
 
-int exit_code(const std::vector<RowRun>& rows)
+int exit_code(const std::vector<RowRun>& rows, bool flawed_passes)
 {
-    if (std::any_of(rows.begin(), rows.end(), [](const RowRun& row) { return status_of(row) == Status::wrong; }))
-        return 1;
+    const auto fails = [&](const RowRun& row) {
+        const Status status = status_of(row);
+        return status == Status::wrong || (status == Status::flawed && !flawed_passes);
+    };
+    if (std::any_of(rows.begin(), rows.end(), fails)) return 1;
     for (const RowRun& row : rows)
         if (const auto* failed = std::get_if<Failed>(&row.outcome)) return exit_code(failed->kind);
     return 0;

@@ -15,7 +15,7 @@
 
 namespace tetrace {
 
-/// How a row ended; see `tetrace help bench`.
+/// How a row ended; see `tetrace help bench`. A row is wrong where it differs from openmp, or has lost a ray.
 enum class Status { ok, flawed, wrong, unsupported, skipped, error };
 [[nodiscard]] std::string_view name_of(Status status);
 
@@ -37,9 +37,6 @@ struct Traced {
     double kernel_s = 0; ///< device seconds of this first pass
     double wall_s = 0;   ///< launch to end, on the host's clock
     double download_s = 0;
-
-    /// Rays that the method itself has wrong or lost.
-    [[nodiscard]] std::uint64_t flawed_rays() const { return verdicts.wrong + verdicts.lost; }
 };
 struct Skipped {
     Status status = Status::skipped; ///< or unsupported
@@ -61,7 +58,7 @@ struct RowRun {
     std::unique_ptr<Session> session;
     Outcome outcome = Traced{};
     std::vector<double> samples_s;      ///< device seconds for all selected views, one a repetition
-    std::vector<double> wall_samples_s; ///< the same on the host's clock, launches included
+    std::vector<double> wall_samples_s; ///< the same on the host's clock, from launch to the end of wait
 };
 
 [[nodiscard]] Status status_of(const RowRun& row);
@@ -80,7 +77,8 @@ struct RowRun {
 /// on.
 void guarded(RowRun& row, const std::function<void()>& work);
 
-/// The exit code that the rows' statuses come to: 1 for a wrong one, else that of the first error.
-[[nodiscard]] int exit_code(const std::vector<RowRun>& rows);
+/// The exit code that the rows' statuses come to: 1 where one is wrong, or flawed unless that passes; else that of the
+/// first error; else 0.
+[[nodiscard]] int exit_code(const std::vector<RowRun>& rows, bool flawed_passes);
 
 } // namespace tetrace

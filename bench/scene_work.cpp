@@ -1,12 +1,12 @@
 #include "bench/scene_work.h"
 
-#include "bench/identity.h"
 #include "bench/progress.h"
 #include "bench/stopwatch.h"
 #include "core/locate.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <omp.h>
 
 namespace tetrace {
 
@@ -76,7 +76,7 @@ std::vector<std::string> missing_default_scenes(const Options& options)
 
 unsigned resolved_threads(const Options& options)
 {
-    return options.threads != 0 ? options.threads : host_identity().threads;
+    return options.threads != 0 ? options.threads : static_cast<unsigned>(omp_get_max_threads());
 }
 
 } // namespace tetrace

@@ -56,7 +56,8 @@ private:
 /// Which defaults cannot be had here, and how to get them, a sentence each; empty where scenes were named.
 [[nodiscard]] std::vector<std::string> missing_default_scenes(const Options& options);
 
-/// Threads that work uses: those asked for, else all that the process may use.
+/// Host threads that all work uses: those asked for, else OpenMP's number (OMP_NUM_THREADS, else all that the process
+/// may use).
 [[nodiscard]] unsigned resolved_threads(const Options& options);
 
 } // namespace tetrace

@@ -226,6 +226,44 @@ TEST_F(program, a_result_that_cannot_be_written_is_told_before_any_work)
     EXPECT_TRUE(contains(ended.errors, "no/such/folder/result.json")) << ended.errors;
 }
 
+TEST_F(program, google_benchmarks_result_that_cannot_be_written_is_told_before_any_work)
+{
+    const Ended ended = bench("--benchmark_out=no/such/folder/gb.json");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_TRUE(contains(ended.errors, "no/such/folder/gb.json")) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "--benchmark_out"));
+}
+
+TEST_F(program, google_benchmarks_context_is_added_once)
+{
+    const Ended ended = bench("--layout tet80 --benchmark_context=a=b --format json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_EQ(nlohmann::json::parse(ended.out)["context"]["a"], "b");
+    EXPECT_FALSE(contains(ended.errors, "ontext")) << ended.errors;
+}
+
+TEST_F(program, a_result_tells_the_threads_that_worked)
+{
+    const auto threads = [&](const std::string& more) {
+        return nlohmann::json::parse(bench("--layout tet80 --format json " + more).out)["tetrace"]["threads"];
+    };
+    EXPECT_EQ(threads("--threads 1"), 1);
+    EXPECT_EQ(threads("--threads 3"), 3);
+    const ScopedVariable variable("OMP_NUM_THREADS", "1");
+    EXPECT_EQ(threads(""), 1);
+    EXPECT_EQ(threads("--threads 2"), 2);
+}
+
+TEST_F(program, a_required_backend_without_a_selected_row_is_no_success)
+{
+    const std::string check = "check --scene cubes --resolution 6 --size 24 ";
+    const Ended ended = run(check + "--require embree --backend openmp");
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_TRUE(contains(ended.errors, "no row of embree is selected")) << ended.errors;
+    EXPECT_EQ(run(check + "--require openmp --backend openmp").code, 0);
+}
+
 TEST_F(program, no_progress_line_without_a_terminal)
 {
     const Ended ended = bench("");
