@@ -153,7 +153,7 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
     return {"--mesh",      mesh.string(),
             "--out",       out.string(),
             "--name",      label,
-            "--domain",    options.domain == DomainKind::tight ? "tight" : "wide",
+            "--domain",    std::string(name_of(options.domain)),
             "--divisions", std::to_string(options.divisions),
             "--switches",  options.switches};
 }

@@ -180,9 +180,9 @@ void make_cache_folder(const fs::path& folder)
 
 fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, const BuildOptions& options)
 {
-    const std::string domain = options.domain == DomainKind::tight ? "tight" : "wide";
-    const std::string key = fmt::format("version {} mesh {} domain {} divisions {} switches {}", scene_file_version,
-                                        hash_text(mesh_hash), domain, options.divisions, options.switches);
+    const std::string key =
+        fmt::format("version {} mesh {} domain {} divisions {} switches {}", scene_file_version, hash_text(mesh_hash),
+                    name_of(options.domain), options.divisions, options.switches);
     return cache_directory() / fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));
 }
 

@@ -1,6 +1,7 @@
 #include "scenes/child_process.h"
 
 #include "core/error.h"
+#include "scenes/elapsed.h"
 
 #include <array>
 #include <atomic>
@@ -23,15 +24,9 @@ namespace tetrace {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr std::size_t kept_bytes = 64 * 1024;
 constexpr int tick_ms = 100;
 constexpr double grace_s = 1.0; ///< between SIGTERM and SIGKILL
-
-double seconds_since(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Owns a file descriptor.
 class Descriptor {
@@ -342,7 +337,7 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
                        const std::function<void(double elapsed_s)>& on_tick)
 {
     const InterruptGuard guard;
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     ChildOutcome outcome;
     Output output(outcome, on_error_line);
     Terminator terminator;

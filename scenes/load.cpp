@@ -5,6 +5,7 @@
 #include "scenes/atomic_file.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
+#include "scenes/elapsed.h"
 #include "scenes/file_lock.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"
@@ -23,13 +24,6 @@ namespace tetrace {
 namespace fs = std::filesystem;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// A folder that only this build uses, gone with it whatever happens.
 class WorkFolder {
@@ -210,7 +204,7 @@ struct Unused {
 LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
 {
     if (progress) progress("making cubes", -1);
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     LoadedScene loaded;
     loaded.scene = make_cubes(request.build.resolution);
     loaded.scene.build.build_s = seconds_since(start);

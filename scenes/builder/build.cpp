@@ -5,6 +5,7 @@
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"
 #include "scenes/builder/self_intersection.h"
+#include "scenes/elapsed.h"
 
 #include <fmt/format.h>
 
@@ -154,7 +155,7 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
             rounding.damaged, rounding.repaired, rounding.moved_points));
     require_sound(scene, output, rounding);
     require_entry_grid(scene);
-    scene.build.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - prepared.begun).count();
+    scene.build.build_s = seconds_since(prepared.begun);
     return scene;
 }
 

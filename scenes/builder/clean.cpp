@@ -1,10 +1,11 @@
 #include "scenes/builder/clean.h"
 
+#include "scenes/builder/triple_hash.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
 #include <bit>
-#include <cstddef>
 #include <limits>
 #include <unordered_map>
 #include <unordered_set>
@@ -13,16 +14,6 @@ namespace tetrace {
 namespace {
 
 using Triple = std::array<std::uint32_t, 3>;
-
-struct TripleHash {
-    std::size_t operator()(const Triple& key) const
-    {
-        std::uint64_t hash = 0;
-        for (const std::uint32_t word : key)
-            hash = (hash ^ word) * 0x9E3779B97F4A7C15u + (hash >> 29);
-        return hash;
-    }
-};
 
 Triple bits_of(Float3 v)
 {

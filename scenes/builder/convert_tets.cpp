@@ -3,6 +3,7 @@
 #include "core/exact.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/steiner_rounding.h"
+#include "scenes/builder/triple_hash.h"
 
 #include <fmt/format.h>
 
@@ -25,16 +26,6 @@ constexpr std::uint32_t interior_steps = 1 << 12; // one that only free faces sh
 }
 
 using Triple = std::array<std::int32_t, 3>;
-
-struct TripleHash {
-    std::size_t operator()(const Triple& key) const
-    {
-        std::uint64_t hash = 0;
-        for (const std::int32_t word : key)
-            hash = (hash ^ static_cast<std::uint32_t>(word)) * 0x9E3779B97F4A7C15u + (hash >> 29);
-        return hash;
-    }
-};
 
 Triple sorted(Triple corners)
 {

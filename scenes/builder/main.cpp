@@ -72,11 +72,12 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.add_option("--mesh", options.mesh, "mesh file to read")->required()->type_name("FILE");
     app.add_option("--out", options.out, "scene file to write, replaced as a whole")->required()->type_name("FILE.tet");
     app.add_option("--name", options.name, "name of the scene; default: the mesh file's")->type_name("NAME");
-    std::string domain = "tight";
+    std::string domain(name_of(options.domain));
+    const std::string tight(name_of(DomainKind::tight)), wide(name_of(DomainKind::wide));
     app.add_option("--domain", domain,
                    "tight: the mesh's box grown by 2 %; wide: a cube of half-size 3 radii; default: tight")
-        ->check(CLI::IsMember({"tight", "wide"}).description(""))
-        ->type_name("tight|wide");
+        ->check(CLI::IsMember({tight, wide}).description(""))
+        ->type_name(tight + "|" + wide);
     app.add_option("--divisions", options.divisions, "squares along each side of the domain, 1 to 64; default: 8")
         ->check(CLI::Range(1, 64).description(""))
         ->type_name("N");
@@ -86,7 +87,7 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                "12 TetGen's output failed a check; 13 out of memory.");
     try {
         app.parse(argc, argv);
-        options.domain = domain == "wide" ? DomainKind::wide : DomainKind::tight;
+        options.domain = domain == wide ? DomainKind::wide : DomainKind::tight;
         return std::nullopt;
     } catch (const CLI::Success& asked) {
         return app.exit(asked);

@@ -15,9 +15,8 @@ struct Freedom {
 };
 
 /// Tries floats near the movable vertices of each flat or inverted tet, nearest first, and keeps one that leaves fewer
-/// bad tets around it. Deterministic; vertices without freedom never move; the number of tries is
-/// bounded. Returns {bad before, bad after, vertices
-/// moved}.
+/// bad tets around it. Deterministic; vertices without freedom never move; the number of tries is bounded.
+/// Returns {bad before, bad after, vertices moved}.
 std::array<std::uint64_t, 3> mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom);
 
 } // namespace tetrace
