@@ -39,13 +39,14 @@ bool filter_keeps(const std::string& filter, const std::string& name)
     return filter.empty() || std::regex_search(name, std::regex(filter));
 }
 
-std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene)
+std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene,
+                                  const std::vector<Backend*>& backends)
 {
     std::vector<RowKey> rows;
     for (const KernelId& kernel : all_kernels())
-        for (const Backend* backend : all_backends()) {
+        for (const Backend* backend : backends) {
             if (!wanted_kernel(options, kernel) || !wanted(options.backends, backend->name())) continue;
-            if (!backend->why_not(kernel).empty()) continue;
+            if (!backend->has_kernel(kernel)) continue;
             for (const TetOrder order : wanted_orders(options, kernel)) {
                 const RowKey key{scene, backend->name(), kernel, RayKind::primary, order};
                 if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
@@ -95,11 +96,12 @@ std::string kernel_title(const RowKey& key)
                        key.order == TetOrder::hilbert ? "" : " input order");
 }
 
-std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels)
+std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
+                                const std::vector<Backend*>& backends)
 {
     std::vector<RowKey> unfiltered, rows;
     for (const std::string& scene : scene_labels)
-        for (const RowKey& key : rows_of_scene(options, scene))
+        for (const RowKey& key : rows_of_scene(options, scene, backends))
             unfiltered.push_back(key);
     for (const RowKey& key : unfiltered)
         if (filter_keeps(options.filter, row_name(key))) rows.push_back(key);

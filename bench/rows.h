@@ -29,7 +29,9 @@ struct RowKey {
 /// The rows that the options select, scene after scene, rows of one scene in the order of kernels and backends.
 /// Math mode and order select among rows of structure cdt only; without those options, exact and hilbert.
 /// Throws Error{usage} where nothing is selected: it names the options, and what there would be without them.
-[[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels);
+/// A kernel that a backend has and this host cannot run is a row all the same: it will end as unsupported.
+[[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
+                                              const std::vector<Backend*>& backends = all_backends());
 
 /// Whether Google Benchmark's --benchmark_filter would keep the name: a regular expression found anywhere, negated by a
 /// leading '-'; "all" and "" keep everything. Throws Error{usage} where it is no regular expression.

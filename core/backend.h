@@ -70,6 +70,8 @@ public:
     [[nodiscard]] virtual std::string name() const = 0;
     [[nodiscard]] virtual std::string clock() const = 0; ///< which clock Session::wait reads
     [[nodiscard]] virtual std::vector<Device> devices() const = 0;
+    /// Whether this build has the kernel for this API, whatever the host and its devices can run.
+    [[nodiscard]] virtual bool has_kernel(const KernelId& kernel) const = 0;
     /// Empty where the kernel can run, else the reason.
     [[nodiscard]] virtual std::string why_not(const KernelId& kernel) const = 0;
     [[nodiscard]] virtual std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel,

@@ -16,7 +16,37 @@ std::vector<std::string> names(const std::vector<std::string>& arguments, const 
     return list;
 }
 
+/// A backend that has every kernel of structure cdt, on a host that runs none of math mode fast.
+class OldHost : public Backend {
+public:
+    [[nodiscard]] std::string name() const override { return "old"; }
+    [[nodiscard]] std::string clock() const override { return "none"; }
+    [[nodiscard]] std::vector<Device> devices() const override { return {Device{}}; }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.structure == Structure::cdt; }
+    [[nodiscard]] std::string why_not(const KernelId& kernel) const override
+    {
+        return kernel.math == MathMode::fast ? "no fused multiply-add" : "";
+    }
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData&,
+                                                const SessionOptions&) override
+    {
+        throw Error(ErrorKind::unsupported, why_not(kernel));
+    }
+};
+
 } // namespace
+
+TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_lacks_is_none)
+{
+    OldHost old;
+    const auto rows = select_rows(parse_options({"bench", "--math", "exact,fast"}), {"a"}, {&old});
+    EXPECT_EQ(rows.size(), 4u);
+    EXPECT_EQ(
+        std::count_if(rows.begin(), rows.end(), [](const RowKey& key) { return key.kernel.math == MathMode::fast; }),
+        2);
+    EXPECT_TRUE(std::none_of(rows.begin(), rows.end(),
+                             [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
+}
 
 TEST(rows, the_default_is_maria_on_both_layouts_beside_embree)
 {

@@ -22,10 +22,14 @@ public:
         return {device};
     }
 
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
+    {
+        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree;
+    }
+
     [[nodiscard]] std::string why_not(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree ? ""
-                                                                                     : "Embree traces its own BVH only";
+        return has_kernel(kernel) ? "" : "Embree traces its own BVH only";
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData& scene,

@@ -32,9 +32,11 @@ public:
         return {device};
     }
 
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return find_kernel(kernel) != nullptr; }
+
     [[nodiscard]] std::string why_not(const KernelId& kernel) const override
     {
-        if (find_kernel(kernel) == nullptr) return "openmp has no kernel " + name_of(kernel);
+        if (!has_kernel(kernel)) return "openmp has no kernel " + name_of(kernel);
         if (kernel.math == MathMode::fast && !host_has_fused_multiply())
             return "math mode fast is compiled for x86-64-v3, which this processor is not; use --math exact";
         return {};
