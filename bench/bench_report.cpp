@@ -12,12 +12,6 @@ namespace tetrace {
 
 namespace {
 
-template <class T>
-Cell cell(const std::optional<T>& value)
-{
-    return value ? Cell(*value) : Cell();
-}
-
 std::string status_text(const RowRun& row, const BenchResult& result)
 {
     std::string text(name_of(status_of(row)));
@@ -52,8 +46,9 @@ Table scene_table(const std::string& scene, const BenchResult& result)
         const auto figures = figures_of(*row);
         const Traced* trace = traced(*row);
         table.add({kernel_title(row->key), row->key.backend, figures ? Cell(figures->mrays_per_s) : Cell(),
-                   figures ? cell(figures->msteps_per_s) : Cell(), trace ? cell(mean_steps(trace->totals).all) : Cell(),
-                   cell(ratio_to_single(*row, result.run.rows)), figures ? cell(figures->gb_per_s) : Cell(),
+                   figures ? cell_of(figures->msteps_per_s) : Cell(),
+                   trace ? cell_of(mean_steps(trace->totals).all) : Cell(),
+                   cell_of(ratio_to_single(*row, result.run.rows)), figures ? cell_of(figures->gb_per_s) : Cell(),
                    row->session ? Cell(1e-6 * static_cast<double>(row->session->bytes())) : Cell(),
                    figures ? Cell(fmt::format("{:5.1f} %", 100 * figures->kernel_s.spread())) : Cell(),
                    status_text(*row, result)});
@@ -111,12 +106,12 @@ Table flat_table(const BenchResult& result)
                    text(name_of(status_of(row))),
                    reason.empty() ? Cell() : Cell(reason),
                    figures ? Cell(figures->mrays_per_s) : Cell(),
-                   figures ? cell(figures->msteps_per_s) : Cell(),
-                   cell(mean.all),
-                   cell(mean.hit),
-                   cell(mean.miss),
-                   cell(ratio_to_single(row, result.run.rows)),
-                   figures ? cell(figures->gb_per_s) : Cell(),
+                   figures ? cell_of(figures->msteps_per_s) : Cell(),
+                   cell_of(mean.all),
+                   cell_of(mean.hit),
+                   cell_of(mean.miss),
+                   cell_of(ratio_to_single(row, result.run.rows)),
+                   figures ? cell_of(figures->gb_per_s) : Cell(),
                    figures ? Cell(figures->kernel_s.median) : Cell(),
                    figures ? Cell(figures->kernel_s.spread()) : Cell(),
                    std::uint64_t{row.samples_s.size()},

@@ -87,12 +87,6 @@ Built build_one(const SceneRequest& request, const Options& options)
     return built;
 }
 
-template <class T>
-Cell cell(const std::optional<T>& value)
-{
-    return value ? Cell(*value) : Cell();
-}
-
 std::vector<Cell> table_row(const Built& built)
 {
     const bool good = built.scene.has_value();
@@ -109,9 +103,9 @@ std::vector<Cell> table_row(const Built& built)
             good ? Cell(1e-6 * static_cast<double>(built.bytes)) : Cell(),
             good ? Cell(built.build_s) : Cell(),
             good ? Cell(std::string(built.from_cache ? "yes" : "no")) : Cell(),
-            cell(mean.all),
-            cell(mean.hit),
-            cell(mean.miss),
+            cell_of(mean.all),
+            cell_of(mean.hit),
+            cell_of(mean.miss),
             good ? Cell(hits_percent) : Cell(),
             built.totals.lost > 0 ? Cell(built.totals.lost) : Cell(),
             good ? Cell() : Cell(built.reason)};

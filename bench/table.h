@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -10,6 +11,13 @@ namespace tetrace {
 
 /// A cell: nothing (printed as a dash), text, a whole number or a real one.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
+
+/// A cell that is empty where there is no value.
+template <class T>
+[[nodiscard]] Cell cell_of(const std::optional<T>& value)
+{
+    return value ? Cell(*value) : Cell();
+}
 
 /// A column: `key` names it in CSV and JSON, unit included (`build_s`); people read title and unit.
 struct Column {
