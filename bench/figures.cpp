@@ -10,6 +10,16 @@ std::optional<double> quotient(std::uint64_t steps, std::uint64_t rays)
     return static_cast<double>(steps) / static_cast<double>(rays);
 }
 
+/// Empty where the wall clock was not read for every sample.
+std::optional<double> overhead_of(const RowRun& row)
+{
+    if (row.wall_samples_s.size() != row.samples_s.size()) return std::nullopt;
+    std::vector<double> overheads;
+    for (std::size_t i = 0; i < row.samples_s.size(); ++i)
+        overheads.push_back(row.wall_samples_s[i] - row.samples_s[i]);
+    return quantile(std::move(overheads), 0.5);
+}
+
 } // namespace
 
 unsigned bytes_per_step(Layout layout)
@@ -36,6 +46,7 @@ std::optional<Figures> figures_of(const RowRun& row)
     Figures figures;
     figures.kernel_s = statistics_of(row.samples_s);
     const double seconds = figures.kernel_s.median;
+    figures.overhead_s = overhead_of(row);
     figures.mrays_per_s = 1e-6 * static_cast<double>(totals.rays) / seconds;
     if (totals.steps() == 0) return figures;
     figures.msteps_per_s = 1e-6 * static_cast<double>(totals.steps()) / seconds;

@@ -14,6 +14,7 @@ struct Figures {
     double mrays_per_s = 0;
     std::optional<double> msteps_per_s; ///< structure cdt only
     std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
+    std::optional<double> overhead_s;   ///< launching and waiting: median of the samples' wall minus device seconds
 };
 
 /// Empty unless the row is ok or flawed and has samples.

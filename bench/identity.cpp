@@ -35,7 +35,8 @@ BuildIdentity build_identity()
 #else
     const char* const compiler = "GCC " __VERSION__;
 #endif
-    return {TETRACE_VERSION, TETRACE_COMMIT, compiler, TETRACE_FLAGS};
+    return {TETRACE_VERSION, TETRACE_COMMIT, compiler,
+            TETRACE_FLAGS "; kernels exact: " TETRACE_FLAGS_EXACT "; kernels fast: " TETRACE_FLAGS_FAST};
 }
 
 HostIdentity host_identity()

@@ -9,7 +9,7 @@ struct BuildIdentity {
     std::string version;
     std::string commit; ///< git describe at build time; "unknown" outside a repository
     std::string compiler;
-    std::string flags; ///< build type and compiler flags
+    std::string flags; ///< build type and compiler flags; then those of the host's kernels in each math mode
 };
 [[nodiscard]] BuildIdentity build_identity();
 

@@ -63,10 +63,14 @@ json wrong_ray_json(const WrongRay& ray)
 json verification_json(const Traced& result)
 {
     const Verdicts& verdicts = result.verdicts;
-    json object = {{"rays", verdicts.rays},       {"agreed", verdicts.agreed},
-                   {"ties", verdicts.ties},       {"largest_tie_distance", verdicts.largest_tie_distance},
-                   {"settled", verdicts.settled}, {"wrong", verdicts.wrong},
-                   {"lost", verdicts.lost},       {"compared_with_openmp", result.compared}};
+    json object = {{"rays", verdicts.rays},
+                   {"agreed", verdicts.agreed},
+                   {"ties", verdicts.ties},
+                   {"settled", verdicts.settled},
+                   {"wrong", verdicts.wrong},
+                   {"lost", verdicts.lost},
+                   {"compared_with_openmp", result.compared}};
+    if (verdicts.ties > 0) object["largest_tie_distance"] = verdicts.largest_tie_distance;
     if (result.compared) object["different_from_openmp"] = result.different;
     if (result.first_different) {
         const DifferingRay& ray = *result.first_different;
@@ -83,9 +87,13 @@ json verification_json(const Traced& result)
 json times_json(const RowRun& row, const Traced& result)
 {
     const SetupTimes setup = row.session ? row.session->setup_times() : SetupTimes{};
-    json times = {{"clock", row.backend->clock()}, {"compile_s", setup.compile_s},
-                  {"upload_s", setup.upload_s},    {"first_kernel_s", result.kernel_s},
-                  {"first_wall_s", result.wall_s}, {"download_s", result.download_s}};
+    json times = {{"clock", row.backend->clock()},
+                  {"first_kernel_s", result.kernel_s},
+                  {"first_wall_s", result.wall_s},
+                  {"download_s", result.download_s}};
+    // A session that compiles or copies nothing says 0.
+    if (setup.compile_s > 0) times["compile_s"] = setup.compile_s;
+    if (setup.upload_s > 0) times["upload_s"] = setup.upload_s;
     if (row.packed != nullptr) times["pack_s"] = row.packed->pack_s;
     if (!row.samples_s.empty()) times["samples_s"] = row.samples_s;
     if (!row.wall_samples_s.empty()) times["wall_samples_s"] = row.wall_samples_s;
@@ -96,6 +104,7 @@ json times_json(const RowRun& row, const Traced& result)
     times["upper_quartile_s"] = figures->kernel_s.upper_quartile;
     times["spread"] = figures->kernel_s.spread();
     times["noisy"] = figures->kernel_s.noisy();
+    set_if(times, "overhead_s", figures->overhead_s);
     return times;
 }
 
@@ -137,7 +146,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
             {"tool", build.tool},
             {"build_s", build.build_s},
             {"from_cache", loaded.from_cache},
-            {"file", loaded.file.string()},
+            {"file", loaded.file.filename().string()},
             {"camera_set", name_of(options.camera_set)},
             {"views", scene.view_numbers()},
             {"width", scene.width()},

@@ -65,6 +65,14 @@ TEST(figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
     EXPECT_FALSE(mean_steps(traced(single_row("a"))->totals).all.has_value());
 }
 
+TEST(figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
+{
+    RowRun row = timed_row();
+    EXPECT_FALSE(figures_of(row)->overhead_s.has_value());
+    row.wall_samples_s = {0.5625, 0.375, 0.75, 1.0, 0.53125};
+    EXPECT_DOUBLE_EQ(figures_of(row)->overhead_s.value(), 0.0625);
+}
+
 TEST(figures, mean_steps_are_apart_for_hits_and_misses)
 {
     const MeanSteps mean = mean_steps(traced(timed_row())->totals);

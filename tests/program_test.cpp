@@ -235,6 +235,23 @@ TEST_F(program, google_benchmarks_result_that_cannot_be_written_is_told_before_a
     EXPECT_TRUE(contains(ended.errors, "--benchmark_out"));
 }
 
+TEST_F(program, a_result_leaves_out_what_does_not_apply_and_where_files_lie)
+{
+    const Ended ended = bench("--layout tet80 --out result.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto section = nlohmann::json::parse(file("result.json"))["tetrace"];
+    const auto& times = section["rows"][0]["times"];
+    EXPECT_FALSE(times.contains("compile_s"));
+    EXPECT_FALSE(times.contains("upload_s"));
+    EXPECT_TRUE(times.contains("pack_s"));
+    EXPECT_GE(times["overhead_s"].get<double>(), 0);
+    const auto& verification = section["rows"][0]["verification"];
+    EXPECT_EQ(verification.contains("largest_tie_distance"), verification["ties"] > 0);
+    EXPECT_FALSE(contains(section["scenes"][0]["file"].get<std::string>(), "/"));
+    EXPECT_TRUE(contains(section["flags"].get<std::string>(), "exact: -ffp-contract=off"));
+    EXPECT_TRUE(contains(section["flags"].get<std::string>(), "fast: -ffp-contract=fast -ffast-math"));
+}
+
 TEST_F(program, google_benchmarks_context_is_added_once)
 {
     const Ended ended = bench("--layout tet80 --benchmark_context=a=b --format json");
