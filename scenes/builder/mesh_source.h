@@ -14,9 +14,8 @@ namespace tetrace {
 
 /// A mesh file's bytes, and the soup that a format's reader fills from them.
 ///
-/// Why no library reads them: on 60 damaged files CGAL 5.5 answers a bare `false` (no file, no element), takes a binary
-/// NaN, an index out of range in PLY and an empty STL for good, and stores uninitialized memory before it notices a
-/// short OFF; assimp 5.2 accepts truncated PLY and OFF, NaN, negative counts and indices out of range.
+/// Why no library reads them: results/readers.md. Each takes some damaged files for good (cut short, a NaN, an index of
+/// no vertex), and what they say seldom names the place.
 class MeshSource {
 public:
     MeshSource(std::string name, std::string_view bytes) : name_(std::move(name)), bytes_(bytes) {}
