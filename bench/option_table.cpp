@@ -119,8 +119,8 @@ std::vector<OptionRow> row_options()
     const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::input};
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt or bvh. Default: both; of 'check', cdt, unless another option "
-         "selects rows.",
+         "Keep the rows of this structure: cdt or bvh. Default: both; of 'check', cdt, unless "
+         "--method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: maria (exit-face search of the cdt), single or packet16 (Embree's entry "

@@ -131,27 +131,28 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
 {
     const LoadedScene& loaded = scene.loaded();
     const BuildInfo& build = loaded.scene.build;
-    return {{"name", scene.label()},
-            {"hash", hash_text(loaded.hash)},
-            {"source", build.source},
-            {"source_hash", hash_text(build.source_hash)},
-            {"triangles", loaded.scene.mesh.triangles.size()},
-            {"tets", scene.counts().tets},
-            {"occlusive_faces", scene.counts().occlusive_faces},
-            {"free_faces", scene.counts().free_faces},
-            {"boundary_faces", scene.counts().boundary_faces},
-            {"domain", name_of(loaded.scene.domain.kind)},
-            {"divisions", loaded.scene.domain.divisions},
-            {"switches", build.switches},
-            {"tool", build.tool},
-            {"build_s", build.build_s},
-            {"from_cache", loaded.from_cache},
-            {"file", loaded.file.filename().string()},
-            {"camera_set", name_of(options.camera_set)},
-            {"views", scene.view_numbers()},
-            {"width", scene.width()},
-            {"height", scene.height()},
-            {"locate_s", scene.locate_s()}};
+    json object = {{"name", scene.label()},
+                   {"hash", hash_text(loaded.hash)},
+                   {"source", build.source},
+                   {"source_hash", hash_text(build.source_hash)},
+                   {"triangles", loaded.scene.mesh.triangles.size()},
+                   {"tets", scene.counts().tets},
+                   {"occlusive_faces", scene.counts().occlusive_faces},
+                   {"free_faces", scene.counts().free_faces},
+                   {"boundary_faces", scene.counts().boundary_faces},
+                   {"domain", name_of(loaded.scene.domain.kind)},
+                   {"divisions", loaded.scene.domain.divisions},
+                   {"switches", build.switches},
+                   {"tool", build.tool},
+                   {"build_s", build.build_s},
+                   {"from_cache", loaded.from_cache},
+                   {"camera_set", name_of(options.camera_set)},
+                   {"views", scene.view_numbers()},
+                   {"width", scene.width()},
+                   {"height", scene.height()},
+                   {"locate_s", scene.locate_s()}};
+    if (!loaded.file.empty()) object["file"] = loaded.file.filename().string();
+    return object;
 }
 
 nlohmann::json row_json(const RowRun& row, double copy_bytes_per_s)
