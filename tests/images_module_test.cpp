@@ -4,10 +4,10 @@
 
 #include <OpenImageIO/imageio.h>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
-#include <cstdlib>
 #include <string>
 
 namespace tetrace {

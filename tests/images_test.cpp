@@ -2,12 +2,12 @@
 
 #include "core/error.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
 #include <iterator>
-#include <cstdlib>
 #include <string>
 
 namespace tetrace {
