@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// How far the box that the CDT fills reaches (DESIGN: scenes, cameras, rays).
+/// How far the box that the CDT fills reaches.
 enum class DomainKind {
     tight, ///< the mesh's bounding box grown by 2 % of its largest extent; rays mostly enter from outside
     wide,  ///< a cube of half-size 3 bounding-sphere radii; cameras are inside, as in the paper

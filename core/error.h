@@ -25,7 +25,7 @@ private:
     ErrorKind kind_;
 };
 
-/// The program's exit codes (DESIGN: 0 good, 1 wrong result, 2 usage or bad input, 3 missing, 4 internal).
+/// The program's exit codes: 2 usage or bad input, 3 missing, 4 internal; 0 is good, 1 a wrong result.
 [[nodiscard]] constexpr int exit_code(ErrorKind kind) noexcept
 {
     switch (kind) {
