@@ -46,7 +46,7 @@ std::vector<std::string> backend_names()
     return names;
 }
 
-std::function<void(Options&, const std::string&)> append_backend(std::string option,
+std::function<void(Options&, const std::string&)> append_backend(const std::string& option,
                                                                  std::vector<std::string> Options::*list)
 {
     return [=](Options& options, const std::string& text) {

@@ -49,10 +49,9 @@ std::size_t open_files()
 ChildOutcome shell_interrupted_by(int signal, const std::string& script)
 {
     std::thread sender;
-    const ChildOutcome outcome =
-        run_child("/bin/sh", {"-c", "echo ready >&2; " + script}, {}, [&](const std::string& line) {
-            if (line == "ready") sender = std::thread([signal] { ::kill(::getpid(), signal); });
-        });
+    ChildOutcome outcome = run_child("/bin/sh", {"-c", "echo ready >&2; " + script}, {}, [&](const std::string& line) {
+        if (line == "ready") sender = std::thread([signal] { ::kill(::getpid(), signal); });
+    });
     sender.join();
     return outcome;
 }
