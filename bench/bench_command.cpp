@@ -1,6 +1,7 @@
-#include "bench/bandwidth.h"
+#include "backends/openmp/backend.h"
 #include "bench/bench_report.h"
 #include "bench/commands.h"
+#include "bench/device_facts.h"
 #include "bench/progress.h"
 
 namespace tetrace {
@@ -31,7 +32,8 @@ int bench_command(const Options& options)
     result.run = open_and_verify(keys, options);
     result.measurement = measure_rows(result.run.rows, options, flags);
     progress_line().show("measuring the memory's bandwidth", -1);
-    result.copy_bytes_per_s = copy_bandwidth(resolved_threads(options));
+    result.copy_bytes_per_s =
+        yardstick_of(openmp_backend(), 0, {.threads = resolved_threads(options)})->copy_bytes_per_s;
     const Report report = bench_report(result, options);
     // Google Benchmark has written its own form to standard output already, where it was asked to.
     if (!flags.format)

@@ -1,11 +1,7 @@
 #include "bench/hit_checks.h"
 
 #include "core/error.h"
-
-#include <bit>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
+#include "core/ulps.h"
 
 namespace tetrace {
 
@@ -42,15 +38,6 @@ RayTotals count_rays(std::span<const Hit> hits)
             ++totals.hits, totals.hit_steps += hit.steps;
     }
     return totals;
-}
-
-std::uint64_t ulps_between(float a, float b)
-{
-    if (a == b) return 0;
-    if (!std::isfinite(a) || !std::isfinite(b) || std::signbit(a) != std::signbit(b))
-        return std::numeric_limits<std::uint64_t>::max();
-    const std::int64_t distance = std::int64_t{std::bit_cast<std::int32_t>(a)} - std::bit_cast<std::int32_t>(b);
-    return static_cast<std::uint64_t>(std::abs(distance));
 }
 
 Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference)

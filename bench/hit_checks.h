@@ -34,7 +34,4 @@ struct Differences {
 /// the last place. A division is off by 2.5 of them at most (Vulkan and OpenCL promise that) and openmp's by a half.
 [[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference);
 
-/// Units in the last place between two floats; huge where a sign differs or one is not finite.
-[[nodiscard]] std::uint64_t ulps_between(float a, float b);
-
 } // namespace tetrace

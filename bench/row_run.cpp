@@ -15,33 +15,18 @@ Backend& backend_named(const std::string& name)
     throw Error(ErrorKind::internal, "no backend is named " + name);
 }
 
-std::optional<std::size_t> first_usable(const std::vector<Device>& devices)
-{
-    for (std::size_t i = 0; i < devices.size(); ++i)
-        if (devices[i].usable) return i;
-    return std::nullopt;
-}
-
-std::string no_device_reason(const std::vector<Device>& devices)
-{
-    if (devices.empty()) return "no device";
-    return fmt::format("{}: {}", devices.front().name, devices.front().reason);
-}
-
 void open_session(RowRun& row, const Options& options)
 {
     row.backend = &backend_named(row.key.backend);
-    const auto devices = row.backend->devices();
-    const auto device = first_usable(devices);
-    if (!device) {
-        row.outcome = Skipped{Status::skipped, no_device_reason(devices)};
+    row.device = row.backend->devices().at(row.key.device);
+    if (!row.device.usable) {
+        row.outcome = Skipped{Status::skipped, fmt::format("{}: {}", row.device.name, row.device.reason)};
         return;
     }
-    row.device = devices[*device];
     if (row.key.kernel.structure == Structure::cdt)
         row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
     const SceneData data{&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr};
-    row.session = row.backend->open(*device, row.key.kernel, data, SessionOptions{resolved_threads(options)});
+    row.session = row.backend->open(row.key.device, row.key.kernel, data, session_options(options));
 }
 
 std::string traced_reason(const Traced& traced)
@@ -109,6 +94,13 @@ void guarded(RowRun& row, const std::function<void()>& work)
         row.outcome = Failed{ErrorKind::internal, error.what()};
     }
     row.session.reset();
+}
+
+SessionOptions session_options(const Options& options)
+{
+    SessionOptions session;
+    session.threads = resolved_threads(options);
+    return session;
 }
 
 RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options)

@@ -67,7 +67,10 @@ struct RowRun {
 /// What was traced; null where the row failed or was skipped.
 [[nodiscard]] const Traced* traced(const RowRun& row);
 
-/// Opens a row's session on the first usable device of its backend. Never throws but Error{interrupted}.
+/// What a session is told; the same for every row of a run.
+[[nodiscard]] SessionOptions session_options(const Options& options);
+
+/// Opens a row's session on its device. Never throws but Error{interrupted}.
 [[nodiscard]] RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options);
 
 /// A row that could not be opened since its scene could not be loaded.

@@ -30,8 +30,9 @@ std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kern
 
 bool wanted_kernel(const Options& options, const KernelId& kernel)
 {
-    return wanted(options.structures, kernel.structure) && wanted(options.methods, kernel.method) &&
-           wanted(options.layouts, kernel.layout) && wanted_math(options, kernel);
+    return kernel.schedule == Schedule::tiles && wanted(options.structures, kernel.structure) &&
+           wanted(options.methods, kernel.method) && wanted(options.layouts, kernel.layout) &&
+           wanted_math(options, kernel);
 }
 
 bool filter_keeps(const std::string& filter, const std::string& name)
@@ -48,7 +49,7 @@ std::vector<RowKey> rows_of_scene(const Options& options, const std::string& sce
             if (!wanted_kernel(options, kernel) || !wanted(options.backends, backend->name())) continue;
             if (!backend->has_kernel(kernel)) continue;
             for (const TetOrder order : wanted_orders(options, kernel)) {
-                const RowKey key{scene, backend->name(), kernel, RayKind::primary, order};
+                const RowKey key{scene, backend->name(), kernel, RayKind::primary, order, 0};
                 if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
             }
         }
@@ -62,7 +63,7 @@ std::string reasons(const Options& options)
     for (const KernelId& kernel : all_kernels())
         for (const Backend* backend : all_backends())
             if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()))
-                if (const std::string reason = backend->why_not(kernel); !reason.empty())
+                if (const std::string reason = backend->why_not(0, kernel); !reason.empty())
                     text += fmt::format("\n  {} on {}: {}", name_of(kernel), backend->name(), reason);
     return text;
 }
@@ -84,16 +85,19 @@ std::string reasons(const Options& options)
 
 std::string row_name(const RowKey& key)
 {
-    return fmt::format("{}/{}/{}/math:{}{}/api:{}", name_of(key.kernel), key.scene, name_of(key.rays),
-                       name_of(key.kernel.math), key.order == TetOrder::hilbert ? "" : "/order:input", key.backend);
+    return fmt::format("{}/{}/{}/math:{}{}{}/api:{}{}", name_of(key.kernel), key.scene, name_of(key.rays),
+                       name_of(key.kernel.math), key.order == TetOrder::hilbert ? "" : "/order:input",
+                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", key.backend,
+                       key.device == 0 ? "" : fmt::format(":{}", key.device));
 }
 
 std::string kernel_title(const RowKey& key)
 {
     if (key.kernel.structure == Structure::bvh) return fmt::format("bvh {}", name_of(key.kernel.method));
-    return fmt::format("cdt {} {}{}{}", name_of(key.kernel.method), name_of(key.kernel.layout),
+    return fmt::format("cdt {} {}{}{}{}", name_of(key.kernel.method), name_of(key.kernel.layout),
                        key.kernel.math == MathMode::exact ? "" : " fast",
-                       key.order == TetOrder::hilbert ? "" : " input order");
+                       key.order == TetOrder::hilbert ? "" : " input order",
+                       key.kernel.schedule == Schedule::tiles ? "" : " persistent");
 }
 
 std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,

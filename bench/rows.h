@@ -15,12 +15,14 @@ struct RowKey {
     KernelId kernel;
     RayKind rays = RayKind::primary;
     TetOrder order = TetOrder::hilbert;
+    std::size_t device = 0; ///< index in the backend's devices()
 
     friend bool operator==(const RowKey&, const RowKey&) = default;
 };
 
-/// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; no device and no counts in
-/// it. Rows of another order than hilbert have "order:input" before the api.
+/// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; no device's name and no
+/// counts in it. Rows of another order than hilbert have "order:input" before the api, rows of another schedule than
+/// tiles "schedule:persistent"; rows of a backend's later devices have their index behind it, "api:opencl:1".
 [[nodiscard]] std::string row_name(const RowKey& key);
 
 /// Name without the scene, for tables headed by it: "cdt maria tet80".

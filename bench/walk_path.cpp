@@ -25,7 +25,7 @@ TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
 std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,
                                      std::uint32_t x, std::uint32_t y)
 {
-    const auto session = openmp_backend().open(0, kernel, {nullptr, &packed}, {1});
+    const auto session = openmp_backend().open(0, kernel, {nullptr, &packed}, {.threads = 1});
     TraceJob pixel = single_pixel(job, x, y);
     const auto trace = [&](std::uint32_t cap) {
         Hit hit{};

@@ -6,7 +6,9 @@
 #include "core/packed_scene.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,11 +18,18 @@ namespace tetrace {
 /// A device as its API describes it; usable, or with the reason why not and what would bring it.
 struct Device {
     std::string name;
-    std::string type;   ///< "cpu", "gpu", "emulated"
-    std::string driver; ///< driver or library, with version
-    std::string id;     ///< UUID or PCI id where there is one, else the name
+    std::string type;           ///< "cpu", "gpu", or "emulated": an API of GPUs that runs on the processor here
+    std::string driver;         ///< driver or library, with version
+    std::string implementation; ///< of the API, in short, as tests/expected/ names it: "pocl-3.1", "lavapipe-22.3"
+    std::string id;             ///< its name for the user: UUID, else PCI id, else the name
+    std::string uuid;           ///< 32 lower-case hexadecimal digits, the same under every API; empty where unknown
+    std::string pci;            ///< domain:bus:device.function, for example "0000:41:00.0"; empty where unknown
     std::uint64_t memory_bytes = 0;
-    unsigned threads = 1; ///< hardware threads or compute units
+    std::uint64_t max_buffer_bytes = 0; ///< the largest that a kernel can be given at once; 0: memory is the limit
+    unsigned max_group_items = 0;       ///< work items of a group; 0: does not apply
+    unsigned group_width = 0;           ///< items that run in lockstep (warp, subgroup); 0: unknown or does not apply
+    double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
+    unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
     std::string reason; ///< why not, where not usable
 };
@@ -32,7 +41,10 @@ struct SceneData {
 };
 
 struct SessionOptions {
-    unsigned threads = 0; ///< host threads; 0 is all that the process may use
+    unsigned threads = 0;                     ///< host threads; 0 is all that the process may use
+    unsigned tile_height = 0;                 ///< 4 or 8; 0: default_tile_height() of the device
+    std::uint64_t max_buffer_bytes = 0;       ///< treat the device's largest buffer as this small; 0: as it is
+    std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
 };
 
 /// One image's worth of primary rays.
@@ -45,22 +57,39 @@ struct TraceJob {
 
 /// Seconds that are paid once a session, apart from any kernel.
 struct SetupTimes {
-    double compile_s = 0; ///< kernels compiled, or a BVH built
-    double upload_s = 0;  ///< data copied to where the kernel reads it
+    double compile_s = 0;        ///< kernels compiled, or a BVH built
+    double upload_s = 0;         ///< data copied to where the kernel reads it
+    bool compile_cached = false; ///< the kernels came from SessionOptions::program_cache
 };
 
-/// One scene on one device with one kernel. Every call throws Error, and only Error.
+/// What a device can do at best, the measure of every row on it.
+struct Yardstick {
+    double copy_bytes_per_s = 0; ///< its memory copied to its memory, bytes read and written
+    double launch_s = 0;         ///< an empty kernel, from launch to the end of wait on the host's clock; median
+};
+
+/// One scene on one device with one kernel. Every call throws Error, and only Error: unsupported where memory or a
+/// limit does not suffice (both numbers are told), internal where the device was lost or its driver failed.
 class Session {
 public:
     virtual ~Session() = default;
+    /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so
+    /// long that a watchdog fires (core/launch.h).
     virtual void launch(const TraceJob& job) = 0;
     /// Waits for the launch; returns device seconds of the kernel alone.
     [[nodiscard]] virtual double wait() = 0;
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
-    virtual void read_back(std::span<Hit> hits) = 0;
+    /// Throws Error{internal} where the kernel wrote outside its hits.
+    void read_back(std::span<Hit> hits);
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;
     /// Device bytes that the structure and its scene data occupy.
     [[nodiscard]] virtual std::uint64_t bytes() const = 0;
+
+private:
+    /// Copies the whole output: GUARD_WORDS, HIT_WORDS a hit row after row, GUARD_WORDS.
+    virtual void read_output(std::span<std::uint32_t> words) = 0;
+
+    std::vector<std::uint32_t> output_;
 };
 
 /// An API. Prints nothing, validates nothing, computes no statistics.
@@ -69,13 +98,21 @@ public:
     virtual ~Backend() = default;
     [[nodiscard]] virtual std::string name() const = 0;
     [[nodiscard]] virtual std::string clock() const = 0; ///< which clock Session::wait reads
-    [[nodiscard]] virtual std::vector<Device> devices() const = 0;
+    /// What there is, found once a process; never empty: an API without any has one that is not usable, with the reason
+    /// and the package that would bring it.
+    [[nodiscard]] virtual const std::vector<Device>& devices() const = 0;
     /// Whether this build has the kernel for this API, whatever the host and its devices can run.
     [[nodiscard]] virtual bool has_kernel(const KernelId& kernel) const = 0;
-    /// Empty where the kernel can run, else the reason.
-    [[nodiscard]] virtual std::string why_not(const KernelId& kernel) const = 0;
+    /// Empty where the kernel can run on the device (its index in devices()), else the reason.
+    [[nodiscard]] virtual std::string why_not(std::size_t device, const KernelId& kernel) const = 0;
     [[nodiscard]] virtual std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel,
                                                         const SceneData& scene, const SessionOptions& options) = 0;
+    /// Runs kernels/probe.h, a work item a row of {operation, a, b, c}; a result word each (core/self_test.h).
+    /// Empty where the API runs none of our kernels.
+    [[nodiscard]] virtual std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
+                                                           std::span<const Row> operations) = 0;
+    /// Measures the device, in about a second; empty where the API has no memory and no launches of its own.
+    [[nodiscard]] virtual std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) = 0;
 };
 
 /// Every backend of this build, in CMake's order; those that cannot run here say so in their devices.

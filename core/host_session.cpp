@@ -1,5 +1,7 @@
 #include "core/host_session.h"
 
+#include "core/launch.h"
+
 #include <algorithm>
 #include <cassert>
 #include <chrono>
@@ -8,16 +10,18 @@ namespace tetrace {
 
 void HostSession::launch(const TraceJob& job)
 {
-    hits_.assign(std::size_t{job.width} * job.height, Hit{POISON, POISON, 0, 0, 0, POISON});
+    output_.assign(output_words(job), POISON);
+    // A hit is six words without padding: the output holds hits as every device's does.
+    const std::span hits(reinterpret_cast<Hit*>(output_.data() + GUARD_WORDS), std::size_t{job.width} * job.height);
     const auto start = std::chrono::steady_clock::now();
-    trace(job, hits_);
+    trace(job, hits);
     kernel_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void HostSession::read_back(std::span<Hit> hits)
+void HostSession::read_output(std::span<std::uint32_t> words)
 {
-    assert(hits.size() == hits_.size());
-    std::copy(hits_.begin(), hits_.end(), hits.begin());
+    assert(words.size() == output_.size());
+    std::copy(output_.begin(), output_.end(), words.begin());
 }
 
 } // namespace tetrace

@@ -12,13 +12,13 @@ class HostSession : public Session {
 public:
     void launch(const TraceJob& job) final;
     [[nodiscard]] double wait() final { return kernel_s_; }
-    void read_back(std::span<Hit> hits) final;
 
 private:
+    void read_output(std::span<std::uint32_t> words) final;
     /// Traces the whole image into hits, row after row.
     virtual void trace(const TraceJob& job, std::span<Hit> hits) = 0;
 
-    std::vector<Hit> hits_;
+    std::vector<std::uint32_t> output_;
     double kernel_s_ = 0;
 };
 

@@ -2,15 +2,25 @@
 
 namespace tetrace {
 
+namespace {
+
+std::vector<KernelId> make_kernels()
+{
+    std::vector<KernelId> kernels;
+    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
+        for (const MathMode math : {MathMode::exact, MathMode::fast})
+            for (const Layout layout : {Layout::tet80, Layout::tet96})
+                kernels.push_back({Structure::cdt, Method::maria, layout, math, schedule});
+    for (const Method method : {Method::single, Method::packet16})
+        kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
+    return kernels;
+}
+
+} // namespace
+
 const std::vector<KernelId>& all_kernels()
 {
-    using enum Method;
-    using enum Layout;
-    static const std::vector<KernelId> kernels = {
-        {Structure::cdt, maria, tet80, MathMode::exact},  {Structure::cdt, maria, tet96, MathMode::exact},
-        {Structure::cdt, maria, tet80, MathMode::fast},   {Structure::cdt, maria, tet96, MathMode::fast},
-        {Structure::bvh, single, embree, MathMode::fast}, {Structure::bvh, packet16, embree, MathMode::fast},
-    };
+    static const std::vector<KernelId> kernels = make_kernels();
     return kernels;
 }
 
@@ -47,6 +57,11 @@ std::string_view name_of(MathMode value)
 std::string_view name_of(RayKind)
 {
     return "primary";
+}
+
+std::string_view name_of(Schedule value)
+{
+    return value == Schedule::tiles ? "tiles" : "persistent";
 }
 
 std::string_view name_of(TetOrder value)

@@ -15,6 +15,9 @@ enum class Method { maria, single, packet16 };
 enum class Layout { tet80, tet96, embree };
 enum class MathMode { exact, fast };
 enum class RayKind { primary };
+/// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
+/// (Aila, Laine, Karras 2012).
+enum class Schedule { tiles, persistent };
 /// The order of the tets in memory.
 enum class TetOrder { hilbert, input };
 
@@ -24,11 +27,13 @@ struct KernelId {
     Method method = Method::maria;
     Layout layout = Layout::tet80;
     MathMode math = MathMode::exact;
+    Schedule schedule = Schedule::tiles;
 
     friend bool operator==(const KernelId&, const KernelId&) = default;
 };
 
-/// Every kernel that some backend can run, exact mode first; the one list that options and rows come from.
+/// Every kernel that some backend can run, schedule tiles and exact mode first; the one list that options and rows come
+/// from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
 [[nodiscard]] std::string_view name_of(Structure value);
@@ -36,6 +41,7 @@ struct KernelId {
 [[nodiscard]] std::string_view name_of(Layout value);
 [[nodiscard]] std::string_view name_of(MathMode value);
 [[nodiscard]] std::string_view name_of(RayKind value);
+[[nodiscard]] std::string_view name_of(Schedule value);
 [[nodiscard]] std::string_view name_of(TetOrder value);
 
 /// structure/method/layout, for example "cdt/maria/tet80".

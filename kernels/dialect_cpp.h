@@ -18,6 +18,16 @@ KERNEL_FN real as_real(uint bits)
 {
     return real(std::bit_cast<float>(bits));
 }
+#ifndef KERNEL_REAL_HAS_NO_BITS
+KERNEL_FN uint as_bits(real value)
+{
+    return std::bit_cast<uint>(value);
+}
+KERNEL_FN real square_root(real value)
+{
+    return std::sqrt(value);
+}
+#endif
 KERNEL_FN real to_real(uint value)
 {
     return real(static_cast<float>(value));

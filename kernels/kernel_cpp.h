@@ -1,15 +1,9 @@
 // A whole kernel in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h): the including file says which
-// layout and method by KERNEL_LAYOUT_HEADER and KERNEL_METHOD_HEADER. The order matters, as in rays_cpp.h.
-#include "kernels/rays_cpp.h"
+// layout and method, see kernel.h.
+#include "kernels/dialect_cpp.h"
 
 #include "kernels/scene_view_cpp.h"
 
-#include "kernels/faces.h"
+#include "kernels/kernel.h"
 
-#include KERNEL_LAYOUT_HEADER
-
-#include KERNEL_METHOD_HEADER
-
-#include "kernels/entry.h"
-
-#include "kernels/walk.h"
+#include "kernels/params_cpp.h"

@@ -8,11 +8,36 @@
 #define LOST 0xFFFFFFFEu   // the walk reached its cap of steps: always a failure
 #define POISON 0xFFFFFFFDu // nothing was written: buffers are filled with it before a launch
 
+// A launch's output: guard words, six words a hit row after row, guard words; all of it is POISON before.
+#define HIT_WORDS 6u
+#define GUARD_WORDS 64u
+// A tile of an image is a work group: this many pixels wide, 4 or 8 high.
+#define TILE_WIDTH 8u
+
+// Operations of the self-test, see probe.h.
+#define PROBE_COPY 0u
+#define PROBE_MULTIPLY_ADD 1u
+#define PROBE_DIVIDE 2u
+#define PROBE_ADD 3u
+#define PROBE_MULTIPLY 4u
+#define PROBE_SQUARE_ROOT 5u
+#define PROBE_CONVERT 6u
+#define PROBE_COMPARE 7u
+#define PROBE_INTEGER 8u
+
 // A link is tet << 2 | face: 2^30 - 1 tets at most.
 #define NO_LINK 0xFFFFFFFFu
 #define NO_TET 0x3FFFFFFFu
 #define MAX_TETS 0x3FFFFFFFu
 #define FREE_FACE 0xFFFFFFFFu // a face that belongs to no input triangle
+
+// Bindings: scene_arrays.h has 0 to 4; then the output, the counter of persistent threads, and the parts of the array
+// of tets beyond its first, where one buffer cannot hold it.
+#define SCENE_ARRAYS 5u
+#define OUTPUT_BINDING 5u
+#define COUNTER_BINDING 6u
+#define SECOND_PART_BINDING 7u
+#define MAX_TET_PARTS 8u
 
 // tet80: rows of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
 #define TET80_ROWS 5u

@@ -1,6 +1,6 @@
 // Every array that a scene brings to a device: element type, name, member of the packed scene, binding. A dialect
 // defines SCENE_ARRAY, includes this file as often as it needs, and undefines it. The tets are read as words or as
-// rows, whichever a layout wants; both names are the same bytes.
+// rows, whichever a layout wants; both names are the same bytes. The bindings behind these are in layout.h.
 SCENE_ARRAY(uint, tet_words, tets, 0)
 SCENE_ARRAY(uint4, tet_rows, tets, 0)
 SCENE_ARRAY(uint4, triangles, triangles, 1)

@@ -1,8 +1,8 @@
 #include "scenes/load.h"
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
-#include "scenes/atomic_file.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
 #include "scenes/elapsed.h"

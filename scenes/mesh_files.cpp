@@ -1,9 +1,9 @@
 #include "scenes/mesh_files.h"
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "scenes/archive.h"
-#include "scenes/atomic_file.h"
 #include "scenes/cache.h"
 #include "scenes/procedural.h"
 

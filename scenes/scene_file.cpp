@@ -4,10 +4,10 @@
 // number.
 #include "scenes/scene_file.h"
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/exact.h"
 #include "core/hash.h"
-#include "scenes/atomic_file.h"
 #include "scenes/information.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "scenes/cache.h"
 
-#include "scenes/atomic_file.h"
+#include "core/atomic_file.h"
 #include "scenes/file_lock.h"
 #include "scenes/procedural.h"
 #include "scenes/scene_file.h"

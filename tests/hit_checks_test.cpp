@@ -1,4 +1,5 @@
 #include "bench/hit_checks.h"
+#include "core/ulps.h"
 
 #include "core/error.h"
 

@@ -34,6 +34,7 @@ struct Counted {
 };
 
 #define KERNEL_REAL Counted
+#define KERNEL_REAL_HAS_NO_BITS
 #define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
 #define KERNEL_METHOD_HEADER "kernels/maria.h"
 #include "kernels/kernel_cpp.h"

@@ -4,6 +4,7 @@
 #include "scenes/procedural.h"
 
 #include <algorithm>
+#include <cstring>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
@@ -24,10 +25,13 @@ public:
         inner_->launch(job);
     }
     [[nodiscard]] double wait() override { return inner_->wait(); }
-    void read_back(std::span<Hit> hits) override
+    void read_output(std::span<std::uint32_t> words) override
     {
+        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
         inner_->read_back(hits);
         if (*changes_) hits[7].t += 1;
+        std::fill(words.begin(), words.end(), POISON);
+        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
     }
     [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
     [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }

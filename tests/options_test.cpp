@@ -71,7 +71,7 @@ TEST(options, an_unknown_option_is_answered_with_the_accepted_ones)
 TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
 {
     EXPECT_TRUE(contains(rejection({"bench", "--method", "plane"}), "maria, single or packet16"));
-    EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "openmp or embree"));
+    EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "cuda-host or embree"));
     EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert or input"));

@@ -43,7 +43,7 @@ struct Traced {
     }
     void trace(const KernelId& kernel, unsigned threads = 2)
     {
-        const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {threads});
+        const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {.threads = threads});
         session->launch(job);
         (void)session->wait();
         session->read_back(hits);
@@ -196,7 +196,7 @@ TEST(Walk, fast_math_answers_stay_right_on_cubes)
 {
     Traced traced;
     const KernelId fast{Structure::cdt, Method::maria, Layout::tet80, MathMode::fast};
-    if (const auto reason = openmp_backend().why_not(fast); !reason.empty()) GTEST_SKIP() << reason;
+    if (const auto reason = openmp_backend().why_not(0, fast); !reason.empty()) GTEST_SKIP() << reason;
     traced.trace(fast);
     EXPECT_EQ(traced.judged().wrong, 0u);
 }

@@ -21,17 +21,22 @@ class OldHost : public Backend {
 public:
     [[nodiscard]] std::string name() const override { return "old"; }
     [[nodiscard]] std::string clock() const override { return "none"; }
-    [[nodiscard]] std::vector<Device> devices() const override { return {Device{}}; }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.structure == Structure::cdt; }
-    [[nodiscard]] std::string why_not(const KernelId& kernel) const override
+    [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
     {
         return kernel.math == MathMode::fast ? "no fused multiply-add" : "";
     }
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData&,
                                                 const SessionOptions&) override
     {
-        throw Error(ErrorKind::unsupported, why_not(kernel));
+        throw Error(ErrorKind::unsupported, why_not(0, kernel));
     }
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Row>) override { return {}; }
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
+
+private:
+    std::vector<Device> devices_ = {Device{}};
 };
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "scenes/procedural.h"
 
+#include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
 
@@ -19,10 +20,13 @@ public:
     }
     void launch(const TraceJob& job) override { inner_->launch(job); }
     [[nodiscard]] double wait() override { return inner_->wait(); }
-    void read_back(std::span<Hit> hits) override
+    void read_output(std::span<std::uint32_t> words) override
     {
+        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
         inner_->read_back(hits);
         damage_(hits);
+        std::fill(words.begin(), words.end(), POISON);
+        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
     }
     [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
     [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }

@@ -11,7 +11,7 @@ namespace tetrace::embree {
 class EmbreeSession : public HostSession {
 public:
     EmbreeSession(Method method, std::shared_ptr<const Accelerator> accelerator, unsigned threads);
-    [[nodiscard]] SetupTimes setup_times() const override { return {accelerator_->build_s(), 0.0}; }
+    [[nodiscard]] SetupTimes setup_times() const override { return {accelerator_->build_s(), 0.0, false}; }
     [[nodiscard]] std::uint64_t bytes() const override { return accelerator_->bytes(); }
 
 private:

@@ -1,8 +1,11 @@
 #include "backends/openmp/backend.h"
 
+#include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
+#include "backends/openmp/yardstick.h"
 #include "core/error.h"
 #include "core/host.h"
+#include "core/launch.h"
 
 #include <omp.h>
 
@@ -19,22 +22,25 @@ const openmp::CompiledKernel* find_kernel(const KernelId& id)
     return found == kernels.end() ? nullptr : &*found;
 }
 
+Device openmp_device()
+{
+    Device device = host_device();
+    device.driver = "OpenMP " + std::to_string(_OPENMP);
+    device.implementation = "openmp";
+    device.threads = static_cast<unsigned>(omp_get_max_threads());
+    return device;
+}
+
 class OpenmpBackend : public Backend {
 public:
     [[nodiscard]] std::string name() const override { return "openmp"; }
     [[nodiscard]] std::string clock() const override { return "host steady clock"; }
 
-    [[nodiscard]] std::vector<Device> devices() const override
-    {
-        Device device = host_device();
-        device.driver = "OpenMP " + std::to_string(_OPENMP);
-        device.threads = static_cast<unsigned>(omp_get_max_threads());
-        return {device};
-    }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return find_kernel(kernel) != nullptr; }
 
-    [[nodiscard]] std::string why_not(const KernelId& kernel) const override
+    [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
     {
         if (!has_kernel(kernel)) return "openmp has no kernel " + name_of(kernel);
         if (kernel.math == MathMode::fast && !host_has_fused_multiply())
@@ -46,13 +52,32 @@ public:
                                                 const SessionOptions& options) override
     {
         const auto* found = find_kernel(kernel);
-        if (const auto reason = why_not(kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
+        if (const auto reason = why_not(0, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
         if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
             throw Error(ErrorKind::internal,
                         "opening openmp: the scene is not packed as " + std::string(name_of(kernel.layout)));
-        const unsigned threads = options.threads != 0 ? options.threads : devices().front().threads;
-        return std::make_unique<openmp::OpenmpSession>(found->trace, *scene.packed, threads);
+        return std::make_unique<openmp::OpenmpSession>(found->trace, *scene.packed, threads_of(options),
+                                                       options.tile_height != 0 ? options.tile_height
+                                                                                : default_tile_height(devices_[0]));
     }
+
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode math, std::span<const Row> operations) override
+    {
+        return math == MathMode::exact ? openmp::probe_exact(operations) : openmp::probe_fast(operations);
+    }
+
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions& options) override
+    {
+        return openmp::measure_host(threads_of(options));
+    }
+
+private:
+    [[nodiscard]] unsigned threads_of(const SessionOptions& options) const
+    {
+        return options.threads != 0 ? options.threads : devices_.front().threads;
+    }
+
+    std::vector<Device> devices_ = {openmp_device()};
 };
 
 } // namespace

@@ -8,7 +8,7 @@ namespace tetrace::openmp {
 /// Runs one compiled kernel on the packed scene where it lies: nothing is compiled, nothing copied.
 class OpenmpSession : public HostSession {
 public:
-    OpenmpSession(TraceFunction kernel, const PackedScene& scene, unsigned threads);
+    OpenmpSession(TraceFunction kernel, const PackedScene& scene, unsigned threads, unsigned tile_height);
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
@@ -17,7 +17,7 @@ private:
 
     TraceFunction kernel_;
     const PackedScene& scene_;
-    unsigned threads_;
+    unsigned threads_, tile_height_;
 };
 
 } // namespace tetrace::openmp

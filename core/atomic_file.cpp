@@ -1,4 +1,4 @@
-#include "scenes/atomic_file.h"
+#include "core/atomic_file.h"
 
 #include "core/error.h"
 
@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <string>
 #include <unistd.h>
 #include <utility>
 
@@ -16,7 +16,9 @@ std::filesystem::path temporary_name(const std::filesystem::path& path)
 {
     static std::atomic<unsigned> number{0};
     std::filesystem::path name = path;
-    name += fmt::format(".{}-{}.tmp", ::getpid(), number.fetch_add(1));
+    std::string ending = ".";
+    ending.append(std::to_string(::getpid())).append("-").append(std::to_string(number.fetch_add(1))).append(".tmp");
+    name += ending;
     return name;
 }
 
@@ -63,9 +65,8 @@ void AtomicFile::commit()
 void AtomicFile::fail(const char* doing) const
 {
     const int reason = errno;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("writing {}: {}: {}; check that the folder exists, may be written to and has space left",
-                            path_.string(), doing, std::strerror(reason)));
+    throw Error(ErrorKind::invalid_input, "writing " + path_.string() + ": " + doing + ": " + std::strerror(reason) +
+                                              "; check that the folder exists, may be written to and has space left");
 }
 
 } // namespace tetrace

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/kernel_id.h"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tetrace {
+
+/// A kernel's text or code as the build embeds it (cmake/Kernels.cmake).
+struct EmbeddedKernel {
+    std::string_view name;
+    std::span<const std::byte> bytes; ///< a 0 stands behind them, so that a text is a C string
+
+    [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+};
+
+/// The kernel of that name; null where there is none.
+[[nodiscard]] inline const EmbeddedKernel* find_kernel(std::span<const EmbeddedKernel> kernels, std::string_view name)
+{
+    for (const EmbeddedKernel& kernel : kernels)
+        if (kernel.name == name) return &kernel;
+    return nullptr;
+}
+
+/// method_layout_math, for example "maria_tet80_exact": how embedded kernels are called where a math mode is a build of
+/// its own; without the mode where it is an option of the device's compiler.
+[[nodiscard]] inline std::string embedded_name(const KernelId& id)
+{
+    return std::string(name_of(id.method)).append("_").append(name_of(id.layout)).append("_").append(name_of(id.math));
+}
+
+} // namespace tetrace

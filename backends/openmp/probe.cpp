@@ -1,0 +1,31 @@
+// The self-test: compiled once per math mode (CMakeLists.txt), which arrives as PROBE_SYMBOL.
+#include "backends/openmp/probe.h"
+
+#include <bit>
+#include <cassert>
+#include <cfenv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace {
+#include "kernels/dialect_cpp.h"
+
+#include "kernels/probe.h"
+} // namespace
+
+namespace tetrace::openmp {
+
+std::vector<std::uint32_t> PROBE_SYMBOL(std::span<const Row> operations)
+{
+    std::fenv_t environment;
+    std::fegetenv(&environment);
+    std::fesetenv(FE_DFL_ENV); // as the kernels' threads
+    std::vector<std::uint32_t> results;
+    for (const Row& row : operations)
+        results.push_back(probe(row.x, row.y, row.z, row.w));
+    std::fesetenv(&environment);
+    return results;
+}
+
+} // namespace tetrace::openmp

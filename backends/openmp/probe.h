@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/packed_scene.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tetrace::openmp {
+
+/// kernels/probe.h, compiled once per math mode from probe.cpp; a result a row.
+[[nodiscard]] std::vector<std::uint32_t> probe_exact(std::span<const Row> operations);
+/// Precondition: host_has_fused_multiply().
+[[nodiscard]] std::vector<std::uint32_t> probe_fast(std::span<const Row> operations);
+
+} // namespace tetrace::openmp

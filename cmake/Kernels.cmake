@@ -1,0 +1,31 @@
+# Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
+
+# kernels/<method>.h x kernels/<layout>.h: every backend compiles each pair in both math modes.
+set(TETRACE_METHODS maria)
+set(TETRACE_LAYOUTS tet80 tet96)
+
+set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
+file(GLOB TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
+
+# tetrace_flatten(<output> <entry> [<method> <layout>]): a text in which every #include "..." of the entry file is
+# replaced by what it names (once more wherever it stands: there are no guards but one). KERNEL_METHOD_HEADER and
+# KERNEL_LAYOUT_HEADER are kernels/<method>.h and kernels/<layout>.h.
+function(tetrace_flatten output entry)
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR}
+            -DMETHOD=${ARGV2} -DLAYOUT=${ARGV3} -P ${tetrace_kernels_scripts}/flatten.cmake
+    DEPENDS ${entry} ${TETRACE_KERNEL_HEADERS} ${tetrace_kernels_scripts}/flatten.cmake
+    COMMENT "Flattening ${output}" VERBATIM)
+endfunction()
+
+# tetrace_embed(<output.cpp> <namespace> <name>=<file>...): defines <namespace>::embedded_kernels() of
+# backends/embedded.h with the bytes of the files.
+function(tetrace_embed output namespace)
+  set(files ${ARGN})
+  list(TRANSFORM files REPLACE "^[^=]*=" "")
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DNAMESPACE=${namespace} "-DFILES=${ARGN}"
+            -P ${tetrace_kernels_scripts}/embed.cmake
+    DEPENDS ${files} ${tetrace_kernels_scripts}/embed.cmake
+    COMMENT "Embedding kernels of ${namespace}" VERBATIM)
+endfunction()

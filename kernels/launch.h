@@ -1,0 +1,38 @@
+// How an image becomes work items: tiles of TILE_WIDTH x tile_height pixels, whose rays share most of their way; a tile
+// is a work group, an item of it a ray. A launch traces the tiles from first_tile on; core/launch.h has the host's
+// twin.
+STRUCT(LaunchParams)
+{
+    TraceParams trace;
+    uint divisions;   // of the domain's sides
+    uint first_tile;  // row after row of tiles
+    uint tile_height; // 4 or 8
+    uint part_log2;   // tets in several buffers: each but the last has 2^part_log2 bytes
+};
+
+STRUCT(Pixel)
+{
+    uint x;
+    uint y;
+};
+
+// Pixel of an item, row after row in its tile; beyond the image where the tile is cut off.
+KERNEL_FN Pixel pixel_of(LaunchParams launch, uint tile, uint item)
+{
+    uint tiles_x = (launch.trace.width + (TILE_WIDTH - 1u)) / TILE_WIDTH;
+    Pixel pixel;
+    pixel.x = tile % tiles_x * TILE_WIDTH + item % TILE_WIDTH;
+    pixel.y = tile / tiles_x * launch.tile_height + item / TILE_WIDTH;
+    return pixel;
+}
+
+KERNEL_FN bool is_in_image(LaunchParams launch, Pixel pixel)
+{
+    return pixel.x < launch.trace.width && pixel.y < launch.trace.height;
+}
+
+// First word of a pixel's hit in the output, which has guard words before and behind the hits.
+KERNEL_FN uint output_word(LaunchParams launch, Pixel pixel)
+{
+    return GUARD_WORDS + HIT_WORDS * (pixel.y * launch.trace.width + pixel.x);
+}

@@ -1,0 +1,24 @@
+// The self-test: one operation a work item, so that a device shows how it computes. core/self_test.h makes the inputs
+// and judges the outputs. A dialect brings as_real, as_bits, to_real and square_root.
+KERNEL_FN uint probe(uint operation, uint a, uint b, uint c)
+{
+    real x = as_real(a);
+    real y = as_real(b);
+    real z = as_real(c);
+    PRECISE real multiply_add = x * y + z;
+    PRECISE real quotient = x / y;
+    PRECISE real sum = x + y;
+    PRECISE real product = x * z; // not x * y, which multiply_add would share instead of fusing it
+    PRECISE real root = square_root(x);
+    real converted = to_real(a);
+    uint result = a;
+    result = operation == PROBE_MULTIPLY_ADD ? as_bits(multiply_add) : result;
+    result = operation == PROBE_DIVIDE ? as_bits(quotient) : result;
+    result = operation == PROBE_ADD ? as_bits(sum) : result;
+    result = operation == PROBE_MULTIPLY ? as_bits(product) : result;
+    result = operation == PROBE_SQUARE_ROOT ? as_bits(root) : result;
+    result = operation == PROBE_CONVERT ? as_bits(converted) : result;
+    result = operation == PROBE_COMPARE ? (x < y ? 1u : 0u) + (x <= y ? 2u : 0u) + (x == y ? 4u : 0u) : result;
+    result = operation == PROBE_INTEGER ? ((a * b + c) >> (c & 31u)) ^ (a << (b & 31u)) : result;
+    return result;
+}
