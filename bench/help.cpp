@@ -39,8 +39,8 @@ const VerbHelp verb_help[] = {
     {Verb::bench, "verify rows, then measure them",
      "Loads the scenes, traces every selected view once with every row and judges each ray; then takes samples with "
      "Google Benchmark, rows interleaved at random. A row is a combination of scene, structure, method, layout, kind "
-     "of rays, math mode and backend. Defaults: maria on tet80 and tet96 with openmp, and Embree with single rays and "
-     "packets of 16.\n\n"
+     "of rays, math mode, backend and device. Defaults: maria on tet80 and tet96 with every usable device of every "
+     "backend, and Embree with single rays and packets of 16.\n\n"
      "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong (their number is told, the rate "
      "stands); 'wrong', it differs from openmp's answers, or a walk reached its cap of steps and its ray is lost (no "
      "rate, exit code 1); 'unsupported', the host or the device cannot run this kernel, and 'skipped', there is no "

@@ -68,10 +68,19 @@ void set_filter(Options& options, const std::string& text)
     options.filter = text;
 }
 
-void set_out(Options& options, const std::string& text)
+std::function<void(Options&, const std::string&)> set_path(const std::string& option,
+                                                           std::optional<std::filesystem::path> Options::*path)
 {
-    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
-    options.out = text;
+    return [=](Options& options, const std::string& text) {
+        if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
+        options.*path = text;
+    };
+}
+
+void set_tile(Options& options, const std::string& text)
+{
+    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
+    options.tile_height = text == "8x4" ? 4 : 8;
 }
 
 std::vector<OptionRow> scene_options()
@@ -117,6 +126,7 @@ std::vector<OptionRow> scene_options()
 std::vector<OptionRow> row_options()
 {
     const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::input};
+    const std::vector<Schedule> schedules = {Schedule::tiles, Schedule::persistent};
     return {
         {"Rows", "--structure", "NAME",
          "Keep the rows of this structure: cdt or bvh. Default: both; of 'check', cdt, unless "
@@ -131,10 +141,15 @@ std::vector<OptionRow> row_options()
          "of the structures kept.",
          tracing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
-         "Keep the rows of this backend ('tetrace devices' lists them). Default: all that have a kernel of the "
-         "structures "
-         "kept.",
+         "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "
+         "where "
+         "it is named here or by --require; they are skipped with the reason. Default: all that have a usable device "
+         "and a kernel of the structures kept.",
          tracing, true, append_backend("--backend", &Options::backends)},
+        {"Rows", "--device", "TEXT",
+         "Keep the rows of the devices whose name, driver, type or id contains TEXT, in whatever case, for example "
+         "'gpu' or 'llvmpipe'. Default: all.",
+         tracing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
         {"Rows", "--rays", "KIND", "Keep the rows of this kind of rays: primary. Default: primary.", measuring, true,
          append("--rays", &Options::rays, std::vector<RayKind>{RayKind::primary})},
         {"Rows", "--math", "MODE",
@@ -145,6 +160,10 @@ std::vector<OptionRow> row_options()
          "Order of the tets in memory: 'hilbert', along a space-filling curve, or 'input', as TetGen wrote them. Rows "
          "of structure cdt only. Default: hilbert.",
          tracing, true, append("--order", &Options::orders, orders)},
+        {"Rows", "--schedule", "NAME",
+         "How rays come to work items: 'tiles', one each, or 'persistent', items that stay and fetch rays until none "
+         "is left. Rows of structure cdt only, on the backends that have such kernels. Default: tiles.",
+         tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.", measuring, false,
          set_filter},
@@ -177,6 +196,14 @@ std::vector<OptionRow> ray_options()
          [](Options& o, const std::string& v) {
              o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
          }},
+        {"Rays", "--tile", "WxH",
+         "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", tracing, false,
+         set_tile},
+        {"Rays", "--buffer-limit", "SIZE",
+         "Treat every device's largest buffer as this small: bytes, or with K, M, G or T behind it. The array of tets "
+         "is bound in parts that fit; where they do not suffice, the row is unsupported. Default: what each device "
+         "says.",
+         tracing, false, [](Options& o, const std::string& v) { o.buffer_limit = parse_bytes("--buffer-limit", v); }},
     };
 }
 
@@ -204,6 +231,9 @@ std::vector<OptionRow> judging_options()
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures, {Picture::normals, Picture::steps})},
+        {"Pictures", "--picture", "FOLDER",
+         "Write a PNG of each view on which a row differs from openmp, the differing pixels marked. Default: none.",
+         bit(Verb::check), false, set_path("--picture", &Options::picture_folder)},
     };
 }
 
@@ -220,11 +250,13 @@ std::vector<OptionRow> output_options()
         {"Output", "--out", "FILE",
          "Also write the result to FILE; without --format, its ending chooses the form: .json, .csv, .md, or .txt for "
          "the table. The table is printed on standard output all the same.",
-         reporting, false, set_out},
+         reporting, false, set_path("--out", &Options::out)},
+        {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
+         bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
          "Write the picture to FILE, which ends in .png or .exr; with several pictures, scene, view and kind go in "
          "front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png.",
-         bit(Verb::render), false, set_out},
+         bit(Verb::render), false, set_path("--out", &Options::out)},
     };
 }
 

@@ -42,14 +42,18 @@ struct Options {
     std::vector<RayKind> rays;
     std::vector<MathMode> math;
     std::vector<TetOrder> orders;
-    std::string filter; ///< ECMAScript regular expression on row names; empty: all
+    std::vector<Schedule> schedules;
+    std::vector<std::string> devices; ///< texts, one of which a device's name, driver, type or id holds; empty: all
+    std::string filter;               ///< ECMAScript regular expression on row names; empty: all
     bool list = false;
 
     CameraSet camera_set = CameraSet::smoke;
     std::string views; ///< as parse_views() takes it; empty: all of the set
     std::uint32_t width = 1024, height = 1024;
 
-    unsigned threads = 0; ///< 0: all that the process may use
+    unsigned threads = 0;           ///< 0: all that the process may use
+    unsigned tile_height = 0;       ///< 4 or 8; 0: default_tile_height() of each device
+    std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
     unsigned samples = 10;
     double budget_s = 25; ///< for the timed part
 
@@ -57,6 +61,8 @@ struct Options {
     bool allow_flawed = false;
     bool clear = false;
     std::vector<Picture> pictures;
+    std::optional<std::filesystem::path> junit;          ///< of `check`
+    std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of what differs
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;

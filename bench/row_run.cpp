@@ -1,5 +1,7 @@
 #include "bench/row_run.h"
 
+#include "scenes/cache.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <new>
@@ -96,10 +98,27 @@ void guarded(RowRun& row, const std::function<void()>& work)
     row.session.reset();
 }
 
+namespace {
+
+/// Empty, so that no program is kept, where the environment names no folder for caches.
+std::filesystem::path program_cache()
+{
+    try {
+        return cache_directory() / "programs";
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+} // namespace
+
 SessionOptions session_options(const Options& options)
 {
     SessionOptions session;
     session.threads = resolved_threads(options);
+    session.tile_height = options.tile_height;
+    session.max_buffer_bytes = options.buffer_limit;
+    session.program_cache = program_cache();
     return session;
 }
 

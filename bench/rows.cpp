@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <regex>
 
@@ -22,6 +23,12 @@ bool wanted_math(const Options& options, const KernelId& kernel)
     return options.math.empty() ? kernel.math == MathMode::exact : wanted(options.math, kernel.math);
 }
 
+bool wanted_schedule(const Options& options, const KernelId& kernel)
+{
+    if (kernel.structure != Structure::cdt) return true;
+    return options.schedules.empty() ? kernel.schedule == Schedule::tiles : wanted(options.schedules, kernel.schedule);
+}
+
 std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kernel)
 {
     if (kernel.structure != Structure::cdt || options.orders.empty()) return {TetOrder::hilbert};
@@ -30,9 +37,52 @@ std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kern
 
 bool wanted_kernel(const Options& options, const KernelId& kernel)
 {
-    return kernel.schedule == Schedule::tiles && wanted(options.structures, kernel.structure) &&
-           wanted(options.methods, kernel.method) && wanted(options.layouts, kernel.layout) &&
-           wanted_math(options, kernel);
+    return wanted(options.structures, kernel.structure) && wanted(options.methods, kernel.method) &&
+           wanted(options.layouts, kernel.layout) && wanted_math(options, kernel) && wanted_schedule(options, kernel);
+}
+
+bool is_named(const Options& options, const Backend& backend)
+{
+    for (const auto* list : {&options.backends, &options.required})
+        if (std::find(list->begin(), list->end(), backend.name()) != list->end()) return true;
+    return false;
+}
+
+bool has_usable_device(const Backend& backend)
+{
+    const auto& devices = backend.devices();
+    return std::any_of(devices.begin(), devices.end(), [](const Device& device) { return device.usable; });
+}
+
+bool has_any_kernel(const Backend& backend)
+{
+    const auto& kernels = all_kernels();
+    return std::any_of(kernels.begin(), kernels.end(), [&](const KernelId& k) { return backend.has_kernel(k); });
+}
+
+std::string in_lower_case(std::string text)
+{
+    for (char& c : text)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool wanted_device(const Options& options, const Device& device)
+{
+    const std::string what = in_lower_case(device.name + '\n' + device.driver + '\n' + device.type + '\n' + device.id);
+    const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
+    return options.devices.empty() || std::any_of(options.devices.begin(), options.devices.end(), holds);
+}
+
+/// Indices of the devices that have rows.
+std::vector<std::size_t> devices_with_rows(const Options& options, const Backend& backend)
+{
+    if (!has_usable_device(backend) && is_named(options, backend)) return {0};
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < backend.devices().size(); ++i)
+        if (const Device& device = backend.devices()[i]; device.usable && wanted_device(options, device))
+            indices.push_back(i);
+    return indices;
 }
 
 bool filter_keeps(const std::string& filter, const std::string& name)
@@ -40,20 +90,37 @@ bool filter_keeps(const std::string& filter, const std::string& name)
     return filter.empty() || std::regex_search(name, std::regex(filter));
 }
 
+void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
+{
+    key.backend = backend.name();
+    for (const std::size_t device : devices_with_rows(options, backend))
+        for (const TetOrder order : wanted_orders(options, key.kernel)) {
+            key.device = device;
+            key.order = order;
+            if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
+        }
+}
+
 std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene,
                                   const std::vector<Backend*>& backends)
 {
     std::vector<RowKey> rows;
     for (const KernelId& kernel : all_kernels())
-        for (const Backend* backend : backends) {
-            if (!wanted_kernel(options, kernel) || !wanted(options.backends, backend->name())) continue;
-            if (!backend->has_kernel(kernel)) continue;
-            for (const TetOrder order : wanted_orders(options, kernel)) {
-                const RowKey key{scene, backend->name(), kernel, RayKind::primary, order, 0};
-                if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
-            }
-        }
+        for (const Backend* backend : backends)
+            if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()) &&
+                backend->has_kernel(kernel))
+                add_rows(rows, options, {scene, {}, kernel}, *backend);
     return rows;
+}
+
+std::string device_names(const Options& options, const Backend& backend)
+{
+    std::string text;
+    if (!options.devices.empty())
+        for (const Device& device : backend.devices())
+            text += fmt::format("\n  a device of {}: {}, {}, {}, {}", backend.name(), device.name, device.driver,
+                                device.type, device.id);
+    return text;
 }
 
 /// Reasons of the backends asked for, so that an empty selection explains itself.
@@ -65,6 +132,8 @@ std::string reasons(const Options& options)
             if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()))
                 if (const std::string reason = backend->why_not(0, kernel); !reason.empty())
                     text += fmt::format("\n  {} on {}: {}", name_of(kernel), backend->name(), reason);
+    for (const Backend* backend : all_backends())
+        if (wanted(options.backends, backend->name())) text += device_names(options, *backend);
     return text;
 }
 
@@ -72,7 +141,8 @@ std::string reasons(const Options& options)
 {
     if (unfiltered.empty())
         throw Error(ErrorKind::usage,
-                    "no row has this combination of --structure, --method, --layout, --backend and --math" +
+                    "no row has this combination of --structure, --method, --layout, --backend, --device, --schedule "
+                    "and --math" +
                         reasons(options) + "\n'tetrace bench --list' prints the rows of the defaults");
     std::string text =
         fmt::format("--filter '{}' matches none of the {} rows selected otherwise:", options.filter, unfiltered.size());
@@ -85,10 +155,25 @@ std::string reasons(const Options& options)
 
 std::string row_name(const RowKey& key)
 {
-    return fmt::format("{}/{}/{}/math:{}{}{}/api:{}{}", name_of(key.kernel), key.scene, name_of(key.rays),
+    return fmt::format("{}/{}/{}/math:{}{}{}/api:{}", name_of(key.kernel), key.scene, name_of(key.rays),
                        name_of(key.kernel.math), key.order == TetOrder::hilbert ? "" : "/order:input",
-                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", key.backend,
-                       key.device == 0 ? "" : fmt::format(":{}", key.device));
+                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", device_label(key));
+}
+
+std::string device_label(const RowKey& key)
+{
+    return key.device == 0 ? key.backend : fmt::format("{}:{}", key.backend, key.device);
+}
+
+std::vector<std::string> missing_devices(const Options& options, const std::vector<Backend*>& backends)
+{
+    std::vector<std::string> sentences;
+    for (const Backend* backend : backends) {
+        const bool has_rows = has_usable_device(*backend) || (is_named(options, *backend) && has_any_kernel(*backend));
+        if (wanted(options.backends, backend->name()) && !has_rows)
+            sentences.push_back(fmt::format("{}: no device: {}", backend->name(), backend->devices().front().reason));
+    }
+    return sentences;
 }
 
 std::string kernel_title(const RowKey& key)

@@ -28,12 +28,21 @@ struct RowKey {
 /// Name without the scene, for tables headed by it: "cdt maria tet80".
 [[nodiscard]] std::string kernel_title(const RowKey& key);
 
-/// The rows that the options select, scene after scene, rows of one scene in the order of kernels and backends.
-/// Math mode and order select among rows of structure cdt only; without those options, exact and hilbert.
+/// The rows that the options select, scene after scene, rows of one scene in the order of kernels, backends and
+/// devices. Math mode, order and schedule select among rows of structure cdt only; without those options, exact,
+/// hilbert and tiles. A backend has rows of its usable devices; one that has none, of its first where --backend or
+/// --require names it. A kernel that a backend has and a device cannot run is a row all the same: it will end as
+/// unsupported.
 /// Throws Error{usage} where nothing is selected: it names the options, and what there would be without them.
-/// A kernel that a backend has and this host cannot run is a row all the same: it will end as unsupported.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
+
+/// "cuda: no device: <reason>" for each backend that select_rows() leaves out since none of its devices is usable.
+[[nodiscard]] std::vector<std::string> missing_devices(const Options& options,
+                                                       const std::vector<Backend*>& backends = all_backends());
+
+/// "opencl", with ":1" behind it for a backend's later devices: a row's device in tables.
+[[nodiscard]] std::string device_label(const RowKey& key);
 
 /// Whether Google Benchmark's --benchmark_filter would keep the name: a regular expression found anywhere, negated by a
 /// leading '-'; "all" and "" keep everything. Throws Error{usage} where it is no regular expression.

@@ -11,14 +11,17 @@ namespace {
 std::vector<std::string> names(const std::vector<std::string>& arguments, const std::vector<std::string>& scenes)
 {
     std::vector<std::string> list;
-    for (const RowKey& key : select_rows(parse_options(arguments), scenes))
+    // Not those of this machine's GPU interfaces.
+    for (const RowKey& key :
+         select_rows(parse_options(arguments), scenes, {all_backends().front(), all_backends().back()}))
         list.push_back(row_name(key));
     return list;
 }
 
-/// A backend that has every kernel of structure cdt, on a host that runs none of math mode fast.
+/// A backend that has every kernel of structure cdt, on hosts that run none of math mode fast.
 class OldHost : public Backend {
 public:
+    explicit OldHost(std::vector<Device> devices = {Device{}}) : devices_(std::move(devices)) {}
     [[nodiscard]] std::string name() const override { return "old"; }
     [[nodiscard]] std::string clock() const override { return "none"; }
     [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
@@ -36,8 +39,25 @@ public:
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:
-    std::vector<Device> devices_ = {Device{}};
+    std::vector<Device> devices_;
 };
+
+Device device_named(const char* name, const char* type, bool usable = true)
+{
+    Device device;
+    device.name = name;
+    device.type = type;
+    device.usable = usable;
+    if (!usable) device.reason = "no driver; install one";
+    return device;
+}
+
+Options with_required(const char* backend)
+{
+    Options options = parse_options({"bench"});
+    options.required = {backend};
+    return options;
+}
 
 } // namespace
 
@@ -51,6 +71,53 @@ TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
         2);
     EXPECT_TRUE(std::none_of(rows.begin(), rows.end(),
                              [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
+}
+
+TEST(rows, every_usable_device_has_rows_named_by_its_index)
+{
+    OldHost old({device_named("a", "gpu"), device_named("b", "gpu", false), device_named("c", "cpu")});
+    const auto rows = select_rows(parse_options({"bench", "--layout", "tet80"}), {"s"}, {&old});
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(row_name(rows[0]), "cdt/maria/tet80/s/primary/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[1]), "cdt/maria/tet80/s/primary/math:exact/api:old:2");
+    EXPECT_EQ(device_label(rows[1]), "old:2");
+    EXPECT_TRUE(missing_devices(parse_options({"bench"}), {&old}).empty());
+}
+
+TEST(rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
+{
+    OldHost old({device_named("Radeon", "gpu"), device_named("llvmpipe", "emulated")});
+    const auto indices = [&](const char* text) {
+        std::vector<std::size_t> found;
+        for (const RowKey& key :
+             select_rows(parse_options({"bench", "--layout", "tet80", "--device", text}), {"s"}, {&old}))
+            found.push_back(key.device);
+        return found;
+    };
+    EXPECT_EQ(indices("radeON"), std::vector<std::size_t>{0});
+    EXPECT_EQ(indices("EMULATED"), std::vector<std::size_t>{1});
+    EXPECT_EQ(indices("radeon,pipe"), (std::vector<std::size_t>{0, 1}));
+    EXPECT_THROW(static_cast<void>(indices("geforce")), Error);
+}
+
+TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
+{
+    OldHost old({device_named("none", "gpu", false)});
+    OldHost usable;
+    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 2u);
+    EXPECT_THROW(static_cast<void>(select_rows(parse_options({"bench"}), {"s"}, {&old})), Error);
+    EXPECT_EQ(missing_devices(parse_options({"bench"}), {&old}),
+              std::vector<std::string>{"old: no device: no driver; install one"});
+    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 2u);
+    EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
+}
+
+TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
+{
+    OldHost old;
+    const auto rows = select_rows(parse_options({"bench", "--schedule", "tiles,persistent"}), {"s"}, {&old});
+    EXPECT_EQ(rows.size(), 4u);
+    EXPECT_EQ(row_name(rows[2]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
 TEST(rows, the_default_is_maria_on_both_layouts_beside_embree)
