@@ -1,0 +1,93 @@
+#include "backends/opencl/backend.h"
+
+#include "backends/opencl/kernels.h"
+#include "backends/opencl/probe.h"
+#include "backends/opencl/session.h"
+#include "backends/opencl/yardstick.h"
+
+#include <algorithm>
+
+namespace tetrace {
+namespace {
+
+std::vector<Device> facts_of(const std::vector<opencl::FoundDevice>& found)
+{
+    std::vector<Device> devices;
+    for (const opencl::FoundDevice& device : found)
+        devices.push_back(device.facts);
+    return devices;
+}
+
+class OpenclBackend : public Backend {
+public:
+    [[nodiscard]] std::string name() const override { return "opencl"; }
+    [[nodiscard]] std::string clock() const override { return "OpenCL profiling events"; }
+
+    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
+
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
+    {
+        return kernel.structure == Structure::cdt &&
+               find_kernel(opencl::embedded_kernels(), opencl::source_name(kernel)) != nullptr;
+    }
+
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
+    {
+        if (!has_kernel(kernel)) return "opencl has no kernel " + name_of(kernel);
+        return devices_.at(device).reason;
+    }
+
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
+                                                const SessionOptions& options) override
+    {
+        if (const auto reason = why_not(device, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
+        if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
+            throw Error(ErrorKind::internal,
+                        "opening opencl: the scene is not packed as " + std::string(name_of(kernel.layout)));
+        return std::make_unique<opencl::OpenclSession>(context(device, options.threads), kernel, *scene.packed,
+                                                       options);
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
+                                                   std::span<const Row> operations) override
+    {
+        return opencl::run_probe(*context(device, 0), math, operations);
+    }
+
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
+    {
+        return opencl::measure_device(*context(device, options.threads),
+                                      opencl::largest_buffer(devices_.at(device), options));
+    }
+
+private:
+    /// The context that open sessions of the device share, else a new one. A lost one serves no new session.
+    std::shared_ptr<opencl::Context> context(std::size_t device, unsigned threads)
+    {
+        if (!devices_.at(device).usable) throw Error(ErrorKind::missing, devices_[device].reason);
+        Shared& shared = shared_[device];
+        if (auto made = shared.context.lock(); made && !made->is_lost() && shared.threads == threads) return made;
+        auto made = std::make_shared<opencl::Context>(found_[device], threads);
+        shared = {made, threads};
+        return made;
+    }
+
+    struct Shared {
+        std::weak_ptr<opencl::Context> context;
+        unsigned threads = 0; ///< asked for
+    };
+
+    std::vector<opencl::FoundDevice> found_ = opencl::find_devices();
+    std::vector<Device> devices_ = facts_of(found_);
+    std::vector<Shared> shared_ = std::vector<Shared>(found_.size());
+};
+
+} // namespace
+
+Backend& opencl_backend()
+{
+    static OpenclBackend backend;
+    return backend;
+}
+
+} // namespace tetrace

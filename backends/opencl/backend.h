@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/backend.h"
+
+namespace tetrace {
+
+/// Every device of every OpenCL platform that the machine's ICD loader knows.
+[[nodiscard]] Backend& opencl_backend();
+
+} // namespace tetrace

@@ -1,0 +1,57 @@
+#include "backends/opencl/context.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace tetrace::opencl {
+
+namespace {
+
+/// The part of a device that has so many compute units; the device itself where it cannot be divided so.
+cl::Device part_of(cl::Device device, unsigned units)
+{
+    const std::array<cl_device_partition_property, 4> by_counts = {CL_DEVICE_PARTITION_BY_COUNTS,
+                                                                   static_cast<cl_device_partition_property>(units),
+                                                                   CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    std::vector<cl::Device> parts;
+    try {
+        device.createSubDevices(by_counts.data(), &parts);
+    } catch (const cl::Error&) {
+        return device;
+    }
+    return parts.empty() ? device : parts.front();
+}
+
+} // namespace
+
+std::uint64_t largest_buffer(const Device& device, const SessionOptions& options)
+{
+    return options.max_buffer_bytes == 0 ? device.max_buffer_bytes
+                                         : std::min(device.max_buffer_bytes, options.max_buffer_bytes);
+}
+
+double seconds_of(const cl::Event& event)
+{
+    return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+}
+
+Context::Context(const FoundDevice& found, unsigned threads)
+    : found_(found), device_(found.handle), threads_(found.facts.threads)
+{
+    run("making a context", 0, [&] {
+        if (found.facts.type == "emulated" && threads != 0 && threads < threads_) {
+            device_ = part_of(found.handle, threads);
+            threads_ = device_.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+        }
+        handle_ = cl::Context(device_);
+    });
+}
+
+cl::CommandQueue Context::make_queue() const
+{
+    return {handle_, device_, CL_QUEUE_PROFILING_ENABLE};
+}
+
+} // namespace tetrace::opencl

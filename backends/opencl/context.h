@@ -1,0 +1,56 @@
+#pragma once
+
+#include "backends/opencl/device.h"
+#include "backends/opencl/errors.h"
+
+#include <cstdint>
+#include <string>
+
+namespace tetrace::opencl {
+
+/// The largest buffer of a session, in bytes: the device's, or what the options say it is.
+[[nodiscard]] std::uint64_t largest_buffer(const Device& device, const SessionOptions& options);
+
+/// Seconds that a finished command took on the device.
+[[nodiscard]] double seconds_of(const cl::Event& event);
+
+/// A context on a device: what its sessions share. Errors of the API come out of it as tetrace's.
+class Context {
+public:
+    /// threads: of an emulated device as many as that, where it can be divided; 0 or more than it has: all.
+    /// Throws Error where the driver fails.
+    Context(const FoundDevice& found, unsigned threads);
+
+    [[nodiscard]] const FoundDevice& found() const { return found_; }
+    [[nodiscard]] const Device& facts() const { return found_.facts; }
+    [[nodiscard]] const cl::Context& handle() const { return handle_; }
+    /// The device, or the part of it that has so many threads.
+    [[nodiscard]] const cl::Device& device() const { return device_; }
+    [[nodiscard]] unsigned threads() const { return threads_; }
+    /// An in-order queue with profiling.
+    [[nodiscard]] cl::CommandQueue make_queue() const;
+
+    /// Whether a call failed in a way that later calls may not survive: the next session takes a new context.
+    [[nodiscard]] bool is_lost() const { return is_lost_; }
+
+    /// Does some work; an error of the API becomes Error, see to_error(). bytes: that the work needs on the device.
+    template <class Work>
+    auto run(const std::string& doing, std::uint64_t bytes, const Work& work)
+    {
+        try {
+            return work();
+        } catch (const cl::Error& failure) {
+            is_lost_ = is_lost_ || !is_about_memory(failure.err());
+            throw to_error(failure, {doing, facts().name, bytes, facts().memory_bytes});
+        }
+    }
+
+private:
+    FoundDevice found_;
+    cl::Device device_;
+    unsigned threads_;
+    cl::Context handle_;
+    bool is_lost_ = false;
+};
+
+} // namespace tetrace::opencl

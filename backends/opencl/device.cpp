@@ -1,0 +1,236 @@
+#include "backends/opencl/device.h"
+
+#include "backends/opencl/errors.h"
+#include "core/launch.h"
+
+#include <CL/cl_ext.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <regex>
+
+namespace tetrace::opencl {
+
+namespace {
+
+constexpr std::size_t largest_group = std::size_t{TILE_WIDTH} * 8;
+
+template <class Value>
+Value asked(const cl::Device& device, cl_device_info what)
+{
+    Value value{};
+    if (const cl_int code = clGetDeviceInfo(device(), what, sizeof(value), &value, nullptr); code != CL_SUCCESS)
+        throw cl::Error(code, "clGetDeviceInfo");
+    return value;
+}
+
+bool has_extension(const cl::Device& device, const std::string& name)
+{
+    return (" " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ").find(" " + name + " ") != std::string::npos;
+}
+
+std::string trimmed(const std::string& text)
+{
+    const auto is_blank = [](unsigned char c) { return std::isspace(c) != 0 || c == 0; };
+    const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
+    const auto end = std::find_if_not(text.rbegin(), text.rend(), is_blank).base();
+    return begin < end ? std::string(begin, end) : std::string();
+}
+
+std::string uuid_of(const cl::Device& device)
+{
+    if (!has_extension(device, "cl_khr_device_uuid")) return {};
+    std::string text;
+    for (const cl_uchar byte : asked<std::array<cl_uchar, CL_UUID_SIZE_KHR>>(device, CL_DEVICE_UUID_KHR)) {
+        std::array<char, 3> digits{};
+        std::snprintf(digits.data(), digits.size(), "%02x", unsigned{byte});
+        text += digits.data();
+    }
+    return text;
+}
+
+std::string pci_of(const cl::Device& device)
+{
+    if (has_extension(device, "cl_khr_pci_bus_info")) {
+        const auto pci = asked<cl_device_pci_bus_info_khr>(device, CL_DEVICE_PCI_BUS_INFO_KHR);
+        return pci_text(pci.pci_domain, pci.pci_bus, pci.pci_device, pci.pci_function);
+    }
+    if (!has_extension(device, "cl_nv_device_attribute_query")) return {};
+    constexpr cl_device_info bus_nv = 0x4008, slot_nv = 0x4009, domain_nv = 0x400A; // in no header of Khronos's
+    const auto slot = asked<cl_uint>(device, slot_nv); // the device's number, then three bits of function
+    cl_uint domain = 0;
+    (void)clGetDeviceInfo(device(), domain_nv, sizeof(domain), &domain, nullptr); // older drivers: domain 0
+    return pci_text(domain, asked<cl_uint>(device, bus_nv), slot >> 3, slot & 7);
+}
+
+unsigned group_width_of(const cl::Device& device)
+{
+    if (has_extension(device, "cl_nv_device_attribute_query")) return asked<cl_uint>(device, CL_DEVICE_WARP_SIZE_NV);
+    if (has_extension(device, "cl_amd_device_attribute_query"))
+        return asked<cl_uint>(device, CL_DEVICE_WAVEFRONT_WIDTH_AMD);
+    return 0;
+}
+
+/// Oclgrind says of its device that it is everything.
+std::string type_of(const cl::Device& device)
+{
+    return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 ? "emulated" : "gpu";
+}
+
+/// Empty where the device has all that the kernels need.
+std::string reason_against(const cl::Device& device, std::size_t group_items)
+{
+    if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "its driver says that it is not available";
+    if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "its driver has no compiler for OpenCL C";
+    if (!device.getInfo<CL_DEVICE_ENDIAN_LITTLE>()) return "it is big-endian, packed scenes are not";
+    if (group_items < largest_group)
+        return "its work groups have " + std::to_string(group_items) + " items, a tile needs " +
+               std::to_string(largest_group);
+    if (device.getInfo<CL_DEVICE_VERSION>().starts_with("OpenCL 1.0") ||
+        device.getInfo<CL_DEVICE_VERSION>().starts_with("OpenCL 1.1"))
+        return "it offers " + trimmed(device.getInfo<CL_DEVICE_VERSION>()) + ", the kernels need OpenCL 1.2";
+    return {};
+}
+
+void describe(const cl::Platform& platform, FoundDevice& found)
+{
+    const cl::Device& device = found.handle;
+    Device& facts = found.facts;
+    facts.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    facts.type = type_of(device);
+    const std::string platform_name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    const std::string platform_version = trimmed(platform.getInfo<CL_PLATFORM_VERSION>());
+    const std::string driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    facts.driver = platform_name + " " + driver_version;
+    facts.implementation = implementation_of(platform_name, driver_version, platform_version);
+    facts.uuid = uuid_of(device);
+    facts.pci = pci_of(device);
+    facts.id = !facts.uuid.empty() ? facts.uuid : !facts.pci.empty() ? facts.pci : facts.name;
+    facts.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    facts.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    const auto sizes = device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
+    const std::size_t group_items =
+        std::min(device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>(), sizes.empty() ? 0 : sizes.front());
+    facts.max_group_items = static_cast<unsigned>(group_items);
+    facts.group_width = group_width_of(device);
+    facts.timer_period_s = 1e-9 * static_cast<double>(device.getInfo<CL_DEVICE_PROFILING_TIMER_RESOLUTION>());
+    facts.threads = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    facts.reason = reason_against(device, group_items);
+    facts.usable = facts.reason.empty();
+    found.divides_correctly = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    found.build_key = platform_name + "\n" + platform_version + "\n" + driver_version + "\n" + facts.name + "\n" +
+                      device.getInfo<CL_DEVICE_VERSION>();
+}
+
+FoundDevice unusable(const std::string& name, const std::string& reason)
+{
+    FoundDevice found;
+    found.facts.name = found.facts.id = name;
+    found.facts.type = "gpu";
+    found.facts.usable = false;
+    found.facts.reason = reason;
+    return found;
+}
+
+FoundDevice described(const cl::Platform& platform, const cl::Device& handle)
+{
+    FoundDevice found;
+    found.handle = handle;
+    try {
+        describe(platform, found);
+    } catch (const cl::Error& failure) {
+        found.facts.usable = false;
+        found.facts.reason =
+            std::string("it cannot be described: ") + failure.what() + " gave " + error_name(failure.err());
+    }
+    return found;
+}
+
+std::vector<FoundDevice> devices_of(const cl::Platform& platform)
+{
+    std::vector<FoundDevice> devices;
+    try {
+        std::vector<cl::Device> handles;
+        platform.getDevices(CL_DEVICE_TYPE_ALL, &handles); // none is no error to these bindings
+        for (const cl::Device& handle : handles)
+            devices.push_back(described(platform, handle));
+        if (handles.empty())
+            devices.push_back(unusable(trimmed(platform.getInfo<CL_PLATFORM_NAME>()),
+                                       "this platform has no device here: its hardware is missing or closed to us"));
+    } catch (const cl::Error& failure) {
+        devices.push_back(unusable("a platform", std::string("its devices cannot be listed: ") + failure.what() +
+                                                     " gave " + error_name(failure.err())));
+    }
+    return devices;
+}
+
+/// The first "number.number" of a text; empty where there is none.
+std::string version_in(std::string_view text)
+{
+    static const std::regex pattern(R"((\d+)\.(\d+))");
+    std::match_results<std::string_view::const_iterator> match;
+    return std::regex_search(text.begin(), text.end(), match, pattern) ? match.str() : std::string();
+}
+
+std::string short_name(std::string_view platform_name)
+{
+    if (platform_name == "Portable Computing Language") return "pocl";
+    if (platform_name.starts_with("NVIDIA")) return "nvidia";
+    std::string name;
+    for (const char c : platform_name) {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+            name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (!name.empty() && name.back() != '-')
+            name += '-';
+    }
+    while (!name.empty() && name.back() == '-')
+        name.pop_back();
+    return name.empty() ? "opencl" : name;
+}
+
+} // namespace
+
+std::string implementation_of(std::string_view platform_name, std::string_view driver_version,
+                              std::string_view platform_version)
+{
+    const std::string name = short_name(platform_name);
+    std::string version = version_in(driver_version);
+    if (version.empty() && platform_version.starts_with("OpenCL ")) { // "OpenCL <its version> <vendor's information>"
+        const std::size_t space = platform_version.find(' ', 7);
+        if (space != std::string_view::npos) version = version_in(platform_version.substr(space));
+    }
+    if (name == "nvidia") version = version.substr(0, version.find('.'));
+    return version.empty() ? name : name + "-" + version;
+}
+
+std::string pci_text(unsigned domain, unsigned bus, unsigned device, unsigned function)
+{
+    std::array<char, 48> text{};
+    std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%x", domain, bus, device, function);
+    return text.data();
+}
+
+std::vector<FoundDevice> find_devices()
+{
+    std::vector<cl::Platform> platforms;
+    std::string why_none = "no platform";
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error& failure) {
+        why_none = error_name(failure.err());
+    }
+    std::vector<FoundDevice> devices;
+    for (const cl::Platform& platform : platforms)
+        for (FoundDevice& found : devices_of(platform))
+            devices.push_back(std::move(found));
+    if (devices.empty())
+        devices.push_back(unusable("none", "no OpenCL driver was found (" + why_none +
+                                               "); install pocl-opencl-icd, which runs on the processor, or the "
+                                               "OpenCL part of the GPU's driver (nvidia-opencl-icd, mesa-opencl-icd, "
+                                               "intel-opencl-icd)"));
+    return devices;
+}
+
+} // namespace tetrace::opencl

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "backends/opencl/api.h"
+#include "core/backend.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace::opencl {
+
+/// A device of any platform. handle is empty where facts speak of a platform without devices, or of no platform.
+struct FoundDevice {
+    Device facts;
+    cl::Device handle;
+    std::string build_key; ///< platform, driver and device with versions: compiled programs are valid for these alone
+    bool divides_correctly = false; ///< offers correctly rounded division and square root, as a build option
+};
+
+/// Every device of every platform, or one entry that says why there is none. Throws nothing.
+[[nodiscard]] std::vector<FoundDevice> find_devices();
+
+/// An implementation's name and version in short: "pocl-3.1", "oclgrind-21.10"; of NVIDIA's drivers the branch,
+/// "nvidia-580". Names that are not known are the platform's in lower case; a version that is not found is left out.
+[[nodiscard]] std::string implementation_of(std::string_view platform_name, std::string_view driver_version,
+                                            std::string_view platform_version);
+
+/// "0000:41:00.0"
+[[nodiscard]] std::string pci_text(unsigned domain, unsigned bus, unsigned device, unsigned function);
+
+} // namespace tetrace::opencl

@@ -1,0 +1,60 @@
+// A layout and method as an OpenCL program (CMakeLists.txt): a thin entry round the shared kernel. Build options
+// (program.cpp): GROUP_ITEMS, the items of a work group, which has a tile at a time; PERSISTENT for that schedule;
+// MATH_FAST; TETS_IN_PARTS.
+#include "kernels/dialect_opencl.h"
+
+#include "kernels/kernel.h"
+
+KERNEL_FN void trace_item(SceneView scene, LaunchParams launch, uint tile, __global uint* output)
+{
+    Pixel pixel = pixel_of(launch, tile, (uint)get_local_id(0));
+    if (!is_in_image(launch, pixel)) return;
+    Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+    __global uint* words = output + output_word(launch, pixel);
+    words[0] = hit.face_id;
+    words[1] = hit.tet;
+    words[2] = as_bits(hit.t);
+    words[3] = as_bits(hit.u);
+    words[4] = as_bits(hit.v);
+    words[5] = hit.steps;
+}
+
+// Traces the tiles from launch.first_tile to end_tile - 1. counter: the next tile that no group has, used by schedule
+// persistent. The arguments in this order: session.cpp sets them.
+__kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void trace_image(
+    const LaunchParams launch, const uint end_tile, __global uint* restrict output, __global uint* restrict counter
+#define SCENE_ARRAY(element, name, member, binding) , __global const element* restrict name
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+#ifdef TETS_IN_PARTS
+#define PART_ARGUMENT(number) , __global const uint4* restrict part_##number
+    MORE_TET_PARTS(PART_ARGUMENT)
+#endif
+)
+{
+    SceneView scene;
+    scene.divisions = launch.divisions;
+#define SCENE_ARRAY(element, name, member, binding) scene.name = name;
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+#ifdef TETS_IN_PARTS
+    scene.part_log2 = launch.part_log2;
+#define SET_PART(number) scene.part_##number = part_##number;
+    MORE_TET_PARTS(SET_PART)
+#endif
+
+#ifdef PERSISTENT
+    // A group stays, and its first item fetches the group's next tile, until none is left (Aila, Laine, Karras 2012).
+    __local uint fetched;
+    for (;;) {
+        if (get_local_id(0) == 0u) fetched = atomic_inc(counter);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        uint tile = fetched;
+        barrier(CLK_LOCAL_MEM_FENCE); // all have read it before it changes
+        if (tile >= end_tile) break;
+        trace_item(scene, launch, tile, output);
+    }
+#else
+    trace_item(scene, launch, launch.first_tile + (uint)get_group_id(0), output);
+#endif
+}

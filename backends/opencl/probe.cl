@@ -1,0 +1,16 @@
+// The self-test as an OpenCL program, and a kernel that does nothing, whose launch is timed.
+#include "kernels/dialect_opencl.h"
+
+#include "kernels/probe.h"
+
+// An item a row of {operation, a, b, c}.
+__kernel void run_probe(__global const uint4* restrict operations, __global uint* restrict results)
+{
+    size_t item = get_global_id(0);
+    uint4 row = operations[item];
+    results[item] = probe(row.x, row.y, row.z, row.w);
+}
+
+__kernel void do_nothing(void)
+{
+}

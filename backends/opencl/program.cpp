@@ -1,0 +1,89 @@
+#include "backends/opencl/program.h"
+
+#include "backends/opencl/kernels.h"
+#include "core/hash.h"
+
+namespace tetrace::opencl {
+
+namespace {
+
+std::string options_for(const FoundDevice& device, const ProgramId& id)
+{
+    std::string options = "-cl-std=CL1.2 " + id.defines;
+    if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
+    return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
+}
+
+std::uint64_t key_of(const FoundDevice& device, const std::string& options, std::string_view source)
+{
+    std::uint64_t key = hash_of(device.build_key);
+    key = hash_of(options, key);
+    return hash_of(source, key);
+}
+
+std::string build_log(const cl::BuildError& failure)
+{
+    std::string text;
+    for (const auto& [device, log] : failure.getBuildLog())
+        text += log;
+    constexpr std::size_t longest = 4000;
+    return text.size() > longest ? text.substr(0, longest) + "..." : text;
+}
+
+} // namespace
+
+std::string source_name(const KernelId& kernel)
+{
+    return std::string(name_of(kernel.method)).append("_").append(name_of(kernel.layout));
+}
+
+Program::Program(Context& context, const ProgramId& id, const ProgramCache& cache)
+    : cache_(cache), options_(options_for(context.found(), id))
+{
+    const EmbeddedKernel* source = find_kernel(embedded_kernels(), id.source);
+    if (source == nullptr) throw Error(ErrorKind::internal, "opencl has no program '" + id.source + "'");
+    key_ = key_of(context.found(), options_, source->text());
+    is_cached_ = load(context);
+    if (!is_cached_) compile(context, id, source->text());
+}
+
+/// Whether the cache had it, and the driver takes it still.
+bool Program::load(const Context& context)
+{
+    const auto binary = cache_.find(key_);
+    if (!binary) return false;
+    try {
+        handle_ = cl::Program(context.handle(), {context.device()}, {*binary});
+        handle_.build({context.device()}, options_.c_str());
+        return true;
+    } catch (const cl::Error&) {
+        return false;
+    }
+}
+
+void Program::compile(Context& context, const ProgramId& id, std::string_view source)
+{
+    context.run("compiling " + id.source, 0, [&] {
+        handle_ = cl::Program(context.handle(), std::string(source));
+        try {
+            handle_.build({context.device()}, options_.c_str());
+        } catch (const cl::BuildError& failure) {
+            throw Error(ErrorKind::internal, "compiling " + id.source + " with '" + options_ + "' on '" +
+                                                 context.facts().name + "': " + error_name(failure.err()) + "\n" +
+                                                 build_log(failure));
+        }
+    });
+}
+
+void Program::keep() const
+{
+    if (is_cached_) return;
+    try {
+        const auto binaries = handle_.getInfo<CL_PROGRAM_BINARIES>();
+        if (binaries.size() == 1 && !binaries.front().empty()) cache_.keep(key_, binaries.front());
+    } catch (const cl::Error&) {
+        return; // a driver that does not give its binary away compiles again
+    }
+}
+
+} // namespace tetrace::opencl

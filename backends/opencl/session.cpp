@@ -1,0 +1,197 @@
+#include "backends/opencl/session.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tetrace::opencl {
+
+namespace {
+
+// The arguments of kernel.cl's entry: these, then the scene's arrays, then the parts of the tets.
+enum Argument : cl_uint { launch_argument, end_tile_argument, output_argument, counter_argument, first_array_argument };
+
+constexpr std::size_t smallest_buffer_bytes = 16; // OpenCL has no empty buffers
+
+/// No device holds more items than that in a compute unit at once (NVIDIA's most), and groups that do not fit start
+/// when all work is done; a processor's unit is one thread, which works on one group at a time.
+constexpr std::size_t resident_items = 2048;
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
+{
+    return {context, flags, std::max(bytes, smallest_buffer_bytes)};
+}
+
+cl::Buffer make_uploaded(const cl::Context& context, const cl::CommandQueue& queue, std::span<const std::byte> bytes)
+{
+    const cl::Buffer buffer = make_buffer(context, CL_MEM_READ_ONLY, bytes.size());
+    if (!bytes.empty()) queue.enqueueWriteBuffer(buffer, CL_FALSE, 0, bytes.size(), bytes.data());
+    return buffer;
+}
+
+} // namespace
+
+OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
+                             const SessionOptions& options)
+    : context_(std::move(context)), kernel_id_(kernel),
+      tile_height_(options.tile_height != 0 ? options.tile_height : default_tile_height(context_->facts())),
+      max_buffer_bytes_(largest_buffer(context_->facts(), options)), divisions_(scene.divisions),
+      parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()), launch_size_(tile_height_)
+{
+    run("making a queue", 0, [&] { queue_ = context_->make_queue(); });
+    upload(scene);
+    compile(ProgramCache(options.program_cache));
+}
+
+template <class Work>
+void OpenclSession::run(const char* doing, std::uint64_t output_bytes, const Work& work)
+{
+    context_->run(std::string(doing) + " for " + name_of(kernel_id_), scene_bytes_ + output_bytes, work);
+}
+
+void OpenclSession::upload(const PackedScene& scene)
+{
+    const auto start = std::chrono::steady_clock::now();
+    run("uploading the scene", 0, [&] {
+        const auto buffers = scene_buffers(scene);
+        for (std::size_t binding = 0; binding < buffers.size(); binding++)
+            arrays_[binding] = make_uploaded(context_->handle(), queue_,
+                                             binding == 0 ? parts_.part(buffers[0].bytes, 0) : buffers[binding].bytes);
+        for (unsigned part = 1; part < parts_.count; part++)
+            more_parts_[part] = make_uploaded(context_->handle(), queue_, parts_.part(buffers[0].bytes, part));
+        queue_.finish();
+        counter_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint));
+    });
+    times_.upload_s = seconds_since(start);
+    resize_output(output_words({}));
+}
+
+/// Compiles, and runs the kernel on no pixel: some drivers finish compiling at the first launch.
+void OpenclSession::compile(const ProgramCache& cache)
+{
+    const auto start = std::chrono::steady_clock::now();
+    std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height_);
+    if (kernel_id_.schedule == Schedule::persistent) defines += " -DPERSISTENT";
+    if (parts_.count > 1) defines += " -DTETS_IN_PARTS";
+    const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache);
+    run("making the kernel", output_bytes(), [&] {
+        kernel_ = cl::Kernel(program.handle(), "trace_image");
+        set_arguments();
+        LaunchParams nothing{};
+        nothing.width = 1;
+        nothing.tile_height = tile_height_;
+        enqueue(nothing, 1);
+        queue_.finish();
+        enqueued_.clear();
+    });
+    times_.compile_s = seconds_since(start);
+    times_.compile_cached = program.is_cached();
+    program.keep();
+}
+
+void OpenclSession::set_arguments()
+{
+    cl_uint argument = first_array_argument;
+#define SCENE_ARRAY(element, name, member, binding) kernel_.setArg(argument++, arrays_[binding]);
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+    for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; part++)
+        kernel_.setArg(argument++, part < parts_.count ? more_parts_[part] : arrays_[0]);
+    kernel_.setArg(counter_argument, counter_);
+    kernel_.setArg(output_argument, output_);
+}
+
+void OpenclSession::resize_output(std::size_t words)
+{
+    if (words == output_words_) return;
+    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    if (bytes > max_buffer_bytes_)
+        throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
+                                                " bytes, the device's largest buffer " +
+                                                std::to_string(max_buffer_bytes_) + "; trace a smaller image");
+    output_ = cl::Buffer(); // the old one goes first: both may not fit
+    output_words_ = 0;
+    run("making the output", bytes, [&] {
+        output_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, bytes);
+        if (kernel_() != nullptr) kernel_.setArg(output_argument, output_);
+    });
+    output_words_ = words;
+}
+
+std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
+{
+    if (kernel_id_.schedule == Schedule::tiles) return tiles;
+    const std::size_t units = context_->threads();
+    const std::size_t resident =
+        context_->facts().type == "gpu" ? units * (resident_items / (std::size_t{TILE_WIDTH} * tile_height_)) : units;
+    return std::min<std::size_t>(tiles, resident);
+}
+
+void OpenclSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
+{
+    if (kernel_id_.schedule == Schedule::persistent)
+        queue_.enqueueFillBuffer(counter_, params.first_tile, 0, sizeof(params.first_tile));
+    kernel_.setArg(launch_argument, params);
+    kernel_.setArg(end_tile_argument, params.first_tile + tiles);
+    const std::size_t group_items = std::size_t{TILE_WIDTH} * tile_height_;
+    Enqueued& launched = enqueued_.emplace_back();
+    launched.tiles = tiles;
+    queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups_for(tiles) * group_items),
+                                cl::NDRange(group_items), nullptr, &launched.event);
+}
+
+void OpenclSession::launch(const TraceJob& job)
+{
+    resize_output(output_words(job));
+    run("launching", output_bytes(), [&] {
+        kernel_s_ = 0;
+        enqueued_.clear();
+        queue_.enqueueFillBuffer(output_, POISON, 0, output_bytes());
+        LaunchParams params = launch_params(job, divisions_, tile_height_, parts_.log2_bytes);
+        const std::uint32_t end = tile_count(job, tile_height_);
+        while (params.first_tile < end) {
+            const std::uint32_t tiles = std::min(launch_size_.tiles(), end - params.first_tile);
+            enqueue(params, tiles);
+            params.first_tile += tiles;
+            if (!launch_size_is_known_) kernel_s_ += take_times(); // the first image, launch after launch
+        }
+        launch_size_is_known_ = true;
+        queue_.flush();
+    });
+}
+
+double OpenclSession::wait()
+{
+    run("waiting", output_bytes(), [&] { kernel_s_ += take_times(); });
+    return kernel_s_;
+}
+
+/// Waits for what is enqueued; its seconds.
+double OpenclSession::take_times()
+{
+    queue_.finish();
+    double sum = 0;
+    for (const Enqueued& launched : enqueued_) {
+        launched.event.wait(); // tells where the kernel failed
+        const double seconds = seconds_of(launched.event);
+        launch_size_.took(launched.tiles, seconds);
+        sum += seconds;
+    }
+    enqueued_.clear();
+    return sum;
+}
+
+void OpenclSession::read_output(std::span<std::uint32_t> words)
+{
+    if (words.size() != output_words_)
+        throw Error(ErrorKind::internal,
+                    "reading back from opencl: the hits asked for are not those of the last launch");
+    run("reading back", output_bytes(),
+        [&] { queue_.enqueueReadBuffer(output_, CL_TRUE, 0, words.size_bytes(), words.data()); });
+}
+
+} // namespace tetrace::opencl

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "backends/opencl/context.h"
+#include "backends/opencl/program.h"
+#include "core/launch.h"
+#include "core/scene_buffers.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace tetrace::opencl {
+
+/// A packed scene in a device's buffers, and the kernel that traces it.
+class OpenclSession : public Session {
+public:
+    /// Compiles and uploads. Throws Error as Backend::open says.
+    OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
+                  const SessionOptions& options);
+
+    void launch(const TraceJob& job) override;
+    [[nodiscard]] double wait() override;
+    [[nodiscard]] SetupTimes setup_times() const override { return times_; }
+    [[nodiscard]] std::uint64_t bytes() const override { return scene_bytes_; }
+
+private:
+    void read_output(std::span<std::uint32_t> words) override;
+    void compile(const ProgramCache& cache);
+    void upload(const PackedScene& scene);
+    void set_arguments();
+    void resize_output(std::size_t words);
+    void enqueue(const LaunchParams& params, std::uint32_t tiles);
+    [[nodiscard]] std::size_t groups_for(std::uint32_t tiles) const;
+    [[nodiscard]] double take_times();
+    template <class Work>
+    void run(const char* doing, std::uint64_t output_bytes, const Work& work);
+    [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
+
+    /// Tiles of a launch that was enqueued, and the event of its kernel.
+    struct Enqueued {
+        std::uint32_t tiles;
+        cl::Event event;
+    };
+
+    std::shared_ptr<Context> context_;
+    KernelId kernel_id_;
+    unsigned tile_height_;
+    std::uint64_t max_buffer_bytes_;
+    std::uint32_t divisions_;
+    TetParts parts_;
+    std::uint64_t scene_bytes_ = 0;
+    SetupTimes times_;
+    LaunchSize launch_size_;
+    bool launch_size_is_known_ = false;
+    cl::CommandQueue queue_;
+    cl::Kernel kernel_;
+    std::array<cl::Buffer, SCENE_ARRAYS> arrays_;
+    std::array<cl::Buffer, MAX_TET_PARTS> more_parts_; ///< from 1 on; 0 is arrays_[0]
+    cl::Buffer output_, counter_;
+    std::size_t output_words_ = 0;
+    std::vector<Enqueued> enqueued_;
+    double kernel_s_ = 0;
+};
+
+} // namespace tetrace::opencl
