@@ -82,6 +82,11 @@ void Table::add(std::vector<Cell> cells)
     rows_.push_back(std::move(cells));
 }
 
+void Table::add_heading(const std::string& text)
+{
+    headings_.emplace(rows_.size(), text);
+}
+
 bool Table::has_cells(std::size_t column) const
 {
     return std::any_of(rows_.begin(), rows_.end(), [&](const auto& row) { return !is_empty(row[column]); });
@@ -116,8 +121,12 @@ std::string Table::text(std::size_t indent) const
     }
     std::string result = without_trailing_blanks(titles);
     if (any_unit) result += without_trailing_blanks(units);
-    for (const std::string& line : lines)
-        result += without_trailing_blanks(line);
+    for (std::size_t r = 0; r < lines.size(); ++r) {
+        const auto [first, last] = headings_.equal_range(r);
+        for (auto heading = first; heading != last; ++heading)
+            result += without_trailing_blanks(margin + heading->second);
+        result += without_trailing_blanks(lines[r]);
+    }
     return result;
 }
 

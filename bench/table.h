@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ public:
 
     /// Throws Error{internal} where the number of cells is not that of the columns.
     void add(std::vector<Cell> cells);
+    /// A line of text in front of the rows that are added next; in text() alone.
+    void add_heading(const std::string& text);
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
     [[nodiscard]] const std::vector<std::vector<Cell>>& rows() const { return rows_; }
@@ -52,6 +55,7 @@ private:
 
     std::vector<Column> columns_;
     std::vector<std::vector<Cell>> rows_;
+    std::multimap<std::size_t, std::string> headings_; ///< by the row that they stand in front of
 };
 
 /// A cell as people read it; a dash where it is empty, or a real number that is not finite.

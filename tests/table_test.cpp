@@ -27,6 +27,17 @@ TEST(table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
                                 "Dürer       12      -\n");
 }
 
+TEST(table, a_heading_stands_before_its_rows_and_in_text_alone)
+{
+    Table table(std::vector<Column>{{"a", "a"}});
+    table.add_heading("first");
+    table.add({std::string("x")});
+    table.add_heading("second: longer than any cell");
+    table.add({std::string("y")});
+    EXPECT_EQ(table.text(1), " a\n first\n x\n second: longer than any cell\n y\n");
+    EXPECT_EQ(table.csv(), "a\nx\ny\n");
+}
+
 TEST(table, csv_has_keys_all_digits_and_quotes_where_needed)
 {
     Table table({{"a", "a"}, {"b_s", "b", "s", 1}});
