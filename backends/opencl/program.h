@@ -1,8 +1,8 @@
 #pragma once
 
 #include "backends/opencl/context.h"
-#include "backends/opencl/program_cache.h"
 #include "core/kernel_id.h"
+#include "core/program_cache.h"
 
 #include <string>
 

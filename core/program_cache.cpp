@@ -1,4 +1,4 @@
-#include "backends/opencl/program_cache.h"
+#include "core/program_cache.h"
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace tetrace::opencl {
+namespace tetrace {
 
 std::filesystem::path ProgramCache::path_of(std::uint64_t key) const
 {
@@ -44,4 +44,4 @@ void ProgramCache::keep(std::uint64_t key, std::span<const unsigned char> progra
     }
 }
 
-} // namespace tetrace::opencl
+} // namespace tetrace

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace tetrace::opencl {
+namespace tetrace {
 
 /// Compiled programs in a folder, a file each: `<16 digits>.bin`, the digits being the key; first 8 bytes of hash
 /// (core/hash.h), then what was compiled, so that a damaged file never reaches a driver. Nothing here throws: a cache
@@ -27,4 +27,4 @@ private:
     std::filesystem::path folder_;
 };
 
-} // namespace tetrace::opencl
+} // namespace tetrace
