@@ -1,0 +1,73 @@
+#include "backends/vulkan/backend.h"
+
+#include "backends/vulkan/kernels.h"
+#include "backends/vulkan/probe.h"
+#include "backends/vulkan/session.h"
+#include "backends/vulkan/yardstick.h"
+
+namespace tetrace {
+namespace {
+
+std::vector<Device> facts_of(const std::vector<vulkan::FoundDevice>& found)
+{
+    std::vector<Device> devices;
+    for (const vulkan::FoundDevice& device : found)
+        devices.push_back(device.facts);
+    return devices;
+}
+
+class VulkanBackend : public Backend {
+public:
+    [[nodiscard]] std::string name() const override { return "vulkan"; }
+    [[nodiscard]] std::string clock() const override { return "Vulkan timestamps"; }
+
+    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
+
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
+    {
+        return kernel.structure == Structure::cdt && kernel.schedule == Schedule::tiles &&
+               find_kernel(vulkan::embedded_kernels(), embedded_name(kernel)) != nullptr;
+    }
+
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
+    {
+        if (!has_kernel(kernel)) return "vulkan has no kernel " + name_of(kernel);
+        return devices_.at(device).reason;
+    }
+
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
+                                                const SessionOptions& options) override
+    {
+        if (const auto reason = why_not(device, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
+        if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
+            throw Error(ErrorKind::internal,
+                        "opening vulkan: the scene is not packed as " + std::string(name_of(kernel.layout)));
+        return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, *scene.packed, options);
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
+                                                   std::span<const Row> operations) override
+    {
+        return vulkan::run_probe(vulkan::Context(found_.at(device)), math, operations);
+    }
+
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
+    {
+        return vulkan::measure_device(vulkan::Context(found_.at(device)),
+                                      vulkan::largest_buffer(devices_.at(device), options));
+    }
+
+private:
+    std::vector<vulkan::FoundDevice> found_ = vulkan::find_devices();
+    std::vector<Device> devices_ = facts_of(found_);
+};
+
+} // namespace
+
+Backend& vulkan_backend()
+{
+    static VulkanBackend backend;
+    return backend;
+}
+
+} // namespace tetrace

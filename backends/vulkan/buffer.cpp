@@ -1,0 +1,137 @@
+#include "backends/vulkan/buffer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <initializer_list>
+
+namespace tetrace::vulkan {
+
+namespace {
+
+using Property = vk::MemoryPropertyFlagBits;
+constexpr std::uint64_t staging_bytes = std::uint64_t{64} << 20;
+
+vk::BufferUsageFlags usage_of(Place place)
+{
+    using Usage = vk::BufferUsageFlagBits;
+    if (place == Place::device) return Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+    return place == Place::upload ? Usage::eTransferSrc : Usage::eTransferDst;
+}
+
+/// Wishes in falling order; every device has the last one of each (Vulkan 1.1, section 11.2.1, but for host-cached
+/// memory).
+std::initializer_list<vk::MemoryPropertyFlags> wishes_for(Place place)
+{
+    static const std::initializer_list<vk::MemoryPropertyFlags> device = {Property::eDeviceLocal, {}};
+    static const std::initializer_list<vk::MemoryPropertyFlags> upload = {
+        Property::eHostVisible | Property::eHostCoherent, Property::eHostVisible};
+    static const std::initializer_list<vk::MemoryPropertyFlags> read_back = {
+        Property::eHostVisible | Property::eHostCached, Property::eHostVisible};
+    return place == Place::device ? device : place == Place::upload ? upload : read_back;
+}
+
+/// Drivers list their types so that the first that has what is wished has least besides.
+std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& memory, std::uint32_t allowed, Place place)
+{
+    for (const vk::MemoryPropertyFlags wish : wishes_for(place))
+        for (std::uint32_t i = 0; i < memory.memoryTypeCount; i++)
+            if ((allowed >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & wish) == wish) return i;
+    throw Error(ErrorKind::unsupported, "the device has no type of memory for a buffer");
+}
+
+} // namespace
+
+Buffer::Buffer(const Context& context, std::uint64_t bytes, Place place)
+    : bytes_(std::max<std::uint64_t>(16, (bytes + 3) / 4 * 4))
+{
+    handle_ = context.device().createBuffer(vk::BufferCreateInfo{}.setSize(bytes_).setUsage(usage_of(place)));
+    const vk::MemoryRequirements needs = handle_.getMemoryRequirements();
+    if (needs.size > context.found().limits.allocation_bytes)
+        throw Error(ErrorKind::unsupported, "a buffer of " + std::to_string(needs.size) + " bytes on '" +
+                                                context.facts().name + "', whose largest allocation has " +
+                                                std::to_string(context.found().limits.allocation_bytes));
+    const auto memory = context.memory();
+    const std::uint32_t type = memory_type(memory, needs.memoryTypeBits, place);
+    properties_ = memory.memoryTypes[type].propertyFlags;
+    memory_ = context.device().allocateMemory(
+        vk::MemoryAllocateInfo{}.setAllocationSize(needs.size).setMemoryTypeIndex(type));
+    handle_.bindMemory(*memory_, 0);
+    const bool is_hidden = place == Place::device && context.found().always_stages;
+    if ((properties_ & Property::eHostVisible) && !is_hidden)
+        mapped_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE, {}));
+}
+
+std::span<std::byte> Buffer::mapped() const
+{
+    return mapped_ == nullptr ? std::span<std::byte>{} : std::span(mapped_, bytes_);
+}
+
+bool Buffer::is_cached() const
+{
+    return static_cast<bool>(properties_ & Property::eHostCached);
+}
+
+vk::MappedMemoryRange Buffer::whole() const
+{
+    return vk::MappedMemoryRange{}.setMemory(*memory_).setSize(VK_WHOLE_SIZE);
+}
+
+void Buffer::flush(const Context& context) const
+{
+    if (!(properties_ & Property::eHostCoherent)) context.device().flushMappedMemoryRanges(whole());
+}
+
+void Buffer::invalidate(const Context& context) const
+{
+    if (!(properties_ & Property::eHostCoherent)) context.device().invalidateMappedMemoryRanges(whole());
+}
+
+namespace {
+
+void copy_and_wait(const Context& context, const Buffer& from, const Buffer& to, const vk::BufferCopy& region)
+{
+    const vk::raii::CommandBuffer commands = context.make_commands();
+    commands.begin({});
+    record_barrier(commands);
+    commands.copyBuffer(from.handle(), to.handle(), region);
+    record_barrier(commands);
+    commands.end();
+    context.submit(commands);
+    context.finish();
+}
+
+} // namespace
+
+void upload(const Context& context, const Buffer& to, std::span<const std::byte> bytes)
+{
+    if (bytes.empty()) return;
+    if (!to.mapped().empty()) {
+        std::memcpy(to.mapped().data(), bytes.data(), bytes.size());
+        to.flush(context);
+        return;
+    }
+    const Buffer staging(context, std::min<std::uint64_t>(bytes.size(), staging_bytes), Place::upload);
+    for (std::size_t done = 0; done < bytes.size();) {
+        const auto part = bytes.subspan(done, std::min<std::size_t>(staging.bytes(), bytes.size() - done));
+        std::memcpy(staging.mapped().data(), part.data(), part.size());
+        staging.flush(context);
+        copy_and_wait(context, staging, to, vk::BufferCopy{}.setDstOffset(done).setSize(part.size()));
+        done += part.size();
+    }
+}
+
+bool needs_staging(const Buffer& buffer)
+{
+    return buffer.mapped().empty() || !buffer.is_cached();
+}
+
+void read_back(const Context& context, const Buffer& from, const Buffer& staging, std::span<std::byte> bytes)
+{
+    if (bytes.empty()) return;
+    const Buffer& source = needs_staging(from) ? staging : from;
+    if (needs_staging(from)) copy_and_wait(context, from, staging, vk::BufferCopy{}.setSize(bytes.size()));
+    source.invalidate(context);
+    std::memcpy(bytes.data(), source.mapped().data(), bytes.size());
+}
+
+} // namespace tetrace::vulkan

@@ -1,0 +1,220 @@
+#include "backends/vulkan/device.h"
+
+#include "backends/vulkan/instance.h"
+#include "core/error.h"
+#include "core/launch.h"
+
+#include <algorithm>
+#include <cctype>
+#include <iomanip>
+#include <sstream>
+#include <thread>
+
+namespace tetrace::vulkan {
+
+namespace {
+
+constexpr std::uint32_t tile_items = TILE_WIDTH * 8;
+
+/// A device without a handle, for why there is none.
+FoundDevice no_device(const std::string& reason)
+{
+    FoundDevice none;
+    none.facts.name = "none";
+    none.facts.type = "gpu";
+    none.facts.usable = false;
+    none.facts.reason = reason;
+    return none;
+}
+
+bool has_extension(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name)
+{
+    return std::any_of(extensions.begin(), extensions.end(), [&](const vk::ExtensionProperties& extension) {
+        return std::string_view(extension.extensionName.data()) == name;
+    });
+}
+
+std::string version_text(std::uint32_t version)
+{
+    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+           std::to_string(VK_API_VERSION_PATCH(version));
+}
+
+std::string hexadecimal(const vk::ArrayWrapper1D<std::uint8_t, VK_UUID_SIZE>& bytes)
+{
+    std::ostringstream text;
+    text << std::hex << std::setfill('0');
+    for (const unsigned byte : bytes)
+        text << std::setw(2) << byte;
+    return text.str();
+}
+
+std::string pci_text(const vk::PhysicalDevicePCIBusInfoPropertiesEXT& pci)
+{
+    std::ostringstream text;
+    text << std::hex << std::setfill('0') << std::setw(4) << pci.pciDomain << ':' << std::setw(2) << pci.pciBus << ':'
+         << std::setw(2) << pci.pciDevice << '.' << pci.pciFunction;
+    return text.str();
+}
+
+std::uint64_t device_memory(const vk::raii::PhysicalDevice& device)
+{
+    const vk::PhysicalDeviceMemoryProperties memory = device.getMemoryProperties();
+    std::uint64_t largest = 0;
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; i++)
+        if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+            largest = std::max<std::uint64_t>(largest, memory.memoryHeaps[i].size);
+    return largest;
+}
+
+void find_queue(const vk::raii::PhysicalDevice& device, Limits& limits)
+{
+    const auto families = device.getQueueFamilyProperties();
+    for (std::uint32_t i = 0; i < families.size() && !limits.queue_family; i++)
+        if ((families[i].queueFlags & vk::QueueFlagBits::eCompute) && families[i].timestampValidBits > 0) {
+            limits.queue_family = i;
+            limits.timestamp_bits = families[i].timestampValidBits;
+        }
+}
+
+Limits limits_of(const vk::raii::PhysicalDevice& device)
+{
+    // Devices of 1.0 know none of the later structures, and no instance of 1.0 is here to ask them with.
+    const vk::PhysicalDeviceProperties properties = device.getProperties();
+    Limits limits;
+    limits.api_version = properties.apiVersion;
+    limits.push_constant_bytes = properties.limits.maxPushConstantsSize;
+    limits.storage_buffers = std::min(properties.limits.maxPerStageDescriptorStorageBuffers,
+                                      properties.limits.maxDescriptorSetStorageBuffers);
+    limits.group_items = properties.limits.maxComputeWorkGroupInvocations;
+    limits.group_height = properties.limits.maxComputeWorkGroupSize[1];
+    limits.groups = properties.limits.maxComputeWorkGroupCount[0];
+    find_queue(device, limits);
+    return limits;
+}
+
+/// What devices of Vulkan 1.1 tell of themselves.
+void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
+{
+    const auto extensions = device.enumerateDeviceExtensionProperties();
+    const auto chain =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties,
+                              vk::PhysicalDeviceSubgroupProperties, vk::PhysicalDeviceMaintenance3Properties>();
+    found.facts.uuid = hexadecimal(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
+    found.facts.id = found.facts.uuid;
+    found.facts.group_width = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
+    found.limits.allocation_bytes = chain.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
+    found.facts.max_buffer_bytes = std::min(found.facts.max_buffer_bytes, found.limits.allocation_bytes);
+    found.tells_cache_hits = has_extension(extensions, VK_EXT_PIPELINE_CREATION_FEEDBACK_EXTENSION_NAME);
+    if (has_extension(extensions, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
+        const auto driver = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>()
+                                .get<vk::PhysicalDeviceDriverProperties>();
+        found.facts.driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
+        found.facts.implementation = implementation_of(driver.driverName.data(), driver.driverInfo.data());
+    }
+    if (has_extension(extensions, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME))
+        found.facts.pci =
+            pci_text(device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDevicePCIBusInfoPropertiesEXT>()
+                         .get<vk::PhysicalDevicePCIBusInfoPropertiesEXT>());
+    if (has_extension(extensions, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME))
+        found.facts.threads =
+            device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceShaderSMBuiltinsPropertiesNV>()
+                .get<vk::PhysicalDeviceShaderSMBuiltinsPropertiesNV>()
+                .shaderSMCount;
+}
+
+FoundDevice found_device(const vk::raii::PhysicalDevice& device)
+{
+    const vk::PhysicalDeviceProperties properties = device.getProperties();
+    FoundDevice found;
+    found.handle = *device;
+    found.limits = limits_of(device);
+    Device& facts = found.facts;
+    facts.name = properties.deviceName.data();
+    facts.type = properties.deviceType == vk::PhysicalDeviceType::eCpu ? "emulated" : "gpu";
+    if (facts.type == "emulated") facts.threads = std::max(1u, std::thread::hardware_concurrency());
+    facts.driver = "Vulkan driver " + version_text(properties.driverVersion);
+    facts.implementation = "vulkan-" + std::to_string(properties.vendorID);
+    facts.id = facts.name;
+    facts.memory_bytes = device_memory(device);
+    facts.max_buffer_bytes = properties.limits.maxStorageBufferRange;
+    facts.max_group_items = properties.limits.maxComputeWorkGroupInvocations;
+    facts.timer_period_s = 1e-9 * static_cast<double>(properties.limits.timestampPeriod);
+    if (properties.apiVersion >= VK_API_VERSION_1_1) describe(device, found);
+    facts.reason = why_not_usable(found.limits);
+    facts.usable = facts.reason.empty();
+    found.build_key = facts.name + ";" + facts.driver + ";" + std::to_string(properties.driverVersion) + ";" +
+                      hexadecimal(properties.pipelineCacheUUID);
+    return found;
+}
+
+/// The leading "22.3.6" of "Mesa 22.3.6 (LLVM 15.0.6)": its numbers up to so many.
+std::string version_in(std::string_view text, int most_numbers)
+{
+    const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+    const auto* const begin = std::find_if(text.begin(), text.end(), is_digit);
+    const auto* end = begin;
+    for (int numbers = 0; end != text.end(); end++) {
+        if (is_digit(*end)) continue;
+        if (*end != '.' || ++numbers == most_numbers) break;
+    }
+    std::string version(begin, end);
+    while (!version.empty() && version.back() == '.')
+        version.pop_back();
+    return version;
+}
+
+} // namespace
+
+std::string implementation_of(std::string_view driver_name, std::string_view driver_info)
+{
+    std::string name;
+    for (const char c : driver_name) {
+        const auto letter = static_cast<unsigned char>(c);
+        if (std::isalnum(letter) != 0)
+            name += static_cast<char>(std::tolower(letter));
+        else if (!name.empty() && name.back() != '-')
+            name += '-';
+    }
+    while (!name.empty() && name.back() == '-')
+        name.pop_back();
+    if (name.empty()) name = "unknown";
+    if (name == "llvmpipe") name = "lavapipe";
+    const std::string version = version_in(driver_info, name == "nvidia" ? 1 : 2);
+    return version.empty() ? name : name + "-" + version;
+}
+
+std::string why_not_usable(const Limits& limits)
+{
+    const auto too_small = [](const char* what, std::uint64_t has, std::uint64_t needed) {
+        return std::string(what) + ": " + std::to_string(has) + ", " + std::to_string(needed) + " are needed";
+    };
+    if (limits.api_version < VK_API_VERSION_1_1)
+        return "the driver offers Vulkan " + version_text(limits.api_version) + ", 1.1 is needed; update the driver";
+    if (!limits.queue_family) return "no queue of the device both computes and has timestamps";
+    if (limits.push_constant_bytes < sizeof(LaunchParams))
+        return too_small("bytes of push constants", limits.push_constant_bytes, sizeof(LaunchParams));
+    if (limits.storage_buffers < storage_buffers_needed(false))
+        return too_small("storage buffers of a shader", limits.storage_buffers, storage_buffers_needed(false));
+    if (limits.group_items < tile_items) return too_small("items of a work group", limits.group_items, tile_items);
+    if (limits.group_height < 8) return too_small("height of a work group", limits.group_height, 8);
+    return {};
+}
+
+std::vector<FoundDevice> find_devices()
+{
+    try {
+        std::vector<FoundDevice> found;
+        for (const vk::raii::PhysicalDevice& device : instance().handle().enumeratePhysicalDevices())
+            found.push_back(found_device(device));
+        if (!found.empty()) return found;
+        return {no_device("no Vulkan driver found a device; install the GPU's driver, or mesa-vulkan-drivers")};
+    } catch (const Error& error) {
+        return {no_device(error.what())};
+    } catch (const vk::SystemError& failure) {
+        return {no_device(std::string("listing Vulkan's devices: ") + failure.what() +
+                          "; install the GPU's driver, or mesa-vulkan-drivers")};
+    }
+}
+
+} // namespace tetrace::vulkan

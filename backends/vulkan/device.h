@@ -1,0 +1,54 @@
+#pragma once
+
+#include "backends/vulkan/api.h"
+#include "core/backend.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace::vulkan {
+
+/// What of a device decides whether it can be used, and how.
+struct Limits {
+    std::uint32_t api_version = 0;
+    std::optional<std::uint32_t> queue_family; ///< the first that computes and has timestamps
+    unsigned timestamp_bits = 0;               ///< valid ones, of that family
+    std::uint32_t push_constant_bytes = 0;
+    std::uint32_t storage_buffers = 0; ///< of a shader
+    std::uint32_t group_items = 0;
+    std::uint32_t group_height = 0;
+    std::uint32_t groups = 0; ///< of a dispatch, along x
+    std::uint64_t allocation_bytes = 0;
+};
+
+/// Empty where the device can run our kernels, else the reason with both numbers.
+[[nodiscard]] std::string why_not_usable(const Limits& limits);
+
+/// Storage buffers that a kernel is given: the scene's arrays, the output, and further parts of the tets.
+[[nodiscard]] constexpr std::uint32_t storage_buffers_needed(bool in_parts)
+{
+    return in_parts ? MAX_TET_PARTS + SCENE_ARRAYS : 1 + SCENE_ARRAYS;
+}
+
+/// A physical device of instance(). handle is null where facts speak of there being none.
+struct FoundDevice {
+    Device facts;
+    VkPhysicalDevice handle = nullptr;
+    Limits limits;
+    bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
+    bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests
+    std::string build_key;         ///< device and driver with versions: compiled pipelines are valid for these alone
+};
+
+/// Every device of every driver, or one entry that says why there is none. Throws nothing.
+[[nodiscard]] std::vector<FoundDevice> find_devices();
+
+/// A driver's name and version in short, from VkPhysicalDeviceDriverProperties: "lavapipe-22.3", "radv-22.3"; of
+/// NVIDIA's drivers the branch, "nvidia-580". Names that are not known are in lower case, a version that is not found
+/// is left out.
+[[nodiscard]] std::string implementation_of(std::string_view driver_name, std::string_view driver_info);
+
+} // namespace tetrace::vulkan

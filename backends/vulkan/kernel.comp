@@ -1,0 +1,33 @@
+#version 450
+// A layout and method as a compute shader (CMakeLists.txt): a thin entry round the shared kernel. A work group is a
+// tile.
+#include "kernels/dialect_glsl.h"
+
+#include "kernels/scene_view_glsl.h"
+
+#include "kernels/kernel.h"
+
+layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the tile's height
+layout(push_constant) uniform Launch
+{
+    LaunchParams launch;
+};
+layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
+{
+    uint output_words[];
+};
+
+void main()
+{
+    Pixel pixel = pixel_of(launch, launch.first_tile + gl_WorkGroupID.x, gl_LocalInvocationIndex);
+    if (!is_in_image(launch, pixel)) return;
+    SceneView scene = SceneView(launch.divisions, launch.part_log2);
+    Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+    uint word = output_word(launch, pixel);
+    output_words[word] = hit.face_id;
+    output_words[word + 1u] = hit.tet;
+    output_words[word + 2u] = as_bits(hit.t);
+    output_words[word + 3u] = as_bits(hit.u);
+    output_words[word + 4u] = as_bits(hit.v);
+    output_words[word + 5u] = hit.steps;
+}

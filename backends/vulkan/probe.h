@@ -1,0 +1,16 @@
+#pragma once
+
+#include "backends/vulkan/context.h"
+#include "core/packed_scene.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tetrace::vulkan {
+
+/// Runs kernels/probe.h, an item a row; a result a row. Throws Error where the device fails.
+[[nodiscard]] std::vector<std::uint32_t> run_probe(const Context& context, MathMode math,
+                                                   std::span<const Row> operations);
+
+} // namespace tetrace::vulkan

@@ -1,0 +1,119 @@
+#include "backends/vulkan/program.h"
+
+#include "backends/vulkan/kernels.h"
+#include "core/hash.h"
+
+#include <array>
+
+namespace tetrace::vulkan {
+
+namespace {
+
+std::uint64_t key_of(const FoundDevice& device, const ProgramId& id, std::span<const std::byte> code)
+{
+    return hash_bytes(code, hash_of(device.build_key + ";" + std::to_string(id.tile_height)));
+}
+
+vk::raii::PipelineCache make_cache(const Context& context, const ProgramCache& cache, std::uint64_t key)
+{
+    const auto kept = cache.find(key);
+    auto info = vk::PipelineCacheCreateInfo{};
+    if (kept) info.setInitialDataSize(kept->size()).setPInitialData(kept->data());
+    return context.device().createPipelineCache(info);
+}
+
+/// What was told about a pipeline's making: whether the cache had it.
+bool is_hit(const vk::PipelineCreationFeedback& feedback)
+{
+    using Flag = vk::PipelineCreationFeedbackFlagBits;
+    const auto hit = Flag::eValid | Flag::eApplicationPipelineCacheHit;
+    return (feedback.flags & hit) == hit;
+}
+
+} // namespace
+
+Program::Program(const Context& context, const ProgramId& id, const ProgramCache& cache)
+{
+    context.run("compiling " + id.name, 0, [&] {
+        make_layout(context, id);
+        make_pipeline(context, id, cache);
+    });
+}
+
+void Program::make_layout(const Context& context, const ProgramId& id)
+{
+    std::vector<vk::DescriptorSetLayoutBinding> bindings;
+    for (const std::uint32_t binding : id.bindings)
+        bindings.push_back(vk::DescriptorSetLayoutBinding{}
+                               .setBinding(binding)
+                               .setDescriptorType(vk::DescriptorType::eStorageBuffer)
+                               .setDescriptorCount(1)
+                               .setStageFlags(vk::ShaderStageFlagBits::eCompute));
+    set_layout_ = context.device().createDescriptorSetLayout(vk::DescriptorSetLayoutCreateInfo{}.setBindings(bindings));
+    const std::array sets = {*set_layout_};
+    const auto push =
+        vk::PushConstantRange{}.setStageFlags(vk::ShaderStageFlagBits::eCompute).setSize(id.push_constant_bytes);
+    auto info = vk::PipelineLayoutCreateInfo{}.setSetLayouts(sets);
+    if (id.push_constant_bytes != 0) info.setPushConstantRanges(push);
+    layout_ = context.device().createPipelineLayout(info);
+    if (bindings.empty()) return;
+    const auto size = vk::DescriptorPoolSize{}
+                          .setType(vk::DescriptorType::eStorageBuffer)
+                          .setDescriptorCount(static_cast<std::uint32_t>(bindings.size()));
+    pool_ = context.device().createDescriptorPool(vk::DescriptorPoolCreateInfo{}
+                                                      .setFlags(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet)
+                                                      .setMaxSets(1)
+                                                      .setPoolSizes(size));
+    const auto allocation = vk::DescriptorSetAllocateInfo{}.setDescriptorPool(*pool_).setSetLayouts(sets);
+    set_ = std::move(vk::raii::DescriptorSets(context.device(), allocation).front());
+}
+
+void Program::make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache)
+{
+    const EmbeddedKernel* const kernel = find_kernel(embedded_kernels(), id.name);
+    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + id.name);
+    // Embedded bytes are aligned for words.
+    const vk::raii::ShaderModule module = context.device().createShaderModule(
+        vk::ShaderModuleCreateInfo{}
+            .setCodeSize(kernel->bytes.size())
+            .setPCode(reinterpret_cast<const std::uint32_t*>(kernel->bytes.data())));
+    const auto height = vk::SpecializationMapEntry{}.setConstantID(0).setSize(sizeof(id.tile_height));
+    const auto constants =
+        vk::SpecializationInfo{}.setMapEntries(height).setDataSize(sizeof(id.tile_height)).setPData(&id.tile_height);
+    auto stage = vk::PipelineShaderStageCreateInfo{}
+                     .setStage(vk::ShaderStageFlagBits::eCompute)
+                     .setModule(*module)
+                     .setPName("main");
+    if (id.tile_height != 0) stage.setPSpecializationInfo(&constants);
+    vk::PipelineCreationFeedback feedback, stage_feedback;
+    auto feedbacks = vk::PipelineCreationFeedbackCreateInfo{}
+                         .setPPipelineCreationFeedback(&feedback)
+                         .setPipelineStageCreationFeedbackCount(1)
+                         .setPPipelineStageCreationFeedbacks(&stage_feedback);
+    auto info = vk::ComputePipelineCreateInfo{}.setStage(stage).setLayout(*layout_);
+    if (context.found().tells_cache_hits) info.setPNext(&feedbacks);
+    const std::uint64_t key = key_of(context.found(), id, kernel->bytes);
+    const vk::raii::PipelineCache pipelines = make_cache(context, cache, key);
+    pipeline_ = context.device().createComputePipeline(pipelines, info);
+    is_cached_ = is_hit(feedback);
+    if (!is_cached_) cache.keep(key, pipelines.getData());
+}
+
+void Program::bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const
+{
+    const auto info = vk::DescriptorBufferInfo{}.setBuffer(buffer.handle()).setRange(VK_WHOLE_SIZE);
+    const auto write = vk::WriteDescriptorSet{}
+                           .setDstSet(*set_)
+                           .setDstBinding(binding)
+                           .setDescriptorType(vk::DescriptorType::eStorageBuffer)
+                           .setBufferInfo(info);
+    context.device().updateDescriptorSets(write, {});
+}
+
+void Program::record(const vk::raii::CommandBuffer& commands) const
+{
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
+    if (*set_) commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, {});
+}
+
+} // namespace tetrace::vulkan

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "backends/vulkan/buffer.h"
+#include "core/program_cache.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tetrace::vulkan {
+
+/// What decides a program.
+struct ProgramId {
+    std::string name;                         ///< of embedded_kernels()
+    std::vector<std::uint32_t> bindings = {}; ///< of its storage buffers
+    std::uint32_t push_constant_bytes = 0;    ///< 0: none
+    unsigned tile_height = 0;                 ///< the height of its work groups; 0: as the module says
+};
+
+/// A compute pipeline with the buffers that it is given.
+class Program {
+public:
+    /// Throws Error{internal} where the driver cannot compile it.
+    Program(const Context& context, const ProgramId& id, const ProgramCache& cache);
+
+    [[nodiscard]] const vk::raii::PipelineLayout& layout() const { return layout_; }
+    /// Whether the driver had no need to compile; false where it does not tell.
+    [[nodiscard]] bool is_cached() const { return is_cached_; }
+    /// Every binding needs a buffer before record() is called; not while commands that use the program run.
+    void bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const;
+    /// Records that the program and its buffers are what a dispatch runs.
+    void record(const vk::raii::CommandBuffer& commands) const;
+
+private:
+    void make_layout(const Context& context, const ProgramId& id);
+    void make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache);
+
+    vk::raii::DescriptorSetLayout set_layout_{nullptr};
+    vk::raii::PipelineLayout layout_{nullptr};
+    vk::raii::DescriptorPool pool_{nullptr};
+    vk::raii::DescriptorSet set_{nullptr}; // null where there are no bindings
+    vk::raii::Pipeline pipeline_{nullptr};
+    bool is_cached_ = false;
+};
+
+} // namespace tetrace::vulkan

@@ -1,0 +1,197 @@
+#include "backends/vulkan/session.h"
+
+#include "backends/vulkan/kernels.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tetrace::vulkan {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void require_storage_buffers(const FoundDevice& found, const TetParts& parts)
+{
+    const std::uint32_t needed = storage_buffers_needed(parts.count > 1);
+    if (found.limits.storage_buffers >= needed) return;
+    throw Error(ErrorKind::unsupported, "tets in " + std::to_string(parts.count) + " buffers on '" + found.facts.name +
+                                            "': a shader has " + std::to_string(found.limits.storage_buffers) +
+                                            " storage buffers, " + std::to_string(needed) + " are needed");
+}
+
+ProgramId program_of(const KernelId& kernel, bool in_parts, unsigned tile_height)
+{
+    ProgramId id{embedded_name(kernel) + (in_parts ? "_parts" : ""), {}, sizeof(LaunchParams), tile_height};
+    for (std::uint32_t binding = 0; binding < SCENE_ARRAYS; binding++)
+        id.bindings.push_back(binding);
+    id.bindings.push_back(OUTPUT_BINDING);
+    for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++)
+        id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
+    return id;
+}
+
+} // namespace
+
+VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
+                             const SessionOptions& options)
+    : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
+      max_buffer_bytes_(largest_buffer(found.facts, options)),
+      tile_height_(options.tile_height != 0 ? options.tile_height : default_tile_height(found.facts)),
+      divisions_(scene.divisions), launch_size_(tile_height_)
+{
+    require_storage_buffers(found, parts_);
+    auto start = std::chrono::steady_clock::now();
+    context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
+    setup_.upload_s = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    make_program(kernel, options);
+    setup_.compile_s = seconds_since(start);
+    context_.run("making commands", 0, [&] { fill_ = context_.make_commands(); });
+    context_.check_validation("the first launch");
+}
+
+VulkanSession::~VulkanSession()
+{
+    try {
+        context_.finish(); // nothing may be destroyed while the device uses it
+    } catch (const std::exception&) {
+        return; // a device that is lost uses nothing
+    }
+}
+
+void VulkanSession::make_scene_buffers(const PackedScene& scene)
+{
+    const auto make = [&](std::span<const std::byte> bytes) {
+        Buffer buffer(context_, bytes.size(), Place::device);
+        upload(context_, buffer, bytes);
+        bytes_ += buffer.bytes();
+        return buffer;
+    };
+    const auto buffers = scene_buffers(scene);
+    const std::span<const std::byte> tets = buffers[0].bytes;
+    arrays_.push_back(make(parts_.part(tets, 0)));
+    for (std::size_t binding = 1; binding < buffers.size(); binding++)
+        arrays_.push_back(make(buffers[binding].bytes));
+    for (unsigned part = 1; part < parts_.count; part++)
+        more_parts_.push_back(make(parts_.part(tets, part)));
+}
+
+void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
+{
+    const bool in_parts = parts_.count > 1;
+    program_.emplace(context_, program_of(kernel, in_parts, tile_height_), ProgramCache(options.program_cache));
+    setup_.compile_cached = program_->is_cached();
+    for (std::uint32_t binding = 0; binding < SCENE_ARRAYS; binding++)
+        program_->bind(context_, binding, arrays_[binding]);
+    for (unsigned part = 1; in_parts && part < MAX_TET_PARTS; part++) // those beyond the last are never read
+        program_->bind(context_, SECOND_PART_BINDING - 1 + part,
+                       part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
+}
+
+void VulkanSession::resize_output(std::size_t words)
+{
+    if (words == output_words_) return;
+    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    if (bytes > max_buffer_bytes_)
+        throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
+                                                " bytes, the device's largest buffer " +
+                                                std::to_string(max_buffer_bytes_) + "; trace a smaller image");
+    output_ = Buffer(); // the old ones go first: all may not fit
+    staging_ = Buffer();
+    output_words_ = 0;
+    context_.run("making the output", bytes_ + bytes, [&] {
+        output_ = Buffer(context_, bytes, Place::device);
+        if (needs_staging(output_)) staging_ = Buffer(context_, bytes, Place::read_back);
+    });
+    program_->bind(context_, OUTPUT_BINDING, output_);
+    output_words_ = words;
+}
+
+void VulkanSession::fill_output()
+{
+    fill_.begin({});
+    fill_.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
+    record_barrier(fill_);
+    fill_.end();
+    context_.submit(fill_);
+}
+
+const vk::raii::CommandBuffer& VulkanSession::commands_for(std::size_t index)
+{
+    while (chunks_.size() <= index)
+        chunks_.push_back({context_.make_commands(), context_.make_timestamps()});
+    return chunks_[index].commands;
+}
+
+void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
+{
+    const vk::raii::CommandBuffer& commands = commands_for(enqueued_.size());
+    const vk::raii::QueryPool& times = chunks_[enqueued_.size()].times;
+    commands.begin({});
+    program_->record(commands);
+    commands.pushConstants<LaunchParams>(*program_->layout(), vk::ShaderStageFlagBits::eCompute, 0, params);
+    record_begin_time(commands, times);
+    commands.dispatch(tiles, 1, 1);
+    record_end_time(commands, times);
+    record_barrier(commands);
+    commands.end();
+    context_.submit(commands);
+    enqueued_.push_back(tiles);
+}
+
+void VulkanSession::launch(const TraceJob& job)
+{
+    context_.run("launching", output_bytes(), [&] {
+        kernel_s_ = 0;
+        take_times(); // of a launch that nobody waited for
+        resize_output(output_words(job));
+        fill_output();
+        LaunchParams params = launch_params(job, divisions_, tile_height_, parts_.log2_bytes);
+        const std::uint32_t end = tile_count(job, tile_height_);
+        while (params.first_tile < end) {
+            const std::uint32_t most = std::min(launch_size_.tiles(), context_.found().limits.groups);
+            const std::uint32_t tiles = std::min(most, end - params.first_tile);
+            enqueue(params, tiles);
+            params.first_tile += tiles;
+            if (!launch_size_is_known_) kernel_s_ += take_times(); // the first image, launch after launch
+        }
+        launch_size_is_known_ = true;
+    });
+}
+
+double VulkanSession::wait()
+{
+    context_.run("waiting", output_bytes(), [&] { kernel_s_ += take_times(); });
+    context_.check_validation("the next call");
+    return kernel_s_;
+}
+
+/// Waits for what is enqueued; its seconds.
+double VulkanSession::take_times()
+{
+    context_.finish();
+    double sum = 0;
+    for (std::size_t i = 0; i < enqueued_.size(); i++) {
+        const double seconds = context_.seconds_of(chunks_[i].times);
+        launch_size_.took(enqueued_[i], seconds);
+        sum += seconds;
+    }
+    enqueued_.clear();
+    return sum;
+}
+
+void VulkanSession::read_output(std::span<std::uint32_t> words)
+{
+    if (words.size() != output_words_)
+        throw Error(ErrorKind::internal,
+                    "reading back from vulkan: the hits asked for are not those of the last launch");
+    context_.run("reading back", output_bytes(),
+                 [&] { vulkan::read_back(context_, output_, staging_, std::as_writable_bytes(words)); });
+    context_.check_validation("the next call");
+}
+
+} // namespace tetrace::vulkan

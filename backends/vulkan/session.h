@@ -1,0 +1,66 @@
+#pragma once
+
+#include "backends/vulkan/program.h"
+#include "core/launch.h"
+#include "core/scene_buffers.h"
+
+#include <optional>
+#include <vector>
+
+namespace tetrace::vulkan {
+
+/// One packed scene in the buffers of one device, and one pipeline that reads it.
+class VulkanSession : public Session {
+public:
+    /// Throws Error{unsupported} where a limit or the memory does not suffice, with both numbers.
+    VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
+                  const SessionOptions& options);
+    ~VulkanSession() override;
+    VulkanSession(const VulkanSession&) = delete;
+    VulkanSession& operator=(const VulkanSession&) = delete;
+
+    void launch(const TraceJob& job) override;
+    [[nodiscard]] double wait() override;
+    [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
+    [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
+
+private:
+    void read_output(std::span<std::uint32_t> words) override;
+
+    void make_scene_buffers(const PackedScene& scene);
+    void make_program(const KernelId& kernel, const SessionOptions& options);
+    void resize_output(std::size_t words);
+    [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
+    void fill_output();
+    /// Command buffer and timestamps number `index` of a launch, made when first asked for.
+    const vk::raii::CommandBuffer& commands_for(std::size_t index);
+    void enqueue(const LaunchParams& params, std::uint32_t tiles);
+    double take_times();
+
+    Context context_; // outlives all that follows
+    TetParts parts_;
+    std::uint64_t max_buffer_bytes_;
+    unsigned tile_height_;
+    std::uint32_t divisions_;
+    std::uint64_t bytes_ = 0;
+    SetupTimes setup_;
+
+    std::vector<Buffer> arrays_;     ///< by binding
+    std::vector<Buffer> more_parts_; ///< of the tets, from the second on
+    Buffer output_, staging_;
+    std::size_t output_words_ = 0;
+    std::optional<Program> program_;
+
+    vk::raii::CommandBuffer fill_{nullptr};
+    struct Chunk {
+        vk::raii::CommandBuffer commands{nullptr};
+        vk::raii::QueryPool times{nullptr};
+    };
+    std::vector<Chunk> chunks_;           ///< those of the largest launch so far
+    std::vector<std::uint32_t> enqueued_; ///< tiles of each chunk that has not been waited for
+    LaunchSize launch_size_;
+    bool launch_size_is_known_ = false;
+    double kernel_s_ = 0;
+};
+
+} // namespace tetrace::vulkan

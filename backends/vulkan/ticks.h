@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tetrace::vulkan {
+
+/// Ticks from begin to end of a counter of which the low valid_bits (1 to 64) count, and the others are undefined.
+/// Right where the counter wrapped once in between.
+[[nodiscard]] constexpr std::uint64_t ticks_between(std::uint64_t begin, std::uint64_t end, unsigned valid_bits)
+{
+    const std::uint64_t mask = valid_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << valid_bits) - 1;
+    return (end - begin) & mask;
+}
+
+} // namespace tetrace::vulkan

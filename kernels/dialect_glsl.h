@@ -1,0 +1,31 @@
+// The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
+// Macros from outside: MATH_FAST where the compiler may contract; TETS_IN_PARTS where the tets come in several buffers.
+#include "kernels/layout.h"
+
+#define KERNEL_FN
+#define STRUCT(name) struct name
+#define VEC3(x, y, z) Vec3(x, y, z)
+#define real float
+#define uint4 uvec4
+#ifdef MATH_FAST
+#define PRECISE
+#else
+#define PRECISE precise // works on locals alone: a function's parameters and result say nothing about what is inside
+#endif
+
+KERNEL_FN real as_real(uint bits)
+{
+    return uintBitsToFloat(bits);
+}
+KERNEL_FN uint as_bits(real value)
+{
+    return floatBitsToUint(value);
+}
+KERNEL_FN real to_real(uint value)
+{
+    return real(value);
+}
+KERNEL_FN real square_root(real value)
+{
+    return sqrt(value);
+}

@@ -1,0 +1,66 @@
+// How kernels reach a scene's arrays in GLSL: storage buffers by name, and FETCH(). A buffer that is read as words and
+// as rows is declared twice with one binding.
+#define SCENE_ARRAY(element, name, member, number)                                                                     \
+    layout(std430, set = 0, binding = number) readonly buffer Buffer_##name                                            \
+    {                                                                                                                  \
+        element name[];                                                                                                \
+    };
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+
+STRUCT(SceneView)
+{
+    uint divisions;
+    uint part_log2; // tets in several buffers: bytes of each but the last
+};
+
+#ifndef TETS_IN_PARTS
+#define FETCH(scene, array, index) array[index]
+#else
+#define FETCH(scene, array, index) fetch_##array(scene, index)
+
+// The parts of the tets but the first, which is the scene's array itself.
+#define TET_PART(part)                                                                                                 \
+    layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_words_##part         \
+    {                                                                                                                  \
+        uint tet_words_##part[];                                                                                       \
+    };                                                                                                                 \
+    layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_rows_##part          \
+    {                                                                                                                  \
+        uint4 tet_rows_##part[];                                                                                       \
+    };
+TET_PART(1)
+TET_PART(2)
+TET_PART(3)
+TET_PART(4)
+TET_PART(5)
+TET_PART(6)
+TET_PART(7)
+#undef TET_PART
+
+// element_log2: bytes of an element.
+#define FETCH_FROM_PARTS(element, array, element_log2)                                                                 \
+    KERNEL_FN element fetch_##array(SceneView scene, uint index)                                                       \
+    {                                                                                                                  \
+        uint part_log2 = scene.part_log2 - element_log2;                                                               \
+        uint inside = index & ((1u << part_log2) - 1u);                                                                \
+        switch (index >> part_log2) {                                                                                  \
+        case 1u: return array##_1[inside];                                                                             \
+        case 2u: return array##_2[inside];                                                                             \
+        case 3u: return array##_3[inside];                                                                             \
+        case 4u: return array##_4[inside];                                                                             \
+        case 5u: return array##_5[inside];                                                                             \
+        case 6u: return array##_6[inside];                                                                             \
+        case 7u: return array##_7[inside];                                                                             \
+        default: return array[inside];                                                                                 \
+        }                                                                                                              \
+    }
+FETCH_FROM_PARTS(uint, tet_words, 2u)
+FETCH_FROM_PARTS(uint4, tet_rows, 4u)
+#undef FETCH_FROM_PARTS
+
+#define fetch_triangles(scene, index) triangles[index]
+#define fetch_lines(scene, index) lines[index]
+#define fetch_entry_ranges(scene, index) entry_ranges[index]
+#define fetch_entry_links(scene, index) entry_links[index]
+#endif
