@@ -38,11 +38,11 @@ double seconds_of(const cl::Event& event)
 }
 
 Context::Context(const FoundDevice& found, unsigned threads)
-    : found_(found), device_(found.handle), threads_(found.facts.threads)
+    : found_(found), device_(found.id, true), threads_(found.facts.threads)
 {
     run("making a context", 0, [&] {
         if (found.facts.type == "emulated" && threads != 0 && threads < threads_) {
-            device_ = part_of(found.handle, threads);
+            device_ = part_of(device_, threads);
             threads_ = device_.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
         }
         handle_ = cl::Context(device_);

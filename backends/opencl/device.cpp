@@ -96,7 +96,7 @@ std::string reason_against(const cl::Device& device, std::size_t group_items)
 
 void describe(const cl::Platform& platform, FoundDevice& found)
 {
-    const cl::Device& device = found.handle;
+    const cl::Device device(found.id, true);
     Device& facts = found.facts;
     facts.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
     facts.type = type_of(device);
@@ -137,7 +137,7 @@ FoundDevice unusable(const std::string& name, const std::string& reason)
 FoundDevice described(const cl::Platform& platform, const cl::Device& handle)
 {
     FoundDevice found;
-    found.handle = handle;
+    found.id = handle();
     try {
         describe(platform, found);
     } catch (const cl::Error& failure) {

@@ -9,10 +9,10 @@
 
 namespace tetrace::opencl {
 
-/// A device of any platform. handle is empty where facts speak of a platform without devices, or of no platform.
+/// A device of any platform. id is null where facts speak of a platform without devices, or of no platform.
 struct FoundDevice {
     Device facts;
-    cl::Device handle;
+    cl_device_id id = nullptr; ///< not cl::Device, which calls the driver when the process ends: it may be gone by then
     std::string build_key; ///< platform, driver and device with versions: compiled programs are valid for these alone
     bool divides_correctly = false; ///< offers correctly rounded division and square root, as a build option
 };

@@ -10,6 +10,9 @@ namespace {
 std::string options_for(const FoundDevice& device, const ProgramId& id)
 {
     std::string options = "-cl-std=CL1.2 " + id.defines;
+    // Oclgrind 21.10 interprets what its optimiser makes, all but llvm.experimental.noalias.scope.decl, which inlined
+    // functions bring that return structs.
+    if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable";
     if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
     return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
 }
