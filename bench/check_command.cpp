@@ -1,13 +1,17 @@
 #include "bench/bench_report.h"
+#include "bench/check_differences.h"
+#include "bench/check_matrix.h"
 #include "bench/commands.h"
+#include "bench/conformity.h"
+#include "bench/difference_pictures.h"
+#include "bench/junit.h"
 #include "bench/progress.h"
 #include "bench/row_json.h"
-#include "bench/text.h"
-#include "bench/walk_path.h"
 #include "core/hash.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 
 namespace tetrace {
 
@@ -23,7 +27,9 @@ Table check_table(const std::vector<RowRun>& rows)
                  {"settled", "settled"},
                  {"wrong", "wrong"},
                  {"lost", "lost"},
+                 {"conformity", "conformity"},
                  {"different_from_openmp", "differ"},
+                 {"largest_ulps", "ulps"},
                  {"hit_hash", "hits"},
                  {"status", "status"},
                  {"reason", "reason"}});
@@ -35,135 +41,107 @@ Table check_table(const std::vector<RowRun>& rows)
         const std::string reason = reason_of(row);
         table.add({row_name(row.key), count(&Verdicts::rays), count(&Verdicts::agreed), count(&Verdicts::ties),
                    result && result->verdicts.ties > 0 ? Cell(result->verdicts.largest_tie_distance) : Cell(),
-                   count(&Verdicts::settled), count(&Verdicts::wrong), count(&Verdicts::lost),
+                   count(&Verdicts::settled), count(&Verdicts::wrong), count(&Verdicts::lost), conformity_text(row),
                    result && result->compared ? Cell(result->different) : Cell(),
+                   result && result->compared ? Cell(result->largest_ulps) : Cell(),
                    result ? Cell(hash_text(result->hit_hash)) : Cell(), std::string(name_of(status_of(row))),
                    reason.empty() ? Cell() : Cell(reason)});
     }
     return table;
 }
 
-/// For people: the row's name is given in parts, and what is the same everywhere is left to the other forms.
-std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
+/// Whether the row fails the check; one without an answer does not by itself (see exit_code and --require).
+bool fails(const RowRun& row, const Options& options)
 {
-    Table table({{"row", "row"},
-                 {"backend", "backend"},
-                 {"rays", "rays"},
-                 {"agreed", "agreed"},
-                 {"ties", "ties"},
-                 {"largest", "largest"},
-                 {"settled", "settled"},
-                 {"wrong", "wrong"},
-                 {"lost", "lost"},
-                 {"hits", "hit hash"},
-                 {"status", "status"}});
-    for (const RowRun& row : rows) {
-        const Traced* result = traced(row);
-        if (row.key.scene != scene.label() || result == nullptr) continue;
-        const Verdicts& verdicts = result->verdicts;
-        table.add({kernel_title(row.key), row.key.backend, verdicts.rays, verdicts.agreed, verdicts.ties,
-                   verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
-                   verdicts.settled, verdicts.wrong, verdicts.lost, hash_text(result->hit_hash),
-                   std::string(name_of(status_of(row)))});
-    }
-    return scene_headline(scene, rows) + "\n" + (table.rows().empty() ? "" : table.text(2) + "\n");
+    const Status status = status_of(row);
+    return status == Status::wrong || conformity_of(row) == Conformity::not_exact ||
+           (status == Status::flawed && !options.allow_flawed);
 }
 
-std::string face_text(std::uint32_t face)
-{
-    if (face == NO_HIT) return "no hit";
-    if (face == LOST) return "lost";
-    return fmt::format("triangle {}", face);
-}
-
-std::string hit_text(const Hit& hit)
-{
-    const std::string tet = hit.tet == NO_TET ? "no tet" : fmt::format("tet {}", hit.tet);
-    return fmt::format("{}, t {:.9g}, u {:.9g}, v {:.9g}, {}, {} steps", face_text(hit.face_id), hit.t, hit.u, hit.v,
-                       tet, hit.steps);
-}
-
-std::size_t view_index(const SceneWork& scene, std::uint32_t number)
-{
-    const auto& numbers = scene.view_numbers();
-    return static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), number) - numbers.begin());
-}
-
-std::vector<std::uint32_t> path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
-{
-    if (row.packed == nullptr) return {};
-    const TraceJob job = row.scene->job(view_index(*row.scene, view), &row.packed->scene);
-    return walk_path(row.packed->scene, row.key.kernel, job, x, y);
-}
-
-std::string path_text(const std::vector<std::uint32_t>& path)
-{
-    if (path.empty()) return {};
-    constexpr std::size_t shown = 200;
-    std::string text = "  path of tets:";
-    for (std::size_t i = 0; i < std::min(path.size(), shown); ++i)
-        text += fmt::format(" {}", path[i]);
-    if (path.size() > shown) text += fmt::format(" ... ({} in all)", path.size());
-    return wrapped(text, 110, 2);
-}
-
-std::string wrong_ray_text(const RowRun& row)
-{
-    const Traced& result = *traced(row);
-    std::string text;
-    if (result.first_different) {
-        const DifferingRay& ray = *result.first_different;
-        text += fmt::format("{}: first ray that differs: view {}, pixel ({}, {})\n  this row: {}\n  openmp:   {}\n{}\n",
-                            row_name(row.key), ray.view, ray.x, ray.y, hit_text(ray.ours), hit_text(ray.openmp),
-                            path_text(path_of(row, ray.view, ray.x, ray.y)));
-    }
-    if (result.verdicts.first_wrong) {
-        const WrongRay& ray = *result.verdicts.first_wrong;
-        text += fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:      {}\n  Embree robust: "
-                            "{}, t {:.9g}\n{}\n",
-                            row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours),
-                            face_text(ray.reference_face), ray.reference_t,
-                            path_text(path_of(row, ray.view, ray.x, ray.y)));
-    }
-    return text;
-}
+/// Without pictures where none are asked for.
+struct Checked {
+    SceneRows run;
+    std::vector<std::string> missing;
+    std::unique_ptr<DifferencePictures> pictures;
+};
 
 nlohmann::json check_row_json(const RowRun& row)
 {
     nlohmann::json object = row_json(row, 0);
-    const Traced* result = traced(row);
-    if (result == nullptr) return object;
-    auto& verification = object["verification"];
-    if (const auto& ray = result->verdicts.first_wrong)
-        verification["first_wrong"]["path"] = path_of(row, ray->view, ray->x, ray->y);
-    if (const auto& ray = result->first_different)
-        verification["first_different"]["path"] = path_of(row, ray->view, ray->x, ray->y);
+    object["conformity"] = conformity_text(row);
+    add_paths(object, row);
     return object;
 }
 
-nlohmann::json check_json(const SceneRows& run, const Options& options)
+nlohmann::json check_json(const Checked& checked, const Options& options)
 {
     nlohmann::json section = result_head(options);
     section["scenes"] = nlohmann::json::array();
-    for (const auto& scene : run.scenes)
+    for (const auto& scene : checked.run.scenes)
         section["scenes"].push_back(scene_json(*scene, options));
+    section["matrix"] = matrix_json(checked.run.rows);
     section["rows"] = nlohmann::json::array();
-    for (const RowRun& row : run.rows)
+    for (const RowRun& row : checked.run.rows)
         section["rows"].push_back(check_row_json(row));
+    section["missing_devices"] = checked.missing;
     return {{"tetrace", std::move(section)}};
 }
 
-Report check_report(const SceneRows& run, const Options& options)
+std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
 {
-    Report report{{}, check_table(run.rows), check_json(run, options)};
-    for (const auto& scene : run.scenes)
-        report.text += scene_text(*scene, run.rows);
-    report.text += failure_lines(run.rows);
-    for (const RowRun& row : run.rows)
-        if (traced(row) != nullptr) report.text += wrong_ray_text(row);
-    report.text += labelled("Verified", verdict_sentence(run.rows));
-    if (options.out) report.text += labelled("Result", options.out->string());
+    return scene_headline(scene, rows) + "\n" + matrix_text(scene.label(), rows) + "\n" +
+           answers_text(scene.label(), rows) + "\n";
+}
+
+/// Devices that compute otherwise than exact mode promises, each once.
+std::string inexact_devices_text(const std::vector<RowRun>& rows)
+{
+    std::set<std::string> sentences;
+    for (const RowRun& row : rows)
+        if (conformity_of(row) == Conformity::not_exact)
+            sentences.insert(
+                fmt::format("{}: its answers are openmp's here, but its self-test in exact mode found: {}; "
+                            "other scenes may differ\n",
+                            device_label(row.key), row.self_test->text()));
+    std::string text;
+    for (const std::string& sentence : sentences)
+        text += sentence;
+    return text;
+}
+
+std::string closing_text(const Checked& checked, const Options& options)
+{
+    std::string text = labelled("Verified", verdict_sentence(checked.run.rows));
+    for (const std::string& sentence : checked.missing)
+        text += labelled("Missing", sentence);
+    if (checked.pictures != nullptr)
+        for (const auto& file : checked.pictures->files())
+            text += labelled("Picture", file.string());
+    if (options.junit) text += labelled("JUnit", options.junit->string());
+    if (options.out) text += labelled("Result", options.out->string());
+    return text;
+}
+
+Report check_report(const Checked& checked, const Options& options)
+{
+    const auto& rows = checked.run.rows;
+    Report report{{}, check_table(rows), check_json(checked, options)};
+    for (const auto& scene : checked.run.scenes)
+        report.text += scene_text(*scene, rows);
+    report.text += devices_text(rows) + "\n" + failure_lines(rows);
+    for (const RowRun& row : rows)
+        report.text += differences_text(row);
+    report.text += inexact_devices_text(rows) + closing_text(checked, options);
     return report;
+}
+
+void write_junit(const std::vector<RowRun>& rows, const Options& options)
+{
+    if (!options.junit) return;
+    std::vector<bool> failed;
+    for (const RowRun& row : rows)
+        failed.push_back(fails(row, options));
+    write_text(*options.junit, junit_xml(rows, failed));
 }
 
 /// Embree's own rows are judged only where somebody asks for them: its fast mode makes no claim that can be broken.
@@ -205,6 +183,7 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
 int check_command(const Options& asked)
 {
     const Options options = with_default_structure(asked);
+    if (!options.list) require_devices(options.required); // first: it knows better why nothing would be selected
     const auto keys = selected_rows(options, [](const std::string&) { return true; });
     if (options.list) {
         for (const RowKey& key : keys)
@@ -212,14 +191,22 @@ int check_command(const Options& asked)
         return 0;
     }
     check_output(options);
-    require_devices(options.required);
+    if (options.junit) check_writable("--junit", *options.junit);
     require_selected(keys, options.required);
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
-    const SceneRows run = open_and_verify(keys, options);
-    deliver(options, check_report(run, options));
-    require_judged(run.rows, options.required);
-    return exit_code(run.rows, options.allow_flawed);
+    Checked checked;
+    checked.missing = missing_devices(options);
+    if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
+    checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
+        if (checked.pictures != nullptr) checked.pictures->see(image);
+    });
+    const auto& rows = checked.run.rows;
+    write_junit(rows, options);
+    deliver(options, check_report(checked, options));
+    require_judged(rows, options.required);
+    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails(row, options); })) return 1;
+    return exit_code(rows, options.allow_flawed);
 }
 
 } // namespace tetrace

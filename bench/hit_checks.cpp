@@ -3,11 +3,23 @@
 #include "core/error.h"
 #include "core/ulps.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace tetrace {
 
 namespace {
 
-constexpr std::uint64_t ulps_of_division = 3;
+/// Unlike ==, tells 0 from -0.
+bool has_same_bits(const Hit& a, const Hit& b)
+{
+    return std::memcmp(&a, &b, sizeof(Hit)) == 0;
+}
+
+std::uint64_t largest_ulps(const Hit& a, const Hit& b)
+{
+    return std::max({ulps_between(a.t, b.t), ulps_between(a.u, b.u), ulps_between(a.v, b.v)});
+}
 
 } // namespace
 
@@ -40,16 +52,24 @@ RayTotals count_rays(std::span<const Hit> hits)
     return totals;
 }
 
-Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference)
+bool is_same_hit(const Hit& a, const Hit& b, std::uint32_t allowed_ulps)
+{
+    if (has_same_bits(a, b)) return true;
+    return allowed_ulps > 0 && a.face_id == b.face_id && a.tet == b.tet && a.steps == b.steps &&
+           largest_ulps(a, b) <= allowed_ulps;
+}
+
+Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference, std::uint32_t allowed_ulps)
 {
     if (hits.size() != reference.size()) throw Error(ErrorKind::internal, "compare_hits: images of different sizes");
     Differences differences;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        const Hit &ours = hits[i], &theirs = reference[i];
-        if (ours.face_id == theirs.face_id && ours.tet == theirs.tet && ours.steps == theirs.steps &&
-            ulps_between(ours.t, theirs.t) <= ulps_of_division && ulps_between(ours.u, theirs.u) <= ulps_of_division &&
-            ulps_between(ours.v, theirs.v) <= ulps_of_division)
+        if (has_same_bits(hits[i], reference[i])) continue;
+        ++differences.inexact;
+        if (is_same_hit(hits[i], reference[i], allowed_ulps)) {
+            differences.largest_ulps = std::max(differences.largest_ulps, largest_ulps(hits[i], reference[i]));
             continue;
+        }
         ++differences.count;
         if (!differences.first) differences.first = i;
     }

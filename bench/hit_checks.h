@@ -26,12 +26,18 @@ struct RayTotals {
 
 /// Rays on which two backends disagree.
 struct Differences {
-    std::uint64_t count = 0;
-    std::optional<std::size_t> first; ///< index of the ray
+    std::uint64_t count = 0;          ///< further apart than allowed
+    std::optional<std::size_t> first; ///< index of the first of those
+    std::uint64_t inexact = 0;        ///< not the same bits, allowed or not
+    std::uint64_t largest_ulps = 0;   ///< of t, u and v where allowed
 };
 
-/// Compares a backend's hits with openmp's, exact mode: face, tet and steps in every bit; t, u and v within 3 units in
-/// the last place. A division is off by 2.5 of them at most (Vulkan and OpenCL promise that) and openmp's by a half.
-[[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference);
+/// Whether two hits may be one answer: face, tet and steps in every bit; t, u and v within so many units in the last
+/// place, and in every bit where that is 0 (see SelfTest::allowed_ulps).
+[[nodiscard]] bool is_same_hit(const Hit& a, const Hit& b, std::uint32_t allowed_ulps);
+
+/// Compares a device's hits with openmp's. Throws Error{internal} where their numbers differ.
+[[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference,
+                                       std::uint32_t allowed_ulps);
 
 } // namespace tetrace

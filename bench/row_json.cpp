@@ -1,6 +1,7 @@
 #include "bench/row_json.h"
 
 #include "bench/figures.h"
+#include "bench/self_test_json.h"
 #include "core/hash.h"
 
 namespace tetrace {
@@ -71,7 +72,10 @@ json verification_json(const Traced& result)
                    {"lost", verdicts.lost},
                    {"compared_with_openmp", result.compared}};
     if (verdicts.ties > 0) object["largest_tie_distance"] = verdicts.largest_tie_distance;
-    if (result.compared) object["different_from_openmp"] = result.different;
+    if (result.compared) {
+        object["different_from_openmp"] = result.different;
+        object["largest_ulps"] = result.largest_ulps;
+    }
     if (result.first_different) {
         const DifferingRay& ray = *result.first_different;
         object["first_different"] = {{"view", ray.view},
@@ -161,6 +165,7 @@ nlohmann::json row_json(const RowRun& row, double copy_bytes_per_s)
     object["status"] = name_of(status_of(row));
     if (const std::string reason = reason_of(row); !reason.empty()) object["reason"] = reason;
     if (!row.device.name.empty()) object["device"] = device_json(row.device);
+    if (row.self_test) object["self_test"] = self_test_json(*row.self_test);
     const Traced* result = traced(row);
     if (result == nullptr) return object;
     if (row.session != nullptr) object["bytes"] = row.session->bytes();

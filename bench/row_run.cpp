@@ -1,5 +1,6 @@
 #include "bench/row_run.h"
 
+#include "bench/device_facts.h"
 #include "scenes/cache.h"
 
 #include <algorithm>
@@ -25,6 +26,8 @@ void open_session(RowRun& row, const Options& options)
         row.outcome = Skipped{Status::skipped, fmt::format("{}: {}", row.device.name, row.device.reason)};
         return;
     }
+    if (row.backend->why_not(row.key.device, row.key.kernel).empty())
+        row.self_test = self_test_of(*row.backend, row.key.device, row.key.kernel.math);
     if (row.key.kernel.structure == Structure::cdt)
         row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
     const SceneData data{&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr};
@@ -66,8 +69,9 @@ const Traced* traced(const RowRun& row)
 Status status_of(const RowRun& row)
 {
     if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->status;
+    if (const auto* failed = std::get_if<Failed>(&row.outcome))
+        return failed->kind == ErrorKind::wrong_result ? Status::wrong : Status::error;
     const Traced* result = traced(row);
-    if (result == nullptr) return Status::error;
     if (result->different > 0 || result->verdicts.lost > 0) return Status::wrong;
     return result->verdicts.wrong > 0 ? Status::flawed : Status::ok;
 }

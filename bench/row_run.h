@@ -5,6 +5,7 @@
 #include "bench/rows.h"
 #include "bench/scene_work.h"
 #include "core/error.h"
+#include "core/self_test.h"
 
 #include <functional>
 #include <memory>
@@ -15,7 +16,8 @@
 
 namespace tetrace {
 
-/// How a row ended; see `tetrace help bench`. A row is wrong where it differs from openmp, or has lost a ray.
+/// How a row ended; see `tetrace help bench`. A row is wrong where it differs from openmp, has lost a ray, or its
+/// device left out rays, wrote elsewhere or changed its answers.
 enum class Status { ok, flawed, wrong, unsupported, skipped, error };
 [[nodiscard]] std::string_view name_of(Status status);
 
@@ -29,10 +31,13 @@ struct DifferingRay {
 struct Traced {
     RayTotals totals;
     Verdicts verdicts;
-    bool compared = false;       ///< with openmp; openmp's own rows and Embree's have nothing to compare with
-    std::uint64_t different = 0; ///< rays that differ from openmp's
+    bool compared = false;          ///< with openmp; openmp's own rows and Embree's have nothing to compare with
+    std::uint64_t different = 0;    ///< rays that differ from openmp's by more than the device's self-test allows
+    std::uint64_t inexact = 0;      ///< rays that are not openmp's bits, allowed or not
+    std::uint64_t largest_ulps = 0; ///< of t, u and v, among those allowed
     std::optional<DifferingRay> first_different;
     std::uint64_t hit_hash = 0; ///< of all hits, view after view
+    std::uint64_t first_view_hash = 0;
     std::uint64_t last_view_hash = 0;
     double kernel_s = 0; ///< device seconds of this first pass
     double wall_s = 0;   ///< launch to end, on the host's clock
@@ -54,7 +59,8 @@ struct RowRun {
     SceneWork* scene = nullptr; ///< null where the scene could not be loaded
     Backend* backend = nullptr;
     Device device;
-    const Packed* packed = nullptr; ///< null for structure bvh
+    std::optional<SelfTest> self_test; ///< of the device in the row's math mode; empty where it runs no kernel of ours
+    const Packed* packed = nullptr;    ///< null for structure bvh
     std::unique_ptr<Session> session;
     Outcome outcome = Traced{};
     std::vector<double> samples_s;      ///< device seconds for all selected views, one a repetition

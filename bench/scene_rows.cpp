@@ -1,7 +1,6 @@
 #include "bench/scene_rows.h"
 
 #include "bench/progress.h"
-#include "bench/verify.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -18,7 +17,8 @@ std::vector<RowKey> rows_of(const std::string& label, const std::vector<RowKey>&
     return rows;
 }
 
-std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& scene, const Options& options)
+std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& scene, const Options& options,
+                                  const ImageSeen& image_seen)
 {
     std::vector<RowRun> rows;
     for (const RowKey& key : keys) {
@@ -28,7 +28,7 @@ std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& sc
     std::vector<RowRun*> pointers;
     for (RowRun& row : rows)
         pointers.push_back(&row);
-    verify_rows(pointers, scene, options);
+    verify_rows(pointers, scene, options, image_seen);
     return rows;
 }
 
@@ -62,7 +62,7 @@ std::vector<RowKey> selected_rows(const Options& options, const std::function<bo
     return rows;
 }
 
-SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options)
+SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options, const ImageSeen& image_seen)
 {
     SceneRows result;
     for (const SceneRequest& request : scene_requests(options)) {
@@ -70,7 +70,7 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
         if (scene_keys.empty()) continue;
         try {
             auto scene = std::make_unique<SceneWork>(load_work(request, options));
-            for (RowRun& row : verified_rows(scene_keys, *scene, options))
+            for (RowRun& row : verified_rows(scene_keys, *scene, options, image_seen))
                 result.rows.push_back(std::move(row));
             result.scenes.push_back(std::move(scene));
         } catch (const Error& error) {

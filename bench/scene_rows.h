@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/row_run.h"
+#include "bench/verify.h"
 
 #include <functional>
 #include <memory>
@@ -21,7 +21,8 @@ struct SceneRows {
 
 /// Loads each scene, opens its rows and verifies them (see verify.h). A scene that cannot be loaded ends its rows with
 /// the reason; a name that means no scene throws Error{usage}.
-[[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options);
+[[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
+                                        const ImageSeen& image_seen = {});
 
 /// What the verification of all rows came to.
 [[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);

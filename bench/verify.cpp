@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 
 namespace tetrace {
 
@@ -55,6 +56,8 @@ private:
     Reference& find(RowKey key)
     {
         key.backend = reference_backend;
+        key.device = 0;
+        key.kernel.schedule = Schedule::tiles;
         for (const auto& reference : references_)
             if (reference->row.key == key) return *reference;
         references_.push_back(
@@ -78,47 +81,93 @@ public:
 
     void verify(RowRun& row, std::size_t view)
     {
-        trace(row, view);
         Traced& result = std::get<Traced>(row.outcome);
-        count(row, result);
+        trace_timed(row, result, view);
+        count(result, view);
         result.last_view_hash = hash_of(hits_);
+        if (view == 0) result.first_view_hash = result.last_view_hash;
         result.hit_hash = hash_of(hits_, result.hit_hash);
+        reference_ = {};
         if (needs_reference(row.key)) compare(row, result, view);
-        result.verdicts.add(oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(),
-                                          scene_->height(), hits_));
+        result.verdicts.add(judge(view, result.last_view_hash));
+    }
+
+    /// A device that answers differently under repetition is caught here, after everything else that it was given.
+    void verify_again(RowRun& row)
+    {
+        trace(row, 0);
+        if (hash_of(hits_) != traced(row)->first_view_hash)
+            throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
+                                                             scene_->view_numbers().front()));
     }
 
     [[nodiscard]] std::span<const Hit> hits() const { return hits_; }
+    /// openmp's, of the last verify(); empty where there was nothing to compare.
+    [[nodiscard]] std::span<const Hit> reference() const { return reference_; }
 
 private:
+    /// Device seconds.
+    double trace_kernel(RowRun& row, std::size_t view)
+    {
+        row.session->launch(scene_->job(view, row.packed ? &row.packed->scene : nullptr));
+        return row.session->wait();
+    }
+
     void trace(RowRun& row, std::size_t view)
     {
         poison(hits_);
-        Traced& result = std::get<Traced>(row.outcome);
+        static_cast<void>(trace_kernel(row, view));
+        row.session->read_back(hits_);
+    }
+
+    void trace_timed(RowRun& row, Traced& result, std::size_t view)
+    {
+        poison(hits_);
         const Stopwatch watch;
-        row.session->launch(scene_->job(view, row.packed ? &row.packed->scene : nullptr));
-        result.kernel_s += row.session->wait();
+        result.kernel_s += trace_kernel(row, view);
         result.wall_s += watch.seconds();
         const Stopwatch download;
         row.session->read_back(hits_);
         result.download_s += download.seconds();
     }
 
-    void count(const RowRun& row, Traced& result) const
+    void count(Traced& result, std::size_t view) const
     {
         const RayTotals totals = count_rays(hits_);
-        if (totals.unwritten > 0)
-            throw Error(ErrorKind::internal, fmt::format("{}: {} of {} rays were never written", row_name(row.key),
-                                                         totals.unwritten, totals.rays));
+        if (totals.unwritten > 0) {
+            const auto first = static_cast<std::size_t>(
+                std::find_if(hits_.begin(), hits_.end(), [](const Hit& hit) { return hit.face_id == POISON; }) -
+                hits_.begin());
+            throw Error(ErrorKind::wrong_result,
+                        fmt::format("{} of {} rays were never written, the first at view {}, pixel ({}, {})",
+                                    totals.unwritten, totals.rays, scene_->view_numbers()[view],
+                                    first % scene_->width(), first / scene_->width()));
+        }
         result.totals.add(totals);
+    }
+
+    /// The oracle's verdict on hits_. Hits of one hash are the same bytes but with a probability of 2^-64 a pair: what
+    /// was judged once in a view holds for all rows.
+    Verdicts judge(std::size_t view, std::uint64_t hash)
+    {
+        if (judged_view_ != view) judged_.clear();
+        judged_view_ = view;
+        if (const auto found = judged_.find(hash); found != judged_.end()) return found->second;
+        return judged_
+            .emplace(hash, oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(),
+                                         scene_->height(), hits_))
+            .first->second;
     }
 
     void compare(const RowRun& row, Traced& result, std::size_t view)
     {
         const auto& reference = references_.hits(row.key, view);
-        const Differences differences = compare_hits(hits_, reference);
+        reference_ = reference;
+        const Differences differences = compare_hits(hits_, reference, allowed_ulps(row));
         result.compared = true;
         result.different += differences.count;
+        result.inexact += differences.inexact;
+        result.largest_ulps = std::max(result.largest_ulps, differences.largest_ulps);
         if (!differences.first || result.first_different) return;
         const std::size_t ray = *differences.first;
         result.first_different =
@@ -130,9 +179,17 @@ private:
     Oracle oracle_;
     References references_;
     std::vector<Hit> hits_;
+    std::span<const Hit> reference_;
+    std::size_t judged_view_ = 0;
+    std::map<std::uint64_t, Verdicts> judged_; ///< of judged_view_, by the hash of its hits
 };
 
 } // namespace
+
+std::uint32_t allowed_ulps(const RowRun& row)
+{
+    return row.self_test ? row.self_test->allowed_ulps() : 0;
+}
 
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
                  const ImageSeen& image_seen)
@@ -148,9 +205,11 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
             if (row->session == nullptr) continue;
             guarded(*row, [&] {
                 verification.verify(*row, view);
-                if (image_seen) image_seen(*row, view, verification.hits());
+                if (image_seen) image_seen({*row, view, verification.hits(), verification.reference()});
             });
         }
+    for (RowRun* row : rows)
+        if (row->session != nullptr) guarded(*row, [&] { verification.verify_again(*row); });
     progress_line().clear();
 }
 

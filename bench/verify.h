@@ -7,12 +7,23 @@
 
 namespace tetrace {
 
-/// Told after each image: the row, the view's index in SceneWork::views(), its hits.
-using ImageSeen = std::function<void(const RowRun&, std::size_t, std::span<const Hit>)>;
+/// An image that was verified.
+struct SeenImage {
+    const RowRun& row;
+    std::size_t view; ///< index in SceneWork::views()
+    std::span<const Hit> hits;
+    std::span<const Hit> reference; ///< openmp's; empty where there was nothing to compare
+};
+/// Told after each image.
+using ImageSeen = std::function<void(const SeenImage&)>;
+
+/// Units in the last place by which t, u and v of the row may differ from openmp's: what its device's self-test allows.
+[[nodiscard]] std::uint32_t allowed_ulps(const RowRun& row);
 
 /// Traces every view of a scene once with each of its rows, and judges each ray in two questions: does the device
-/// return what openmp returns (kernels of structure cdt, exact mode), and is the method right (the oracle)? Rows that
-/// cannot be traced end with their reason. rows: all of one scene, opened.
+/// return what openmp returns (kernels of structure cdt, exact mode), and is the method right (the oracle)? Then the
+/// first view once more: its hits must be the same. Rows that cannot be traced end with their reason.
+/// rows: all of one scene, opened.
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
                  const ImageSeen& image_seen = {});
 

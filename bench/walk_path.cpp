@@ -2,6 +2,8 @@
 
 #include "backends/openmp/backend.h"
 
+#include <algorithm>
+
 namespace tetrace {
 namespace {
 
@@ -22,27 +24,33 @@ TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
 
 } // namespace
 
-std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,
-                                     std::uint32_t x, std::uint32_t y)
+std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std::uint32_t x, std::uint32_t y,
+                                     std::uint32_t most)
 {
-    const auto session = openmp_backend().open(0, kernel, {nullptr, &packed}, {.threads = 1});
     TraceJob pixel = single_pixel(job, x, y);
     const auto trace = [&](std::uint32_t cap) {
         Hit hit{};
         pixel.max_steps = cap;
-        session->launch(pixel);
-        (void)session->wait();
-        session->read_back({&hit, 1});
+        session.launch(pixel);
+        (void)session.wait();
+        session.read_back({&hit, 1});
         return hit;
     };
     // A walk that is cut off after k steps says in which tet it stood.
     std::vector<std::uint32_t> path;
-    const std::uint32_t steps = trace(job.max_steps).steps;
-    for (std::uint32_t cap = 1; cap < steps; cap++)
-        path.push_back(trace(cap).tet);
     const Hit last = trace(job.max_steps);
-    if (last.tet != NO_TET) path.push_back(last.tet);
+    const std::uint32_t steps = std::min(last.steps, job.max_steps); // a broken device may claim any number
+    for (std::uint32_t cap = 1; cap < steps && path.size() < most; cap++)
+        path.push_back(trace(cap).tet);
+    if (last.tet != NO_TET && path.size() < most) path.push_back(last.tet);
     return path;
+}
+
+std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,
+                                     std::uint32_t x, std::uint32_t y)
+{
+    const auto session = openmp_backend().open(0, kernel, {nullptr, &packed}, {.threads = 1});
+    return walk_path(*session, job, x, y, job.max_steps);
 }
 
 } // namespace tetrace

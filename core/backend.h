@@ -79,7 +79,7 @@ public:
     /// Waits for the launch; returns device seconds of the kernel alone.
     [[nodiscard]] virtual double wait() = 0;
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
-    /// Throws Error{internal} where the kernel wrote outside its hits.
+    /// Throws Error{wrong_result} where the kernel wrote outside its hits.
     void read_back(std::span<Hit> hits);
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;
     /// Device bytes that the structure and its scene data occupy.

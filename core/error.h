@@ -12,6 +12,7 @@ enum class ErrorKind {
     missing,       ///< a file, a program or a device that is required and not there
     unsupported,   ///< possible elsewhere, not here (limits of a device, of a build)
     internal,      ///< our own fault
+    wrong_result,  ///< a device left what its kernel cannot have meant
     interrupted,   ///< the user said stop
 };
 
@@ -25,7 +26,7 @@ private:
     ErrorKind kind_;
 };
 
-/// The program's exit codes: 2 usage or bad input, 3 missing, 4 internal; 0 is good, 1 a wrong result.
+/// The program's exit codes: 1 a wrong result, 2 usage or bad input, 3 missing, 4 internal; 0 is good.
 [[nodiscard]] constexpr int exit_code(ErrorKind kind) noexcept
 {
     switch (kind) {
@@ -34,6 +35,7 @@ private:
     case ErrorKind::missing:
     case ErrorKind::unsupported: return 3;
     case ErrorKind::internal: return 4;
+    case ErrorKind::wrong_result: return 1;
     case ErrorKind::interrupted: return 130;
     }
     return 4;

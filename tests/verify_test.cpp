@@ -1,7 +1,10 @@
 #include "bench/verify.h"
 
+#include "bench/conformity.h"
+#include "bench/difference_pictures.h"
 #include "scenes/procedural.h"
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
@@ -39,10 +42,12 @@ private:
 class verify : public testing::Test {
 protected:
     /// Verifies maria on tet80 through a damaged openmp that calls itself `backend`.
-    RowRun verified(const std::string& backend, const Damage& damage)
+    RowRun verified(const std::string& backend, const Damage& damage, SelfTest self_test = {})
     {
         RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
         RowRun row = open_row(key, scene_, options_);
+        EXPECT_EQ(row.self_test, SelfTest{}) << "openmp in exact mode";
+        row.self_test = self_test;
         EXPECT_NE(row.session, nullptr) << reason_of(row);
         row.key.backend = backend;
         row.session = std::make_unique<DamagedSession>(std::move(row.session), damage);
@@ -130,12 +135,104 @@ TEST_F(verify, a_wrong_parameter_makes_a_row_flawed)
     EXPECT_GE(traced(row)->verdicts.wrong, 2u);
 }
 
-TEST_F(verify, a_ray_that_was_never_written_is_an_error)
+TEST_F(verify, a_ray_that_was_never_written_is_wrong_and_named)
 {
-    const RowRun row = verified("openmp", [](std::span<Hit> hits) { hits[5].face_id = POISON; });
-    EXPECT_EQ(status_of(row), Status::error);
-    EXPECT_NE(reason_of(row).find("1 of 1600 rays were never written"), std::string::npos) << reason_of(row);
+    const RowRun row = verified("other", [](std::span<Hit> hits) { hits[5].face_id = POISON; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(conformity_text(row), "wrong");
+    EXPECT_EQ(reason_of(row), "1 of 1600 rays were never written, the first at view 0, pixel (5, 0)");
     EXPECT_EQ(row.session, nullptr);
+    std::vector<RowRun> rows(1);
+    rows[0].outcome = row.outcome;
+    EXPECT_EQ(exit_code(rows, true), 1);
+}
+
+TEST_F(verify, a_kernel_that_never_ran_is_wrong)
+{
+    const RowRun row =
+        verified("other", [](std::span<Hit> hits) { std::memset(hits.data(), 0xFD, hits.size_bytes()); });
+    EXPECT_EQ(status_of(row), Status::wrong) << reason_of(row);
+}
+
+TEST_F(verify, a_device_that_answers_with_an_earlier_launchs_hits_is_wrong)
+{
+    std::vector<Hit> first;
+    const RowRun row = verified("other", [&](std::span<Hit> hits) {
+        if (first.empty()) first.assign(hits.begin(), hits.end());
+        std::copy(first.begin(), first.end(), hits.begin());
+    });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(traced(row)->first_different->view, 2u);
+}
+
+TEST_F(verify, a_device_that_changes_its_answer_is_wrong)
+{
+    int calls = 0;
+    const RowRun row = verified("other", [&](std::span<Hit> hits) { hits[3].steps += ++calls > 2 ? 1u : 0u; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(reason_of(row), "the hits of view 0 changed when it was traced again");
+}
+
+TEST_F(verify, a_device_that_writes_elsewhere_is_wrong)
+{
+    RowRun row = verified(
+        "openmp", [](std::span<Hit>) { throw Error(ErrorKind::wrong_result, "the kernel wrote before its hits"); });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(conformity_of(row), Conformity::wrong);
+}
+
+TEST_F(verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_further)
+{
+    SelfTest inexact;
+    inexact.division_ulps = 1;
+    const auto off_by = [&](int ulps, const SelfTest& test) {
+        return verified(
+            "other",
+            [&](std::span<Hit> hits) {
+                damage_first_hit(hits, [&](Hit& hit) {
+                    for (int i = 0; i < ulps; i++)
+                        hit.t = std::nextafter(hit.t, 100.0f);
+                });
+            },
+            test);
+    };
+    EXPECT_EQ(conformity_text(off_by(0, inexact)), "bit-exact");
+    EXPECT_EQ(conformity_text(off_by(2, inexact)), "within 2 ulp");
+    EXPECT_EQ(status_of(off_by(2, inexact)), Status::ok);
+    EXPECT_EQ(conformity_text(off_by(4, inexact)), "wrong: 2 rays");
+    EXPECT_EQ(conformity_text(off_by(1, {})), "wrong: 2 rays") << "a device whose division is correctly rounded";
+}
+
+TEST_F(verify, a_device_that_contracts_may_not_claim_to_be_exact)
+{
+    SelfTest contracting;
+    contracting.contracts = true;
+    const RowRun row = verified(
+        "other", [](std::span<Hit>) {}, contracting);
+    EXPECT_EQ(traced(row)->different, 0u);
+    EXPECT_EQ(conformity_of(row), Conformity::not_exact);
+    EXPECT_EQ(conformity_text(row), "not exact: contracts");
+}
+
+TEST_F(verify, images_are_shown_with_openmps_hits_beside_them)
+{
+    RowRun row = open_row({"cubes", "openmp", {}}, scene_, options_);
+    row.key.backend = "other";
+    std::size_t seen = 0;
+    verify_rows({&row}, scene_, options_, [&](const SeenImage& image) {
+        seen++;
+        EXPECT_EQ(compare_hits(image.hits, image.reference, 0).inexact, 0u);
+        const Pixmap picture = draw_differences(image.hits, image.reference, 0, scene_, image.view);
+        std::vector<Hit> changed(image.hits.begin(), image.hits.end());
+        changed[7].steps += 1;
+        const Pixmap marked = draw_differences(changed, image.reference, 0, scene_, image.view);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < marked.pixels.size(); i++)
+            different += marked.pixels[i] == picture.pixels[i] ? 0u : 1u;
+        EXPECT_EQ(different, 1u);
+        EXPECT_FALSE(marked.pixels[7] == picture.pixels[7]);
+    });
+    EXPECT_EQ(seen, 2u);
 }
 
 TEST_F(verify, what_a_device_throws_ends_as_the_rows_outcome)

@@ -1,0 +1,56 @@
+#include "bench/difference_pictures.h"
+
+#include "bench/shading.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+/// "cubes-0-cdt-maria-tet80-vulkan-1.png".
+std::string file_name(const SeenImage& image)
+{
+    std::string name = fmt::format("{}-{}-{}-{}", image.row.key.scene, image.row.scene->view_numbers()[image.view],
+                                   kernel_title(image.row.key), device_label(image.row.key));
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ' ' || c == ':' || c == '/'; }, '-');
+    return name + ".png";
+}
+
+} // namespace
+
+Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> reference, std::uint32_t allowed_ulps,
+                        const SceneWork& scene, std::size_t view)
+{
+    constexpr float darkened = 0.3f;
+    const Colour mark = from_srgb(0xFF5A1F);
+    Pixmap picture =
+        shade_hits(reference, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        picture.pixels[i] = is_same_hit(hits[i], reference[i], allowed_ulps) ? picture.pixels[i] * darkened : mark;
+    return picture;
+}
+
+DifferencePictures::DifferencePictures(std::filesystem::path folder) : folder_(std::move(folder))
+{
+    std::error_code problem;
+    std::filesystem::create_directories(folder_, problem);
+    if (!std::filesystem::is_directory(folder_))
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("--picture: the folder '{}' cannot be made: {}; name another one", folder_.string(),
+                                problem ? problem.message() : "a file has that name"));
+}
+
+void DifferencePictures::see(const SeenImage& image)
+{
+    if (image.reference.empty()) return;
+    const std::uint32_t allowed = allowed_ulps(image.row);
+    if (compare_hits(image.hits, image.reference, allowed).count == 0) return;
+    const auto path = folder_ / file_name(image);
+    writer_.write(path, draw_differences(image.hits, image.reference, allowed, *image.row.scene, image.view));
+    files_.push_back(path);
+}
+
+} // namespace tetrace

@@ -1,0 +1,153 @@
+#include "bench/junit.h"
+
+#include "bench/check_differences.h"
+#include "bench/conformity.h"
+#include "core/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+enum class CaseOutcome { passed, failed, error, skipped };
+
+CaseOutcome outcome_of(const RowRun& row, bool failed)
+{
+    switch (conformity_of(row)) {
+    case Conformity::error: return CaseOutcome::error;
+    case Conformity::unsupported:
+    case Conformity::skipped: return CaseOutcome::skipped;
+    default: return failed ? CaseOutcome::failed : CaseOutcome::passed;
+    }
+}
+
+std::string reason_text(const RowRun& row)
+{
+    const std::string reason = reason_of(row);
+    return conformity_text(row) + (reason.empty() ? "" : ": " + reason);
+}
+
+std::string outcome_xml(const RowRun& row, CaseOutcome outcome)
+{
+    const std::string reason = xml_text(reason_text(row));
+    switch (outcome) {
+    case CaseOutcome::passed: return {};
+    case CaseOutcome::skipped: return fmt::format("      <skipped message=\"{}\"/>\n", reason);
+    case CaseOutcome::error: return fmt::format("      <error message=\"{}\"/>\n", reason);
+    case CaseOutcome::failed:
+        return fmt::format("      <failure message=\"{}\">{}</failure>\n", reason, xml_text(differences_text(row)));
+    }
+    return {};
+}
+
+std::string property_xml(const char* name, const std::string& value)
+{
+    return fmt::format("        <property name=\"{}\" value=\"{}\"/>\n", name, xml_text(value));
+}
+
+std::string properties_xml(const RowRun& row)
+{
+    std::string text = property_xml("conformity", conformity_text(row));
+    if (const Traced* result = traced(row)) text += property_xml("hit_hash", hash_text(result->hit_hash));
+    if (row.self_test) text += property_xml("self_test", row.self_test->text());
+    if (!row.device.driver.empty()) text += property_xml("driver", row.device.driver);
+    return "      <properties>\n" + text + "      </properties>\n";
+}
+
+std::string case_xml(const RowRun& row, CaseOutcome outcome)
+{
+    const Traced* result = traced(row);
+    const std::string device = device_label(row.key) + (row.device.name.empty() ? "" : " " + row.device.name);
+    return fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\">\n{}{}    </testcase>\n",
+                       xml_text(device), xml_text(row_name(row.key)), result ? result->wall_s : 0.0,
+                       properties_xml(row), outcome_xml(row, outcome));
+}
+
+struct Suite {
+    std::string scene, cases;
+    int tests = 0, failures = 0, errors = 0, skipped = 0;
+    double time_s = 0;
+
+    void add(const RowRun& row, bool failed)
+    {
+        const CaseOutcome outcome = outcome_of(row, failed);
+        cases += case_xml(row, outcome);
+        ++tests;
+        failures += outcome == CaseOutcome::failed;
+        errors += outcome == CaseOutcome::error;
+        skipped += outcome == CaseOutcome::skipped;
+        if (const Traced* result = traced(row)) time_s += result->wall_s;
+    }
+
+    [[nodiscard]] std::string xml() const
+    {
+        return fmt::format("  <testsuite name=\"tetrace check {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+                           "skipped=\"{}\" time=\"{:.6f}\">\n{}  </testsuite>\n",
+                           xml_text(scene), tests, failures, errors, skipped, time_s, cases);
+    }
+};
+
+/// Bytes of the UTF-8 character at `i` that XML can hold; 0 where there is none.
+std::size_t character_length(const std::string& text, std::size_t i)
+{
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+    if (byte(i) < 0x80) return byte(i) >= 0x20 || text[i] == '\n' || text[i] == '\t' ? 1 : 0;
+    const std::size_t length = byte(i) >= 0xC2 && byte(i) < 0xE0   ? 2
+                               : byte(i) >= 0xE0 && byte(i) < 0xF0 ? 3
+                               : byte(i) >= 0xF0 && byte(i) < 0xF5 ? 4
+                                                                   : 0;
+    if (length == 0 || i + length > text.size()) return 0;
+    std::uint32_t code = byte(i) & (0x7Fu >> length);
+    for (std::size_t k = 1; k < length; ++k) {
+        if ((byte(i + k) & 0xC0) != 0x80) return 0;
+        code = code << 6 | (byte(i + k) & 0x3Fu);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    const bool forbidden = (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF || code > 0x10FFFF;
+    return overlong || forbidden ? 0 : length;
+}
+
+} // namespace
+
+std::string xml_text(const std::string& text)
+{
+    std::string result;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = character_length(text, i);
+        switch (length == 1 ? text[i] : 0) {
+        case '&': result += "&amp;"; break;
+        case '<': result += "&lt;"; break;
+        case '>': result += "&gt;"; break;
+        case '"': result += "&quot;"; break;
+        case '\'': result += "&apos;"; break;
+        default: result += length == 0 ? "?" : text.substr(i, length);
+        }
+        i += std::max<std::size_t>(length, 1);
+    }
+    return result;
+}
+
+std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed)
+{
+    std::vector<Suite> suites;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.emplace_back().scene = rows[i].key.scene;
+        suites.back().add(rows[i], failed[i]);
+    }
+    Suite sum;
+    std::string text;
+    for (const Suite& suite : suites) {
+        sum.tests += suite.tests;
+        sum.failures += suite.failures;
+        sum.errors += suite.errors;
+        sum.skipped += suite.skipped;
+        text += suite.xml();
+    }
+    return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"tetrace check\" tests=\"{}\" "
+                       "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}</testsuites>\n",
+                       sum.tests, sum.failures, sum.errors, sum.skipped, text);
+}
+
+} // namespace tetrace
