@@ -4,6 +4,13 @@
 set(TETRACE_METHODS maria)
 set(TETRACE_LAYOUTS tet80 tet96)
 
+# How kernels are compiled as host C++ in each math mode.
+set(TETRACE_HOST_FLAGS_exact -ffp-contract=off)
+set(TETRACE_HOST_FLAGS_fast -ffp-contract=fast -ffast-math)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
+endif()
+
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
 

@@ -1,0 +1,42 @@
+# TETRACE_NVCC: nvcc, where there is one that works here (-DTETRACE_NVCC= does without). Sets TETRACE_NVCC_VERSION ("13.0"),
+# empty without; TETRACE_NVCC_ARCHITECTURES, those of sm_75 to sm_90 that it knows; TETRACE_NVCC_TARGETS, the options that
+# compile for them.
+find_program(TETRACE_NVCC nvcc HINTS ENV CUDA_PATH ENV CUDA_HOME PATH_SUFFIXES bin PATHS /usr/local/cuda/bin /opt/cuda/bin
+  DOC "NVIDIA's compiler; empty: kernels are compiled by NVRTC at run time")
+
+# An nvcc that does not know the host's compiler fails on any file.
+if(TETRACE_NVCC AND NOT "${TETRACE_NVCC}" STREQUAL "${TETRACE_NVCC_TRIED}")
+  set(TETRACE_NVCC_TRIED "${TETRACE_NVCC}" CACHE INTERNAL "what the entries beside this one are of")
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/try.cu "__global__ void nothing() {}\n")
+  execute_process(COMMAND ${TETRACE_NVCC} --ptx -std=c++17 -o ${CMAKE_CURRENT_BINARY_DIR}/try.ptx ${CMAKE_CURRENT_BINARY_DIR}/try.cu
+    RESULT_VARIABLE failed ERROR_VARIABLE errors OUTPUT_QUIET)
+  execute_process(COMMAND ${TETRACE_NVCC} --version OUTPUT_VARIABLE version ERROR_QUIET)
+  execute_process(COMMAND ${TETRACE_NVCC} --list-gpu-code OUTPUT_VARIABLE known ERROR_QUIET)
+  string(REGEX MATCH "release ([0-9.]+)" version "${version}")
+  set(TETRACE_NVCC_FOUND_VERSION "${CMAKE_MATCH_1}" CACHE INTERNAL "")
+  if(failed)
+    message(STATUS "${TETRACE_NVCC} does not work, CUDA kernels are left to NVRTC: ${errors}")
+    set(TETRACE_NVCC_FOUND_VERSION "" CACHE INTERNAL "")
+  endif()
+  set(architectures "")
+  foreach(number 75 80 86 89 90)
+    if(known MATCHES "sm_${number}[ \n]")
+      list(APPEND architectures ${number})
+    endif()
+  endforeach()
+  set(TETRACE_NVCC_ARCHITECTURES "${architectures}" CACHE INTERNAL "")
+endif()
+
+set(TETRACE_NVCC_VERSION "")
+set(TETRACE_NVCC_TARGETS "")
+if(TETRACE_NVCC AND TETRACE_NVCC_ARCHITECTURES)
+  set(TETRACE_NVCC_VERSION "${TETRACE_NVCC_FOUND_VERSION}")
+  foreach(number IN LISTS TETRACE_NVCC_ARCHITECTURES)
+    list(APPEND TETRACE_NVCC_TARGETS --generate-code=arch=compute_${number},code=sm_${number})
+    set(newest ${number})
+  endforeach()
+  list(APPEND TETRACE_NVCC_TARGETS --generate-code=arch=compute_${newest},code=compute_${newest})
+endif()
+if(NOT TETRACE_NVCC_VERSION)
+  message(STATUS "CUDA kernels are compiled at run time, by NVRTC: no nvcc (package nvidia-cuda-toolkit)")
+endif()

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/backend.h"
+
+namespace tetrace {
+
+/// NVIDIA's devices through the CUDA driver API, whose library is loaded when the devices are first asked for.
+[[nodiscard]] Backend& cuda_backend();
+
+} // namespace tetrace

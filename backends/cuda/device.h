@@ -1,0 +1,36 @@
+#pragma once
+
+#include "backends/cuda/program.h"
+#include "core/backend.h"
+
+namespace tetrace::cuda {
+
+/// What the driver lists, usable or not; one that is not usable where there is no driver or no device.
+/// Throws Error{internal} where the driver fails.
+[[nodiscard]] std::vector<Device> list_devices(const LoadedDriver& driver, const Programs& programs);
+
+/// The driver's handle of a device by its place in list_devices(). Throws Error{internal}.
+[[nodiscard]] Ordinal ordinal_of(const Driver& driver, std::size_t index);
+
+/// 10 * major + minor of a device's compute capability.
+[[nodiscard]] int capability_of(const Driver& driver, Ordinal device);
+
+/// A device's attribute by its number in the API; 0 where the driver does not know it.
+[[nodiscard]] int attribute_of(const Driver& driver, Ordinal device, int attribute);
+
+/// A device opened for work: its context and a stream in it.
+struct OpenDevice {
+    OpenDevice(const Driver& driver, Ordinal ordinal);
+
+    Context context;
+    Owned<StreamHandle> stream;
+    int capability;
+
+    [[nodiscard]] const Driver& driver() const { return context.driver(); }
+    /// Waits for all work in the stream. Throws Error{internal} where some of it failed.
+    void synchronize();
+    /// Starts a kernel on a line of blocks. parameters: addresses of its arguments.
+    void launch(FunctionHandle function, unsigned blocks, unsigned block_threads, std::span<void* const> parameters);
+};
+
+} // namespace tetrace::cuda

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace tetrace::cuda {
+
+// The driver API's types as its binary interface has them: no CUDA header is needed to build this backend.
+using Result = int;                 ///< CUresult
+using Ordinal = int;                ///< CUdevice
+using Address = unsigned long long; ///< CUdeviceptr
+using ContextHandle = struct ContextState*;
+using ModuleHandle = struct ModuleState*;
+using FunctionHandle = struct FunctionState*;
+using StreamHandle = struct StreamState*;
+using EventHandle = struct EventState*;
+
+// CUresult values that are told apart.
+constexpr Result success = 0;
+constexpr Result error_invalid_value = 1;
+constexpr Result error_out_of_memory = 2;
+constexpr Result error_invalid_image = 200;
+constexpr Result error_unsupported_ptx = 222;
+constexpr Result error_not_found = 500;
+constexpr Result error_launch_resources = 701;
+constexpr Result error_launch_failed = 719;
+constexpr Result error_not_supported = 801;
+
+// CUdevice_attribute values that are asked for.
+constexpr int attribute_block_threads = 1;
+constexpr int attribute_warp_size = 10;
+constexpr int attribute_multiprocessors = 16;
+constexpr int attribute_capability_major = 75;
+constexpr int attribute_capability_minor = 76;
+
+/// The driver as a table of functions: NVIDIA's library, or host functions that stand in for it (backends/cuda_host).
+/// All else of this backend reaches CUDA through such a table alone.
+struct Driver {
+#define DRIVER_FUNCTION(member, symbol, parameters, arguments) Result(*member) parameters = nullptr;
+#include "backends/cuda/driver_functions.inc"
+#undef DRIVER_FUNCTION
+    /// Not of CUDA: only an emulation has it, which is how devices are known to be emulated. Says how many host threads
+    /// the calling thread's next launches use.
+    void (*use_threads)(unsigned threads) = nullptr;
+
+    [[nodiscard]] bool is_emulation() const
+    {
+        return use_threads != nullptr;
+    }
+};
+
+/// The name under which an emulation exports Driver::use_threads.
+constexpr const char* use_threads_symbol = "tetrace_emulation_use_threads";
+
+/// A driver that was looked for: whole, or with the reason why it cannot be used.
+struct LoadedDriver {
+    Driver driver;
+    std::string reason; ///< empty where it can be used; else what is wrong and what brings it
+
+    [[nodiscard]] bool usable() const { return reason.empty(); }
+};
+
+/// Loads a driver's library, which stays loaded, and starts it (cuInit).
+/// library: a file, or a name that the system's loader finds: "libcuda.so.1".
+[[nodiscard]] LoadedDriver load_driver(const char* library);
+
+/// A result in words: "CUDA_ERROR_ILLEGAL_ADDRESS (an illegal memory access was encountered)".
+[[nodiscard]] std::string text_of(const Driver& driver, Result result);
+
+/// What a driver says of its version: 13000 as "13.0".
+[[nodiscard]] std::string version_text(int version);
+
+} // namespace tetrace::cuda

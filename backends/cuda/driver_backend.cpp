@@ -1,0 +1,101 @@
+#include "backends/cuda/driver_backend.h"
+
+#include "backends/cuda/session.h"
+#include "backends/cuda/yardstick.h"
+#include "core/error.h"
+
+namespace tetrace::cuda {
+
+namespace {
+
+constexpr unsigned probe_block_threads = 64;
+
+ProgramId probe_program(MathMode math)
+{
+    return {"probe", math};
+}
+
+std::vector<std::uint32_t> run_probe(OpenDevice& device, FunctionHandle probe, std::span<const Row> operations)
+{
+    std::vector<std::uint32_t> results(operations.size());
+    const Memory rows(device.context, std::as_bytes(operations), "the self-test's operations", device.stream.get());
+    const Memory words(device.context, results.size() * sizeof(results[0]), "the self-test's results");
+    Address from = rows.address(), to = words.address();
+    auto count = static_cast<std::uint32_t>(operations.size());
+    void* parameters[] = {&from, &to, &count};
+    device.launch(probe, (count + probe_block_threads - 1) / probe_block_threads, probe_block_threads, parameters);
+    device.context.check(device.driver().copy_to_host(results.data(), to, words.bytes(), device.stream.get()),
+                         "copying the self-test's results to the host");
+    device.synchronize();
+    return results;
+}
+
+} // namespace
+
+const DriverBackend::Found& DriverBackend::found() const
+{
+    std::call_once(once_, [this] {
+        found_.driver = platform_.driver();
+        found_.programs = platform_.programs();
+        found_.devices = list_devices(found_.driver, found_.programs);
+    });
+    return found_;
+}
+
+const DriverBackend::Found& DriverBackend::require(std::size_t device) const
+{
+    const Device& wanted = devices().at(device);
+    if (!wanted.usable) throw Error(ErrorKind::missing, wanted.reason);
+    return found_;
+}
+
+bool DriverBackend::has_kernel(const KernelId& kernel) const
+{
+    return kernel.structure == Structure::cdt && find_kernel(embedded_sources(), program_of(kernel).source) != nullptr;
+}
+
+std::string DriverBackend::why_not(std::size_t device, const KernelId& kernel) const
+{
+    if (!has_kernel(kernel)) return name() + " has no kernel " + name_of(kernel);
+    const Device& wanted = devices().at(device);
+    return wanted.usable ? "" : wanted.reason;
+}
+
+std::unique_ptr<Session> DriverBackend::open(std::size_t device, const KernelId& kernel, const SceneData& scene,
+                                             const SessionOptions& options)
+{
+    const Found& here = require(device);
+    if (const std::string reason = why_not(device, kernel); !reason.empty())
+        throw Error(ErrorKind::unsupported, reason);
+    if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
+        throw Error(ErrorKind::internal,
+                    "opening " + name() + ": the scene is not packed as " + std::string(name_of(kernel.layout)));
+    const unsigned tile_height =
+        options.tile_height != 0 ? options.tile_height : default_tile_height(here.devices[device]);
+    const Driver& driver = here.driver.driver;
+    return std::make_unique<CudaSession>(driver, ordinal_of(driver, device), here.programs, kernel, *scene.packed,
+                                         options, tile_height);
+}
+
+std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode math, std::span<const Row> operations)
+{
+    const Found& here = require(device);
+    OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
+    const ProgramId id = probe_program(math);
+    const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, id, {});
+    return run_probe(opened, program.module.function(id.name()), operations);
+}
+
+std::optional<Yardstick> DriverBackend::yardstick(std::size_t device, const SessionOptions& options)
+{
+    const Found& here = require(device);
+    const Driver& driver = here.driver.driver;
+    if (driver.is_emulation()) driver.use_threads(options.threads);
+    OpenDevice opened(driver, ordinal_of(driver, device));
+    const ProgramId id = probe_program(MathMode::exact);
+    const LoadedProgram program =
+        load_program(opened.context, opened.capability, here.programs, id, options.program_cache);
+    return measure_device(opened, program.module.function(id.name()));
+}
+
+} // namespace tetrace::cuda

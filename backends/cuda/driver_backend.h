@@ -1,0 +1,57 @@
+#pragma once
+
+#include "backends/cuda/program.h"
+#include "core/backend.h"
+
+#include <functional>
+#include <mutex>
+
+namespace tetrace::cuda {
+
+/// What distinguishes CUDA on NVIDIA's driver from its emulation.
+struct Platform {
+    std::string name;                     ///< of the backend
+    std::string clock;                    ///< which one events read
+    std::function<LoadedDriver()> driver; ///< called when the devices are first asked for
+    std::function<Programs()> programs;   ///< the same
+};
+
+/// A backend on any driver table: all of CUDA but where its functions and kernels come from.
+class DriverBackend : public Backend {
+public:
+    explicit DriverBackend(Platform platform) : platform_(std::move(platform)) {}
+
+    [[nodiscard]] std::string name() const override { return platform_.name; }
+    [[nodiscard]] std::string clock() const override { return platform_.clock; }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return found().devices; }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override;
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override;
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
+                                                const SessionOptions& options) override;
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
+                                                   std::span<const Row> operations) override;
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
+
+private:
+    /// What is found on the machine, once.
+    struct Found {
+        LoadedDriver driver;
+        Programs programs;
+        std::vector<Device> devices;
+    };
+    const Found& found() const;
+    /// Throws Error{missing} with the reason where the device cannot be used.
+    const Found& require(std::size_t device) const;
+
+    Platform platform_;
+    mutable std::once_flag once_;
+    mutable Found found_;
+};
+
+/// Every kernel's text, for NVRTC: <method>_<layout> and probe.
+[[nodiscard]] std::span<const EmbeddedKernel> embedded_sources();
+
+/// What this build has: the texts, the code where it was made with nvcc, and NVRTC where it is installed.
+[[nodiscard]] Programs embedded_programs();
+
+} // namespace tetrace::cuda

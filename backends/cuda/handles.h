@@ -1,0 +1,91 @@
+#pragma once
+
+#include "backends/cuda/driver.h"
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace tetrace::cuda {
+
+/// A device's primary context, retained while this lives; what is made in it must end before it does.
+/// Every call throws Error{internal} with the driver's own name of what went wrong. An error after which the context is
+/// of no more use (CUDA calls it sticky) resets the context at the end of this, so that the next one is a new one.
+class Context {
+public:
+    Context(const Driver& driver, Ordinal device);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    [[nodiscard]] const Driver& driver() const { return driver_; }
+    [[nodiscard]] ContextHandle handle() const { return handle_; }
+    /// Other sessions and libraries use other contexts: to be called before any work in this one.
+    void make_current();
+    /// Throws where a call did not succeed. doing: what it was to do, "CUDA: " goes before it.
+    void check(Result result, const std::string& doing);
+    /// Of a result that the caller judges itself: whether the context is of use still.
+    void note(Result result);
+
+private:
+    const Driver& driver_;
+    Ordinal device_;
+    ContextHandle handle_ = nullptr;
+    bool lost_ = false;
+};
+
+/// Bytes of a device's memory, for the life of this.
+class Memory {
+public:
+    Memory() = default;
+    /// Throws Error{unsupported} with both numbers where so many bytes are not free. what: to be kept there.
+    Memory(Context& context, std::size_t bytes, const char* what);
+    /// The same, filled with what `bytes` holds when the stream comes to it.
+    Memory(Context& context, std::span<const std::byte> bytes, const char* what, StreamHandle stream);
+    Memory(Memory&& other) noexcept;
+    Memory& operator=(Memory&& other) noexcept;
+    ~Memory();
+
+    [[nodiscard]] Address address() const { return address_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+private:
+    Context* context_ = nullptr;
+    Address address_ = 0;
+    std::size_t bytes_ = 0;
+};
+
+/// A stream or an event, destroyed with the driver's own function.
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Result (*)(Handle)>;
+
+[[nodiscard]] Owned<StreamHandle> make_stream(Context& context);
+
+/// Two events, for the time between them by the device's clock.
+class Stopwatch {
+public:
+    explicit Stopwatch(Context& context);
+    void start(StreamHandle stream);
+    void stop(StreamHandle stream);
+    /// Waits for stop(). Seconds, with a resolution of about half a microsecond.
+    [[nodiscard]] double seconds();
+
+private:
+    Context& context_;
+    Owned<EventHandle> start_, stop_;
+};
+
+/// A loaded module.
+class Module {
+public:
+    /// Throws Error{unsupported} where the driver cannot use the image: it names the driver's error and its log.
+    Module(Context& context, std::span<const std::byte> image, const std::string& name);
+    /// Throws Error{internal} where the module has no such entry.
+    [[nodiscard]] FunctionHandle function(const std::string& name) const;
+
+private:
+    Context& context_;
+    Owned<ModuleHandle> module_;
+};
+
+} // namespace tetrace::cuda

@@ -1,0 +1,51 @@
+// The entry points of one kernel, flattened with its method and layout (cmake/Kernels.cmake) and compiled once per math
+// mode, by nvcc, by NVRTC, and as host C++ (backends/cuda_host/kernel.cpp). KERNEL_NAME is method_layout_math: a driver
+// finds an entry by its name.
+#include "kernels/layout.h"
+
+#include "kernels/dialect_cuda.h"
+
+#include "kernels/kernel.h"
+
+#define JOINED(prefix, name) prefix##name
+#define ENTRY(prefix, name) JOINED(prefix, name)
+
+KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint item, uint* output)
+{
+    Pixel pixel = pixel_of(launch, tile, item);
+    if (!is_in_image(launch, pixel)) return;
+    Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+    uint word = output_word(launch, pixel);
+    output[word] = hit.face_id;
+    output[word + 1u] = hit.tet;
+    output[word + 2u] = as_bits(hit.t);
+    output[word + 3u] = as_bits(hit.u);
+    output[word + 4u] = as_bits(hit.v);
+    output[word + 5u] = hit.steps;
+}
+
+// A ray a thread, a tile a block.
+extern "C" __global__ void ENTRY(trace_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output)
+{
+    trace_pixel(scene, launch, launch.first_tile + blockIdx.x, threadIdx.x, output);
+}
+
+// As many blocks as the device holds at once, whose warps stay: each fetches the next warp-full of rays from a counter,
+// which is 0 at first, until none of the `tiles` is left.
+// Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
+// addendum for Kepler, with Karras, 2012. Blocks are of whole warps, and a tile is one warp or two: all lanes of a warp
+// get a ray or none does.
+extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                                 uint* counter, uint tiles)
+{
+    uint tile_items = TILE_WIDTH * launch.tile_height;
+    uint lane = threadIdx.x % warpSize;
+    for (;;) {
+        uint first = 0u;
+        if (lane == 0u) first = atomicAdd(counter, warpSize);
+        first = __shfl_sync(0xFFFFFFFFu, first, 0);
+        if (first >= tiles * tile_items) return;
+        uint index = first + lane;
+        trace_pixel(scene, launch, launch.first_tile + index / tile_items, index % tile_items, output);
+    }
+}

@@ -1,0 +1,14 @@
+// The self-test (kernels/probe.h), an operation a thread. KERNEL_NAME is probe_exact or probe_fast.
+#include "kernels/layout.h"
+
+#include "kernels/dialect_cuda.h"
+
+#include "kernels/probe.h"
+
+extern "C" __global__ void KERNEL_NAME(const uint4* operations, uint* results, uint count)
+{
+    uint index = blockIdx.x * blockDim.x + threadIdx.x;
+    if (index >= count) return;
+    uint4 row = operations[index];
+    results[index] = probe(row.x, row.y, row.z, row.w);
+}

@@ -1,0 +1,97 @@
+#include "backends/cuda/program.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/program_cache.h"
+
+#include <chrono>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+namespace tetrace::cuda {
+
+namespace {
+
+/// All that NVRTC's result depends on.
+std::uint64_t cache_key(const Nvrtc& nvrtc, std::string_view text, std::span<const std::string> options,
+                        const std::string& target)
+{
+    std::uint64_t key = hash_of(target, hash_of(text, hash_of(nvrtc.version())));
+    for (const std::string& option : options)
+        key = hash_of(option, key);
+    return key;
+}
+
+/// NVRTC's module, from the cache where it is there; second: whether it was.
+std::pair<Module, bool> compiled_module(Context& context, int capability, const Programs& programs, const ProgramId& id,
+                                        const ProgramCache& cache)
+{
+    const EmbeddedKernel* source = find_kernel(programs.sources, id.source);
+    if (source == nullptr || !programs.has_nvrtc())
+        throw Error(ErrorKind::unsupported, "CUDA: this build has no code of kernel " + id.name() +
+                                                ", and nothing here compiles it: " +
+                                                (programs.nvrtc != nullptr ? programs.nvrtc().reason() : "no NVRTC"));
+    const Nvrtc& nvrtc = programs.nvrtc();
+    const std::string target = nvrtc.target(capability);
+    const auto options = compiler_options(id);
+    const std::uint64_t key = cache_key(nvrtc, source->text(), options, target);
+    if (const auto kept = cache.find(key)) return {Module(context, std::as_bytes(std::span(*kept)), id.name()), true};
+    const auto image = nvrtc.compile(source->text().data(), id.name(), target, options);
+    cache.keep(key, image);
+    return {Module(context, std::as_bytes(std::span(image)), id.name()), false};
+}
+
+[[noreturn]] void reject(const Context& context, const Programs& programs, const std::string& why)
+{
+    int version = 0;
+    context.driver().driver_version(&version);
+    throw Error(ErrorKind::unsupported, why + "; the kernels are of " + programs.compiler + ", the driver is of CUDA " +
+                                            version_text(version) + ": a newer driver, or NVRTC of a CUDA that this " +
+                                            "driver knows (package nvidia-cuda-toolkit), brings them");
+}
+
+/// Empty where the driver cannot use the build's code and NVRTC is there to try.
+std::optional<Module> build_module(Context& context, const Programs& programs, const ProgramId& id)
+{
+    const EmbeddedKernel* code = find_kernel(programs.code, id.name());
+    if (code == nullptr) return std::nullopt;
+    try {
+        return Module(context, code->bytes, id.name());
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::unsupported) throw;
+        if (!programs.has_nvrtc()) reject(context, programs, error.what());
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+ProgramId program_of(const KernelId& kernel)
+{
+    return {std::string(name_of(kernel.method)).append("_").append(name_of(kernel.layout)), kernel.math};
+}
+
+std::vector<std::string> compiler_options(const ProgramId& id)
+{
+    std::vector<std::string> options{"-DKERNEL_NAME=" + id.name()};
+    std::istringstream words(id.math == MathMode::exact ? TETRACE_CUDA_FLAGS_EXACT : TETRACE_CUDA_FLAGS_FAST);
+    for (std::string word; words >> word;)
+        options.push_back(word);
+    return options;
+}
+
+LoadedProgram load_program(Context& context, int capability, const Programs& programs, const ProgramId& id,
+                           const std::filesystem::path& cache)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const auto loaded = [&](Module module, bool cached) {
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        return LoadedProgram{std::move(module), took.count(), cached};
+    };
+    if (auto module = build_module(context, programs, id)) return loaded(std::move(*module), false);
+    auto [module, cached] = compiled_module(context, capability, programs, id, ProgramCache(cache));
+    return loaded(std::move(module), cached);
+}
+
+} // namespace tetrace::cuda

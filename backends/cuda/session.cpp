@@ -1,0 +1,160 @@
+#include "backends/cuda/session.h"
+
+#include "core/error.h"
+#include "core/scene_buffers.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tetrace::cuda {
+
+namespace {
+
+constexpr unsigned persistent_block_threads = 128; // four warps: enough blocks fit for every warp that a device holds
+
+std::string entry_of(const KernelId& kernel)
+{
+    return "trace_" + std::string(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
+}
+
+/// One address space needs no limit and no parts; whoever asks for smaller buffers gets an answer all the same.
+void check_limit(const char* what, std::uint64_t bytes, std::uint64_t max_buffer_bytes)
+{
+    if (max_buffer_bytes == 0 || bytes <= max_buffer_bytes) return;
+    throw Error(ErrorKind::unsupported, std::string(what) + " has " + std::to_string(bytes) +
+                                            " bytes, the largest buffer asked for " + std::to_string(max_buffer_bytes) +
+                                            "; CUDA kernels are given it as one");
+}
+
+} // namespace
+
+CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& programs, const KernelId& kernel,
+                         const PackedScene& scene, const SessionOptions& options, unsigned tile_height)
+    : device_(driver, device),
+      program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
+      schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))), stopwatch_(device_.context),
+      tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
+      launch_size_(tile_height), bytes_(scene.bytes())
+{
+    for (const SceneBuffer& buffer : scene_buffers(scene))
+        check_limit(("the scene's array '" + std::string(buffer.name) + "'").c_str(), buffer.bytes.size(),
+                    max_buffer_bytes_);
+    setup_.compile_s = program_.compile_s;
+    setup_.compile_cached = program_.cached;
+    upload(scene);
+    if (schedule_ != Schedule::persistent) return;
+    counter_ = Memory(device_.context, sizeof(std::uint32_t), "the counter of persistent threads");
+    int blocks = 0;
+    device_.context.check(driver.blocks_per_multiprocessor(&blocks, kernel_, persistent_block_threads, 0),
+                          "asking how many blocks fit");
+    resident_blocks_ =
+        static_cast<unsigned>(std::max(1, blocks * attribute_of(driver, device, attribute_multiprocessors)));
+}
+
+CudaSession::~CudaSession()
+{
+    // Modules and memory are released in the context that is current.
+    device_.driver().context_set_current(device_.context.handle());
+}
+
+void CudaSession::make_current()
+{
+    device_.context.make_current();
+    if (device_.driver().is_emulation()) device_.driver().use_threads(threads_);
+}
+
+void CudaSession::upload(const PackedScene& scene)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const auto buffers = scene_buffers(scene);
+    for (std::size_t i = 0; i < buffers.size(); i++)
+        arrays_[i] = Memory(device_.context, buffers[i].bytes, buffers[i].name, device_.stream.get());
+    device_.synchronize();
+    setup_.upload_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+#define SCENE_ARRAY(element, name, member, binding) scene_.name = arrays_[binding].address();
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+    scene_.divisions = scene.divisions;
+}
+
+void CudaSession::poison_output(std::size_t words)
+{
+    check_limit("the image's array of hits", words * sizeof(std::uint32_t), max_buffer_bytes_);
+    if (output_.bytes() != words * sizeof(std::uint32_t)) {
+        output_ = {}; // before the new one: both may not fit
+        output_ = Memory(device_.context, words * sizeof(std::uint32_t), "the image's hits");
+    }
+    device_.context.check(device_.driver().fill_words(output_.address(), POISON, words, device_.stream.get()),
+                          "filling the output");
+}
+
+void CudaSession::launch(const TraceJob& job)
+{
+    make_current();
+    poison_output(output_words(job));
+    LaunchParams params = launch_params(job, scene_.divisions, tile_height_, TetParts{}.log2_bytes);
+    const std::uint32_t tiles = tile_count(job, tile_height_);
+    kernel_s_ = 0;
+    launched_tiles_ = 0;
+    while (params.first_tile < tiles) {
+        finish_launch(); // of the one before: its time decides how large this one is
+        const std::uint32_t count = std::min(launch_size_.tiles(), tiles - params.first_tile);
+        schedule_ == Schedule::persistent ? launch_persistent(params, count) : launch_tiles(params, count);
+        launched_tiles_ = count;
+        params.first_tile += count;
+    }
+}
+
+void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
+{
+    LaunchParams launch = params;
+    Address output = output_.address();
+    void* parameters[] = {&scene_, &launch, &output};
+    stopwatch_.start(device_.stream.get());
+    device_.launch(kernel_, tiles, TILE_WIDTH * tile_height_, parameters);
+    stopwatch_.stop(device_.stream.get());
+}
+
+void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t tiles)
+{
+    LaunchParams launch = params;
+    Address output = output_.address(), counter = counter_.address();
+    void* parameters[] = {&scene_, &launch, &output, &counter, &tiles};
+    const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
+    const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
+    device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");
+    stopwatch_.start(device_.stream.get());
+    device_.launch(kernel_, std::min(blocks, resident_blocks_), persistent_block_threads, parameters);
+    stopwatch_.stop(device_.stream.get());
+}
+
+void CudaSession::finish_launch()
+{
+    if (launched_tiles_ == 0) return;
+    const double seconds = stopwatch_.seconds();
+    kernel_s_ += seconds;
+    launch_size_.took(launched_tiles_, seconds);
+    launched_tiles_ = 0;
+}
+
+double CudaSession::wait()
+{
+    make_current();
+    finish_launch();
+    return kernel_s_;
+}
+
+void CudaSession::read_output(std::span<std::uint32_t> words)
+{
+    make_current();
+    if (words.size_bytes() != output_.bytes())
+        throw Error(ErrorKind::internal, "reading hits: " + std::to_string(words.size_bytes()) +
+                                             " bytes are asked for, the last launch made " +
+                                             std::to_string(output_.bytes()));
+    device_.context.check(
+        device_.driver().copy_to_host(words.data(), output_.address(), words.size_bytes(), device_.stream.get()),
+        "copying the hits to the host");
+    device_.synchronize();
+}
+
+} // namespace tetrace::cuda

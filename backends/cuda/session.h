@@ -1,0 +1,59 @@
+#pragma once
+
+#include "backends/cuda/device.h"
+#include "core/launch.h"
+
+#include <array>
+
+namespace tetrace::cuda {
+
+/// Runs one kernel on a packed scene in a device's memory.
+class CudaSession : public Session {
+public:
+    /// scene: packed as the kernel wants it. tile_height: 4 or 8.
+    CudaSession(const Driver& driver, Ordinal device, const Programs& programs, const KernelId& kernel,
+                const PackedScene& scene, const SessionOptions& options, unsigned tile_height);
+    ~CudaSession() override;
+
+    void launch(const TraceJob& job) override;
+    [[nodiscard]] double wait() override;
+    [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
+    [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
+
+private:
+    /// What the kernels get: SceneView of kernels/dialect_cuda.h, word for word.
+    struct SceneView {
+#define SCENE_ARRAY(element, name, member, binding) Address name;
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+        std::uint32_t divisions;
+    };
+
+    void read_output(std::span<std::uint32_t> words) override;
+    void make_current();
+    void upload(const PackedScene& scene);
+    void poison_output(std::size_t words);
+    void launch_tiles(const LaunchParams& params, std::uint32_t tiles);
+    void launch_persistent(const LaunchParams& params, std::uint32_t tiles);
+    /// Waits for the launch that is under way, if any, and counts its time.
+    void finish_launch();
+
+    OpenDevice device_;
+    LoadedProgram program_;
+    Schedule schedule_;
+    FunctionHandle kernel_;
+    std::array<Memory, SCENE_ARRAYS> arrays_;
+    SceneView scene_{};
+    Memory output_, counter_;
+    Stopwatch stopwatch_;
+    unsigned tile_height_, threads_;
+    std::uint64_t max_buffer_bytes_;
+    unsigned resident_blocks_ = 0; ///< of schedule persistent: as many as the device holds at once
+    LaunchSize launch_size_;
+    std::uint32_t launched_tiles_ = 0; ///< of the launch that is under way; 0: none is
+    double kernel_s_ = 0;
+    SetupTimes setup_;
+    std::uint64_t bytes_;
+};
+
+} // namespace tetrace::cuda

@@ -1,0 +1,66 @@
+#include "backends/cuda/yardstick.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tetrace::cuda {
+
+namespace {
+
+constexpr std::size_t least_bytes = std::size_t{64} << 20, most_bytes = std::size_t{512} << 20;
+constexpr double enough_s = 5e-3; // a copy that long outlasts its launch and the clock's resolution by far
+constexpr int passes = 8;
+constexpr int launches = 101;
+
+double copy_s(OpenDevice& device, const Memory& from, const Memory& to)
+{
+    Stopwatch stopwatch(device.context);
+    double best_s = 1e300;
+    for (int pass = 0; pass < passes; pass++) {
+        stopwatch.start(device.stream.get());
+        device.context.check(
+            device.driver().copy_on_device(to.address(), from.address(), from.bytes(), device.stream.get()),
+            "copying memory to memory");
+        stopwatch.stop(device.stream.get());
+        const double seconds = stopwatch.seconds();
+        if (pass > 0) best_s = std::min(best_s, seconds); // the first one may touch pages
+    }
+    return best_s;
+}
+
+double copy_bytes_per_s(OpenDevice& device)
+{
+    std::size_t free = 0, total = 0;
+    device.context.check(device.driver().memory_info(&free, &total), "asking how much memory is free");
+    for (std::size_t bytes = std::min(least_bytes, free / 4);; bytes *= 2) {
+        const Memory from(device.context, bytes, "the copy's source"), to(device.context, bytes, "the copy's target");
+        const double seconds = copy_s(device, from, to);
+        if (seconds >= enough_s || 2 * bytes > std::min(most_bytes, free / 4))
+            return 2.0 * static_cast<double>(bytes) / seconds;
+    }
+}
+
+double launch_s(OpenDevice& device, FunctionHandle probe)
+{
+    Address none = 0;
+    std::uint32_t count = 0;
+    void* parameters[] = {&none, &none, &count};
+    std::vector<double> seconds;
+    for (int i = 0; i < launches; i++) {
+        const auto start = std::chrono::steady_clock::now();
+        device.launch(probe, 1, 1, parameters);
+        device.synchronize();
+        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    std::nth_element(seconds.begin(), seconds.begin() + launches / 2, seconds.end());
+    return seconds[launches / 2];
+}
+
+} // namespace
+
+Yardstick measure_device(OpenDevice& device, FunctionHandle probe)
+{
+    return {copy_bytes_per_s(device), launch_s(device, probe)};
+}
+
+} // namespace tetrace::cuda

@@ -1,0 +1,26 @@
+// backends/cuda/kernel.cu as host C++: compiled once per method, layout and math mode (CMakeLists.txt), which arrive as
+// KERNEL_METHOD_HEADER, KERNEL_LAYOUT_HEADER and KERNEL_NAME.
+#include "backends/cuda_host/kernels.h"
+#include "backends/cuda_host/shim.h"
+#include "core/launch.h"
+#include "kernels/layout.h"
+
+namespace {
+#include "backends/cuda/kernel.cu"
+
+static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
+} // namespace
+
+namespace tetrace::cuda_host {
+
+void ENTRY(run_trace_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(trace_tiles_, KERNEL_NAME), arguments);
+}
+
+void ENTRY(run_trace_persistent_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(trace_persistent_, KERNEL_NAME), arguments);
+}
+
+} // namespace tetrace::cuda_host

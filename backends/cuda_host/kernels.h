@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace tetrace::cuda_host {
+
+/// An entry point compiled for the host: runs the thread that the calling thread's threadIdx and blockIdx name
+/// (shim.h). arguments: the address of each of its arguments, as a launch has them.
+using Entry = void (*)(void** arguments);
+
+struct CompiledEntry {
+    const char* name; ///< "trace_tiles_maria_tet80_exact"
+    Entry entry;
+};
+
+/// Every entry point of this build; CMake compiles kernel.cpp and probe.cpp once for each kernel.
+[[nodiscard]] const std::vector<CompiledEntry>& compiled_entries();
+
+/// A kernel's arguments taken from their addresses.
+template <class... Arguments, std::size_t... Positions>
+void call(void (*kernel)(Arguments...), void** arguments, std::index_sequence<Positions...>)
+{
+    kernel(*static_cast<const Arguments*>(arguments[Positions])...);
+}
+
+template <class... Arguments>
+void call(void (*kernel)(Arguments...), [[maybe_unused]] void** arguments)
+{
+    call(kernel, arguments, std::index_sequence_for<Arguments...>{});
+}
+
+} // namespace tetrace::cuda_host

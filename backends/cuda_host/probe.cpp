@@ -1,0 +1,20 @@
+// backends/cuda/probe.cu as host C++: compiled once per math mode (CMakeLists.txt), which arrives as KERNEL_NAME.
+#include "backends/cuda_host/kernels.h"
+#include "backends/cuda_host/shim.h"
+#include "kernels/layout.h"
+
+namespace {
+#include "backends/cuda/probe.cu"
+
+#define JOINED(prefix, name) prefix##name
+#define ENTRY(prefix, name) JOINED(prefix, name)
+} // namespace
+
+namespace tetrace::cuda_host {
+
+void ENTRY(run_, KERNEL_NAME)(void** arguments)
+{
+    call(KERNEL_NAME, arguments);
+}
+
+} // namespace tetrace::cuda_host

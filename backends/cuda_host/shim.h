@@ -1,0 +1,71 @@
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <bit>
+
+// What CUDA C++ adds to C++, as far as backends/cuda/*.cu use it, for a host compiler: to be included before them.
+// The threads of a block run one after the other, a warp is one thread.
+
+#define __device__
+#define __global__
+#define __restrict__ __restrict
+
+/// CUDA's 16-byte vector, one load of the device.
+struct alignas(16) uint4 {
+    std::uint32_t x, y, z, w;
+};
+
+namespace tetrace::cuda_host {
+
+/// CUDA's dim3.
+struct Dimensions {
+    std::uint32_t x = 1, y = 1, z = 1;
+};
+
+// constinit: no wrapper function asks whether they have been made.
+extern constinit thread_local Dimensions current_thread, current_block, block_size;
+
+constexpr std::uint32_t warp_size = 1;
+
+} // namespace tetrace::cuda_host
+
+// CUDA's built-in variables. They are macros because a thread's own variables cannot have another name.
+#define threadIdx (::tetrace::cuda_host::current_thread)
+#define blockIdx (::tetrace::cuda_host::current_block)
+#define blockDim (::tetrace::cuda_host::block_size)
+#define warpSize (::tetrace::cuda_host::warp_size)
+
+template <class Element>
+Element __ldg(const Element* element)
+{
+    return *element;
+}
+
+inline float __uint_as_float(std::uint32_t bits)
+{
+    return std::bit_cast<float>(bits);
+}
+
+inline std::uint32_t __float_as_uint(float value)
+{
+    return std::bit_cast<std::uint32_t>(value);
+}
+
+inline float __uint2float_rn(std::uint32_t value)
+{
+    return static_cast<float>(value);
+}
+
+inline std::uint32_t atomicAdd(std::uint32_t* word, std::uint32_t added)
+{
+    return std::atomic_ref(*word).fetch_add(added, std::memory_order_relaxed);
+}
+
+inline std::uint32_t __shfl_sync(std::uint32_t, std::uint32_t value, int)
+{
+    return value;
+}

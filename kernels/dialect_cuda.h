@@ -1,0 +1,36 @@
+// The kernels' language as CUDA C++, for nvcc and for NVRTC, which has no header of its own: nothing is included here.
+// Contraction, division and square root are said by the compiler's options (backends/cuda/CMakeLists.txt).
+#define KERNEL_FN [[maybe_unused]] static __device__ inline
+#define PRECISE // contraction is switched off by the compiler's flags
+#define STRUCT(name) struct name
+#define VEC3(x, y, z) (Vec3{(x), (y), (z)})
+#define FETCH(scene, array, index) __ldg((scene).array + (index)) // a scene is never written: the read-only path
+
+typedef unsigned int uint;
+typedef float real;
+
+KERNEL_FN real as_real(uint bits)
+{
+    return __uint_as_float(bits);
+}
+KERNEL_FN uint as_bits(real value)
+{
+    return __float_as_uint(value);
+}
+KERNEL_FN real square_root(real value)
+{
+    return sqrtf(value);
+}
+KERNEL_FN real to_real(uint value)
+{
+    return __uint2float_rn(value);
+}
+
+// A scene's arrays, in one address space: never in parts. backends/cuda/session.cpp has the host's twin.
+STRUCT(SceneView)
+{
+#define SCENE_ARRAY(element, name, member, binding) const element* __restrict__ name;
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+    uint divisions;
+};
