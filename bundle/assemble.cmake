@@ -1,0 +1,41 @@
+# Assembles the bundle anew: cmake -DSOURCE= -DBUNDLE= -DPARTS= -DPROGRAM= -DXZ= -DLOADERS= -DBUILDER= -DCACHE= -DOBJDUMP=
+#                                -DVERSION= -P assemble.cmake
+# BUNDLE is the folder to make, PARTS keeps packed scenes between calls, PROGRAM is the relocatable tetrace, BUILDER
+# tetrace-builder or empty, CACHE where scenes are built.
+cmake_minimum_required(VERSION 3.25)
+include(${SOURCE}/libraries.cmake)
+include(${SOURCE}/scenes.cmake)
+
+set(largest_bytes 62914560) # 60 MiB: what is carried to a machine, and what such machines' transfers accept
+
+file(REMOVE_RECURSE ${BUNDLE})
+file(COPY ${PROGRAM} DESTINATION ${BUNDLE}/bin)
+file(COPY ${XZ} DESTINATION ${BUNDLE}/bin FOLLOW_SYMLINK_CHAIN)
+file(COPY ${SOURCE}/run-all ${SOURCE}/icd DESTINATION ${BUNDLE})
+copy_libraries("${PROGRAM};${XZ}" "${LOADERS}" ${BUNDLE}/lib libraries)
+copy_licences("${libraries};${XZ}" ${BUNDLE}/licences packages)
+file(COPY ${SOURCE}/../LICENSE DESTINATION ${BUNDLE})
+pack_scenes("bunny;armadillo;banana" ${BUNDLE}/scenes scenes)
+
+glibc_needed("${PROGRAM};${XZ};${libraries}" GLIBC)
+list(JOIN packages "\n    " PACKAGES)
+list(JOIN scenes ", " SCENES)
+if(NOT scenes)
+  set(SCENES "none (tetrace-builder or Debian's libcgal-demo was missing); the embedded scene cubes runs")
+endif()
+configure_file(${SOURCE}/README.in ${BUNDLE}/README @ONLY)
+
+file(GLOB_RECURSE files ${BUNDLE}/*)
+set(bytes 0)
+foreach(file IN LISTS files)
+  file(SIZE ${file} size)
+  math(EXPR bytes "${bytes} + ${size}")
+endforeach()
+math(EXPR tenths "${bytes} * 10 / 1048576")
+math(EXPR whole "${tenths} / 10")
+math(EXPR tenth "${tenths} % 10")
+message(STATUS "${BUNDLE}: ${whole}.${tenth} MiB (${bytes} bytes), scenes: ${SCENES}, needs glibc ${GLIBC}")
+if(bytes GREATER largest_bytes)
+  message(FATAL_ERROR "The bundle has ${bytes} bytes, more than the ${largest_bytes} (60 MiB) that it may have; its "
+                      "largest parts: du -a ${BUNDLE} | sort -n | tail")
+endif()
