@@ -2,12 +2,13 @@
 JOBS ?= $(shell nproc)
 TETRACE = build/release/bin/tetrace
 
-.PHONY: help bench test build format lint clean
+.PHONY: help bench test build bundle format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/)"
 	@echo "make test     install what is missing, build, run all tests, and the small ones under sanitizers"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
+	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make format   format the sources"
 	@echo "make lint     check formatting, and the sources with clang-tidy"
 	@echo "make clean    remove build/"
@@ -21,10 +22,11 @@ build:
 bench: build
 	@mkdir -p build/bench
 	$(TETRACE) bench --out build/bench/result.json
-	@if [ -e build/release/bin/tetrace_images.so ]; then \
-	    set -x; $(TETRACE) render --views 0 --picture normals,steps --out build/bench; \
-	else echo "No pictures: OpenImageIO is not installed (package libopenimageio-dev)."; fi
-	@echo "Result: build/bench/result.json (its schema: results/README.md); pictures: build/bench/*.png"
+	$(TETRACE) render --views 0 --picture normals,steps --out build/bench
+	@echo "Result: build/bench/result.json (its schema: results/README.md); pictures: build/bench/ too"
+
+bundle: build
+	cmake --build --preset release -j $(JOBS) --target bundle
 
 test:
 	@scripts/install-packages build test

@@ -1,7 +1,5 @@
-#include "backends/openmp/backend.h"
 #include "bench/bench_report.h"
 #include "bench/commands.h"
-#include "bench/device_facts.h"
 #include "bench/progress.h"
 
 namespace tetrace {
@@ -31,9 +29,10 @@ int bench_command(const Options& options)
     result.missing_scenes = missing_default_scenes(options);
     result.run = open_and_verify(keys, options);
     result.measurement = measure_rows(result.run.rows, options, flags);
-    progress_line().show("measuring the memory's bandwidth", -1);
-    result.copy_bytes_per_s =
-        yardstick_of(openmp_backend(), 0, {.threads = resolved_threads(options)})->copy_bytes_per_s;
+    progress_line().show("measuring the devices themselves", -1);
+    result.devices = devices_of(result.run.rows);
+    measure_devices(result.devices, session_options(options));
+    result.comparisons = compare_rows(result.run.rows);
     const Report report = bench_report(result, options);
     // Google Benchmark has written its own form to standard output already, where it was asked to.
     if (!flags.format)

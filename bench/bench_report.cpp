@@ -1,26 +1,16 @@
 #include "bench/bench_report.h"
 
+#include "bench/bench_tables.h"
+#include "bench/device_json.h"
 #include "bench/figures.h"
 #include "bench/row_json.h"
 #include "bench/text.h"
-#include "core/hash.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace tetrace {
 
 namespace {
-
-std::string status_text(const RowRun& row, const BenchResult& result)
-{
-    std::string text(name_of(status_of(row)));
-    if (status_of(row) == Status::flawed) text += ": " + reason_of(row);
-    const auto figures = figures_of(row);
-    if (figures && figures->kernel_s.noisy()) text += ", noisy";
-    if (figures && result.measurement.lowered) text += fmt::format(", {} samples", row.samples_s.size());
-    return text;
-}
 
 std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<RowRun>& rows)
 {
@@ -28,101 +18,6 @@ std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<R
     for (const RowRun& row : rows)
         if (row.key.scene == scene) found.push_back(&row);
     return found;
-}
-
-Table scene_table(const std::string& scene, const BenchResult& result)
-{
-    Table table({{"row", "row"},
-                 {"backend", "backend"},
-                 {"mrays", "Mrays/s"},
-                 {"msteps", "Msteps/s", {}, 1},
-                 {"steps", "steps/ray"},
-                 {"ratio", "x single"},
-                 {"gb", "GB/s", {}, 1},
-                 {"bytes", "MB", {}, 1},
-                 {"spread", "spread"},
-                 {"status", "status"}});
-    for (const RowRun* row : rows_of(scene, result.run.rows)) {
-        const auto figures = figures_of(*row);
-        const Traced* trace = traced(*row);
-        table.add({kernel_title(row->key), row->key.backend, figures ? Cell(figures->mrays_per_s) : Cell(),
-                   figures ? cell_of(figures->msteps_per_s) : Cell(),
-                   trace ? cell_of(mean_steps(trace->totals).all) : Cell(),
-                   cell_of(ratio_to_single(*row, result.run.rows)), figures ? cell_of(figures->gb_per_s) : Cell(),
-                   row->session ? Cell(1e-6 * static_cast<double>(row->session->bytes())) : Cell(),
-                   figures ? Cell(fmt::format("{:5.1f} %", 100 * figures->kernel_s.spread())) : Cell(),
-                   status_text(*row, result)});
-    }
-    return table;
-}
-
-Table flat_table(const BenchResult& result)
-{
-    Table table({{"name", "name"},
-                 {"scene", "scene"},
-                 {"structure", "structure"},
-                 {"method", "method"},
-                 {"layout", "layout"},
-                 {"backend", "backend"},
-                 {"rays", "rays"},
-                 {"math", "math"},
-                 {"order", "order"},
-                 {"status", "status"},
-                 {"reason", "reason"},
-                 {"mrays_per_s", "rate", "Mrays/s"},
-                 {"msteps_per_s", "rate", "Msteps/s", 1},
-                 {"mean_steps", "steps per ray"},
-                 {"mean_steps_hit", "steps per hit"},
-                 {"mean_steps_miss", "steps per miss"},
-                 {"ratio_to_single", "ratio to Embree single"},
-                 {"estimated_gb_per_s", "estimated", "GB/s", 1},
-                 {"median_s", "median", "s", 6},
-                 {"spread", "spread", {}, 3},
-                 {"samples", "samples"},
-                 {"ray_count", "rays traced"},
-                 {"hit_count", "hits"},
-                 {"ties", "ties"},
-                 {"wrong", "wrong"},
-                 {"lost", "lost"},
-                 {"hit_hash", "hit hash"}});
-    for (const RowRun& row : result.run.rows) {
-        const auto figures = figures_of(row);
-        const Traced* trace = traced(row);
-        const MeanSteps mean = trace ? mean_steps(trace->totals) : MeanSteps{};
-        const auto count = [&](std::uint64_t value) { return trace ? Cell(value) : Cell(); };
-        const auto text = [](std::string_view value) { return Cell(std::string(value)); };
-        const std::string reason = reason_of(row);
-        const RayTotals totals = trace ? trace->totals : RayTotals{};
-        const Verdicts verdicts = trace ? trace->verdicts : Verdicts{};
-        table.add({row_name(row.key),
-                   row.key.scene,
-                   text(name_of(row.key.kernel.structure)),
-                   text(name_of(row.key.kernel.method)),
-                   text(name_of(row.key.kernel.layout)),
-                   row.key.backend,
-                   text(name_of(row.key.rays)),
-                   text(name_of(row.key.kernel.math)),
-                   text(name_of(row.key.order)),
-                   text(name_of(status_of(row))),
-                   reason.empty() ? Cell() : Cell(reason),
-                   figures ? Cell(figures->mrays_per_s) : Cell(),
-                   figures ? cell_of(figures->msteps_per_s) : Cell(),
-                   cell_of(mean.all),
-                   cell_of(mean.hit),
-                   cell_of(mean.miss),
-                   cell_of(ratio_to_single(row, result.run.rows)),
-                   figures ? cell_of(figures->gb_per_s) : Cell(),
-                   figures ? Cell(figures->kernel_s.median) : Cell(),
-                   figures ? Cell(figures->kernel_s.spread()) : Cell(),
-                   std::uint64_t{row.samples_s.size()},
-                   count(totals.rays),
-                   count(totals.hits),
-                   count(verdicts.ties),
-                   count(verdicts.wrong),
-                   count(verdicts.lost),
-                   trace ? Cell(hash_text(trace->hit_hash)) : Cell()});
-    }
-    return table;
 }
 
 std::string timed_sentence(const BenchResult& result, const Options& options)
@@ -138,21 +33,60 @@ std::string timed_sentence(const BenchResult& result, const Options& options)
         name_of(options.camera_set), options.width, options.height, resolved_threads(options));
 }
 
+/// How many steps a ray takes in the scene, which is the same for all its rows of one method.
+std::string steps_sentence(const std::string& scene, const std::vector<RowRun>& rows)
+{
+    for (const RowRun* row : rows_of(scene, rows)) {
+        const Traced* result = traced(*row);
+        const MeanSteps mean = result != nullptr ? mean_steps(result->totals) : MeanSteps{};
+        if (!mean.all) continue;
+        std::string text = fmt::format("{:.2f} steps a ray", *mean.all);
+        if (mean.hit && mean.miss)
+            text += fmt::format(": {:.2f} where it hits, {:.2f} where not", *mean.hit, *mean.miss);
+        return text + "\n";
+    }
+    return {};
+}
+
+const char* const rate_columns =
+    "x openmp (x cuda and so on): rate over that of the same kernel with openmp, on a GPU with cuda, on the same "
+    "hardware; medians, with their 95 % interval. x single: rate over that of Embree's single rays. of copy: what a "
+    "step loads, times steps, over the copy bandwidth of the row's device. spread: interquartile range over median, "
+    "noisy above 5 %.";
+
+const char* const time_columns =
+    "compile (of Embree, building its BVH) and upload are paid once; first: wall of the first pass, in which devices "
+    "compile what they left; then, for all views, kernel: device seconds; launch: wall less kernel, launching and "
+    "waiting; download: hits to the host; wall: launch to end. Medians of the samples but for download.";
+
 std::string closing_lines(const BenchResult& result, const Options& options)
 {
     std::string text = labelled("Verified", verdict_sentence(result.run.rows));
     if (result.measurement.wall_s > 0) {
         text += labelled("Timed", timed_sentence(result, options));
-        text +=
-            labelled("Columns", fmt::format("x single: rate over that of Embree's single rays. GB/s: steps times the "
-                                            "layout's whole record; copying memory reaches {:.1f} GB/s here. spread: "
-                                            "interquartile range over median, noisy above {:.0f} %.",
-                                            1e-9 * result.copy_bytes_per_s, 100 * noisy_spread));
+        text += labelled("Rates", rate_columns);
+        text += labelled("Times", time_columns);
     }
+    for (const std::string& sentence : missing_devices(options))
+        text += labelled("Missing", sentence);
     for (const std::string& sentence : result.missing_scenes)
         text += labelled("Missing", sentence);
     if (options.out) text += labelled("Result", options.out->string());
     return text;
+}
+
+nlohmann::json ratios_json(const BenchResult& result)
+{
+    nlohmann::json ratios = nlohmann::json::array();
+    for (std::size_t i = 0; i < result.run.rows.size(); ++i)
+        if (const auto& comparison = result.comparisons.at(i))
+            ratios.push_back({{"row", row_name(result.run.rows[i].key)},
+                              {"reference", row_name(comparison->reference->key)},
+                              {"ratio", comparison->rate.value},
+                              {"low", comparison->rate.low},
+                              {"high", comparison->rate.high},
+                              {"confidence", ratio_confidence}});
+    return ratios;
 }
 
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
@@ -161,17 +95,22 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     section["samples_a_row"] = result.measurement.samples;
     section["samples_lowered"] = result.measurement.lowered;
     section["threads"] = resolved_threads(options);
-    if (result.copy_bytes_per_s > 0) section["copy_bytes_per_s"] = result.copy_bytes_per_s;
     section["missing_scenes"] = result.missing_scenes;
     section["scenes"] = nlohmann::json::array();
     for (const auto& scene : result.run.scenes)
         section["scenes"].push_back(scene_json(*scene, options));
+    section["devices"] = nlohmann::json::array();
+    for (const RowDevice& device : result.devices)
+        section["devices"].push_back(row_device_json(device));
     section["rows"] = nlohmann::json::array();
     for (const RowRun& row : result.run.rows) {
-        section["rows"].push_back(row_json(row, result.copy_bytes_per_s));
+        section["rows"].push_back(row_json(row));
+        if (const auto share = share_of_copy(row, result.devices))
+            section["rows"].back()["rates"]["share_of_copy_bandwidth"] = *share;
         if (const auto ratio = ratio_to_single(row, result.run.rows))
             section["rows"].back()["rates"]["ratio_to_single"] = *ratio;
     }
+    section["ratios"] = ratios_json(result);
     nlohmann::json json = result.measurement.google_benchmark;
     if (json.is_null()) json = nlohmann::json::object();
     json["tetrace"] = std::move(section);
@@ -228,8 +167,11 @@ Report bench_report(const BenchResult& result, const Options& options)
 {
     Report report{{}, flat_table(result), bench_json(result, options)};
     for (const auto& scene : result.run.scenes)
-        report.text +=
-            scene_headline(*scene, result.run.rows) + "\n" + scene_table(scene->label(), result).text(2) + "\n";
+        report.text += scene_headline(*scene, result.run.rows) + steps_sentence(scene->label(), result.run.rows) +
+                       "\n" + rate_table(scene->label(), result).text(2) + "\n";
+    if (result.measurement.wall_s > 0)
+        report.text += "where the time goes\n\n" + time_table(result).text(2) + "\ndevices\n\n" +
+                       device_table(result.devices).text(2) + "\n";
     report.text += failure_lines(result.run.rows) + closing_lines(result, options);
     return report;
 }

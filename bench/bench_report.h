@@ -1,17 +1,20 @@
 #pragma once
 
+#include "bench/comparison.h"
 #include "bench/measure.h"
 #include "bench/report.h"
+#include "bench/row_devices.h"
 #include "bench/scene_rows.h"
 
 namespace tetrace {
 
-/// All that `tetrace bench` has to tell.
+/// All that `tetrace bench` has to tell. Comparisons point into the rows.
 struct BenchResult {
     SceneRows run;
     Measurement measurement;
-    double copy_bytes_per_s = 0;
-    std::vector<std::string> missing_scenes; ///< sentences, see missing_default_scenes()
+    std::vector<RowDevice> devices;
+    std::vector<std::optional<Comparison>> comparisons; ///< row by row
+    std::vector<std::string> missing_scenes;            ///< sentences, see missing_default_scenes()
 };
 
 [[nodiscard]] Report bench_report(const BenchResult& result, const Options& options);

@@ -67,7 +67,7 @@ struct Checked {
 
 nlohmann::json check_row_json(const RowRun& row)
 {
-    nlohmann::json object = row_json(row, 0);
+    nlohmann::json object = row_json(row);
     object["conformity"] = conformity_text(row);
     add_paths(object, row);
     return object;

@@ -1,5 +1,7 @@
 #include "bench/figures.h"
 
+#include "bench/physical_device.h"
+
 namespace tetrace {
 
 namespace {
@@ -10,14 +12,15 @@ std::optional<double> quotient(std::uint64_t steps, std::uint64_t rays)
     return static_cast<double>(steps) / static_cast<double>(rays);
 }
 
-/// Empty where the wall clock was not read for every sample.
-std::optional<double> overhead_of(const RowRun& row)
+/// Nothing where the wall clock was not read for every sample.
+void add_wall(Figures& figures, const RowRun& row)
 {
-    if (row.wall_samples_s.size() != row.samples_s.size()) return std::nullopt;
+    if (row.wall_samples_s.size() != row.samples_s.size()) return;
     std::vector<double> overheads;
     for (std::size_t i = 0; i < row.samples_s.size(); ++i)
         overheads.push_back(row.wall_samples_s[i] - row.samples_s[i]);
-    return quantile(std::move(overheads), 0.5);
+    figures.wall_s = quantile(row.wall_samples_s, 0.5);
+    figures.overhead_s = quantile(std::move(overheads), 0.5);
 }
 
 } // namespace
@@ -25,8 +28,8 @@ std::optional<double> overhead_of(const RowRun& row)
 unsigned bytes_per_step(Layout layout)
 {
     switch (layout) {
-    case Layout::tet80: return 16 * TET80_ROWS;
-    case Layout::tet96: return 16 * TET96_ROWS;
+    case Layout::tet80: return 3 * 12 + 8;
+    case Layout::tet96: return 4 * 16;
     case Layout::embree: return 0;
     }
     throw Error(ErrorKind::internal, "bytes_per_step: no such layout");
@@ -46,7 +49,7 @@ std::optional<Figures> figures_of(const RowRun& row)
     Figures figures;
     figures.kernel_s = statistics_of(row.samples_s);
     const double seconds = figures.kernel_s.median;
-    figures.overhead_s = overhead_of(row);
+    add_wall(figures, row);
     figures.mrays_per_s = 1e-6 * static_cast<double>(totals.rays) / seconds;
     if (totals.steps() == 0) return figures;
     figures.msteps_per_s = 1e-6 * static_cast<double>(totals.steps()) / seconds;
@@ -57,6 +60,7 @@ std::optional<Figures> figures_of(const RowRun& row)
 
 std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows)
 {
+    if (!runs_on_host(row.device)) return std::nullopt;
     const auto figures = figures_of(row);
     for (const RowRun& other : rows)
         if (other.key.scene == row.key.scene && other.key.kernel.method == Method::single)

@@ -14,13 +14,15 @@ struct Figures {
     double mrays_per_s = 0;
     std::optional<double> msteps_per_s; ///< structure cdt only
     std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
+    std::optional<double> wall_s;       ///< from launch to the end of wait on the host's clock, all views; median
     std::optional<double> overhead_s;   ///< launching and waiting: median of the samples' wall minus device seconds
 };
 
 /// Empty unless the row is ok or flawed and has samples.
 [[nodiscard]] std::optional<Figures> figures_of(const RowRun& row);
 
-/// Bytes of a layout's whole record of a tet, taken as what a step moves; 0 for Embree's, which has no steps.
+/// Bytes that a step of the walk loads from the record of its tet (kernels/SPEC.md): three vertices and a face. An
+/// estimate of what moves: memory moves whole lines, and caches keep some. 0 for Embree's layout, which has no steps.
 [[nodiscard]] unsigned bytes_per_step(Layout layout);
 
 /// Steps a ray; empty where there is no such ray, or the structure has no steps.
@@ -29,7 +31,8 @@ struct MeanSteps {
 };
 [[nodiscard]] MeanSteps mean_steps(const RayTotals& totals);
 
-/// The row's Mrays/s over those of Embree's single rays on the same scene; empty where either has none.
+/// The row's Mrays/s over those of Embree's single rays on the same scene; empty where either has none, and for rows
+/// that do not run on the host as Embree does.
 [[nodiscard]] std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows);
 
 } // namespace tetrace

@@ -37,8 +37,12 @@ const VerbHelp verb_help[] = {
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
      "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"},
     {Verb::bench, "verify rows, then measure them",
-     "Loads the scenes, traces every selected view once with every row and judges each ray; then takes samples with "
-     "Google Benchmark, rows interleaved at random. A row is a combination of scene, structure, method, layout, kind "
+     "Loads the scenes, traces every selected view once with every row and judges each ray; then warms every row up "
+     "and "
+     "takes samples with Google Benchmark, rows interleaved at random; then measures each device's copy bandwidth and "
+     "launch latency. Rows of one piece of hardware are compared, with the 95 % interval of each ratio; emulations of "
+     "GPUs' APIs on the processor are told apart and never ranked with GPUs. A row is a combination of scene, "
+     "structure, method, layout, kind "
      "of rays, math mode, backend and device. Defaults: maria on tet80 and tet96 with every usable device of every "
      "backend, and Embree with single rays and packets of 16.\n\n"
      "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong (their number is told, the rate "

@@ -17,13 +17,21 @@ std::filesystem::path module_beside_program()
 
 [[noreturn]] void module_missing(const std::filesystem::path& module, const std::string& reason)
 {
-    throw Error(ErrorKind::missing,
-                fmt::format("cannot write pictures: loading the images module {}: {}. It is built where OpenImageIO is "
-                            "installed: install the package libopenimageio-dev, configure and build again",
-                            module.string(), reason));
+    throw Error(
+        ErrorKind::missing,
+        fmt::format(
+            "cannot write pictures: loading the images module {}: {}. It is built where OpenImageIO is "
+            "installed: install the package libopenimageio-dev, configure and build again; pictures that end in .ppm "
+            "need no module",
+            module.string(), reason));
 }
 
 } // namespace
+
+bool has_images_module()
+{
+    return std::filesystem::exists(module_beside_program());
+}
 
 ImageWriter::ImageWriter() : ImageWriter(module_beside_program()) {}
 

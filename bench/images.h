@@ -15,6 +15,9 @@ int tetrace_write_image(const char* path, unsigned width, unsigned height, const
 
 namespace tetrace {
 
+/// Whether the images module lies beside the running program; it may fail to load all the same.
+[[nodiscard]] bool has_images_module();
+
 /// Writes pictures through the images module, which it loads when it is made.
 class ImageWriter {
 public:

@@ -6,7 +6,9 @@
 #include "core/hash.h"
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
+#include <span>
 #include <sstream>
 
 namespace tetrace {
@@ -21,14 +23,6 @@ bool is_timed(const RowRun& row)
     return row.session != nullptr && (status == Status::ok || status == Status::flawed);
 }
 
-double expected_sweep_s(const std::vector<RowRun>& rows)
-{
-    double sum = 0;
-    for (const RowRun& row : rows)
-        if (is_timed(row)) sum += traced(row)->wall_s;
-    return sum;
-}
-
 /// The same counters for every row: Google Benchmark's CSV ends the program otherwise. Steps are in our own section.
 void set_counters(benchmark::State& state, const RowRun& row)
 {
@@ -41,30 +35,69 @@ struct Sweep {
     double done = 0, all = 1;
 };
 
-/// Traces all views once; device seconds.
-double trace_views(RowRun& row, const Sweep& sweep)
+/// Seconds of a pass over all views.
+struct Pass {
+    double kernel_s = 0, wall_s = 0, download_s = 0;
+};
+
+/// hits: where to read each view's back to; none are read where it is empty.
+Pass trace_views(RowRun& row, std::span<Hit> hits, const std::function<void(double)>& tell_progress)
 {
     const std::size_t views = row.scene->views().size();
-    double kernel_s = 0, wall_s = 0;
+    Pass pass;
     for (std::size_t view = 0; view < views; ++view) {
         // Between the clocks: a sample may take minutes, and what is drawn costs no row anything.
-        progress_line().show("measuring, rows interleaved",
-                             (sweep.done + static_cast<double>(view) / static_cast<double>(views)) / sweep.all);
+        tell_progress(static_cast<double>(view) / static_cast<double>(views));
         const TraceJob job = row.scene->job(view, row.packed ? &row.packed->scene : nullptr);
         const Stopwatch watch;
         row.session->launch(job);
-        kernel_s += row.session->wait();
-        wall_s += watch.seconds();
+        pass.kernel_s += row.session->wait();
+        pass.wall_s += watch.seconds();
+        if (hits.empty()) continue;
+        row.session->read_back(hits);
+        pass.download_s += row.session->download_s();
     }
-    row.wall_samples_s.push_back(wall_s);
-    return kernel_s;
+    return pass;
+}
+
+/// What a row's first passes pay once, its verification has paid: compiling at the first launch, finding the size of
+/// launches, touching memory. One more pass just before the samples wakes the device up, tells what a sample costs, and
+/// times the download.
+double warm_up(RowRun& row)
+{
+    double wall_s = 0;
+    guarded(row, [&] {
+        std::vector<Hit> hits(row.scene->rays_per_view());
+        const Pass pass = trace_views(row, hits, [](double done) { progress_line().show("warming up", done); });
+        std::get<Traced>(row.outcome).download_s = pass.download_s;
+        wall_s = pass.wall_s;
+    });
+    return wall_s;
+}
+
+/// Seconds of one sample of every row.
+double warm_up_rows(std::vector<RowRun>& rows)
+{
+    double sweep_s = 0;
+    for (RowRun& row : rows)
+        if (is_timed(row)) sweep_s += warm_up(row);
+    return sweep_s;
+}
+
+double take_sample(RowRun& row, const Sweep& sweep)
+{
+    const Pass pass = trace_views(row, {}, [&](double done) {
+        progress_line().show("measuring, rows interleaved", (sweep.done + done) / sweep.all);
+    });
+    row.wall_samples_s.push_back(pass.wall_s);
+    return pass.kernel_s;
 }
 
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
 {
     for ([[maybe_unused]] const auto iteration : state) {
         double seconds = 0;
-        if (traced(row) != nullptr) guarded(row, [&] { seconds = trace_views(row, sweep); });
+        if (traced(row) != nullptr) guarded(row, [&] { seconds = take_sample(row, sweep); });
         if (traced(row) == nullptr) {
             state.SkipWithError(reason_of(row).c_str());
             return;
@@ -156,8 +189,8 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double budget_s)
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags)
 {
     Measurement result;
-    result.samples =
-        flags.repetitions.value_or(affordable_samples(options.samples, expected_sweep_s(rows), options.budget_s));
+    const double sweep_s = warm_up_rows(rows);
+    result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, options.budget_s));
     result.lowered = !flags.repetitions && result.samples < options.samples;
     const auto timed = std::count_if(rows.begin(), rows.end(), is_timed);
     if (timed == 0) return result;

@@ -20,9 +20,9 @@ struct Measurement {
 /// sweep_s: what one sample of every row is expected to take.
 [[nodiscard]] unsigned affordable_samples(unsigned asked, double sweep_s, double budget_s);
 
-/// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random. One sample traces all
-/// selected views once; its seconds are the sum of the device's. Afterwards the hits of the last view must still be
-/// those that were verified. Rows that fail end with their reason.
+/// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
+/// of each. One sample traces all selected views once; its seconds are the sum of the device's. Afterwards the hits of
+/// the last view must still be those that were verified. Rows that fail end with their reason.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags);
 
 } // namespace tetrace

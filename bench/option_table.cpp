@@ -217,7 +217,7 @@ std::vector<OptionRow> judging_options()
          }},
         {"Measuring", "--budget", "TIME",
          "Wall clock for the timed part: where it would take longer, fewer samples are taken (never below 3), and the "
-         "rows say so. Default: 25s.",
+         "result says so. Default: 60s.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
@@ -254,8 +254,9 @@ std::vector<OptionRow> output_options()
         {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
-         "Write the picture to FILE, which ends in .png or .exr; with several pictures, scene, view and kind go in "
-         "front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png.",
+         "Write the picture to FILE, which ends in .png, .exr or .ppm; with several pictures, scene, view and kind go "
+         "in front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png, or "
+         ".ppm, which needs no library, where OpenImageIO is missing.",
          bit(Verb::render), false, set_path("--out", &Options::out)},
     };
 }

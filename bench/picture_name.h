@@ -17,9 +17,12 @@ struct PictureKey {
 };
 
 /// The file of a picture: `out` itself where it is the run's only one, else with "-scene-view-kind" in front of its
-/// ending; "scene-view-kind.png" in the folder `out`, or in the current one without `out`.
+/// ending; "scene-view-kind" with the given ending in the folder `out`, or in the current one without `out`.
 [[nodiscard]] std::filesystem::path picture_path(const std::optional<std::filesystem::path>& out, const PictureKey& key,
-                                                 bool only_picture);
+                                                 const std::string& ending, bool only_picture);
+
+/// The ending of all pictures of a run: that of the file `out`; else .png, or .ppm where nothing can write PNG.
+[[nodiscard]] std::string picture_ending(const std::optional<std::filesystem::path>& out, bool can_write_png);
 
 /// Throws Error{usage} where `out` is neither a folder nor ends in one of the accepted ways.
 void check_picture_ending(const std::optional<std::filesystem::path>& out);

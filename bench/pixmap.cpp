@@ -1,5 +1,6 @@
 #include "bench/pixmap.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tetrace {
@@ -18,6 +19,13 @@ float decode_srgb(std::uint32_t byte)
 Colour from_srgb(std::uint32_t bytes)
 {
     return {decode_srgb(bytes >> 16 & 0xFFu), decode_srgb(bytes >> 8 & 0xFFu), decode_srgb(bytes & 0xFFu)};
+}
+
+std::uint8_t to_srgb(float linear)
+{
+    const double light = linear > 0.0f ? std::min(static_cast<double>(linear), 1.0) : 0.0;
+    const double encoded = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
 }
 
 Colour lost_colour()

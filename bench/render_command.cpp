@@ -2,11 +2,13 @@
 #include "bench/false_colour.h"
 #include "bench/images.h"
 #include "bench/picture_name.h"
+#include "bench/ppm.h"
 #include "bench/progress.h"
 #include "bench/row_run.h"
 #include "bench/shading.h"
 
 #include <fmt/format.h>
+#include <optional>
 
 namespace tetrace {
 
@@ -16,6 +18,31 @@ std::vector<Picture> wanted_pictures(const Options& options)
 {
     return options.pictures.empty() ? std::vector{Picture::normals} : options.pictures;
 }
+
+/// Writes pictures in one form, which it is made for: it loads what that needs.
+class PictureFiles {
+public:
+    explicit PictureFiles(const Options& options)
+        : options_(&options), ending_(picture_ending(options.out, has_images_module()))
+    {
+        if (ending_ != ".ppm") images_.emplace();
+    }
+
+    void write(const PictureKey& key, bool only_picture, const Pixmap& pixmap) const
+    {
+        const auto path = picture_path(options_->out, key, ending_, only_picture);
+        if (images_)
+            images_->write(path, pixmap);
+        else
+            write_ppm(path, pixmap);
+        print(path.string() + "\n");
+    }
+
+private:
+    const Options* options_;
+    std::string ending_;
+    std::optional<ImageWriter> images_; ///< of all forms but .ppm
+};
 
 /// The first row that the options select, with its session open.
 RowRun open_first_row(SceneWork& scene, const Options& options)
@@ -60,7 +87,7 @@ void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hi
                         row.scene->view_numbers()[view], lost));
 }
 
-void render_scene(SceneWork& scene, const Options& options, const ImageWriter& writer, bool only_scene)
+void render_scene(SceneWork& scene, const Options& options, const PictureFiles& files, bool only_scene)
 {
     const auto pictures = wanted_pictures(options);
     const bool only_picture = only_scene && scene.views().size() == 1 && pictures.size() == 1;
@@ -71,12 +98,9 @@ void render_scene(SceneWork& scene, const Options& options, const ImageWriter& w
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
         const std::vector<Hit> hits = trace(row, view);
         tell_lost_rays(row, view, hits);
-        for (const Picture picture : pictures) {
-            const auto path =
-                picture_path(options.out, {scene.label(), scene.view_numbers()[view], picture}, only_picture);
-            writer.write(path, draw(picture, hits, scene, view));
-            print(path.string() + "\n");
-        }
+        for (const Picture picture : pictures)
+            files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
+                        draw(picture, hits, scene, view));
     }
 }
 
@@ -85,13 +109,13 @@ void render_scene(SceneWork& scene, const Options& options, const ImageWriter& w
 int render_command(const Options& options)
 {
     check_picture_ending(options.out);
-    const ImageWriter writer; // first: without it there is nothing to trace for
+    const PictureFiles files(options); // first: without it there is nothing to trace for
     for (const std::string& reason : missing_default_scenes(options))
         say(reason);
     const auto requests = scene_requests(options);
     for (const SceneRequest& request : requests) {
         SceneWork scene = load_work(request, options);
-        render_scene(scene, options, writer, requests.size() == 1);
+        render_scene(scene, options, files, requests.size() == 1);
     }
     return 0;
 }

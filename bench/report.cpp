@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr int schema_version = 1;
+constexpr int schema_version = 2;
 
 Format format_of_file(const Options& options)
 {

@@ -1,5 +1,6 @@
 #include "bench/row_json.h"
 
+#include "bench/device_json.h"
 #include "bench/figures.h"
 #include "bench/self_test_json.h"
 #include "core/hash.h"
@@ -27,16 +28,6 @@ json key_json(const RowKey& key)
             {"rays", name_of(key.rays)},
             {"math", name_of(key.kernel.math)},
             {"order", name_of(key.order)}};
-}
-
-json device_json(const Device& device)
-{
-    return {{"name", device.name},
-            {"type", device.type},
-            {"driver", device.driver},
-            {"id", device.id},
-            {"memory_bytes", device.memory_bytes},
-            {"threads", device.threads}};
 }
 
 json counts_json(const RayTotals& totals)
@@ -97,6 +88,7 @@ json times_json(const RowRun& row, const Traced& result)
                   {"download_s", result.download_s}};
     // A session that compiles or copies nothing says 0.
     if (setup.compile_s > 0) times["compile_s"] = setup.compile_s;
+    if (setup.compile_cached) times["compile_cached"] = true;
     if (setup.upload_s > 0) times["upload_s"] = setup.upload_s;
     if (row.packed != nullptr) times["pack_s"] = row.packed->pack_s;
     if (!row.samples_s.empty()) times["samples_s"] = row.samples_s;
@@ -109,18 +101,18 @@ json times_json(const RowRun& row, const Traced& result)
     times["spread"] = figures->kernel_s.spread();
     times["noisy"] = figures->kernel_s.noisy();
     set_if(times, "overhead_s", figures->overhead_s);
+    set_if(times, "wall_s", figures->wall_s);
     return times;
 }
 
-json rates_json(const RowRun& row, const Figures& figures, double copy_bytes_per_s)
+json rates_json(const RowRun& row, const Figures& figures)
 {
     json rates = {{"mrays_per_s", figures.mrays_per_s}};
     set_if(rates, "msteps_per_s", figures.msteps_per_s);
     if (!figures.gb_per_s) return rates;
     rates["estimated_gb_per_s"] = *figures.gb_per_s;
     rates["bytes_per_step"] = bytes_per_step(row.key.kernel.layout);
-    rates["bytes_per_step_is"] = "the layout's whole record of a tet";
-    if (copy_bytes_per_s > 0) rates["share_of_copy_bandwidth"] = 1e9 * *figures.gb_per_s / copy_bytes_per_s;
+    rates["bytes_per_step_is"] = "an estimate: what a step loads of its tet's record (kernels/SPEC.md)";
     return rates;
 }
 
@@ -159,12 +151,15 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
     return object;
 }
 
-nlohmann::json row_json(const RowRun& row, double copy_bytes_per_s)
+nlohmann::json row_json(const RowRun& row)
 {
     json object = key_json(row.key);
     object["status"] = name_of(status_of(row));
     if (const std::string reason = reason_of(row); !reason.empty()) object["reason"] = reason;
-    if (!row.device.name.empty()) object["device"] = device_json(row.device);
+    if (!row.device.name.empty()) {
+        object["device"] = device_json(row.device);
+        object["device_index"] = row.key.device;
+    }
     if (row.self_test) object["self_test"] = self_test_json(*row.self_test);
     const Traced* result = traced(row);
     if (result == nullptr) return object;
@@ -173,7 +168,7 @@ nlohmann::json row_json(const RowRun& row, double copy_bytes_per_s)
     object["verification"] = verification_json(*result);
     object["hit_hash"] = hash_text(result->hit_hash);
     object["times"] = times_json(row, *result);
-    if (const auto figures = figures_of(row)) object["rates"] = rates_json(row, *figures, copy_bytes_per_s);
+    if (const auto figures = figures_of(row)) object["rates"] = rates_json(row, *figures);
     return object;
 }
 

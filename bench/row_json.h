@@ -10,8 +10,7 @@ namespace tetrace {
 [[nodiscard]] nlohmann::json scene_json(const SceneWork& scene, const Options& options);
 
 /// A row as results record it: key, device, status, verification, counts, and, where it was timed, times and rates.
-/// copy_bytes_per_s: the memory's copy bandwidth measured in the same run; 0 where it was not.
-[[nodiscard]] nlohmann::json row_json(const RowRun& row, double copy_bytes_per_s);
+[[nodiscard]] nlohmann::json row_json(const RowRun& row);
 
 /// A ray's answer.
 [[nodiscard]] nlohmann::json hit_json(const Hit& hit);

@@ -81,6 +81,8 @@ public:
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
     /// Throws Error{wrong_result} where the kernel wrote outside its hits.
     void read_back(std::span<Hit> hits);
+    /// Seconds that copying the output took in the last read_back(), its checks left out.
+    [[nodiscard]] double download_s() const { return download_s_; }
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;
     /// Device bytes that the structure and its scene data occupy.
     [[nodiscard]] virtual std::uint64_t bytes() const = 0;
@@ -89,7 +91,7 @@ private:
     /// Copies the whole output: GUARD_WORDS, HIT_WORDS a hit row after row, GUARD_WORDS.
     virtual void read_output(std::span<std::uint32_t> words) = 0;
 
-    std::vector<std::uint32_t> output_;
+    double download_s_ = 0;
 };
 
 /// An API. Prints nothing, validates nothing, computes no statistics.

@@ -2,6 +2,7 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 
 namespace tetrace {
@@ -21,9 +22,12 @@ void check_guard(std::span<const std::uint32_t> guard, const char* where)
 void Session::read_back(std::span<Hit> hits)
 {
     static_assert(sizeof(Hit) == HIT_WORDS * sizeof(std::uint32_t));
-    output_.resize(2 * std::size_t{GUARD_WORDS} + HIT_WORDS * hits.size());
-    read_output(output_);
-    const std::span<const std::uint32_t> words = output_;
+    // Not kept: many sessions are open at a time.
+    std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + HIT_WORDS * hits.size());
+    const auto start = std::chrono::steady_clock::now();
+    read_output(output);
+    download_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::span<const std::uint32_t> words = output;
     check_guard(words.first(GUARD_WORDS), "before");
     check_guard(words.last(GUARD_WORDS), "behind");
     std::memcpy(hits.data(), words.data() + GUARD_WORDS, hits.size_bytes());

@@ -12,6 +12,7 @@ RowRun timed_row(Layout layout = Layout::tet80)
     RowRun row;
     row.key = {"a", "openmp", {}, RayKind::primary, TetOrder::hilbert};
     row.key.kernel.layout = layout;
+    row.device.type = "cpu";
     Traced result;
     result.totals.rays = 4'000'000;
     result.totals.hits = 1'000'000;
@@ -47,12 +48,13 @@ TEST(figures, rates_are_counts_over_the_median)
     EXPECT_DOUBLE_EQ(figures->msteps_per_s.value(), 80);
 }
 
-TEST(figures, bandwidth_is_steps_times_the_layouts_whole_record)
+// Three vertices and a face: 36 + 8 bytes in tet80, four rows of 16 in tet96.
+TEST(figures, bandwidth_is_steps_times_what_a_step_loads)
 {
-    EXPECT_EQ(bytes_per_step(Layout::tet80), 80u);
-    EXPECT_EQ(bytes_per_step(Layout::tet96), 96u);
-    EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet80))->gb_per_s.value(), 6.4);
-    EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet96))->gb_per_s.value(), 7.68);
+    EXPECT_EQ(bytes_per_step(Layout::tet80), 44u);
+    EXPECT_EQ(bytes_per_step(Layout::tet96), 64u);
+    EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet80))->gb_per_s.value(), 3.52);
+    EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet96))->gb_per_s.value(), 5.12);
 }
 
 TEST(figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
@@ -71,6 +73,7 @@ TEST(figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_samp
     EXPECT_FALSE(figures_of(row)->overhead_s.has_value());
     row.wall_samples_s = {0.5625, 0.375, 0.75, 1.0, 0.53125};
     EXPECT_DOUBLE_EQ(figures_of(row)->overhead_s.value(), 0.0625);
+    EXPECT_DOUBLE_EQ(figures_of(row)->wall_s.value(), 0.5625);
 }
 
 TEST(figures, mean_steps_are_apart_for_hits_and_misses)
@@ -92,6 +95,17 @@ TEST(figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_sc
     EXPECT_DOUBLE_EQ(ratio_to_single(rows[2], rows).value(), 1);
     rows.pop_back();
     EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
+}
+
+TEST(figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
+{
+    std::vector<RowRun> rows;
+    rows.push_back(single_row("a"));
+    rows.push_back(timed_row());
+    rows[1].device.type = "gpu";
+    EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
+    rows[1].device.type = "emulated";
+    EXPECT_TRUE(ratio_to_single(rows[1], rows).has_value());
 }
 
 TEST(figures, a_row_has_rates_where_it_is_ok_or_flawed_and_was_timed)

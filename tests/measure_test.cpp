@@ -1,11 +1,13 @@
+#include "bench/figures.h"
 #include "bench/measure.h"
-
 #include "bench/verify.h"
 #include "scenes/procedural.h"
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <gtest/gtest.h>
+#include <new>
 
 using namespace tetrace;
 
@@ -43,10 +45,46 @@ private:
     const bool* changes_;
 };
 
+/// A device that is lost at some call.
+enum class LostAt { launch, wait, read_back };
+class LostSession : public Session {
+public:
+    LostSession(std::unique_ptr<Session> inner, LostAt at, std::function<void()> lose)
+        : inner_(std::move(inner)), at_(at), lose_(std::move(lose))
+    {
+    }
+    void launch(const TraceJob& job) override
+    {
+        lose_at(LostAt::launch);
+        inner_->launch(job);
+    }
+    [[nodiscard]] double wait() override
+    {
+        lose_at(LostAt::wait);
+        return inner_->wait();
+    }
+    void read_output(std::span<std::uint32_t>) override { lose_at(LostAt::read_back); }
+    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
+    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
+
+private:
+    void lose_at(LostAt call)
+    {
+        if (call == at_) lose_();
+    }
+
+    std::unique_ptr<Session> inner_;
+    LostAt at_;
+    std::function<void()> lose_;
+};
+
 class measure : public testing::Test {
 protected:
-    measure()
+    measure() { set_up_rows(); }
+
+    void set_up_rows()
     {
+        rows_.clear();
         for (const Layout layout : {Layout::tet80, Layout::tet96}) {
             RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
             key.kernel.layout = layout;
@@ -74,9 +112,10 @@ protected:
     bool changes_ = false;
 };
 
+/// Among the samples, which the warm-up of both rows and their two views precedes.
 bool first_row_ends_before_the_second_starts(const std::vector<std::size_t>& launched)
 {
-    return std::is_sorted(launched.begin(), launched.end());
+    return std::is_sorted(launched.begin() + 2 * 2, launched.end());
 }
 
 } // namespace
@@ -86,7 +125,7 @@ TEST_F(measure, every_row_has_its_samples_each_of_all_views)
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
     EXPECT_EQ(measured.samples, 30u);
     EXPECT_FALSE(measured.lowered);
-    EXPECT_EQ(launched_.size(), 2u * 30 * 2);
+    EXPECT_EQ(launched_.size(), 2u * (1 + 30) * 2) << "a pass to warm up, then samples, of two views";
     for (const RowRun& row : rows_) {
         EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
         ASSERT_EQ(row.samples_s.size(), 30u);
@@ -109,13 +148,54 @@ TEST_F(measure, rows_are_interleaved_unless_a_flag_says_otherwise)
 
 TEST_F(measure, a_budget_that_is_too_small_lowers_the_samples_and_says_so)
 {
-    for (RowRun& row : rows_)
-        std::get<Traced>(row.outcome).wall_s = 2;
-    options_.budget_s = 20;
+    options_.budget_s = 1e-9;
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
-    EXPECT_EQ(measured.samples, 5u) << "4 s a sample of both rows";
+    EXPECT_EQ(measured.samples, 3u);
     EXPECT_TRUE(measured.lowered);
-    EXPECT_EQ(rows_[1].samples_s.size(), 5u);
+    EXPECT_EQ(rows_[1].samples_s.size(), 3u);
+}
+
+TEST_F(measure, the_budget_counts_warm_passes_not_the_first_which_may_compile)
+{
+    for (RowRun& row : rows_)
+        std::get<Traced>(row.outcome).wall_s = 1000;
+    EXPECT_FALSE(measure_rows(rows_, options_, read_benchmark_flags({})).lowered);
+}
+
+TEST_F(measure, a_device_that_is_lost_ends_its_row_and_the_others_go_on)
+{
+    for (const LostAt at : {LostAt::launch, LostAt::wait, LostAt::read_back}) {
+        set_up_rows();
+        rows_[0].session = std::make_unique<LostSession>(
+            std::move(rows_[0].session), at, [] { throw Error(ErrorKind::internal, "the device was lost"); });
+        static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+        EXPECT_EQ(status_of(rows_[0]), Status::error);
+        EXPECT_EQ(reason_of(rows_[0]), "the device was lost");
+        EXPECT_EQ(rows_[0].session, nullptr) << "its memory is free for the others";
+        EXPECT_EQ(status_of(rows_[1]), Status::ok);
+        EXPECT_EQ(rows_[1].samples_s.size(), 30u);
+    }
+}
+
+TEST_F(measure, a_device_that_is_lost_among_the_samples_leaves_no_rate)
+{
+    int calls = 0;
+    rows_[0].session = std::make_unique<LostSession>(std::move(rows_[0].session), LostAt::wait, [&] {
+        if (++calls > 10) throw Error(ErrorKind::internal, "the device was lost");
+    });
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+    EXPECT_EQ(status_of(rows_[0]), Status::error);
+    EXPECT_FALSE(figures_of(rows_[0]).has_value());
+    EXPECT_EQ(rows_[1].samples_s.size(), 30u);
+}
+
+TEST_F(measure, an_allocation_that_fails_is_unsupported_and_the_others_go_on)
+{
+    rows_[0].session =
+        std::make_unique<LostSession>(std::move(rows_[0].session), LostAt::launch, [] { throw std::bad_alloc(); });
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+    EXPECT_EQ(status_of(rows_[0]), Status::unsupported);
+    EXPECT_EQ(rows_[1].samples_s.size(), 30u);
 }
 
 TEST_F(measure, repetitions_are_taken_whatever_the_budget)

@@ -74,6 +74,17 @@ TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)
                          "matches none of the 4 rows"));
 }
 
+TEST_F(program, renders_without_openimageio)
+{
+    const Ended ended = run("render --backend openmp --scene cubes --resolution 3 --views 0 --size 16 --out a.ppm");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_EQ(ended.out, "a.ppm\n");
+    const std::string header = "P6\n16 16\n255\n", picture = file("a.ppm");
+    ASSERT_EQ(picture.size(), header.size() + 3 * 16 * 16);
+    EXPECT_TRUE(contains(picture, header));
+    EXPECT_NE(picture.find_first_not_of(picture.back(), header.size()), std::string::npos) << "of one colour";
+}
+
 TEST_F(program, lists_devices_with_their_backends)
 {
     const Ended ended = run("devices --require openmp,embree --format json");
@@ -103,7 +114,7 @@ TEST_F(program, benches_and_writes_the_table_and_the_json)
     EXPECT_TRUE(contains(ended.out, "Mrays/s"));
     EXPECT_TRUE(contains(ended.out, "Verified  9,216 rays"));
     const auto json = nlohmann::json::parse(file("result.json"));
-    EXPECT_EQ(json["tetrace"]["schema_version"], 1);
+    EXPECT_EQ(json["tetrace"]["schema_version"], 2);
     ASSERT_EQ(json["tetrace"]["rows"].size(), 4u);
     std::set<std::string> benchmarked;
     for (const auto& entry : json["benchmarks"])

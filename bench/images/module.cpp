@@ -4,7 +4,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -13,14 +12,6 @@
 #include <vector>
 
 namespace {
-
-// IEC 61966-2-1; not-a-number becomes black.
-unsigned char encode_srgb(float linear)
-{
-    const float clamped = linear > 0.0f ? std::min(linear, 1.0f) : 0.0f;
-    const float encoded = clamped <= 0.0031308f ? 12.92f * clamped : 1.055f * std::pow(clamped, 1.0f / 2.4f) - 0.055f;
-    return static_cast<unsigned char>(std::lround(encoded * 255.0f));
-}
 
 OIIO::ImageSpec spec_of(unsigned width, unsigned height, const OIIO::TypeDesc& type, const char* colour_space)
 {
@@ -44,7 +35,7 @@ void write(const std::string& path, const OIIO::ImageSpec& spec, const OIIO::Typ
 void write_png(const std::string& path, unsigned width, unsigned height, const float* linear_rgb)
 {
     std::vector<unsigned char> bytes(std::size_t{width} * height * 3);
-    std::transform(linear_rgb, linear_rgb + bytes.size(), bytes.begin(), encode_srgb);
+    std::transform(linear_rgb, linear_rgb + bytes.size(), bytes.begin(), tetrace::to_srgb);
     write(path, spec_of(width, height, OIIO::TypeDesc::UINT8, "sRGB"), OIIO::TypeDesc::UINT8, bytes.data());
 }
 
