@@ -57,8 +57,8 @@ std::size_t scene_name_length(std::string_view name)
 
 struct OwnEntry {
     fs::path path;
-    fs::path scene; ///< the scene's file that it belongs to; empty for meshes
-    enum class Kind { scene, lock, work, mesh } kind;
+    fs::path scene; ///< the scene's file that it belongs to; empty for meshes and programs
+    enum class Kind { scene, lock, work, mesh, program } kind;
     std::uint64_t bytes = 0;
 };
 
@@ -101,6 +101,14 @@ std::optional<OwnEntry> scene_entry(const fs::path& path)
     return length > 0 ? std::optional(entry) : std::nullopt;
 }
 
+/// `<16 digits>.bin` of core/program_cache.h, or what a killed process left while it wrote that.
+bool is_program(std::string_view name)
+{
+    if (name.size() < 20 || !is_key(name.substr(0, 16)) || name.substr(16, 4) != ".bin") return false;
+    const std::string_view rest = name.substr(20);
+    return rest.empty() || (writer_of(rest) && rest.find('.', 1) == rest.size() - 4);
+}
+
 std::vector<OwnEntry> own_entries(const fs::path& cache)
 {
     std::vector<OwnEntry> entries;
@@ -110,10 +118,13 @@ std::vector<OwnEntry> own_entries(const fs::path& cache)
         if (is_key(folder.filename().string()))
             for (const fs::path& path : children(folder))
                 entries.push_back({path, {}, OwnEntry::Kind::mesh, bytes_of(path)});
+    for (const fs::path& path : children(cache / "programs"))
+        if (is_program(path.filename().string()))
+            entries.push_back({path, {}, OwnEntry::Kind::program, bytes_of(path)});
     return entries;
 }
 
-/// Whether a process that still lives is writing that mesh.
+/// Whether a process that still lives is writing that mesh or program.
 bool being_written(const fs::path& path)
 {
     const std::optional<pid_t> writer = writer_of(path.filename().string());
@@ -134,7 +145,8 @@ std::uint64_t remove_all(const OwnEntry& entry)
 std::uint64_t remove_entry(const OwnEntry& entry)
 {
     if (entry.kind == OwnEntry::Kind::scene) return remove_all(entry);
-    if (entry.kind == OwnEntry::Kind::mesh) return being_written(entry.path) ? 0 : remove_all(entry);
+    if (entry.kind == OwnEntry::Kind::mesh || entry.kind == OwnEntry::Kind::program)
+        return being_written(entry.path) ? 0 : remove_all(entry);
     fs::path lock_path = entry.scene;
     const std::optional<FileLock> lock = FileLock::try_take(lock_path += ".lock");
     if (!lock) return 0;                                               // a build is going on
@@ -211,6 +223,7 @@ std::uint64_t clear_cache()
     for (const fs::path& folder : children(cache / "meshes"))
         if (is_key(folder.filename().string())) fs::remove(folder, not_empty);
     fs::remove(cache / "meshes", not_empty);
+    fs::remove(cache / "programs", not_empty);
     fs::remove(cache, not_empty);
     return freed;
 }

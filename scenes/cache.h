@@ -28,7 +28,7 @@ struct CachedFile {
     std::filesystem::path path;
     std::uint64_t bytes = 0;
 };
-/// Scenes, meshes and what killed builds left behind; sorted by path.
+/// Scenes, meshes, compiled programs and what killed processes left behind; sorted by path within each.
 [[nodiscard]] std::vector<CachedFile> list_cache();
 
 /// Removes what tetrace put there, and nothing else; returns how many bytes. Spares what another process builds just

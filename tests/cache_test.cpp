@@ -126,6 +126,34 @@ TEST_F(Cache, clears_what_is_its_own_and_nothing_else)
     EXPECT_FALSE(fs::exists(cache / "meshes" / "0000000000000007"));
 }
 
+TEST_F(Cache, lists_and_clears_compiled_programs)
+{
+    const fs::path programs = cache / "programs";
+    const std::string name = "0123456789abcdef.bin";
+    write_text(programs / name, "12345");
+    write_text(programs / (name + ".4194305-0.tmp"), "123");
+    const std::set<fs::path> foreign = {programs / "my.bin", programs / "0123456789abcdef.txt",
+                                        programs / (name + ".bak"), programs / ("x" + name), cache / name};
+    for (const fs::path& path : foreign)
+        write_text(path, "mine");
+    EXPECT_EQ(listed(), (std::set<std::string>{"programs/" + name, "programs/" + name + ".4194305-0.tmp"}));
+    EXPECT_EQ(clear_cache(), 8u);
+    for (const fs::path& path : foreign)
+        EXPECT_EQ(read_text(path), "mine") << path;
+    for (const fs::path& path : foreign)
+        fs::remove(path);
+    EXPECT_EQ(clear_cache(), 0u);
+    EXPECT_FALSE(fs::exists(programs)) << "an empty folder goes too";
+}
+
+TEST_F(Cache, spares_a_program_that_a_living_process_writes)
+{
+    const fs::path path = cache / "programs" / ("0123456789abcdef.bin." + std::to_string(::getpid()) + "-0.tmp");
+    write_text(path, "12345");
+    EXPECT_EQ(clear_cache(), 0u);
+    EXPECT_TRUE(fs::exists(path));
+}
+
 TEST_F(Cache, removes_its_folder_with_its_last_file)
 {
     write_text(cache / ("bunny" + key), "12345");
