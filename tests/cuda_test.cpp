@@ -260,13 +260,13 @@ TEST_F(CudaFailures, of_memory_make_a_row_unsupported_with_both_numbers)
     const std::string error = error_with("alloc", [&] { (void)backend->open(0, {}, rays.data(), {}); });
     EXPECT_TRUE(error.starts_with("unsupported: ")) << error;
     EXPECT_TRUE(contains(error, std::to_string(scene_buffers(rays.packed())[0].bytes.size()) + " bytes"));
-    EXPECT_TRUE(contains(error, "are free"));
+    EXPECT_TRUE(contains(error, "bytes of memory free"));
 }
 
 TEST_F(CudaFailures, of_an_images_memory_leave_the_session_alive)
 {
     const auto session = backend->open(0, {}, rays.data(), {});
-    EXPECT_TRUE(contains(error_with("alloc", [&] { session->launch(job); }), "the image's hits needs"));
+    EXPECT_TRUE(contains(error_with("alloc", [&] { session->launch(job); }), "bytes for the image's hits"));
     EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
 }
 
@@ -299,7 +299,14 @@ TEST_F(CudaFailures, code_newer_than_the_driver_names_both_versions)
     const std::string error = error_with("module", [&] { (void)backend->open(0, {}, rays.data(), {}); });
     EXPECT_TRUE(error.starts_with("unsupported: ")) << error;
     EXPECT_TRUE(contains(error, "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"));
-    EXPECT_TRUE(contains(error, programs_without_nvrtc().compiler) && contains(error, "of CUDA 13.0"));
+    EXPECT_TRUE(contains(error, "made by " + programs_without_nvrtc().compiler) && contains(error, "of CUDA 13.0"));
+}
+
+TEST_F(CudaFailures, nvrtc_is_tried_where_the_driver_cannot_use_the_builds_code)
+{
+    if (const std::string reason = cuda::Nvrtc::installed().reason(); !reason.empty()) GTEST_SKIP() << reason;
+    const std::string error = error_with("module", [&] { (void)backend->open(0, {}, rays.data(), {}); });
+    EXPECT_TRUE(error.starts_with("unsupported: ") && contains(error, "made by NVRTC")) << error;
 }
 
 TEST_F(CudaNvrtc, compiles_what_nvcc_did_not_and_keeps_it)

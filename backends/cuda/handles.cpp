@@ -63,9 +63,8 @@ Memory::Memory(Context& context, std::size_t bytes, const char* what) : context_
     if (result == error_out_of_memory) {
         std::size_t free = 0, total = 0;
         driver.memory_info(&free, &total);
-        throw Error(ErrorKind::unsupported, "CUDA: " + std::string(what) + " needs " + std::to_string(bytes) +
-                                                " bytes of the device's memory, of which " + std::to_string(free) +
-                                                " are free");
+        throw Error(ErrorKind::unsupported, "CUDA: allocating " + std::to_string(bytes) + " bytes for " + what +
+                                                ": the device has " + std::to_string(free) + " bytes of memory free");
     }
     context.check(result, "allocating " + std::to_string(bytes) + " bytes for " + what);
 }

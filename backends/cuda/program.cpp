@@ -23,6 +23,20 @@ std::uint64_t cache_key(const Nvrtc& nvrtc, std::string_view text, std::span<con
     return key;
 }
 
+/// Loads what a compiler made. Where the driver cannot use it, it is mostly the older of the two: both are named.
+Module load_image(Context& context, std::span<const std::byte> image, const ProgramId& id, const std::string& compiler)
+try {
+    return {context, image, id.name()};
+} catch (const Error& error) {
+    if (error.kind() != ErrorKind::unsupported) throw;
+    int version = 0;
+    context.driver().driver_version(&version);
+    throw Error(ErrorKind::unsupported, std::string(error.what()) + "; it was made by " + compiler +
+                                            ", the driver is of CUDA " + version_text(version) +
+                                            ": a newer driver, or NVRTC of a CUDA that this driver knows (package " +
+                                            "nvidia-cuda-toolkit), brings it");
+}
+
 /// NVRTC's module, from the cache where it is there; second: whether it was.
 std::pair<Module, bool> compiled_module(Context& context, int capability, const Programs& programs, const ProgramId& id,
                                         const ProgramCache& cache)
@@ -33,22 +47,14 @@ std::pair<Module, bool> compiled_module(Context& context, int capability, const 
                                                 ", and nothing here compiles it: " +
                                                 (programs.nvrtc != nullptr ? programs.nvrtc().reason() : "no NVRTC"));
     const Nvrtc& nvrtc = programs.nvrtc();
-    const std::string target = nvrtc.target(capability);
+    const std::string compiler = "NVRTC " + nvrtc.version(), target = nvrtc.target(capability);
     const auto options = compiler_options(id);
     const std::uint64_t key = cache_key(nvrtc, source->text(), options, target);
-    if (const auto kept = cache.find(key)) return {Module(context, std::as_bytes(std::span(*kept)), id.name()), true};
+    if (const auto kept = cache.find(key))
+        return {load_image(context, std::as_bytes(std::span(*kept)), id, compiler), true};
     const auto image = nvrtc.compile(source->text().data(), id.name(), target, options);
     cache.keep(key, image);
-    return {Module(context, std::as_bytes(std::span(image)), id.name()), false};
-}
-
-[[noreturn]] void reject(const Context& context, const Programs& programs, const std::string& why)
-{
-    int version = 0;
-    context.driver().driver_version(&version);
-    throw Error(ErrorKind::unsupported, why + "; the kernels are of " + programs.compiler + ", the driver is of CUDA " +
-                                            version_text(version) + ": a newer driver, or NVRTC of a CUDA that this " +
-                                            "driver knows (package nvidia-cuda-toolkit), brings them");
+    return {load_image(context, std::as_bytes(std::span(image)), id, compiler), false};
 }
 
 /// Empty where the driver cannot use the build's code and NVRTC is there to try.
@@ -57,12 +63,11 @@ std::optional<Module> build_module(Context& context, const Programs& programs, c
     const EmbeddedKernel* code = find_kernel(programs.code, id.name());
     if (code == nullptr) return std::nullopt;
     try {
-        return Module(context, code->bytes, id.name());
+        return load_image(context, code->bytes, id, programs.compiler);
     } catch (const Error& error) {
-        if (error.kind() != ErrorKind::unsupported) throw;
-        if (!programs.has_nvrtc()) reject(context, programs, error.what());
+        if (error.kind() != ErrorKind::unsupported || !programs.has_nvrtc()) throw;
+        return std::nullopt;
     }
-    return std::nullopt;
 }
 
 } // namespace
