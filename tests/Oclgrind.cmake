@@ -1,0 +1,32 @@
+# Oclgrind, a device that checks every access, looks at the OpenCL kernels and at how they are called: no race, no access
+# outside a buffer, no wrong call. Its exit code does not tell, its messages do.
+find_program(OCLGRIND oclgrind)
+mark_as_advanced(OCLGRIND)
+
+# Asks a device of Oclgrind's own, a tiny scene and image: it interprets some million instructions a second.
+foreach(schedule tiles persistent)
+  set(name oclgrind_${schedule})
+  if(OCLGRIND)
+    add_test(NAME ${name} COMMAND ${OCLGRIND} --check-api --data-races $<TARGET_FILE:tetrace> check --scene cubes
+      --resolution 3 --backend opencl --device oclgrind --schedule ${schedule} --size 12 --views 0)
+    set_tests_properties(${name} PROPERTIES
+      FAIL_REGULAR_EXPRESSION "Oclgrind - |OCLGRIND|data race at|Invalid (read|write)")
+  else()
+    add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: oclgrind is not installed (package oclgrind)")
+    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped")
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS large TIMEOUT 120)
+endforeach()
+
+# The same messages, where there is something to find: a kernel with a race and a write beyond its buffer.
+if(OCLGRIND)
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/oclgrind_twin.cl
+    "__kernel void twin(__global uint* a) { a[0] = (uint)get_global_id(0); a[get_global_id(0) + 1] = a[0]; }\n")
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/oclgrind_twin.sim "oclgrind_twin.cl\ntwin\n8 1 1\n4 1 1\n<size=16 fill=0>\n")
+  foreach(finding "data race at" "Invalid write")
+    string(REPLACE " " "_" name ${finding})
+    add_test(NAME oclgrind_finds_${name} COMMAND ${OCLGRIND}-kernel --data-races oclgrind_twin.sim
+      WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+    set_tests_properties(oclgrind_finds_${name} PROPERTIES PASS_REGULAR_EXPRESSION ${finding} LABELS large TIMEOUT 60)
+  endforeach()
+endif()
