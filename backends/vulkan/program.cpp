@@ -1,6 +1,5 @@
 #include "backends/vulkan/program.h"
 
-#include "backends/vulkan/kernels.h"
 #include "core/hash.h"
 
 #include <array>
@@ -70,7 +69,7 @@ void Program::make_layout(const Context& context, const ProgramId& id)
 
 void Program::make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache)
 {
-    const EmbeddedKernel* const kernel = find_kernel(embedded_kernels(), id.name);
+    const EmbeddedKernel* const kernel = find_kernel(id.kernels, id.name);
     if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + id.name);
     // Embedded bytes are aligned for words.
     const vk::raii::ShaderModule module = context.device().createShaderModule(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "backends/vulkan/buffer.h"
+#include "backends/vulkan/kernels.h"
 #include "core/program_cache.h"
 
 #include <cstdint>
@@ -11,10 +12,11 @@ namespace tetrace::vulkan {
 
 /// What decides a program.
 struct ProgramId {
-    std::string name;                         ///< of embedded_kernels()
+    std::string name;
     std::vector<std::uint32_t> bindings = {}; ///< of its storage buffers
     std::uint32_t push_constant_bytes = 0;    ///< 0: none
     unsigned tile_height = 0;                 ///< the height of its work groups; 0: as the module says
+    std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 
 /// A compute pipeline with the buffers that it is given.

@@ -1,0 +1,28 @@
+# Vulkan: its devices, the code that they get, and the compiler's defects that were met.
+find_package(nlohmann_json REQUIRED)
+find_path(TETRACE_SPIRV_HEADERS spirv/unified1/spirv.hpp)
+mark_as_advanced(TETRACE_SPIRV_HEADERS)
+
+tetrace_test(vulkan tetrace_vulkan tetrace_openmp tetrace_scenes)
+
+set(here ${CMAKE_CURRENT_BINARY_DIR}/vulkan)
+file(MAKE_DIRECTORY ${here})
+set(defects "")
+foreach(name value_after_divergent_loop loop_of_70000_iterations)
+  tetrace_spirv(${here}/${name}.spv ${CMAKE_CURRENT_SOURCE_DIR}/defects/${name}.comp)
+  list(APPEND defects ${name}=${here}/${name}.spv)
+endforeach()
+tetrace_embed(${here}/defects.cpp tetrace::defects ${defects})
+tetrace_test(defects tetrace_vulkan nlohmann_json::nlohmann_json)
+target_sources(defects_test PRIVATE ${here}/defects.cpp)
+target_compile_definitions(defects_test PRIVATE TETRACE_EXPECTED_FOLDER="${CMAKE_CURRENT_SOURCE_DIR}/expected")
+
+if(TETRACE_SPIRV_HEADERS)
+  tetrace_spirv(${here}/vectors.spv ${CMAKE_CURRENT_SOURCE_DIR}/spirv/vectors.comp)
+  tetrace_embed(${here}/twins.cpp tetrace::twins vectors=${here}/vectors.spv)
+  tetrace_test(spirv tetrace_vulkan)
+  target_sources(spirv_test PRIVATE ${here}/twins.cpp)
+  target_include_directories(spirv_test SYSTEM PRIVATE ${TETRACE_SPIRV_HEADERS})
+else()
+  message(STATUS "The tests of the Vulkan kernels' SPIR-V are left out: spirv/unified1/spirv.hpp was not found; install spirv-headers")
+endif()

@@ -1,0 +1,147 @@
+// The SPIR-V that devices get: nothing in exact modules may be contracted, and data lies where the host puts it.
+#include "backends/vulkan/kernels.h"
+#include "core/launch.h"
+#include "core/packed_scene.h"
+#include "tests/spirv/module.h"
+#include "tests/spirv/twins.h"
+
+#include <cstddef>
+#include <gtest/gtest.h>
+
+namespace tetrace {
+
+using spirv::Array;
+using spirv::Member;
+using spirv::Module;
+
+namespace {
+
+bool is_exact(std::string_view name)
+{
+    return name.find("_exact") != std::string_view::npos;
+}
+
+bool is_probe(std::string_view name)
+{
+    return name.starts_with("probe");
+}
+
+/// Kernels and probes; not the empty shader.
+std::vector<EmbeddedKernel> modules()
+{
+    std::vector<EmbeddedKernel> found;
+    for (const EmbeddedKernel& kernel : vulkan::embedded_kernels())
+        if (kernel.name != "empty") found.push_back(kernel);
+    return found;
+}
+
+/// What a kernel's storage buffers must be: kernels/scene_arrays.h and kernels/layout.h.
+std::map<std::string, Array> expected_arrays(bool in_parts)
+{
+    using uint = std::uint32_t;
+    using uint4 = Row;
+    std::map<std::string, Array> arrays;
+#define SCENE_ARRAY(element, name, member, binding) arrays[#name] = {binding, sizeof(element), false};
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+    arrays["output_words"] = {OUTPUT_BINDING, 4, true};
+    for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++) {
+        arrays["tet_words_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 4, false};
+        arrays["tet_rows_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
+    }
+    return arrays;
+}
+
+/// What the push constants must be: core/launch.h, word for word.
+std::vector<Member> expected_push_constants()
+{
+    std::vector<Member> members;
+    const auto add_vector = [&](const std::string& name, std::size_t offset) {
+        for (const std::string axis : {"x", "y", "z"}) {
+            members.push_back({"launch.trace." + name + "." + axis, static_cast<std::uint32_t>(offset), "float"});
+            offset += sizeof(float);
+        }
+    };
+    const auto add = [&](const std::string& path, std::size_t offset) {
+        members.push_back({"launch." + path, static_cast<std::uint32_t>(offset), "uint"});
+    };
+    add_vector("origin", offsetof(LaunchParams, origin));
+    add_vector("corner", offsetof(LaunchParams, corner));
+    add_vector("step_x", offsetof(LaunchParams, step_x));
+    add_vector("step_y", offsetof(LaunchParams, step_y));
+    add("trace.width", offsetof(LaunchParams, width));
+    add("trace.height", offsetof(LaunchParams, height));
+    add("trace.start_tet", offsetof(LaunchParams, start_tet));
+    add("trace.max_steps", offsetof(LaunchParams, max_steps));
+    add("divisions", offsetof(LaunchParams, divisions));
+    add("first_tile", offsetof(LaunchParams, first_tile));
+    add("tile_height", offsetof(LaunchParams, tile_height));
+    add("part_log2", offsetof(LaunchParams, part_log2));
+    return members;
+}
+
+Module twin()
+{
+    return Module(find_kernel(twins::embedded_kernels(), "vectors")->bytes);
+}
+
+} // namespace
+
+TEST(Spirv, no_operation_of_an_exact_module_may_be_contracted)
+{
+    std::size_t checked = 0;
+    for (const EmbeddedKernel& kernel : modules()) {
+        if (!is_exact(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        EXPECT_GE(module.rounding_operations(), is_probe(kernel.name) ? 5u : 30u) << kernel.name;
+        EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
+        checked++;
+    }
+    EXPECT_GE(checked, 5u); // two layouts, whole and in parts, and the probe
+}
+
+TEST(Spirv, the_same_source_without_precise_would_be_found)
+{
+    for (const EmbeddedKernel& kernel : modules()) { // math mode fast is the text with PRECISE empty
+        if (is_exact(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        EXPECT_EQ(module.contractible_operations(), module.rounding_operations()) << kernel.name;
+        EXPECT_GT(module.contractible_operations(), 0u) << kernel.name;
+    }
+}
+
+TEST(Spirv, storage_buffers_are_those_of_scene_arrays_and_layout)
+{
+    for (const EmbeddedKernel& kernel : modules()) {
+        if (is_probe(kernel.name)) continue;
+        EXPECT_EQ(Module(kernel.bytes).arrays(), expected_arrays(kernel.name.ends_with("_parts"))) << kernel.name;
+    }
+}
+
+TEST(Spirv, push_constants_are_launch_params_word_for_word)
+{
+    for (const EmbeddedKernel& kernel : modules()) {
+        if (is_probe(kernel.name)) continue;
+        EXPECT_EQ(Module(kernel.bytes).push_constants(), expected_push_constants()) << kernel.name;
+        EXPECT_TRUE(Module(kernel.bytes).has_specialization_constant(0)) << kernel.name << ": the tile's height";
+    }
+}
+
+TEST(Spirv, vectors_of_three_and_rows_read_as_words_would_be_found)
+{
+    EXPECT_NE(twin().push_constants(), expected_push_constants());
+    ASSERT_FALSE(twin().push_constants().empty());
+    EXPECT_EQ(twin().push_constants().front().type, "vector");
+    EXPECT_NE(twin().arrays().at("triangles"), expected_arrays(false).at("triangles"));
+    EXPECT_EQ(twin().arrays().at("output_words"), expected_arrays(false).at("output_words"));
+}
+
+TEST(Spirv, damaged_modules_are_refused)
+{
+    const auto bytes = modules().front().bytes;
+    EXPECT_THROW(Module{bytes.first(16)}, std::runtime_error);
+    EXPECT_THROW(Module{bytes.subspan(4)}, std::runtime_error);
+    EXPECT_THROW(Module{bytes.first(24)}, std::runtime_error) << "in its first instruction";
+}
+
+} // namespace tetrace
