@@ -125,11 +125,13 @@ std::string heading(const std::vector<const ApiDevice*>& apis)
                 return;
             }
     };
-    add_first("UUID ", &Device::uuid);
-    add_first("PCI ", &Device::pci);
+    const bool is_host = runs_on_host(apis.front()->device);
+    if (!is_host) { // what drivers make up for the processor identifies the driver
+        add_first("UUID ", &Device::uuid);
+        add_first("PCI ", &Device::pci);
+    }
     if (apis.front()->device.memory_bytes > 0) parts.push_back(size_text(apis.front()->device.memory_bytes));
-    if (runs_on_host(apis.front()->device))
-        parts.push_back(fmt::format("{} threads for this process", host_identity().threads));
+    if (is_host) parts.push_back(fmt::format("{} threads for this process", host_identity().threads));
     return joined(parts) + "\n";
 }
 

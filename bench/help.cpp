@@ -20,10 +20,13 @@ struct VerbHelp {
 
 const VerbHelp verb_help[] = {
     {Verb::devices, "list the devices of every backend",
-     "Lists the devices of every backend of this build, usable or with the reason why not, and the optional parts of "
-     "this build with what would bring a missing one.",
+     "Lists the devices of every backend of this build, grouped by the hardware that they are (whatever computes on "
+     "the "
+     "processor is one), with the limits that matter here and the outcome of a self-test of their arithmetic in exact "
+     "mode; then what cannot be used, with the reason, and the optional parts of this build with what would bring a "
+     "missing one.",
      "  tetrace devices\n"
-     "  tetrace devices --require openmp,embree   exit with 3 unless both are usable\n"},
+     "  tetrace devices --require openmp,vulkan   exit with 3 unless both are usable\n"},
     {Verb::scenes, "list the catalogue and the cache of built scenes",
      "Lists the catalogue, where each scene comes from, and whether its mesh can be had here; then the cache of built "
      "scenes with sizes. The cache lies in $XDG_CACHE_HOME/tetrace, else in ~/.cache/tetrace.",
@@ -58,15 +61,24 @@ const VerbHelp verb_help[] = {
      "  tetrace bench --scene cubes --method maria --math exact,fast --format csv\n"
      "  tetrace bench --filter 'tet96|embree' --list\n"
      "  tetrace bench --scene bunny --threads 1 --benchmark_repetitions=30\n"},
-    {Verb::check, "judge every ray, without timing",
-     "Traces every selected view with every row and judges each ray: against openmp's answer for the same method, "
-     "layout and mode, and against Embree in robust mode, where each disagreement is settled in exact arithmetic on "
-     "the original triangles. Both answers right within rounding of a shared edge are a tie; Embree's being the "
-     "inexact one is settled; else the ray is wrong. The first wrong ray is printed in full. Exits with 1 where "
-     "anything is wrong or lost; --allow-flawed lets the wrong rays of a method itself pass, but no lost ones. Rows of "
+    {Verb::check, "judge every ray on every device, without timing",
+     "Traces every selected view with every row on every device and judges each ray in two questions.\n\n"
+     "Does the device conform? In exact mode all bits of all hits are compared with openmp's for the same method and "
+     "layout. A cell of the matrix says 'bit-exact'; 'within N ulp', where t, u and v differ by no more than what the "
+     "device's self-test allows (nothing, where its division is correctly rounded); 'not exact', where the hits are "
+     "openmp's but the self-test shows that the device contracts or rounds otherwise; 'wrong', with the number of "
+     "rays, "
+     "also where rays were never written, words outside the hits were, or a second run gave other hits; "
+     "'unsupported', 'skipped' or 'error', with the reason. Equal hits have equal hashes.\n\n"
+     "Is the method right? Each different answer is compared with Embree in robust mode, and each disagreement is "
+     "settled in exact arithmetic on the original triangles. Both answers right within rounding of a shared edge are a "
+     "tie; Embree's being the inexact one is settled; else the ray is wrong.\n\n"
+     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 where anything is wrong, "
+     "lost or not exact; --allow-flawed lets the wrong rays of a method itself pass, but no lost ones. Rows of "
      "structure cdt are judged by default; Embree's own, which may be flawed, where --structure, --method, --layout, "
      "--backend, --filter or --require names them.",
-     "  tetrace check --scene cubes --require openmp\n"
+     "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
+     "  tetrace check --scene bunny --backend vulkan --picture differences\n"
      "  tetrace check --scene bunny --structure cdt,bvh --allow-flawed\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",

@@ -167,3 +167,23 @@ TEST(option_values, sizes_counts_times_and_bytes_are_read_or_rejected)
         EXPECT_THROW(static_cast<void>(parse_bytes("--memory-limit", bad)), Error) << bad;
     EXPECT_THROW(static_cast<void>(parse_count("--samples", "2", 3, 10)), Error);
 }
+
+TEST(options, devices_schedules_tiles_and_buffer_limits_are_read)
+{
+    const Options options = parse_options(
+        {"bench", "--device", "gpu,pocl", "--schedule", "persistent", "--tile", "8x4", "--buffer-limit", "64K"});
+    EXPECT_EQ(options.devices, (std::vector<std::string>{"gpu", "pocl"}));
+    EXPECT_EQ(options.schedules, std::vector<Schedule>{Schedule::persistent});
+    EXPECT_EQ(options.tile_height, 4u);
+    EXPECT_EQ(options.buffer_limit, 65536u);
+    EXPECT_TRUE(contains(rejection({"bench", "--tile", "4x8"}), "8x4 or 8x8"));
+    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles or persistent"));
+}
+
+TEST(options, a_picture_is_a_kind_of_render_and_a_folder_of_check)
+{
+    EXPECT_EQ(parse_options({"check", "--picture", "folder"}).picture_folder, "folder");
+    EXPECT_EQ(parse_options({"check", "--junit", "check.xml"}).junit, "check.xml");
+    EXPECT_TRUE(contains(rejection({"render", "--picture", "folder"}), "normals or steps"));
+    EXPECT_TRUE(contains(rejection({"check", "--junit", ""}), "--junit: the file name is empty"));
+}

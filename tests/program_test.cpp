@@ -198,6 +198,21 @@ TEST_F(program, checks_every_ray)
     }
 }
 
+TEST_F(program, check_shows_rows_against_devices_and_writes_junit)
+{
+    const Ended ended = run("check --backend openmp --scene cubes --resolution 6 --size 24 --junit check.xml "
+                            "--out check.json");
+    ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "cdt maria tet96  reference"));
+    EXPECT_TRUE(contains(ended.out, "exact; division correctly rounded"));
+    const auto section = nlohmann::json::parse(file("check.json"))["tetrace"];
+    const auto& cell = section["matrix"]["cubes"]["cdt maria tet80"]["openmp"];
+    EXPECT_EQ(cell["cell"], "reference");
+    EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
+    EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
+    EXPECT_TRUE(contains(file("check.xml"), "tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+}
+
 TEST_F(program, checks_embree_where_it_is_asked_for)
 {
     const auto rows_of = [&](const std::string& options) { return run("check --scene cubes --list" + options).out; };
