@@ -38,6 +38,7 @@
 #define COUNTER_BINDING 6u
 #define SECOND_PART_BINDING 7u
 #define MAX_TET_PARTS 8u
+#define FIRST_ROWS_BINDING 16u // of rows, where words and rows of one array are bound apart
 
 // tet80: rows of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
 #define TET80_ROWS 5u

@@ -52,6 +52,19 @@ std::map<std::string, Array> expected_arrays(bool in_parts)
     return arrays;
 }
 
+/// What a kernel's texel buffers must be: words at their array's binding, rows FIRST_ROWS_BINDING behind it.
+std::map<std::string, std::uint32_t> expected_texels()
+{
+    using uint = std::uint32_t;
+    using uint4 = Row;
+    std::map<std::string, std::uint32_t> bindings;
+#define SCENE_ARRAY(element, name, member, binding)                                                                    \
+    bindings[#name] = binding + (sizeof(element) == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+    return bindings;
+}
+
 /// What the push constants must be: core/launch.h, word for word.
 std::vector<Member> expected_push_constants()
 {
@@ -97,7 +110,7 @@ TEST(Spirv, no_operation_of_an_exact_module_may_be_contracted)
         EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
         checked++;
     }
-    EXPECT_GE(checked, 5u); // two layouts, whole and in parts, and the probe
+    EXPECT_GE(checked, 7u); // two layouts, each whole, in parts and in texels, and the probe
 }
 
 TEST(Spirv, the_same_source_without_precise_would_be_found)
@@ -114,7 +127,14 @@ TEST(Spirv, storage_buffers_are_those_of_scene_arrays_and_layout)
 {
     for (const EmbeddedKernel& kernel : modules()) {
         if (is_probe(kernel.name)) continue;
-        EXPECT_EQ(Module(kernel.bytes).arrays(), expected_arrays(kernel.name.ends_with("_parts"))) << kernel.name;
+        const Module module(kernel.bytes);
+        if (kernel.name.ends_with("_texels")) {
+            EXPECT_EQ(module.texels(), expected_texels()) << kernel.name;
+            EXPECT_EQ(module.arrays(), (std::map<std::string, Array>{{"output_words", {OUTPUT_BINDING, 4, true}}}));
+        } else {
+            EXPECT_EQ(module.arrays(), expected_arrays(kernel.name.ends_with("_parts"))) << kernel.name;
+            EXPECT_TRUE(module.texels().empty());
+        }
     }
 }
 

@@ -150,6 +150,21 @@ TEST_F(Vulkan, a_launch_that_nobody_waits_for_harms_nothing)
     }
 }
 
+TEST_F(Vulkan, hits_that_are_read_before_anybody_waits_are_whole)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    const TraceJob job = rays.from_outside(200, 200);
+    for (const std::size_t device : usable) {
+        const auto session = backend.open(device, {}, rays.data(), {});
+        (void)traced(*session, job); // the next one is not launched in steps that are waited for
+        session->launch(job);
+        std::vector<Hit> hits(std::size_t{job.width} * job.height);
+        session->read_back(hits);
+        EXPECT_EQ(different_rays(hits, openmp_hits(rays, job), 3), 0u);
+        EXPECT_GT(session->wait(), 0) << "the launch's time is not lost";
+    }
+}
+
 TEST_F(Vulkan, fast_mode_finds_the_same_faces_but_for_rays_on_edges)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
@@ -215,6 +230,26 @@ TEST_F(Vulkan, hits_are_openmps_where_the_host_does_not_see_the_devices_memory)
         found.always_stages = true;
         vulkan::VulkanSession session(found, {}, rays.packed(), {});
         EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+    }
+}
+
+TEST_F(Vulkan, hits_are_openmps_whether_the_scene_is_read_as_texels_or_from_storage_buffers)
+{
+    for (const Layout layout : {Layout::tet80, Layout::tet96}) {
+        const DeviceRays rays(make_cubes(8), layout);
+        for (vulkan::FoundDevice found : vulkan::find_devices()) {
+            if (!found.facts.usable) continue;
+            for (const bool texels : {false, true}) {
+                found.reads_texels = texels;
+                vulkan::VulkanSession session(found, {.layout = layout}, rays.packed(), {});
+                for (const TraceJob& job : all_jobs(rays))
+                    EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u) << texels;
+            }
+            found.limits.texels = 100; // too few for the scene: storage buffers again
+            vulkan::VulkanSession session(found, {.layout = layout}, rays.packed(), {});
+            const TraceJob job = rays.from_outside(61, 35);
+            EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+        }
     }
 }
 

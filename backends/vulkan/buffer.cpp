@@ -14,7 +14,8 @@ constexpr std::uint64_t staging_bytes = std::uint64_t{64} << 20;
 vk::BufferUsageFlags usage_of(Place place)
 {
     using Usage = vk::BufferUsageFlagBits;
-    if (place == Place::device) return Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+    if (place == Place::device)
+        return Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eTransferSrc | Usage::eTransferDst;
     return place == Place::upload ? Usage::eTransferSrc : Usage::eTransferDst;
 }
 

@@ -18,6 +18,7 @@ struct Limits {
     unsigned timestamp_bits = 0;               ///< valid ones, of that family
     std::uint32_t push_constant_bytes = 0;
     std::uint32_t storage_buffers = 0; ///< of a shader
+    std::uint32_t texels = 0;          ///< of a texel buffer
     std::uint32_t group_items = 0;
     std::uint32_t group_height = 0;
     std::uint32_t groups = 0; ///< of a dispatch, along x
@@ -39,6 +40,7 @@ struct FoundDevice {
     VkPhysicalDevice handle = nullptr;
     Limits limits;
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
+    bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
     bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests
     std::string build_key;         ///< device and driver with versions: compiled pipelines are valid for these alone
 };

@@ -3,7 +3,11 @@
 // tile.
 #include "kernels/dialect_glsl.h"
 
+#ifdef SCENE_IN_TEXELS
+#include "kernels/scene_view_texels_glsl.h"
+#else
 #include "kernels/scene_view_glsl.h"
+#endif
 
 #include "kernels/kernel.h"
 

@@ -42,12 +42,17 @@ Program::Program(const Context& context, const ProgramId& id, const ProgramCache
 void Program::make_layout(const Context& context, const ProgramId& id)
 {
     std::vector<vk::DescriptorSetLayoutBinding> bindings;
-    for (const std::uint32_t binding : id.bindings)
+    const auto add = [&](std::uint32_t binding, vk::DescriptorType type) {
         bindings.push_back(vk::DescriptorSetLayoutBinding{}
                                .setBinding(binding)
-                               .setDescriptorType(vk::DescriptorType::eStorageBuffer)
+                               .setDescriptorType(type)
                                .setDescriptorCount(1)
                                .setStageFlags(vk::ShaderStageFlagBits::eCompute));
+    };
+    for (const std::uint32_t binding : id.bindings)
+        add(binding, vk::DescriptorType::eStorageBuffer);
+    for (const TexelBinding& texels : id.texels)
+        add(texels.binding, vk::DescriptorType::eUniformTexelBuffer);
     set_layout_ = context.device().createDescriptorSetLayout(vk::DescriptorSetLayoutCreateInfo{}.setBindings(bindings));
     const std::array sets = {*set_layout_};
     const auto push =
@@ -56,13 +61,13 @@ void Program::make_layout(const Context& context, const ProgramId& id)
     if (id.push_constant_bytes != 0) info.setPushConstantRanges(push);
     layout_ = context.device().createPipelineLayout(info);
     if (bindings.empty()) return;
-    const auto size = vk::DescriptorPoolSize{}
-                          .setType(vk::DescriptorType::eStorageBuffer)
-                          .setDescriptorCount(static_cast<std::uint32_t>(bindings.size()));
+    std::vector<vk::DescriptorPoolSize> sizes;
+    for (const auto& binding : bindings)
+        sizes.emplace_back(binding.descriptorType, 1);
     pool_ = context.device().createDescriptorPool(vk::DescriptorPoolCreateInfo{}
                                                       .setFlags(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet)
                                                       .setMaxSets(1)
-                                                      .setPoolSizes(size));
+                                                      .setPoolSizes(sizes));
     const auto allocation = vk::DescriptorSetAllocateInfo{}.setDescriptorPool(*pool_).setSetLayouts(sets);
     set_ = std::move(vk::raii::DescriptorSets(context.device(), allocation).front());
 }
@@ -106,6 +111,19 @@ void Program::bind(const Context& context, std::uint32_t binding, const Buffer& 
                            .setDstBinding(binding)
                            .setDescriptorType(vk::DescriptorType::eStorageBuffer)
                            .setBufferInfo(info);
+    context.device().updateDescriptorSets(write, {});
+}
+
+void Program::bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer)
+{
+    views_.push_back(context.device().createBufferView(
+        vk::BufferViewCreateInfo{}.setBuffer(buffer.handle()).setFormat(texels.format).setRange(VK_WHOLE_SIZE)));
+    const vk::BufferView view = *views_.back();
+    const auto write = vk::WriteDescriptorSet{}
+                           .setDstSet(*set_)
+                           .setDstBinding(texels.binding)
+                           .setDescriptorType(vk::DescriptorType::eUniformTexelBuffer)
+                           .setTexelBufferView(view);
     context.device().updateDescriptorSets(write, {});
 }
 

@@ -10,12 +10,19 @@
 
 namespace tetrace::vulkan {
 
+/// A binding through which a shader reads a buffer as texels.
+struct TexelBinding {
+    std::uint32_t binding;
+    vk::Format format;
+};
+
 /// What decides a program.
 struct ProgramId {
     std::string name;
     std::vector<std::uint32_t> bindings = {}; ///< of its storage buffers
-    std::uint32_t push_constant_bytes = 0;    ///< 0: none
-    unsigned tile_height = 0;                 ///< the height of its work groups; 0: as the module says
+    std::vector<TexelBinding> texels = {};
+    std::uint32_t push_constant_bytes = 0; ///< 0: none
+    unsigned tile_height = 0;              ///< the height of its work groups; 0: as the module says
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 
@@ -30,6 +37,7 @@ public:
     [[nodiscard]] bool is_cached() const { return is_cached_; }
     /// Every binding needs a buffer before record() is called; not while commands that use the program run.
     void bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const;
+    void bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer);
     /// Records that the program and its buffers are what a dispatch runs.
     void record(const vk::raii::CommandBuffer& commands) const;
 
@@ -41,6 +49,7 @@ private:
     vk::raii::PipelineLayout layout_{nullptr};
     vk::raii::DescriptorPool pool_{nullptr};
     vk::raii::DescriptorSet set_{nullptr}; // null where there are no bindings
+    std::vector<vk::raii::BufferView> views_;
     vk::raii::Pipeline pipeline_{nullptr};
     bool is_cached_ = false;
 };

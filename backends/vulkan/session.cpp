@@ -23,15 +23,29 @@ void require_storage_buffers(const FoundDevice& found, const TetParts& parts)
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-ProgramId program_of(const KernelId& kernel, bool in_parts, unsigned tile_height)
+/// Every array as texels, the tets as words and as rows: kernels/scene_view_texels_glsl.h.
+std::vector<TexelBinding> texel_bindings()
 {
-    ProgramId id{embedded_name(kernel) + (in_parts ? "_parts" : ""), {}, sizeof(LaunchParams), tile_height};
-    for (std::uint32_t binding = 0; binding < SCENE_ARRAYS; binding++)
-        id.bindings.push_back(binding);
-    id.bindings.push_back(OUTPUT_BINDING);
-    for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++)
-        id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
-    return id;
+    using uint = std::uint32_t;
+    using uint4 = Row;
+    std::vector<TexelBinding> texels;
+#define SCENE_ARRAY(element, name, member, number)                                                                     \
+    texels.push_back(sizeof(element) == sizeof(Row)                                                                    \
+                         ? TexelBinding{FIRST_ROWS_BINDING + number, vk::Format::eR32G32B32A32Uint}                    \
+                         : TexelBinding{number, vk::Format::eR32Uint});
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+    return texels;
+}
+
+/// Whether the scene is read as texels: where the device likes it, and has views of so many words.
+bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetParts& parts)
+{
+    if (!found.reads_texels || parts.count > 1) return false;
+    const auto fits = [&](const SceneBuffer& buffer) {
+        return buffer.bytes.size() / sizeof(std::uint32_t) <= found.limits.texels;
+    };
+    return std::ranges::all_of(scene_buffers(scene), fits);
 }
 
 } // namespace
@@ -41,7 +55,7 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)),
       tile_height_(options.tile_height != 0 ? options.tile_height : default_tile_height(found.facts)),
-      divisions_(scene.divisions), launch_size_(tile_height_)
+      in_texels_(is_in_texels(found, scene, parts_)), divisions_(scene.divisions), launch_size_(tile_height_)
 {
     require_storage_buffers(found, parts_);
     auto start = std::chrono::steady_clock::now();
@@ -82,12 +96,25 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
 
 void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
 {
-    const bool in_parts = parts_.count > 1;
-    program_.emplace(context_, program_of(kernel, in_parts, tile_height_), ProgramCache(options.program_cache));
+    const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
+    ProgramId id{embedded_name(kernel) + variant, {OUTPUT_BINDING}, {}, sizeof(LaunchParams), tile_height_};
+    if (in_texels_) id.texels = texel_bindings();
+    for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
+        id.bindings.push_back(binding);
+    for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++)
+        id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
+    program_.emplace(context_, id, ProgramCache(options.program_cache));
     setup_.compile_cached = program_->is_cached();
-    for (std::uint32_t binding = 0; binding < SCENE_ARRAYS; binding++)
+    bind_scene(id);
+}
+
+void VulkanSession::bind_scene(const ProgramId& id)
+{
+    for (const TexelBinding& texels : id.texels)
+        program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_ROWS_BINDING]);
+    for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
         program_->bind(context_, binding, arrays_[binding]);
-    for (unsigned part = 1; in_parts && part < MAX_TET_PARTS; part++) // those beyond the last are never read
+    for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++) // those beyond the last are never read
         program_->bind(context_, SECOND_PART_BINDING - 1 + part,
                        part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
 }
@@ -189,8 +216,10 @@ void VulkanSession::read_output(std::span<std::uint32_t> words)
     if (words.size() != output_words_)
         throw Error(ErrorKind::internal,
                     "reading back from vulkan: the hits asked for are not those of the last launch");
-    context_.run("reading back", output_bytes(),
-                 [&] { vulkan::read_back(context_, output_, staging_, std::as_writable_bytes(words)); });
+    context_.run("reading back", output_bytes(), [&] {
+        kernel_s_ += take_times(); // mapped memory is read at once: nothing may be writing it still
+        vulkan::read_back(context_, output_, staging_, std::as_writable_bytes(words));
+    });
     context_.check_validation("the next call");
 }
 

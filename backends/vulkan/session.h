@@ -29,6 +29,7 @@ private:
 
     void make_scene_buffers(const PackedScene& scene);
     void make_program(const KernelId& kernel, const SessionOptions& options);
+    void bind_scene(const ProgramId& id);
     void resize_output(std::size_t words);
     [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
     void fill_output();
@@ -41,6 +42,7 @@ private:
     TetParts parts_;
     std::uint64_t max_buffer_bytes_;
     unsigned tile_height_;
+    bool in_texels_; ///< the scene's arrays are read as texels
     std::uint32_t divisions_;
     std::uint64_t bytes_ = 0;
     SetupTimes setup_;

@@ -74,6 +74,16 @@ public:
         return found;
     }
 
+    /// Bindings of texel buffers by their names.
+    [[nodiscard]] std::map<std::string, std::uint32_t> texels() const
+    {
+        std::map<std::string, std::uint32_t> found;
+        for (const auto& [id, variable] : variables_)
+            if (variable.storage == spv::StorageClassUniformConstant)
+                found[names_.at(id)] = decoration(id, spv::DecorationBinding).value();
+        return found;
+    }
+
     /// All scalars of the push constants, in order; empty where there are none.
     [[nodiscard]] std::vector<Member> push_constants() const
     {
@@ -118,6 +128,7 @@ private:
         case spv::OpMemberDecorate:
             member_decorations_[{{words[0], words[1]}, words[2]}] = words.size() > 3 ? words[3] : 0;
             break;
+        case spv::OpName: names_[words[0]] = reinterpret_cast<const char*>(words.subspan(1).data()); break;
         case spv::OpMemberName:
             member_names_[{words[0], words[1]}] = reinterpret_cast<const char*>(words.subspan(2).data());
             break;
@@ -165,6 +176,7 @@ private:
     std::size_t fused_ = 0;
     std::map<Pair, std::uint32_t> decorations_; ///< {id, decoration}: its first operand
     std::map<std::pair<Pair, std::uint32_t>, std::uint32_t> member_decorations_; ///< {{type, member}, decoration}
+    std::map<std::uint32_t, std::string> names_;
     std::map<Pair, std::string> member_names_;
     std::map<std::uint32_t, Variable> variables_;
     std::map<std::uint32_t, std::vector<std::uint32_t>> types_; ///< operands of pointers (op first) and structs

@@ -1,0 +1,20 @@
+// How kernels reach a scene's arrays in GLSL on devices that read storage buffers slowly: as texels of one or four
+// unsigned words, by name through FETCH(). Same bytes, same answers; scene_view_glsl.h is the other way. Arrays of rows
+// stand FIRST_ROWS_BINDING behind their binding: the tets are bound twice.
+#define TEXELS_BINDING_uint 0
+#define TEXELS_BINDING_uint4 FIRST_ROWS_BINDING
+#define SCENE_ARRAY(element, name, member, number)                                                                     \
+    layout(set = 0, binding = TEXELS_BINDING_##element + number) uniform usamplerBuffer name;                          \
+    element fetch_##name(uint index)                                                                                   \
+    {                                                                                                                  \
+        return element(texelFetch(name, int(index)));                                                                  \
+    }
+#include "kernels/scene_arrays.h"
+#undef SCENE_ARRAY
+#define FETCH(scene, array, index) fetch_##array(index)
+
+STRUCT(SceneView)
+{
+    uint divisions;
+    uint part_log2; // tets do not come in parts here
+};
