@@ -118,12 +118,20 @@ std::size_t PackedScene::bytes() const
            (lines.size() + entry_ranges.size() + entry_links.size()) * sizeof(std::uint32_t);
 }
 
+std::uint32_t most_tets(Layout layout)
+{
+    constexpr std::uint64_t indices = std::uint64_t{1} << 32;
+    const std::uint64_t elements = layout == Layout::tet80 ? 4 * TET80_ROWS : rows_of(layout);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(MAX_TETS, indices / elements));
+}
+
 PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
 {
-    if (scene.tets.tets.size() > MAX_TETS)
+    if (scene.tets.tets.size() > most_tets(layout))
         throw Error(ErrorKind::unsupported, "packing " + scene.name + " as " + std::string(name_of(layout)) + ": " +
                                                 std::to_string(scene.tets.tets.size()) +
-                                                " tets, and its links name at most " + std::to_string(MAX_TETS));
+                                                " tets, its kernels reach at most " +
+                                                std::to_string(most_tets(layout)));
     PackedScene packed;
     packed.layout = layout;
     packed.order = order;

@@ -35,9 +35,13 @@ struct PackedScene {
     [[nodiscard]] std::size_t bytes() const; ///< of all arrays that cross
 };
 
+/// The most tets that a layout's links of 30 bits can name and its kernels reach: they index the array of tets, by word
+/// (tet80) or by row (tet96), with 32 bits.
+[[nodiscard]] std::uint32_t most_tets(Layout layout);
+
 /// Packs a scene's tets.
-/// scene: valid (see find_defect), at most MAX_TETS tets. layout: tet80 or tet96.
-/// Throws Error{unsupported} naming both numbers where the scene exceeds the layout's links.
+/// scene: valid (see find_defect), at most most_tets(layout). layout: tet80 or tet96.
+/// Throws Error{unsupported} naming both numbers where the scene has more.
 [[nodiscard]] PackedScene pack(const Scene& scene, Layout layout, TetOrder order);
 
 /// The tets of a packed scene again, with one vertex per corner merged by exact position; in packed order.

@@ -7,6 +7,7 @@
 #include "tests/device_rays.h"
 #include "tests/temporary_folder.h"
 
+#include <chrono>
 #include <cstring>
 #include <regex>
 #include <set>
@@ -180,8 +181,9 @@ TEST_P(CudaWithoutGpu, wait_tells_the_seconds_of_all_launches)
     const auto start = std::chrono::steady_clock::now();
     session->launch(rays.from_outside(300, 300));
     const double seconds = session->wait();
-    EXPECT_GT(seconds, 1e-5);
-    EXPECT_LT(seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    EXPECT_LT(seconds, wall_s);
+    EXPECT_GT(seconds, 0.25 * wall_s) << "the last of the three launches has a tenth of the tiles";
 }
 
 TEST_P(CudaWithoutGpu, fast_mode_finds_the_same_faces_but_for_rays_on_edges)
@@ -278,6 +280,15 @@ TEST_F(CudaFailures, of_a_launch_name_the_drivers_error)
     EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
 }
 
+TEST_F(CudaFailures, of_a_launch_leave_no_hits_of_the_image_before)
+{
+    const auto session = backend->open(0, {}, rays.data(), {});
+    std::vector<Hit> hits = traced(*session, job);
+    (void)error_with("launch", [&] { session->launch(job); });
+    session->read_back(hits);
+    EXPECT_TRUE(std::all_of(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }));
+}
+
 TEST_F(CudaFailures, a_lost_device_is_told_and_the_next_session_gets_a_new_context)
 {
     {
@@ -290,6 +301,19 @@ TEST_F(CudaFailures, a_lost_device_is_told_and_the_next_session_gets_a_new_conte
     }
     const auto session = backend->open(0, {}, rays.data(), {});
     EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
+}
+
+TEST_F(CudaFailures, a_lost_context_is_lost_to_every_session_that_shares_it_and_to_none_after_the_last)
+{
+    auto bystander = backend->open(0, {}, rays.data(), {});
+    {
+        const auto culprit = backend->open(0, {}, rays.data(), {});
+        (void)error_with("lost", [&] { (void)traced(*culprit, job); });
+    }
+    EXPECT_TRUE(contains(error_of([&] { (void)traced(*bystander, job); }), "context is lost"));
+    EXPECT_TRUE(contains(error_of([&] { (void)backend->open(0, {}, rays.data(), {}); }), "context is lost"));
+    bystander.reset();
+    EXPECT_EQ(traced(*backend->open(0, {}, rays.data(), {}), job), openmp_hits(rays, job));
 }
 
 TEST_F(CudaFailures, code_newer_than_the_driver_names_both_versions)

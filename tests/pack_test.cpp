@@ -57,6 +57,12 @@ TEST(Pack, sizes_are_those_of_the_layout)
     EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Row), 96 * tets);
 }
 
+TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
+{
+    EXPECT_EQ(most_tets(Layout::tet80), 214'748'364u) << "20 words each";
+    EXPECT_EQ(most_tets(Layout::tet96), 715'827'882u) << "6 rows each";
+}
+
 // Along the curve no two tets that follow each other are far apart; row after row of cubes, the ends of rows are.
 TEST(Pack, hilbert_order_has_no_long_jumps)
 {

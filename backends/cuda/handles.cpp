@@ -33,7 +33,6 @@ Context::Context(const Driver& driver, Ordinal device) : driver_(driver), device
 Context::~Context()
 {
     driver_.context_set_current(nullptr);
-    if (lost_) driver_.context_reset(device_);
     driver_.context_release(device_);
 }
 
@@ -51,8 +50,9 @@ void Context::check(Result result, const std::string& doing)
 {
     if (result == success) return;
     note(result);
-    throw Error(ErrorKind::internal, "CUDA: " + doing + ": " + text_of(driver_, result) +
-                                         (lost_ ? "; the device's context is lost, the next one is opened anew" : ""));
+    throw Error(ErrorKind::internal,
+                "CUDA: " + doing + ": " + text_of(driver_, result) +
+                    (lost_ ? "; the device's context is lost to all sessions that are open on it" : ""));
 }
 
 Memory::Memory(Context& context, std::size_t bytes, const char* what) : context_(&context), bytes_(bytes)

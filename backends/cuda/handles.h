@@ -9,8 +9,10 @@
 namespace tetrace::cuda {
 
 /// A device's primary context, retained while this lives; what is made in it must end before it does.
-/// Every call throws Error{internal} with the driver's own name of what went wrong. An error after which the context is
-/// of no more use (CUDA calls it sticky) resets the context at the end of this, so that the next one is a new one.
+/// Every call throws Error{internal} with the driver's own name of what went wrong. After some errors the context is of
+/// no more use (CUDA calls them sticky), to none of the sessions that share it. The driver destroys it with the last of
+/// them, so that the next session gets a new one. It is not reset before that: the sessions that are still open would
+/// give memory back that a new context has handed out again.
 class Context {
 public:
     Context(const Driver& driver, Ordinal device);

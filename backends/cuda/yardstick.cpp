@@ -1,7 +1,7 @@
 #include "backends/cuda/yardstick.h"
+#include "core/yardstick.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tetrace::cuda {
 
@@ -10,7 +10,6 @@ namespace {
 constexpr std::size_t least_bytes = std::size_t{64} << 20, most_bytes = std::size_t{512} << 20;
 constexpr double enough_s = 5e-3; // a copy that long outlasts its launch and the clock's resolution by far
 constexpr int passes = 8;
-constexpr int launches = 101;
 
 double copy_s(OpenDevice& device, const Memory& from, const Memory& to)
 {
@@ -45,15 +44,10 @@ double launch_s(OpenDevice& device, FunctionHandle probe)
     Address none = 0;
     std::uint32_t count = 0;
     void* parameters[] = {&none, &none, &count};
-    std::vector<double> seconds;
-    for (int i = 0; i < launches; i++) {
-        const auto start = std::chrono::steady_clock::now();
+    return median_seconds([&] {
         device.launch(probe, 1, 1, parameters);
         device.synchronize();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    }
-    std::nth_element(seconds.begin(), seconds.begin() + launches / 2, seconds.end());
-    return seconds[launches / 2];
+    });
 }
 
 } // namespace

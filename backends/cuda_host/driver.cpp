@@ -150,11 +150,6 @@ Result context_release(Ordinal)
     return success;
 }
 
-Result context_reset(Ordinal)
-{
-    return success;
-}
-
 Result context_set_current(ContextHandle)
 {
     return success;

@@ -1,18 +1,15 @@
 #include "backends/opencl/yardstick.h"
 
 #include "backends/opencl/program.h"
+#include "core/yardstick.h"
 
 #include <algorithm>
-#include <chrono>
-#include <vector>
 
 namespace tetrace::opencl {
 
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{128} << 20;
 constexpr int passes = 6;
-constexpr int launches = 51;
 
 double copy_bytes_per_s(Context& context, const cl::CommandQueue& queue, std::uint64_t bytes)
 {
@@ -31,15 +28,10 @@ double copy_bytes_per_s(Context& context, const cl::CommandQueue& queue, std::ui
 
 double launch_s(const cl::CommandQueue& queue, const cl::Kernel& kernel)
 {
-    std::vector<double> seconds;
-    for (int i = 0; i < launches; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+    return median_seconds([&] {
         queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1));
         queue.finish();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    }
-    std::nth_element(seconds.begin(), seconds.begin() + launches / 2, seconds.end());
-    return seconds[launches / 2];
+    });
 }
 
 } // namespace
@@ -48,7 +40,7 @@ Yardstick measure_device(Context& context, std::uint64_t max_buffer_bytes)
 {
     const ProgramCache none({});
     const Program program(context, {"probe"}, none);
-    const std::uint64_t bytes = std::min({most_bytes, max_buffer_bytes, context.facts().memory_bytes / 4}) & ~3ull;
+    const std::uint64_t bytes = copied_bytes(context.facts(), max_buffer_bytes);
     return context.run("measuring the device", 2 * bytes, [&] {
         const cl::CommandQueue queue = context.make_queue();
         const cl::Kernel nothing(program.handle(), "do_nothing");

@@ -1,18 +1,15 @@
 #include "backends/vulkan/yardstick.h"
 
 #include "backends/vulkan/program.h"
+#include "core/yardstick.h"
 
 #include <algorithm>
-#include <chrono>
-#include <vector>
 
 namespace tetrace::vulkan {
 
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{128} << 20;
 constexpr int passes = 6;
-constexpr int launches = 51;
 
 double copy_bytes_per_s(const Context& context, std::uint64_t bytes)
 {
@@ -47,15 +44,10 @@ double launch_s(const Context& context, const Program& nothing)
     nothing.record(commands);
     commands.dispatch(1, 1, 1);
     commands.end();
-    std::vector<double> seconds;
-    for (int i = 0; i < launches; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+    return median_seconds([&] {
         context.submit(commands);
         context.finish();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    }
-    std::nth_element(seconds.begin(), seconds.begin() + launches / 2, seconds.end());
-    return seconds[launches / 2];
+    });
 }
 
 } // namespace
@@ -63,7 +55,7 @@ double launch_s(const Context& context, const Program& nothing)
 Yardstick measure_device(const Context& context, std::uint64_t max_buffer_bytes)
 {
     const Program nothing(context, {"empty"}, ProgramCache({}));
-    const std::uint64_t bytes = std::min({most_bytes, max_buffer_bytes, context.facts().memory_bytes / 4}) & ~3ull;
+    const std::uint64_t bytes = copied_bytes(context.facts(), max_buffer_bytes);
     const Yardstick measured = context.run("measuring the device", 2 * bytes, [&] {
         return Yardstick{copy_bytes_per_s(context, bytes), launch_s(context, nothing)};
     });

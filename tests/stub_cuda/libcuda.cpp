@@ -1,8 +1,8 @@
 // A library that poses as NVIDIA's driver: the host emulation under the real names, so that the cuda backend runs from
 // its library's loading to its last hit on a machine without a GPU. TETRACE_STUB_FAIL makes it fail where drivers do:
 //   alloc   no memory is left             module  a module's assembly is newer than the driver
-//   launch  a kernel cannot be launched   lost    a kernel fails, and with it all that follows until the context is
-//   reset
+//   launch  a kernel cannot be launched   lost    a kernel fails, and with it all that follows until the context's last
+//   session has released it
 #include "backends/cuda_host/driver.h"
 
 #include <array>
@@ -14,6 +14,7 @@ using namespace tetrace::cuda;
 namespace {
 
 bool context_is_lost = false;
+int sessions = 0; // that have retained the context
 
 bool asked_for(std::string_view failure)
 {
@@ -35,7 +36,8 @@ bool needs_context(std::string_view symbol)
 
 Result failure_of(std::string_view symbol)
 {
-    if (symbol == "cuDevicePrimaryCtxReset_v2") context_is_lost = false;
+    if (symbol == "cuDevicePrimaryCtxRetain") sessions++;
+    if (symbol == "cuDevicePrimaryCtxRelease_v2" && --sessions == 0) context_is_lost = false;
     if (context_is_lost && needs_context(symbol)) return error_launch_failed;
     if (symbol == "cuMemAlloc_v2" && asked_for("alloc")) return error_out_of_memory;
     if (symbol == "cuModuleLoadDataEx" && asked_for("module")) return error_unsupported_ptx;
