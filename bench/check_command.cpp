@@ -87,10 +87,16 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
+/// With an empty line behind it; nothing of nothing.
+std::string paragraph(const std::string& text)
+{
+    return text.empty() ? text : text + "\n";
+}
+
 std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
 {
-    return scene_headline(scene, rows) + "\n" + matrix_text(scene.label(), rows) + "\n" +
-           answers_text(scene.label(), rows) + "\n";
+    return scene_headline(scene, rows) + "\n" + paragraph(matrix_text(scene.label(), rows)) +
+           paragraph(answers_text(scene.label(), rows));
 }
 
 /// Devices that compute otherwise than exact mode promises, each once.
@@ -128,7 +134,7 @@ Report check_report(const Checked& checked, const Options& options)
     Report report{{}, check_table(rows), check_json(checked, options)};
     for (const auto& scene : checked.run.scenes)
         report.text += scene_text(*scene, rows);
-    report.text += devices_text(rows) + "\n" + failure_lines(rows);
+    report.text += paragraph(devices_text(rows)) + failure_lines(rows);
     for (const RowRun& row : rows)
         report.text += differences_text(row);
     report.text += inexact_devices_text(rows) + closing_text(checked, options);
@@ -178,6 +184,19 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
     }
 }
 
+/// A check without an answer from any device must not pass for one that found all well.
+void require_answers(const std::vector<RowRun>& rows)
+{
+    const auto unanswered = [](const RowRun& row) {
+        const Status status = status_of(row);
+        return status == Status::skipped || status == Status::unsupported;
+    };
+    if (std::all_of(rows.begin(), rows.end(), unanswered))
+        throw Error(ErrorKind::missing, fmt::format("nothing was checked: no selected row could run here, for example "
+                                                    "{}: {}",
+                                                    row_name(rows.front().key), reason_of(rows.front())));
+}
+
 } // namespace
 
 int check_command(const Options& asked)
@@ -205,6 +224,7 @@ int check_command(const Options& asked)
     write_junit(rows, options);
     deliver(options, check_report(checked, options));
     require_judged(rows, options.required);
+    require_answers(rows);
     if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails(row, options); })) return 1;
     return exit_code(rows, options.allow_flawed);
 }

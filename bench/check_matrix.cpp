@@ -42,6 +42,7 @@ const RowRun* row_at(const Pointers& rows, const std::string& kernel, const std:
 struct Answer {
     std::string kernel, devices;
     const RowRun* first = nullptr;
+    std::size_t rows = 1;
 };
 
 std::vector<Answer> answers_of(const Pointers& rows)
@@ -52,12 +53,22 @@ std::vector<Answer> answers_of(const Pointers& rows)
         const auto known = std::find_if(answers.begin(), answers.end(), [&](const Answer& answer) {
             return answer.kernel == kernel_title(row->key) && traced(*answer.first)->hit_hash == traced(*row)->hit_hash;
         });
-        if (known != answers.end())
+        if (known != answers.end()) {
             known->devices += ", " + device_label(row->key);
-        else
+            ++known->rows;
+        } else
             answers.push_back({kernel_title(row->key), device_label(row->key), row});
     }
     return answers;
+}
+
+/// The devices by name, or their number where all that traced the kernel agree: the line stays short.
+std::string devices_of(const Answer& answer, const Pointers& rows)
+{
+    const auto all = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const RowRun* row) {
+        return traced(*row) != nullptr && kernel_title(row->key) == answer.kernel;
+    }));
+    return answer.rows == all && all > 2 ? fmt::format("all {} devices", all) : answer.devices;
 }
 
 } // namespace
@@ -93,12 +104,13 @@ std::string answers_text(const std::string& scene, const std::vector<RowRun>& al
                  {"wrong", "wrong"},
                  {"lost", "lost"},
                  {"devices", "from"}});
-    for (const Answer& answer : answers_of(rows_of(scene, all))) {
+    const Pointers rows = rows_of(scene, all);
+    for (const Answer& answer : answers_of(rows)) {
         const Traced& result = *traced(*answer.first);
         const Verdicts& verdicts = result.verdicts;
         table.add({answer.kernel, hash_text(result.hit_hash), verdicts.rays, verdicts.agreed, verdicts.ties,
                    verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
-                   verdicts.settled, verdicts.wrong, verdicts.lost, answer.devices});
+                   verdicts.settled, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
     }
     return table.rows().empty() ? "" : table.text(2);
 }
@@ -109,11 +121,11 @@ std::string devices_text(const std::vector<RowRun>& rows)
     std::vector<std::string> told;
     for (const RowRun& row : rows) {
         const std::string label = device_label(row.key);
-        if (row.device.name.empty() || row.key.kernel.math != MathMode::exact ||
+        if (!row.device.usable || row.key.kernel.math != MathMode::exact ||
             std::find(told.begin(), told.end(), label) != told.end())
             continue;
         told.push_back(label);
-        table.add({label, row.device.name, row.device.type, row.self_test ? Cell(row.self_test->text()) : Cell()});
+        table.add({label, row.device.name, row.device.type, row.self_test ? Cell(row.self_test->brief()) : Cell()});
     }
     return told.empty() ? "" : table.text(2);
 }

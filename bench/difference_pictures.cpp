@@ -1,5 +1,6 @@
 #include "bench/difference_pictures.h"
 
+#include "bench/picture_name.h"
 #include "bench/shading.h"
 
 #include <algorithm>
@@ -9,14 +10,14 @@ namespace tetrace {
 
 namespace {
 
-/// "cubes-0-cdt-maria-tet80-vulkan-1.png".
+/// "cubes-0-cdt-maria-tet80-vulkan-1", without an ending.
 std::string file_name(const SeenImage& image)
 {
     std::string name = fmt::format("{}-{}-{}-{}", image.row.key.scene, image.row.scene->view_numbers()[image.view],
                                    kernel_title(image.row.key), device_label(image.row.key));
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == ' ' || c == ':' || c == '/'; }, '-');
-    return name + ".png";
+    return name;
 }
 
 } // namespace
@@ -33,7 +34,8 @@ Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> referenc
     return picture;
 }
 
-DifferencePictures::DifferencePictures(std::filesystem::path folder) : folder_(std::move(folder))
+DifferencePictures::DifferencePictures(std::filesystem::path folder)
+    : folder_(std::move(folder)), ending_(picture_ending({}, has_images_module())), writer_(ending_)
 {
     std::error_code problem;
     std::filesystem::create_directories(folder_, problem);
@@ -48,7 +50,7 @@ void DifferencePictures::see(const SeenImage& image)
     if (image.reference.empty()) return;
     const std::uint32_t allowed = allowed_ulps(image.row);
     if (compare_hits(image.hits, image.reference, allowed).count == 0) return;
-    const auto path = folder_ / file_name(image);
+    const auto path = folder_ / (file_name(image) + ending_);
     writer_.write(path, draw_differences(image.hits, image.reference, allowed, *image.row.scene, image.view));
     files_.push_back(path);
 }

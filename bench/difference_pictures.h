@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/images.h"
+#include "bench/picture_writer.h"
 #include "bench/verify.h"
 
 #include <filesystem>
@@ -13,20 +13,20 @@ namespace tetrace {
 [[nodiscard]] Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> reference,
                                       std::uint32_t allowed_ulps, const SceneWork& scene, std::size_t view);
 
-/// Writes such a picture of each image that differs into a folder.
+/// Writes such a picture of each image that differs into a folder: PNG, or PPM without the images module.
 class DifferencePictures {
 public:
-    /// Makes the folder. Throws Error{missing} without the images module, Error{invalid_input} naming the folder where
-    /// it cannot be made.
+    /// Makes the folder. Throws Error{invalid_input} naming it where it cannot be made.
     explicit DifferencePictures(std::filesystem::path folder);
 
-    /// Writes nothing where the image is openmp's. Throws as ImageWriter::write() does.
+    /// Writes nothing where the image is openmp's. Throws as PictureWriter::write() does.
     void see(const SeenImage& image);
     [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
 
 private:
     std::filesystem::path folder_;
-    ImageWriter writer_;
+    std::string ending_;
+    PictureWriter writer_;
     std::vector<std::filesystem::path> files_;
 };
 

@@ -15,7 +15,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr unsigned fewest_samples = 3;
+constexpr unsigned fewest_samples = 5; // with fewer, intervals of ratios are too narrow (results/README.md)
 
 bool is_timed(const RowRun& row)
 {

@@ -16,7 +16,7 @@ struct Measurement {
     double wall_s = 0;
 };
 
-/// Samples that fit the budget: those asked for, or fewer but 3 at least.
+/// Samples that fit the budget: those asked for, or fewer, but 5 at least where as many were asked for.
 /// sweep_s: what one sample of every row is expected to take.
 [[nodiscard]] unsigned affordable_samples(unsigned asked, double sweep_s, double budget_s);
 

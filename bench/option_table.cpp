@@ -147,8 +147,8 @@ std::vector<OptionRow> row_options()
          "and a kernel of the structures kept.",
          tracing, true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
-         "Keep the rows of the devices whose name, driver, type or id contains TEXT, in whatever case, for example "
-         "'gpu' or 'llvmpipe'. Default: all.",
+         "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, in whatever case, for "
+         "example 'gpu', 'llvmpipe' or 'vulkan:1', the second one of vulkan. Default: all.",
          tracing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
         {"Rows", "--rays", "KIND", "Keep the rows of this kind of rays: primary. Default: primary.", measuring, true,
          append("--rays", &Options::rays, std::vector<RayKind>{RayKind::primary})},
@@ -216,8 +216,8 @@ std::vector<OptionRow> judging_options()
              o.samples = static_cast<unsigned>(parse_count("--samples", v, 3, 10000));
          }},
         {"Measuring", "--budget", "TIME",
-         "Wall clock for the timed part: where it would take longer, fewer samples are taken (never below 3), and the "
-         "result says so. Default: 60s.",
+         "Wall clock for the timed part: where it would take longer, fewer samples are taken, and the result says so; "
+         "but no fewer than 5, below which intervals are too narrow, where as many are asked for. Default: 2m.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
@@ -232,7 +232,9 @@ std::vector<OptionRow> judging_options()
          "bar. Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures, {Picture::normals, Picture::steps})},
         {"Pictures", "--picture", "FOLDER",
-         "Write a PNG of each view on which a row differs from openmp, the differing pixels marked. Default: none.",
+         "Write a picture of each view on which a row differs from openmp, the differing pixels marked: PNG, or PPM "
+         "where "
+         "OpenImageIO is missing. Default: none.",
          bit(Verb::check), false, set_path("--picture", &Options::picture_folder)},
     };
 }

@@ -55,7 +55,7 @@ struct Options {
     unsigned tile_height = 0;       ///< 4 or 8; 0: default_tile_height() of each device
     std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
     unsigned samples = 10;
-    double budget_s = 60; ///< for the timed part
+    double budget_s = 120; ///< for the timed part
 
     std::vector<std::string> required; ///< backends that must have a usable device
     bool allow_flawed = false;

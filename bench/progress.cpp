@@ -4,7 +4,9 @@
 #include "core/error.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -36,10 +38,48 @@ bool draws_here()
     return isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
 }
 
+/// Columns that the process's line takes, for the signal handler.
+std::atomic<std::size_t> columns_to_clear{0};
+
+/// Takes the line away, then lets the signal end the process as it would have: only async-signal-safe calls.
+void clear_and_end(int signal)
+{
+    char blanks[256];
+    std::memset(blanks, ' ', sizeof blanks);
+    blanks[0] = '\r';
+    const std::size_t columns = std::min(columns_to_clear.load(), sizeof blanks - 2);
+    blanks[columns + 1] = '\r';
+    if (columns > 0) (void)!::write(STDERR_FILENO, blanks, columns + 2);
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
+/// Signals that are ignored, or handled by others, stay so.
+void clear_when_interrupted()
+{
+    static_assert(decltype(columns_to_clear)::is_always_lock_free, "read by a signal handler");
+    for (const int signal : {SIGINT, SIGTERM}) {
+        struct sigaction before {};
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL)
+            std::signal(signal, clear_and_end);
+    }
+}
+
 bool colour_here()
 {
     const char* no_colour = std::getenv("NO_COLOR");
     return no_colour == nullptr || *no_colour == '\0';
+}
+
+} // namespace
+
+namespace {
+
+ProgressLine make_progress_line()
+{
+    const bool draws = draws_here();
+    if (draws) clear_when_interrupted();
+    return ProgressLine(draws, colour_here());
 }
 
 } // namespace
@@ -80,6 +120,7 @@ void ProgressLine::show(const std::string& stage, double fraction)
     std::fputs(fmt::format(fmt::runtime(colour_ ? "\r\x1b[2m{}\x1b[0m{}" : "\r{}{}"), text, rest).c_str(), stderr);
     std::fflush(stderr);
     drawn_ = columns;
+    columns_to_clear = columns;
     last_draw_ = Clock::now();
 }
 
@@ -89,6 +130,7 @@ void ProgressLine::clear()
     std::fputs(fmt::format("\r{}\r", std::string(drawn_, ' ')).c_str(), stderr);
     std::fflush(stderr);
     drawn_ = 0;
+    columns_to_clear = 0;
     last_draw_ = Clock::now();
 }
 
@@ -99,7 +141,7 @@ Progress ProgressLine::callback()
 
 ProgressLine& progress_line()
 {
-    static ProgressLine line(draws_here(), colour_here());
+    static ProgressLine line = make_progress_line();
     return line;
 }
 

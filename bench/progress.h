@@ -38,6 +38,7 @@ private:
 [[nodiscard]] std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width);
 
 /// The program's one line: draws where standard error is a terminal that is not dumb, in colour unless NO_COLOR is set.
+/// SIGINT and SIGTERM then take the line away before they end the program.
 [[nodiscard]] ProgressLine& progress_line();
 
 /// Writes a message and a line end to standard error, the progress line out of the way.

@@ -1,14 +1,12 @@
 #include "bench/commands.h"
 #include "bench/false_colour.h"
-#include "bench/images.h"
 #include "bench/picture_name.h"
-#include "bench/ppm.h"
+#include "bench/picture_writer.h"
 #include "bench/progress.h"
 #include "bench/row_run.h"
 #include "bench/shading.h"
 
 #include <fmt/format.h>
-#include <optional>
 
 namespace tetrace {
 
@@ -19,29 +17,25 @@ std::vector<Picture> wanted_pictures(const Options& options)
     return options.pictures.empty() ? std::vector{Picture::normals} : options.pictures;
 }
 
-/// Writes pictures in one form, which it is made for: it loads what that needs.
+/// Writes the pictures of a run, all in one form, and prints the names of their files.
 class PictureFiles {
 public:
     explicit PictureFiles(const Options& options)
-        : options_(&options), ending_(picture_ending(options.out, has_images_module()))
+        : options_(&options), ending_(picture_ending(options.out, has_images_module())), writer_(ending_)
     {
-        if (ending_ != ".ppm") images_.emplace();
     }
 
     void write(const PictureKey& key, bool only_picture, const Pixmap& pixmap) const
     {
         const auto path = picture_path(options_->out, key, ending_, only_picture);
-        if (images_)
-            images_->write(path, pixmap);
-        else
-            write_ppm(path, pixmap);
+        writer_.write(path, pixmap);
         print(path.string() + "\n");
     }
 
 private:
     const Options* options_;
     std::string ending_;
-    std::optional<ImageWriter> images_; ///< of all forms but .ppm
+    PictureWriter writer_;
 };
 
 /// The first row that the options select, with its session open.

@@ -23,6 +23,11 @@ void number_hardware(std::vector<RowDevice>& devices)
         devices[i].hardware = hardware[i];
 }
 
+void add_problem(RowDevice& device, const char* what, const std::exception& error)
+{
+    device.problem += fmt::format("{}{}: {}", device.problem.empty() ? "" : "; ", what, error.what());
+}
+
 /// Does a part of the work on a device; a failure becomes its problem.
 template <class Work>
 void attempt(RowDevice& device, const char* what, const Work& work)
@@ -31,7 +36,9 @@ void attempt(RowDevice& device, const char* what, const Work& work)
         work();
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
-        device.problem += fmt::format("{}{}: {}", device.problem.empty() ? "" : "; ", what, error.what());
+        add_problem(device, what, error);
+    } catch (const std::exception& error) { // out of memory: the samples of all rows must not be lost for it
+        add_problem(device, what, error);
     }
 }
 

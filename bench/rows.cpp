@@ -67,9 +67,11 @@ std::string in_lower_case(std::string text)
     return text;
 }
 
-bool wanted_device(const Options& options, const Device& device)
+bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
 {
-    const std::string what = in_lower_case(device.name + '\n' + device.driver + '\n' + device.type + '\n' + device.id);
+    const Device& device = backend.devices()[index];
+    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver, device.type,
+                                                       device.id, backend.name(), index));
     const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
     return options.devices.empty() || std::any_of(options.devices.begin(), options.devices.end(), holds);
 }
@@ -80,8 +82,7 @@ std::vector<std::size_t> devices_with_rows(const Options& options, const Backend
     if (!has_usable_device(backend) && is_named(options, backend)) return {0};
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < backend.devices().size(); ++i)
-        if (const Device& device = backend.devices()[i]; device.usable && wanted_device(options, device))
-            indices.push_back(i);
+        if (backend.devices()[i].usable && wanted_device(options, backend, i)) indices.push_back(i);
     return indices;
 }
 
@@ -117,9 +118,10 @@ std::string device_names(const Options& options, const Backend& backend)
 {
     std::string text;
     if (!options.devices.empty())
-        for (const Device& device : backend.devices())
-            text += fmt::format("\n  a device of {}: {}, {}, {}, {}", backend.name(), device.name, device.driver,
-                                device.type, device.id);
+        for (std::size_t i = 0; i < backend.devices().size(); ++i)
+            if (const Device& device = backend.devices()[i]; device.usable)
+                text += fmt::format("\n  a device is {}:{}: {}, {}, {}", backend.name(), i, device.name, device.type,
+                                    device.driver);
     return text;
 }
 
@@ -143,7 +145,9 @@ std::string reasons(const Options& options)
         throw Error(ErrorKind::usage,
                     "no row has this combination of --structure, --method, --layout, --backend, --device, --schedule "
                     "and --math" +
-                        reasons(options) + "\n'tetrace bench --list' prints the rows of the defaults");
+                        reasons(options) +
+                        fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
+                                    options.verb == Verb::check ? "check" : "bench"));
     std::string text =
         fmt::format("--filter '{}' matches none of the {} rows selected otherwise:", options.filter, unfiltered.size());
     for (const RowKey& key : unfiltered)

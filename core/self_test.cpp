@@ -130,6 +130,22 @@ void judge(SelfTest& test, const Row& row, std::uint32_t result)
     }
 }
 
+/// What makes decisions other than on the host; empty of an exact device.
+std::string inexact_text(const SelfTest& test)
+{
+    std::string text;
+    const auto add = [&](bool applies, const char* what) {
+        if (applies) text += std::string(text.empty() ? "" : ", ") + what;
+    };
+    add(test.contracts, "contracts");
+    add(!test.sums_right, "sums or products wrong");
+    add(!test.comparisons_right, "comparisons wrong");
+    add(!test.integers_right, "integers wrong");
+    add(!test.conversions_right, "conversions wrong");
+    add(!test.bits_kept, "words changed");
+    return text;
+}
+
 std::string rounding_text(const char* what, std::uint32_t ulps)
 {
     if (ulps == 0) return std::string(what) + " correctly rounded";
@@ -151,18 +167,17 @@ std::uint32_t SelfTest::allowed_ulps() const
 
 std::string SelfTest::text() const
 {
-    std::string wrong;
-    const auto add = [&](bool applies, const char* what) {
-        if (applies) wrong += std::string(wrong.empty() ? "" : ", ") + what;
-    };
-    add(contracts, "contracts");
-    add(!sums_right, "sums or products wrong");
-    add(!comparisons_right, "comparisons wrong");
-    add(!integers_right, "integers wrong");
-    add(!conversions_right, "conversions wrong");
-    add(!bits_kept, "words changed");
-    return (wrong.empty() ? "exact" : wrong) + "; " + rounding_text("division", division_ulps) + ", " +
+    return (is_exact() ? "exact" : inexact_text(*this)) + "; " + rounding_text("division", division_ulps) + ", " +
            rounding_text("square root", square_root_ulps) + ", denormals " + (denormals_kept ? "kept" : "flushed");
+}
+
+std::string SelfTest::brief() const
+{
+    std::string text = is_exact() ? "exact" : inexact_text(*this);
+    if (division_ulps > 0) text += ", division " + std::to_string(division_ulps) + " ulp";
+    if (square_root_ulps > 0) text += ", root " + std::to_string(square_root_ulps) + " ulp";
+    if (!denormals_kept) text += ", denormals flushed";
+    return text;
 }
 
 const std::vector<Row>& self_test_operations()

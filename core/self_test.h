@@ -29,6 +29,8 @@ struct SelfTest {
     [[nodiscard]] std::uint32_t allowed_ulps() const;
     /// In one line: "exact; division correctly rounded, denormals kept".
     [[nodiscard]] std::string text() const;
+    /// "exact", or only what deviates, for a narrow column: "contracts, division 2 ulp, denormals flushed".
+    [[nodiscard]] std::string brief() const;
 };
 
 /// The operations to run: rows {operation, a, b, c}, some hundreds.

@@ -185,6 +185,7 @@ TEST(self_test, finds_contraction)
     EXPECT_TRUE(test.contracts);
     EXPECT_FALSE(test.is_exact());
     EXPECT_TRUE(contains(test.text(), "contracts"));
+    EXPECT_TRUE(contains(test.brief(), "contracts"));
 }
 
 TEST(self_test, measures_division_and_decides_the_tolerance)

@@ -204,13 +204,21 @@ TEST_F(program, check_shows_rows_against_devices_and_writes_junit)
                             "--out check.json");
     ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
     EXPECT_TRUE(contains(ended.out, "cdt maria tet96  reference"));
-    EXPECT_TRUE(contains(ended.out, "exact; division correctly rounded"));
+    EXPECT_TRUE(contains(ended.out, "self-test, exact mode"));
     const auto section = nlohmann::json::parse(file("check.json"))["tetrace"];
     const auto& cell = section["matrix"]["cubes"]["cdt maria tet80"]["openmp"];
     EXPECT_EQ(cell["cell"], "reference");
     EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
     EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
     EXPECT_TRUE(contains(file("check.xml"), "tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+}
+
+TEST_F(program, a_check_of_which_no_row_could_run_does_not_pass)
+{
+    ::setenv("CUDA_VISIBLE_DEVICES", "", 1); // where there is a GPU, CUDA has none for this program
+    const Ended ended = run("check --backend cuda --scene cubes --resolution 6 --size 24");
+    EXPECT_EQ(ended.code, 3) << ended.out;
+    EXPECT_TRUE(contains(ended.errors, "nothing was checked")) << ended.errors;
 }
 
 TEST_F(program, checks_embree_where_it_is_asked_for)

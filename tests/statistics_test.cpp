@@ -47,12 +47,13 @@ TEST(statistics, samples_that_cannot_be_times_are_rejected)
     EXPECT_THROW(static_cast<void>(statistics_of({1, std::numeric_limits<double>::infinity()})), Error);
 }
 
-TEST(affordable_samples, keeps_what_fits_and_never_goes_below_three)
+TEST(affordable_samples, keeps_what_fits_and_never_goes_below_five)
 {
     EXPECT_EQ(affordable_samples(10, 1.0, 25), 10u);
     EXPECT_EQ(affordable_samples(10, 2.5, 25), 10u);
     EXPECT_EQ(affordable_samples(10, 5.0, 25), 5u);
-    EXPECT_EQ(affordable_samples(10, 100.0, 25), 3u);
-    EXPECT_EQ(affordable_samples(10, 1e12, 25), 3u);
+    EXPECT_EQ(affordable_samples(10, 100.0, 25), 5u);
+    EXPECT_EQ(affordable_samples(10, 1e12, 25), 5u);
+    EXPECT_EQ(affordable_samples(3, 100.0, 25), 3u) << "asked for";
     EXPECT_EQ(affordable_samples(10, 0.0, 25), 10u);
 }
