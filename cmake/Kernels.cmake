@@ -7,6 +7,9 @@ set(TETRACE_LAYOUTS tet80 tet96)
 # How kernels are compiled as host C++ in each math mode.
 set(TETRACE_HOST_FLAGS_exact -ffp-contract=off)
 set(TETRACE_HOST_FLAGS_fast -ffp-contract=fast -ffast-math)
+if(CMAKE_BUILD_TYPE STREQUAL Debug)
+  list(APPEND TETRACE_HOST_FLAGS_fast -O2) # gcc contracts from there on
+endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
 endif()
