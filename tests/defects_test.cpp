@@ -39,7 +39,8 @@ std::vector<Defect> all_defects()
 
 Words run(const vulkan::Context& context, const Defect& defect)
 {
-    const vulkan::Program program(context, {defect.name, {0, 1}, 0, 0, defects::embedded_kernels()}, ProgramCache({}));
+    const vulkan::ProgramId id{.name = defect.name, .bindings = {0, 1}, .kernels = defects::embedded_kernels()};
+    const vulkan::Program program(context, id, ProgramCache({}));
     Words results(items);
     const std::span<std::byte> bytes = std::as_writable_bytes(std::span(results));
     context.run("running " + defect.name, 0, [&] {

@@ -16,7 +16,7 @@ std::vector<std::uint32_t> run_probe(const Context& context, MathMode math, std:
     if (operations.empty()) return results;
     const std::span<std::byte> result_bytes = std::as_writable_bytes(std::span(results));
     context.run("running the self-test", operations.size_bytes() + result_bytes.size(), [&] {
-        const ProgramId id{std::string("probe_").append(name_of(math)), {0, 1}, {}};
+        const ProgramId id{.name = std::string("probe_").append(name_of(math)), .bindings = {0, 1}};
         const Program program(context, id, ProgramCache({}));
         const Buffer rows(context, operations.size_bytes(), Place::device);
         const Buffer words(context, result_bytes.size(), Place::device);

@@ -97,7 +97,10 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
 void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
 {
     const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
-    ProgramId id{embedded_name(kernel) + variant, {OUTPUT_BINDING}, {}, sizeof(LaunchParams), tile_height_};
+    ProgramId id{.name = embedded_name(kernel) + variant,
+                 .bindings = {OUTPUT_BINDING},
+                 .push_constant_bytes = sizeof(LaunchParams),
+                 .tile_height = tile_height_};
     if (in_texels_) id.texels = texel_bindings();
     for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
         id.bindings.push_back(binding);
