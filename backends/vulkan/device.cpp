@@ -134,7 +134,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     facts.name = properties.deviceName.data();
     facts.type = properties.deviceType == vk::PhysicalDeviceType::eCpu ? "emulated" : "gpu";
     if (facts.type == "emulated") facts.threads = std::max(1u, std::thread::hardware_concurrency());
-    // lavapipe 22.3 reads a storage buffer lane after lane, through memory: 4 times slower on this walk, and 7 times
+    // lavapipe 22.3 reads a storage buffer lane after lane, through memory: 3.5 times slower on this walk, and 7 times
     // where rows are read (results/texels.md).
     found.reads_texels = facts.type == "emulated";
     facts.driver = "Vulkan driver " + version_text(properties.driverVersion);
