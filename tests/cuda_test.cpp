@@ -7,6 +7,7 @@
 #include "tests/device_rays.h"
 #include "tests/temporary_folder.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <regex>
@@ -177,13 +178,17 @@ TEST_P(CudaWithoutGpu, a_job_launched_twice_gives_the_same_hits)
 TEST_P(CudaWithoutGpu, wait_tells_the_seconds_of_all_launches)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
-    const auto session = backend->open(0, {}, rays.data(), {});
-    const auto start = std::chrono::steady_clock::now();
-    session->launch(rays.from_outside(300, 300));
-    const double seconds = session->wait();
-    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    EXPECT_LT(seconds, wall_s);
-    EXPECT_GT(seconds, 0.25 * wall_s) << "the last of the three launches has a tenth of the tiles";
+    double largest_share = 0; // a busy machine makes a share smaller, never larger
+    for (int i = 0; i < 8; i++) {
+        const auto session = backend->open(0, {}, rays.data(), {}); // its first image is launched in steps
+        const auto start = std::chrono::steady_clock::now();
+        session->launch(rays.from_outside(300, 300));
+        const double seconds = session->wait();
+        const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        EXPECT_LT(seconds, wall_s);
+        largest_share = std::max(largest_share, seconds / wall_s);
+    }
+    EXPECT_GT(largest_share, 0.25) << "the last of the three launches has a tenth of the tiles";
 }
 
 TEST_P(CudaWithoutGpu, fast_mode_finds_the_same_faces_but_for_rays_on_edges)

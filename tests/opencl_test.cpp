@@ -8,6 +8,7 @@
 #include "tests/device_rays.h"
 #include "tests/temporary_folder.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace tetrace {
@@ -115,16 +116,18 @@ TEST_F(Opencl, wait_tells_the_device_seconds_of_all_launches)
 {
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
-        const auto session = backend.open(device, {}, rays.data(), {});
-        for (int image = 0; image < 2; image++) { // the first is launched in steps
+        double largest_share = 0; // a busy machine makes a share smaller, never larger
+        for (int i = 0; i < 8; i++) {
+            const auto session = backend.open(device, {}, rays.data(), {}); // its first image is launched in steps
             const auto start = std::chrono::steady_clock::now();
             session->launch(rays.from_outside(300, 300));
             const double seconds = session->wait();
             const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             EXPECT_LT(seconds, wall_s);
-            const bool has_latency = backend.devices()[device].type == "gpu"; // longer than such an image takes
-            EXPECT_GT(seconds, has_latency ? 0 : 0.25 * wall_s) << "the last of three steps has a tenth of the tiles";
+            largest_share = std::max(largest_share, seconds / wall_s);
         }
+        const bool has_latency = backend.devices()[device].type == "gpu"; // longer than such an image takes
+        EXPECT_GT(largest_share, has_latency ? 0 : 0.25) << "the last of three steps has a tenth of the tiles";
     }
 }
 
