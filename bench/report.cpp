@@ -13,8 +13,6 @@ namespace tetrace {
 
 namespace {
 
-constexpr int schema_version = 2;
-
 Format format_of_file(const Options& options)
 {
     if (options.format && *options.format != Format::table) return *options.format;

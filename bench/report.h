@@ -8,6 +8,9 @@
 
 namespace tetrace {
 
+/// Of the results that this program writes; raised when a key changes its meaning or goes.
+inline constexpr int schema_version = 2;
+
 /// What a verb found out, in each form that it can be asked for.
 struct Report {
     std::string text; ///< for people
