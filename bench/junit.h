@@ -13,8 +13,4 @@ namespace tetrace {
 /// reason; hashes, cells and self-tests are properties.
 [[nodiscard]] std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed);
 
-/// A text as XML shows it, in attributes too: the five characters replaced, and what XML cannot hold (control
-/// characters, bytes that are no UTF-8) by question marks.
-[[nodiscard]] std::string xml_text(const std::string& text);
-
 } // namespace tetrace

@@ -20,4 +20,8 @@ namespace tetrace {
 /// Seconds as a person reads them: "0.8 s", "12 s", "3 min 05 s".
 [[nodiscard]] std::string seconds_text(double seconds);
 
+/// A text as XML and HTML show it, in attributes too: the five characters replaced, and what XML cannot hold (control
+/// characters, bytes that are no UTF-8) by question marks.
+[[nodiscard]] std::string xml_text(const std::string& text);
+
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #include "bench/junit.h"
 
+#include "bench/text.h"
 #include "bench/verify.h"
 #include "scenes/procedural.h"
 #include "tests/temporary_folder.h"
