@@ -1,5 +1,6 @@
-// The CUDA backend without a GPU: on its host emulation, and on a library that poses as NVIDIA's driver
-// (tests/stub_cuda). What it compiles for real GPUs is looked at, not run.
+// What CUDA alone has, without a GPU: that its two stand-ins, the host emulation and a library that poses as NVIDIA's
+// driver (tests/stub_cuda), say so; a driver's failures; NVRTC; the code that real GPUs get, which is looked at, not
+// run. tests/device_test.cpp has what is claimed of every API.
 #include "backends/cuda/driver_backend.h"
 #include "backends/cuda_host/backend.h"
 #include "core/scene_buffers.h"
@@ -8,7 +9,6 @@
 #include "tests/temporary_folder.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <regex>
 #include <set>
@@ -68,7 +68,7 @@ std::string assembly_by_nvrtc(const std::string& source, std::span<const std::st
     return {made.begin(), made.end()};
 }
 
-/// All work on each of the two drivers.
+/// On each of the two.
 class CudaWithoutGpu : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override
@@ -80,16 +80,6 @@ protected:
         made = stub_backend(cuda::embedded_programs);
         backend = made.get();
         if (!backend->devices()[0].usable) GTEST_SKIP() << backend->devices()[0].reason;
-    }
-    void expect_openmps_hits(const KernelId& kernel, const DeviceRays& rays, const std::vector<TraceJob>& jobs,
-                             const SessionOptions& options) const
-    {
-        const auto session = backend->open(0, kernel, rays.data(), options);
-        for (const TraceJob& job : jobs)
-            EXPECT_EQ(different_rays(traced(*session, job), openmp_hits(rays, job), 0), 0u)
-                << name_of(kernel) << ' ' << name_of(kernel.schedule) << ' ' << job.width << 'x' << job.height
-                << " tile height " << options.tile_height
-                << (job.start_tet == NO_TET ? " from outside" : " from inside");
     }
 
     std::unique_ptr<Backend> made;
@@ -142,95 +132,11 @@ TEST_P(CudaWithoutGpu, is_exact_in_exact_mode)
     EXPECT_EQ(test, SelfTest{}) << test.text();
 }
 
-TEST_P(CudaWithoutGpu, hits_are_openmps_for_each_layout_schedule_and_tile)
+TEST_P(CudaWithoutGpu, contracts_in_fast_mode)
 {
-    for (const Layout layout : {Layout::tet80, Layout::tet96}) {
-        const DeviceRays rays(make_cubes(8), layout);
-        const std::vector<TraceJob> jobs{rays.from_outside(64, 64), rays.from_outside(61, 35),
-                                         rays.from_outside(1, 1),   rays.from_inside(40, 24),
-                                         rays.from_inside(33, 50),  rays.from_outside(5, 90, 3)};
-        for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
-            for (const unsigned tile_height : {0u, 4u, 8u})
-                expect_openmps_hits({.layout = layout, .schedule = schedule}, rays, jobs,
-                                    {.threads = 2, .tile_height = tile_height});
-    }
-}
-
-TEST_P(CudaWithoutGpu, hits_are_openmps_for_an_image_of_many_launches)
-{
-    const DeviceRays rays(make_cubes(8), Layout::tet96);
-    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
-        expect_openmps_hits({.layout = Layout::tet96, .schedule = schedule}, rays,
-                            {rays.from_outside(401, 390), rays.from_outside(401, 390, 0)}, {.threads = 1});
-}
-
-TEST_P(CudaWithoutGpu, a_job_launched_twice_gives_the_same_hits)
-{
-    const DeviceRays rays(make_cubes(4), Layout::tet80);
-    const auto session = backend->open(0, {}, rays.data(), {});
-    const auto first = traced(*session, rays.from_outside(50, 50));
-    (void)traced(*session, rays.from_inside(20, 90));
-    EXPECT_EQ(traced(*session, rays.from_outside(50, 50)), first);
-    EXPECT_EQ(session->bytes(), rays.packed().bytes());
-    EXPECT_GT(session->setup_times().upload_s, 0);
-}
-
-TEST_P(CudaWithoutGpu, wait_tells_the_seconds_of_all_launches)
-{
-    const DeviceRays rays(make_cubes(4), Layout::tet80);
-    double largest_share = 0; // a busy machine makes a share smaller, never larger
-    for (int i = 0; i < 8; i++) {
-        const auto session = backend->open(0, {}, rays.data(), {}); // its first image is launched in steps
-        const auto start = std::chrono::steady_clock::now();
-        session->launch(rays.from_outside(300, 300));
-        const double seconds = session->wait();
-        const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        EXPECT_LT(seconds, wall_s);
-        largest_share = std::max(largest_share, seconds / wall_s);
-    }
-    EXPECT_GT(largest_share, 0.25) << "the last of the three launches has a tenth of the tiles";
-}
-
-TEST_P(CudaWithoutGpu, fast_mode_finds_the_same_faces_but_for_rays_on_edges)
-{
-    const KernelId kernel{.math = MathMode::fast};
-    if (const auto reason = cuda_host_backend().why_not(0, kernel); !reason.empty()) GTEST_SKIP() << reason;
-    const DeviceRays rays(make_cubes(8), Layout::tet80);
-    const TraceJob job = rays.from_outside(128, 128);
-    const auto right = openmp_hits(rays, job);
-    const auto session = backend->open(0, kernel, rays.data(), {});
-    EXPECT_LE(distant_rays(traced(*session, job), right), right.size() / 1000);
+    if (const auto reason = cuda_host_backend().why_not(0, {.math = MathMode::fast}); !reason.empty())
+        GTEST_SKIP() << reason;
     EXPECT_TRUE(judge_self_test(backend->probe(0, MathMode::fast, self_test_operations())).contracts);
-}
-
-TEST_P(CudaWithoutGpu, refuses_what_exceeds_a_limit_with_both_numbers)
-{
-    const DeviceRays rays(make_cubes(8), Layout::tet80);
-    const std::string bytes = std::to_string(scene_buffers(rays.packed())[0].bytes.size());
-    const std::string scene = error_of([&] { (void)backend->open(0, {}, rays.data(), {.max_buffer_bytes = 20'000}); });
-    EXPECT_TRUE(scene.starts_with("unsupported: ")) << scene;
-    EXPECT_TRUE(contains(scene, bytes) && contains(scene, "20000"));
-    const auto session = backend->open(0, {}, rays.data(), {.max_buffer_bytes = 300'000});
-    const std::string image = error_of([&] { session->launch(rays.from_outside(200, 100)); });
-    EXPECT_TRUE(image.starts_with("unsupported: ") && contains(image, "480512")) << image;
-    EXPECT_EQ(traced(*session, rays.from_outside(20, 10)).size(), 200u) << "the session lives on";
-}
-
-TEST_P(CudaWithoutGpu, yardstick_is_plausible)
-{
-    const auto yardstick = backend->yardstick(0, {});
-    ASSERT_TRUE(yardstick.has_value());
-    EXPECT_GT(yardstick->copy_bytes_per_s, 1e6);
-    EXPECT_GT(yardstick->launch_s, 0);
-}
-
-TEST_P(CudaWithoutGpu, has_the_kernels_of_the_cdt)
-{
-    EXPECT_TRUE(
-        backend->has_kernel({.layout = Layout::tet96, .math = MathMode::fast, .schedule = Schedule::persistent}));
-    EXPECT_FALSE(
-        backend->has_kernel({.structure = Structure::bvh, .method = Method::single, .layout = Layout::embree}));
-    EXPECT_TRUE(contains(backend->why_not(0, {.method = Method::single}), "has no kernel"));
 }
 
 INSTANTIATE_TEST_SUITE_P(on, CudaWithoutGpu, ::testing::Values("host", "stub"),

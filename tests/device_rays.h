@@ -6,6 +6,8 @@
 #include "core/ulps.h"
 #include "scenes/procedural.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +15,21 @@
 #include <vector>
 
 namespace tetrace {
+
+/// Runs a case's body on each usable device of a backend; visibly skipped where there is none.
+class UsableDevices : public ::testing::Test {
+protected:
+    explicit UsableDevices(Backend& tested) : backend(tested) {}
+    void SetUp() override
+    {
+        for (std::size_t i = 0; i < backend.devices().size(); i++)
+            if (backend.devices()[i].usable) usable.push_back(i);
+        if (usable.empty()) GTEST_SKIP() << backend.devices().front().reason;
+    }
+
+    Backend& backend;
+    std::vector<std::size_t> usable;
+};
 
 /// A packed scene and jobs on it, for tests that trace on devices.
 class DeviceRays {
@@ -57,6 +74,14 @@ private:
     PackedScene packed_;
     BoundingSphere sphere_;
 };
+
+/// Images that are, and are not, multiples of a tile; cameras outside and inside.
+[[nodiscard]] inline std::vector<TraceJob> jobs_of_all_kinds(const DeviceRays& rays)
+{
+    return {rays.from_outside(64, 64), rays.from_outside(61, 35),   rays.from_outside(7, 3),
+            rays.from_inside(40, 24),  rays.from_outside(1, 1),     rays.from_inside(33, 50),
+            rays.from_outside(200, 1), rays.from_outside(5, 90, 3), rays.from_outside(64, 64, 2)};
+}
 
 /// The hits of one launch.
 [[nodiscard]] inline std::vector<Hit> traced(Session& session, const TraceJob& job)
