@@ -101,6 +101,7 @@ void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_
     const Hit& theirs = reference[pixel];
     const auto blame = [&](std::uint64_t& count, const char* reason) {
         count++;
+        verdicts.flawed.push_back(static_cast<std::uint32_t>(pixel));
         if (!verdicts.first_wrong)
             verdicts.first_wrong = WrongRay{number, x, y, ours, theirs.face_id, theirs.t, reason};
     };
@@ -138,8 +139,10 @@ Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_
         for (std::size_t pixel = std::size_t{y} * width; pixel < std::size_t{y + 1} * width; pixel++)
             parts_->judge_ray(rows[y], view, view_number, pixel, hits[pixel]);
     Verdicts all;
-    for (const Verdicts& row : rows)
+    for (const Verdicts& row : rows) {
         all.add(row);
+        all.flawed.insert(all.flawed.end(), row.flawed.begin(), row.flawed.end());
+    }
     all.rays = hits.size();
     return all;
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace tetrace {
 
@@ -31,7 +32,9 @@ struct Verdicts {
     std::uint64_t lost = 0;
     double largest_tie_distance = 0;     ///< in domain units, over all ties
     std::optional<WrongRay> first_wrong; ///< the first wrong or lost ray
+    std::vector<std::uint32_t> flawed;   ///< of one image: pixels (y * width + x) of its wrong and lost rays, ascending
 
+    /// Sums; `flawed` stays as it is, for pixels of different images do not belong together.
     void add(const Verdicts& other);
     [[nodiscard]] bool clean() const { return wrong == 0 && lost == 0; }
 };

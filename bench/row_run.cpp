@@ -48,6 +48,20 @@ std::string traced_reason(const Traced& traced)
 
 } // namespace
 
+void Traced::add(const ImageVerdict& image)
+{
+    totals.add(image.totals);
+    verdicts.add(image.verdicts);
+    compared = compared || image.compared;
+    different += image.different;
+    inexact += image.inexact;
+    largest_ulps = std::max(largest_ulps, image.largest_ulps);
+    if (!first_different) first_different = image.first_different;
+    kernel_s += image.kernel_s;
+    wall_s += image.wall_s;
+    download_s += image.download_s;
+}
+
 std::string_view name_of(Status status)
 {
     switch (status) {

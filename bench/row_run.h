@@ -27,6 +27,19 @@ struct DifferingRay {
     Hit ours{}, openmp{};
 };
 
+/// What the verification of one image found out.
+struct ImageVerdict {
+    RayTotals totals;
+    Verdicts verdicts;
+    bool compared = false; ///< as in Traced, like all down to first_different
+    std::uint64_t different = 0;
+    std::uint64_t inexact = 0;
+    std::uint64_t largest_ulps = 0;
+    std::optional<DifferingRay> first_different;
+    std::uint64_t hit_hash = 0; ///< of this image's hits
+    double kernel_s = 0, wall_s = 0, download_s = 0;
+};
+
 /// What the untimed pass over all selected views found out.
 struct Traced {
     RayTotals totals;
@@ -42,6 +55,9 @@ struct Traced {
     double kernel_s = 0; ///< device seconds of this first pass
     double wall_s = 0;   ///< launch to end, on the host's clock
     double download_s = 0;
+
+    /// Adds an image, all but its hash: images are added in the order of views.
+    void add(const ImageVerdict& image);
 };
 struct Skipped {
     Status status = Status::skipped; ///< or unsupported

@@ -70,40 +70,36 @@ private:
     std::vector<std::unique_ptr<Reference>> references_;
 };
 
-/// One scene's verification: the same steps for each row and view.
-class Verification {
+} // namespace
+
+/// The same steps for each row and view.
+class Verifier::Parts {
 public:
-    Verification(SceneWork& scene, const Options& options)
+    Parts(SceneWork& scene, const Options& options)
         : scene_(&scene), oracle_(scene.loaded().scene.mesh, resolved_threads(options)), references_(scene, options),
-          hits_(scene.rays_per_view())
+          hits(scene.rays_per_view())
     {
     }
 
-    void verify(RowRun& row, std::size_t view)
+    ImageVerdict verify(RowRun& row, std::size_t view)
     {
-        Traced& result = std::get<Traced>(row.outcome);
-        trace_timed(row, result, view);
-        count(result, view);
-        result.last_view_hash = hash_of(hits_);
-        if (view == 0) result.first_view_hash = result.last_view_hash;
-        result.hit_hash = hash_of(hits_, result.hit_hash);
-        reference_ = {};
-        if (needs_reference(row.key)) compare(row, result, view);
-        result.verdicts.add(judge(view, result.last_view_hash));
+        ImageVerdict image;
+        trace_timed(row, image, view);
+        image.totals = checked_totals(view);
+        image.hit_hash = hash_of(hits);
+        reference = {};
+        if (needs_reference(row.key)) compare(row, image, view);
+        image.verdicts = judge(view, image.hit_hash);
+        return image;
     }
 
-    /// A device that answers differently under repetition is caught here, after everything else that it was given.
-    void verify_again(RowRun& row)
+    std::uint64_t trace(RowRun& row, std::size_t view)
     {
-        trace(row, 0);
-        if (hash_of(hits_) != traced(row)->first_view_hash)
-            throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
-                                                             scene_->view_numbers().front()));
+        poison(hits);
+        static_cast<void>(trace_kernel(row, view));
+        row.session->read_back(hits);
+        return hash_of(hits);
     }
-
-    [[nodiscard]] std::span<const Hit> hits() const { return hits_; }
-    /// openmp's, of the last verify(); empty where there was nothing to compare.
-    [[nodiscard]] std::span<const Hit> reference() const { return reference_; }
 
 private:
     /// Device seconds.
@@ -113,40 +109,33 @@ private:
         return row.session->wait();
     }
 
-    void trace(RowRun& row, std::size_t view)
+    void trace_timed(RowRun& row, ImageVerdict& image, std::size_t view)
     {
-        poison(hits_);
-        static_cast<void>(trace_kernel(row, view));
-        row.session->read_back(hits_);
-    }
-
-    void trace_timed(RowRun& row, Traced& result, std::size_t view)
-    {
-        poison(hits_);
+        poison(hits);
         const Stopwatch watch;
-        result.kernel_s += trace_kernel(row, view);
-        result.wall_s += watch.seconds();
+        image.kernel_s = trace_kernel(row, view);
+        image.wall_s = watch.seconds();
         const Stopwatch download;
-        row.session->read_back(hits_);
-        result.download_s += download.seconds();
+        row.session->read_back(hits);
+        image.download_s = download.seconds();
     }
 
-    void count(Traced& result, std::size_t view) const
+    [[nodiscard]] RayTotals checked_totals(std::size_t view) const
     {
-        const RayTotals totals = count_rays(hits_);
+        const RayTotals totals = count_rays(hits);
         if (totals.unwritten > 0) {
             const auto first = static_cast<std::size_t>(
-                std::find_if(hits_.begin(), hits_.end(), [](const Hit& hit) { return hit.face_id == POISON; }) -
-                hits_.begin());
+                std::find_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }) -
+                hits.begin());
             throw Error(ErrorKind::wrong_result,
                         fmt::format("{} of {} rays were never written, the first at view {}, pixel ({}, {})",
                                     totals.unwritten, totals.rays, scene_->view_numbers()[view],
                                     first % scene_->width(), first / scene_->width()));
         }
-        result.totals.add(totals);
+        return totals;
     }
 
-    /// The oracle's verdict on hits_. Hits of one hash are the same bytes but with a probability of 2^-64 a pair: what
+    /// The oracle's verdict on hits. Hits of one hash are the same bytes but with a probability of 2^-64 a pair: what
     /// was judged once in a view holds for all rows.
     Verdicts judge(std::size_t view, std::uint64_t hash)
     {
@@ -155,34 +144,79 @@ private:
         if (const auto found = judged_.find(hash); found != judged_.end()) return found->second;
         return judged_
             .emplace(hash, oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(),
-                                         scene_->height(), hits_))
+                                         scene_->height(), hits))
             .first->second;
     }
 
-    void compare(const RowRun& row, Traced& result, std::size_t view)
+    void compare(const RowRun& row, ImageVerdict& image, std::size_t view)
     {
-        const auto& reference = references_.hits(row.key, view);
-        reference_ = reference;
-        const Differences differences = compare_hits(hits_, reference, allowed_ulps(row));
-        result.compared = true;
-        result.different += differences.count;
-        result.inexact += differences.inexact;
-        result.largest_ulps = std::max(result.largest_ulps, differences.largest_ulps);
-        if (!differences.first || result.first_different) return;
+        reference = references_.hits(row.key, view);
+        const Differences differences = compare_hits(hits, reference, allowed_ulps(row));
+        image.compared = true;
+        image.different = differences.count;
+        image.inexact = differences.inexact;
+        image.largest_ulps = differences.largest_ulps;
+        if (!differences.first) return;
         const std::size_t ray = *differences.first;
-        result.first_different =
+        image.first_different =
             DifferingRay{scene_->view_numbers()[view], static_cast<std::uint32_t>(ray % scene_->width()),
-                         static_cast<std::uint32_t>(ray / scene_->width()), hits_[ray], reference[ray]};
+                         static_cast<std::uint32_t>(ray / scene_->width()), hits[ray], reference[ray]};
     }
 
     SceneWork* scene_;
     Oracle oracle_;
     References references_;
-    std::vector<Hit> hits_;
-    std::span<const Hit> reference_;
     std::size_t judged_view_ = 0;
     std::map<std::uint64_t, Verdicts> judged_; ///< of judged_view_, by the hash of its hits
+
+public:
+    std::vector<Hit> hits;
+    std::span<const Hit> reference;
 };
+
+Verifier::Verifier(SceneWork& scene, const Options& options) : parts_(std::make_unique<Parts>(scene, options)) {}
+
+Verifier::~Verifier() = default;
+
+ImageVerdict Verifier::verify(RowRun& row, std::size_t view)
+{
+    return parts_->verify(row, view);
+}
+
+std::uint64_t Verifier::trace(RowRun& row, std::size_t view)
+{
+    return parts_->trace(row, view);
+}
+
+std::span<const Hit> Verifier::hits() const
+{
+    return parts_->hits;
+}
+
+std::span<const Hit> Verifier::reference() const
+{
+    return parts_->reference;
+}
+
+namespace {
+
+void verify_view(Verifier& verifier, RowRun& row, std::size_t view)
+{
+    const ImageVerdict image = verifier.verify(row, view);
+    Traced& result = std::get<Traced>(row.outcome);
+    result.add(image);
+    result.last_view_hash = image.hit_hash;
+    if (view == 0) result.first_view_hash = image.hit_hash;
+    result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
+}
+
+/// A device that answers differently under repetition is caught here, after everything else that it was given.
+void verify_again(Verifier& verifier, RowRun& row)
+{
+    if (verifier.trace(row, 0) != traced(row)->first_view_hash)
+        throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
+                                                         row.scene->view_numbers().front()));
+}
 
 } // namespace
 
@@ -195,7 +229,7 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
                  const ImageSeen& image_seen)
 {
     // Views outside, rows inside: the oracle traces each view once for all rows.
-    Verification verification(scene, options);
+    Verifier verifier(scene, options);
     const double images = static_cast<double>(scene.views().size() * rows.size());
     double done = 0;
     for (std::size_t view = 0; view < scene.views().size(); ++view)
@@ -204,12 +238,12 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
             done += 1;
             if (row->session == nullptr) continue;
             guarded(*row, [&] {
-                verification.verify(*row, view);
-                if (image_seen) image_seen({*row, view, verification.hits(), verification.reference()});
+                verify_view(verifier, *row, view);
+                if (image_seen) image_seen({*row, view, verifier.hits(), verifier.reference()});
             });
         }
     for (RowRun* row : rows)
-        if (row->session != nullptr) guarded(*row, [&] { verification.verify_again(*row); });
+        if (row->session != nullptr) guarded(*row, [&] { verify_again(verifier, *row); });
     progress_line().clear();
 }
 

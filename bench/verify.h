@@ -3,6 +3,7 @@
 #include "bench/row_run.h"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace tetrace {
@@ -19,6 +20,27 @@ using ImageSeen = std::function<void(const SeenImage&)>;
 
 /// Units in the last place by which t, u and v of the row may differ from openmp's: what its device's self-test allows.
 [[nodiscard]] std::uint32_t allowed_ulps(const RowRun& row);
+
+/// One scene's verification, image by image, for whoever goes through them in an order of its own.
+class Verifier {
+public:
+    Verifier(SceneWork& scene, const Options& options);
+    ~Verifier();
+
+    /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray, as verify_rows() does;
+    /// changes nothing of the row. Goes fastest where all rows of a view come before the next view.
+    /// Throws what the session throws, and Error{wrong_result} where a ray was never written.
+    [[nodiscard]] ImageVerdict verify(RowRun& row, std::size_t view);
+    /// Traces a view without judging; returns the hash of its hits.
+    [[nodiscard]] std::uint64_t trace(RowRun& row, std::size_t view);
+    [[nodiscard]] std::span<const Hit> hits() const; ///< of the last verify() or trace()
+    [[nodiscard]] std::span<const Hit>
+    reference() const; ///< openmp's, of the last verify(); empty where there was nothing to compare
+
+private:
+    class Parts;
+    std::unique_ptr<Parts> parts_;
+};
 
 /// Traces every view of a scene once with each of its rows, and judges each ray in two questions: does the device
 /// return what openmp returns (kernels of structure cdt, exact mode), and is the method right (the oracle)? Then the
