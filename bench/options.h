@@ -52,7 +52,7 @@ struct Options {
     std::uint32_t width = 1024, height = 1024;
 
     unsigned threads = 0;           ///< 0: all that the process may use
-    unsigned tile_height = 0;       ///< 4 or 8; 0: default_tile_height() of each device
+    unsigned tile_height = 0;       ///< 4 or 8; 0: tile_height_for() each device
     std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
     unsigned samples = 10;
     double budget_s = 120; ///< for the timed part

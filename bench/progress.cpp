@@ -1,6 +1,7 @@
 #include "bench/progress.h"
 
 #include "bench/text.h"
+#include "core/elapsed.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -20,11 +21,6 @@ namespace {
 
 constexpr double quiet_s = 2.0;
 constexpr double redraw_s = 0.1;
-
-double seconds_since(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::size_t terminal_width()
 {

@@ -8,7 +8,7 @@ namespace tetrace {
 class AbsentBackend : public Backend {
 public:
     /// reason: what was missing and which package brings it.
-    AbsentBackend(std::string name, std::string reason);
+    AbsentBackend(std::string name, const std::string& reason);
 
     [[nodiscard]] std::string name() const override { return name_; }
     [[nodiscard]] std::string clock() const override { return "none"; }

@@ -42,7 +42,7 @@ struct SceneData {
 
 struct SessionOptions {
     unsigned threads = 0;                     ///< host threads; 0 is all that the process may use
-    unsigned tile_height = 0;                 ///< 4 or 8; 0: default_tile_height() of the device
+    unsigned tile_height = 0;                 ///< 4 or 8; 0: tile_height_for() the device
     std::uint64_t max_buffer_bytes = 0;       ///< treat the device's largest buffer as this small; 0: as it is
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
 };

@@ -1,5 +1,6 @@
 #include "core/host_session.h"
 
+#include "core/elapsed.h"
 #include "core/launch.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ void HostSession::launch(const TraceJob& job)
     const std::span hits(reinterpret_cast<Hit*>(output_.data() + GUARD_WORDS), std::size_t{job.width} * job.height);
     const auto start = std::chrono::steady_clock::now();
     trace(job, hits);
-    kernel_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    kernel_s_ = seconds_since(start);
 }
 
 void HostSession::read_output(std::span<std::uint32_t> words)

@@ -1,6 +1,9 @@
 #include "core/launch.h"
 
+#include "core/error.h"
+
 #include <algorithm>
+#include <string>
 
 namespace tetrace {
 
@@ -9,7 +12,6 @@ namespace {
 constexpr std::uint32_t first_launch_rays = 16'384;
 constexpr double launch_target_s = 0.1;
 constexpr double largest_growth = 4;
-constexpr double most_tiles = 1u << 20; // 2^26 rays at most: far below every API's limit on groups
 
 } // namespace
 
@@ -20,9 +22,9 @@ LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigne
             tile_height,     part_log2};
 }
 
-std::uint32_t tile_count(const TraceJob& job, unsigned tile_height)
+std::uint32_t tile_count(const LaunchParams& image)
 {
-    return ((job.width + TILE_WIDTH - 1) / TILE_WIDTH) * ((job.height + tile_height - 1) / tile_height);
+    return ((image.width + TILE_WIDTH - 1) / TILE_WIDTH) * ((image.height + image.tile_height - 1) / image.tile_height);
 }
 
 std::size_t output_words(const TraceJob& job)
@@ -30,20 +32,58 @@ std::size_t output_words(const TraceJob& job)
     return 2 * std::size_t{GUARD_WORDS} + std::size_t{HIT_WORDS} * job.width * job.height;
 }
 
-unsigned default_tile_height(const Device&)
+void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)
 {
-    return 8;
+    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    if (max_buffer_bytes == 0 || bytes <= max_buffer_bytes) return;
+    throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
+                                            " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
+                                            "; trace a smaller image");
 }
 
-LaunchSize::LaunchSize(unsigned tile_height) : tiles_(first_launch_rays / (TILE_WIDTH * tile_height)) {}
+void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words)
+{
+    if (asked_words == output_words) return;
+    throw Error(ErrorKind::internal, "reading back: an output of " + std::to_string(asked_words) +
+                                         " words is asked for, that of the last launch has " +
+                                         std::to_string(output_words));
+}
+
+LaunchSize::LaunchSize(unsigned tile_height, std::uint32_t most_tiles)
+    : most_tiles_(std::min(most_tiles, no_limit)),
+      tiles_(std::min(most_tiles_, first_launch_rays / (TILE_WIDTH * tile_height)))
+{
+}
 
 void LaunchSize::took(std::uint32_t tiles, double seconds)
 {
     if (tiles == 0) return;
-    const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : most_tiles;
+    const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : most_tiles_;
     // A launch shorter than the limit says little about longer ones: growth is by steps, shrinking at once.
-    const double largest = std::min(most_tiles, std::max<double>(tiles_, tiles * largest_growth));
+    const double largest = std::min<double>(most_tiles_, std::max<double>(tiles_, tiles * largest_growth));
     tiles_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, largest));
+}
+
+void Launches::start(const LaunchParams& image,
+                     const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
+                     const std::function<void()>& take_times)
+{
+    seconds_ = 0;
+    LaunchParams params = image;
+    const std::uint32_t end = tile_count(image);
+    while (params.first_tile < end) {
+        const std::uint32_t tiles = std::min(size_.tiles(), end - params.first_tile);
+        enqueue(params, tiles);
+        params.first_tile += tiles;
+        if (is_first_image_) take_times();
+    }
+    is_first_image_ = false;
+}
+
+void Launches::took(std::uint32_t tiles, double seconds)
+{
+    size_.took(tiles, seconds);
+    seconds_ += seconds;
 }
 
 } // namespace tetrace

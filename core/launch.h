@@ -3,6 +3,7 @@
 #include "core/backend.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace tetrace {
 
@@ -19,25 +20,56 @@ static_assert(sizeof(LaunchParams) == 80, "every backend reads LaunchParams; see
                                          unsigned part_log2);
 
 /// Tiles of an image, row after row.
-[[nodiscard]] std::uint32_t tile_count(const TraceJob& job, unsigned tile_height);
+[[nodiscard]] std::uint32_t tile_count(const LaunchParams& image);
 
 /// Words of an image's output, guards included.
 [[nodiscard]] std::size_t output_words(const TraceJob& job);
 
-/// The tile height that is used where none is asked for, chosen by measurement per type of device (results/tiles.md).
-[[nodiscard]] unsigned default_tile_height(const Device& device);
+/// Throws Error{unsupported} with both numbers where an image's output of so many words exceeds the largest buffer;
+/// max_buffer_bytes: 0 is no limit.
+void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
+
+/// Throws Error{internal} where other hits are read back than those of the last launch.
+void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words);
 
 /// How many tiles a launch may hold so that it ends long before any watchdog fires (2 s is the shortest known): few at
 /// first, then as many as fit into a tenth of a second at the speed that the last launches had.
 class LaunchSize {
 public:
-    explicit LaunchSize(unsigned tile_height);
+    static constexpr std::uint32_t no_limit = 1u << 20; ///< 2^26 rays at most: far below most APIs' limit on groups
+
+    explicit LaunchSize(unsigned tile_height, std::uint32_t most_tiles = no_limit);
     [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
     /// Tells how long a launch of that many tiles took.
     void took(std::uint32_t tiles, double seconds);
 
 private:
+    std::uint32_t most_tiles_;
     std::uint32_t tiles_;
+};
+
+/// Cuts a session's images into launches, and adds up what an image's launches take.
+class Launches {
+public:
+    /// most_tiles: of a launch, where the API has a limit.
+    explicit Launches(unsigned tile_height, std::uint32_t most_tiles = LaunchSize::no_limit)
+        : size_(tile_height, most_tiles)
+    {
+    }
+    /// Calls enqueue with the params and the tiles of launch after launch. image: params of the first one.
+    /// During the session's first image take_times, which tells took(), is called after each: nothing is known yet of
+    /// how long a launch takes.
+    void start(const LaunchParams& image, const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
+               const std::function<void()>& take_times);
+    /// Tells how long a launch of that many tiles took on the device.
+    void took(std::uint32_t tiles, double seconds);
+    /// Of those launches of the image that took() was told of.
+    [[nodiscard]] double seconds() const { return seconds_; }
+
+private:
+    LaunchSize size_;
+    bool is_first_image_ = true;
+    double seconds_ = 0;
 };
 
 } // namespace tetrace

@@ -1,4 +1,5 @@
 #include "core/backend.h"
+#include "core/elapsed.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ void Session::read_back(std::span<Hit> hits)
     std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + HIT_WORDS * hits.size());
     const auto start = std::chrono::steady_clock::now();
     read_output(output);
-    download_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    download_s_ = seconds_since(start);
     const std::span<const std::uint32_t> words = output;
     check_guard(words.first(GUARD_WORDS), "before");
     check_guard(words.last(GUARD_WORDS), "behind");

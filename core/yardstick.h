@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/backend.h"
+#include "core/elapsed.h"
 
 #include <algorithm>
 #include <chrono>
@@ -30,7 +31,7 @@ template <class Work>
     for (std::size_t i = 0; i < times; i++) {
         const auto start = std::chrono::steady_clock::now();
         work();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        seconds.push_back(seconds_since(start));
     }
     std::nth_element(seconds.begin(), seconds.begin() + times / 2, seconds.end());
     return seconds[times / 2];

@@ -1,7 +1,7 @@
 #include "scenes/child_process.h"
 
+#include "core/elapsed.h"
 #include "core/error.h"
-#include "scenes/elapsed.h"
 
 #include <array>
 #include <atomic>

@@ -1,11 +1,11 @@
 #include "scenes/load.h"
 
 #include "core/atomic_file.h"
+#include "core/elapsed.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
-#include "scenes/elapsed.h"
 #include "scenes/file_lock.h"
 #include "scenes/mesh_files.h"
 #include "scenes/procedural.h"

@@ -1,12 +1,16 @@
 // What every device backend builds on: launches, buffers, guard words, the self-test.
 #include "backends/openmp/backend.h"
+#include "core/absent_backend.h"
+#include "core/device_facts.h"
 #include "core/error.h"
 #include "core/launch.h"
+#include "core/open_checks.h"
 #include "core/scene_buffers.h"
 #include "core/self_test.h"
 #include "core/ulps.h"
 #include "scenes/procedural.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -63,6 +67,14 @@ SelfTest judged_with(std::uint32_t operation, const std::function<std::uint32_t(
     for (std::size_t i = 0; i < results.size(); i++)
         if (self_test_operations()[i].x == operation) results[i] = change(self_test_operations()[i], results[i]);
     return judge_self_test(results);
+}
+
+LaunchParams params_of(std::uint32_t width, std::uint32_t height)
+{
+    TraceJob job;
+    job.width = width;
+    job.height = height;
+    return launch_params(job, 8, 8, 31);
 }
 
 float number(std::uint32_t word)
@@ -122,6 +134,137 @@ TEST(launch_size, the_short_last_launch_of_an_image_does_not_shrink_the_next)
     EXPECT_GE(size.tiles(), steady * 9 / 10);
 }
 
+TEST(launch_size, stays_within_the_apis_limit)
+{
+    LaunchSize size(8, 100);
+    EXPECT_EQ(size.tiles(), 100u);
+    size.took(100, 1e-6);
+    EXPECT_EQ(size.tiles(), 100u);
+}
+
+TEST(launches, cover_each_tile_of_an_image_once_and_in_order)
+{
+    Launches launches(8, 100);
+    const LaunchParams image = params_of(300, 200);
+    std::uint32_t next_tile = 0;
+    const auto enqueue = [&](const LaunchParams& params, std::uint32_t tiles) {
+        EXPECT_EQ(params.first_tile, next_tile);
+        EXPECT_LE(tiles, 100u);
+        next_tile += tiles;
+        launches.took(tiles, 1e-3);
+    };
+    launches.start(image, enqueue, [] {});
+    EXPECT_EQ(next_tile, tile_count(image));
+}
+
+TEST(launches, ask_for_times_after_each_of_the_first_image_only)
+{
+    Launches launches(8, 100);
+    const LaunchParams image = params_of(300, 200);
+    for (const bool is_first : {true, false}) {
+        int enqueued = 0, asked = 0;
+        launches.start(
+            image, [&](const LaunchParams&, std::uint32_t) { enqueued++; }, [&] { asked++; });
+        EXPECT_GT(enqueued, 1);
+        EXPECT_EQ(asked, is_first ? enqueued : 0);
+    }
+}
+
+TEST(launches, add_up_the_seconds_of_one_image)
+{
+    Launches launches(8, 100);
+    const LaunchParams image = params_of(80, 80); // one launch
+    for (const double seconds : {3.0, 0.5}) {
+        launches.start(
+            image, [](const LaunchParams&, std::uint32_t) {}, [] {});
+        EXPECT_EQ(launches.seconds(), 0);
+        launches.took(60, seconds);
+        launches.took(40, 1.0);
+        EXPECT_EQ(launches.seconds(), seconds + 1.0);
+    }
+}
+
+TEST(launches, are_sized_by_the_times_they_are_told)
+{
+    Launches launches(8);
+    std::vector<std::uint32_t> sizes;
+    launches.start(
+        params_of(2000, 2000), [&](const LaunchParams&, std::uint32_t tiles) { sizes.push_back(tiles); },
+        [&] { launches.took(sizes.back(), sizes.back() * 1e-3); }); // a tenth of a second: a hundred tiles
+    ASSERT_GT(sizes.size(), 3u);
+    EXPECT_NEAR(sizes[1], 100, 1);
+    EXPECT_NEAR(sizes[2], 100, 1);
+}
+
+TEST(output, is_refused_beyond_the_largest_buffer_with_both_numbers)
+{
+    EXPECT_NO_THROW(require_output_fits(250, 1000));
+    EXPECT_NO_THROW(require_output_fits(1'000'000, 0));
+    const std::string refused = message_of([] { require_output_fits(251, 1000); });
+    EXPECT_TRUE(contains(refused, "1004") && contains(refused, "1000")) << refused;
+    EXPECT_NO_THROW(require_output_of_last_launch(7, 7));
+    EXPECT_TRUE(contains(message_of([] { require_output_of_last_launch(7, 9); }), "last launch has 9"));
+}
+
+TEST(largest_buffer, is_the_smaller_of_the_devices_and_the_options)
+{
+    const auto largest = [](std::uint64_t of_device, std::uint64_t of_options) {
+        Device device;
+        device.max_buffer_bytes = of_device;
+        return largest_buffer(device, {.max_buffer_bytes = of_options});
+    };
+    EXPECT_EQ(largest(0, 0), 0u);
+    EXPECT_EQ(largest(100, 0), 100u);
+    EXPECT_EQ(largest(0, 100), 100u);
+    EXPECT_EQ(largest(100, 60), 60u);
+    EXPECT_EQ(largest(60, 100), 60u);
+}
+
+TEST(packed_scene, is_checked_before_a_session_opens)
+{
+    const PackedScene packed = pack(make_cubes(3), Layout::tet80, TetOrder::hilbert);
+    const Backend& host = openmp_backend();
+    EXPECT_EQ(&packed_scene(host, 0, {}, {nullptr, &packed}), &packed);
+    EXPECT_TRUE(contains(message_of([&] {
+                             (void)packed_scene(host, 0, {.layout = Layout::tet96}, {nullptr, &packed});
+                         }),
+                         "not packed as tet96"));
+    EXPECT_TRUE(contains(message_of([&] { (void)packed_scene(host, 0, {}, {}); }), "not packed as tet80"));
+    EXPECT_TRUE(contains(message_of([&] {
+                             (void)packed_scene(host, 0, {.method = Method::single}, {nullptr, &packed});
+                         }),
+                         "has no kernel"));
+    const AbsentBackend absent("opencl", "the headers were missing");
+    EXPECT_EQ(message_of([&] { (void)packed_scene(absent, 0, {}, {nullptr, &packed}); }), "the headers were missing");
+}
+
+TEST(device_facts, are_written_as_the_system_writes_them)
+{
+    EXPECT_EQ(pci_address(0, 0x41, 0, 0), "0000:41:00.0");
+    EXPECT_EQ(pci_address(1, 2, 0x1f, 7), "0001:02:1f.7");
+    EXPECT_EQ(hexadecimal(std::array<std::uint8_t, 4>{0x00, 0x0f, 0xa0, 0xff}), "000fa0ff");
+}
+
+TEST(device_facts, call_a_device_by_the_best_that_is_known_of_it)
+{
+    Device device;
+    device.name = "name";
+    EXPECT_EQ(id_of(device), "name");
+    device.pci = "0000:41:00.0";
+    EXPECT_EQ(id_of(device), device.pci);
+    device.uuid = "00ff";
+    EXPECT_EQ(id_of(device), device.uuid);
+}
+
+TEST(device_facts, name_an_implementation_by_driver_and_version)
+{
+    EXPECT_EQ(implementation_name("Some (odd) Driver ", "v7.9.1-3 (LLVM 15)"), "some-odd-driver-7.9");
+    EXPECT_EQ(implementation_name("driver", "7."), "driver-7");
+    EXPECT_EQ(implementation_name("driver", "beta"), "driver");
+    EXPECT_EQ(implementation_name("NVIDIA", "580.65.06"), "nvidia-580");
+    EXPECT_EQ(implementation_name("", "1.2"), "unknown-1.2");
+}
+
 TEST(launch_params, carry_the_job_word_for_word)
 {
     TraceJob job;
@@ -137,7 +280,7 @@ TEST(launch_params, carry_the_job_word_for_word)
     EXPECT_EQ(params.divisions, 6u);
     EXPECT_EQ(params.tile_height, 4u);
     EXPECT_EQ(params.part_log2, 20u);
-    EXPECT_EQ(tile_count(job, 4), 3u * 3u);
+    EXPECT_EQ(tile_count(params), 3u * 3u);
     EXPECT_EQ(output_words(job), 2 * GUARD_WORDS + HIT_WORDS * 17 * 9);
 }
 

@@ -91,12 +91,6 @@ TEST(OpenclImplementation, is_read_from_whatever_drivers_say)
     EXPECT_EQ(implementation_of("NVIDIA CUDA", "", ""), "nvidia");
 }
 
-TEST(OpenclDevice, pci_addresses_are_as_the_system_writes_them)
-{
-    EXPECT_EQ(opencl::pci_text(0, 0x41, 0, 0), "0000:41:00.0");
-    EXPECT_EQ(opencl::pci_text(1, 2, 0x1f, 7), "0001:02:1f.7");
-}
-
 TEST(OpenclErrors, name_the_call_the_code_and_the_device)
 {
     const opencl::Task task{"launching", "a device", 1234, 999};

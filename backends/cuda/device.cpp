@@ -1,5 +1,6 @@
 #include "backends/cuda/device.h"
 
+#include "core/device_facts.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -15,26 +16,11 @@ namespace {
 constexpr double event_period_s = 0.5e-6; // of cuEventElapsedTime, as NVIDIA states it
 constexpr double host_period_s = 1e-9;    // an emulation's events read the host's clock
 
-Device unusable(const std::string& reason)
-{
-    Device device;
-    device.name = "none";
-    device.type = "gpu";
-    device.usable = false;
-    device.reason = reason;
-    return device;
-}
-
 std::string uuid_of(const Driver& driver, Ordinal ordinal)
 {
     std::array<unsigned char, 16> bytes{};
     if (driver.device_uuid(bytes.data(), ordinal) != success) return {};
-    std::string text;
-    for (const unsigned char byte : bytes) {
-        text += "0123456789abcdef"[byte >> 4];
-        text += "0123456789abcdef"[byte & 15];
-    }
-    return text;
+    return hexadecimal(bytes);
 }
 
 std::string pci_of(const Driver& driver, Ordinal ordinal)
@@ -73,7 +59,7 @@ void describe_driver(Device& device, const Driver& driver)
     device.type = "gpu";
     if (!module.empty()) device.driver += ", NVIDIA driver " + module;
     device.implementation =
-        module.empty() ? "nvidia-cuda-" + version_text(version) : "nvidia-" + module.substr(0, module.find('.'));
+        module.empty() ? "nvidia-cuda-" + version_text(version) : implementation_name("nvidia", module);
     device.timer_period_s = event_period_s;
 }
 
@@ -86,7 +72,7 @@ Device describe(const Driver& driver, Ordinal ordinal)
     describe_driver(device, driver);
     device.uuid = uuid_of(driver, ordinal);
     device.pci = pci_of(driver, ordinal);
-    device.id = !device.uuid.empty() ? device.uuid : !device.pci.empty() ? device.pci : device.name;
+    device.id = id_of(device);
     std::size_t bytes = 0;
     driver.device_memory(&bytes, ordinal);
     device.memory_bytes = bytes;
@@ -121,12 +107,12 @@ int capability_of(const Driver& driver, Ordinal device)
 
 std::vector<Device> list_devices(const LoadedDriver& loaded, const Programs& programs)
 {
-    if (!loaded.usable()) return {unusable(loaded.reason)};
+    if (!loaded.usable()) return {unusable_device("none", loaded.reason)};
     const Driver& driver = loaded.driver;
     int count = 0;
     if (const Result result = driver.device_count(&count); result != success)
-        return {unusable("counting the NVIDIA driver's devices: " + text_of(driver, result))};
-    if (count == 0) return {unusable("the NVIDIA driver finds no device")};
+        return {unusable_device("none", "counting the NVIDIA driver's devices: " + text_of(driver, result))};
+    if (count == 0) return {unusable_device("none", "the NVIDIA driver finds no device")};
     std::vector<Device> devices;
     for (int i = 0; i < count; i++) {
         Device& device = devices.emplace_back(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i))));

@@ -3,6 +3,7 @@
 #include "backends/cuda/session.h"
 #include "backends/cuda/yardstick.h"
 #include "core/error.h"
+#include "core/open_checks.h"
 
 namespace tetrace::cuda {
 
@@ -64,17 +65,11 @@ std::string DriverBackend::why_not(std::size_t device, const KernelId& kernel) c
 std::unique_ptr<Session> DriverBackend::open(std::size_t device, const KernelId& kernel, const SceneData& scene,
                                              const SessionOptions& options)
 {
-    const Found& here = require(device);
-    if (const std::string reason = why_not(device, kernel); !reason.empty())
-        throw Error(ErrorKind::unsupported, reason);
-    if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
-        throw Error(ErrorKind::internal,
-                    "opening " + name() + ": the scene is not packed as " + std::string(name_of(kernel.layout)));
-    const unsigned tile_height =
-        options.tile_height != 0 ? options.tile_height : default_tile_height(here.devices[device]);
+    const Found& here = found();
+    const PackedScene& packed = packed_scene(*this, device, kernel, scene);
     const Driver& driver = here.driver.driver;
-    return std::make_unique<CudaSession>(driver, ordinal_of(driver, device), here.programs, kernel, *scene.packed,
-                                         options, tile_height);
+    return std::make_unique<CudaSession>(driver, ordinal_of(driver, device), here.programs, kernel, packed, options,
+                                         tile_height_for(here.devices[device], options));
 }
 
 std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode math, std::span<const Row> operations)

@@ -1,5 +1,6 @@
 #include "backends/cuda/program.h"
 
+#include "core/elapsed.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/program_cache.h"
@@ -91,8 +92,7 @@ LoadedProgram load_program(Context& context, int capability, const Programs& pro
 {
     const auto start = std::chrono::steady_clock::now();
     const auto loaded = [&](Module module, bool cached) {
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        return LoadedProgram{std::move(module), took.count(), cached};
+        return LoadedProgram{std::move(module), seconds_since(start), cached};
     };
     if (auto module = build_module(context, programs, id)) return loaded(std::move(*module), false);
     auto [module, cached] = compiled_module(context, capability, programs, id, ProgramCache(cache));

@@ -1,5 +1,6 @@
 #include "backends/cuda/session.h"
 
+#include "core/elapsed.h"
 #include "core/error.h"
 #include "core/scene_buffers.h"
 
@@ -18,12 +19,14 @@ std::string entry_of(const KernelId& kernel)
 }
 
 /// One address space needs no limit and no parts; whoever asks for smaller buffers gets an answer all the same.
-void check_limit(const char* what, std::uint64_t bytes, std::uint64_t max_buffer_bytes)
+void require_arrays_fit(const PackedScene& scene, std::uint64_t max_buffer_bytes)
 {
-    if (max_buffer_bytes == 0 || bytes <= max_buffer_bytes) return;
-    throw Error(ErrorKind::unsupported, std::string(what) + " has " + std::to_string(bytes) +
-                                            " bytes, the largest buffer asked for " + std::to_string(max_buffer_bytes) +
-                                            "; CUDA kernels are given it as one");
+    for (const SceneBuffer& buffer : scene_buffers(scene))
+        if (max_buffer_bytes != 0 && buffer.bytes.size() > max_buffer_bytes)
+            throw Error(ErrorKind::unsupported,
+                        "the scene's array '" + std::string(buffer.name) + "' has " +
+                            std::to_string(buffer.bytes.size()) + " bytes, the largest buffer asked for " +
+                            std::to_string(max_buffer_bytes) + "; CUDA kernels are given it as one");
 }
 
 } // namespace
@@ -34,11 +37,9 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
       schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))), stopwatch_(device_.context),
       tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
-      launch_size_(tile_height), bytes_(scene.bytes())
+      launches_(tile_height), bytes_(scene.bytes())
 {
-    for (const SceneBuffer& buffer : scene_buffers(scene))
-        check_limit(("the scene's array '" + std::string(buffer.name) + "'").c_str(), buffer.bytes.size(),
-                    max_buffer_bytes_);
+    require_arrays_fit(scene, max_buffer_bytes_);
     setup_.compile_s = program_.compile_s;
     setup_.compile_cached = program_.cached;
     upload(scene);
@@ -70,7 +71,7 @@ void CudaSession::upload(const PackedScene& scene)
     for (std::size_t i = 0; i < buffers.size(); i++)
         arrays_[i] = Memory(device_.context, buffers[i].bytes, buffers[i].name, device_.stream.get());
     device_.synchronize();
-    setup_.upload_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    setup_.upload_s = seconds_since(start);
 #define SCENE_ARRAY(element, name, member, binding) scene_.name = arrays_[binding].address();
 #include "kernels/scene_arrays.h"
 #undef SCENE_ARRAY
@@ -79,7 +80,7 @@ void CudaSession::upload(const PackedScene& scene)
 
 void CudaSession::poison_output(std::size_t words)
 {
-    check_limit("the image's array of hits", words * sizeof(std::uint32_t), max_buffer_bytes_);
+    require_output_fits(words, max_buffer_bytes_);
     if (output_.bytes() != words * sizeof(std::uint32_t)) {
         output_ = {}; // before the new one: both may not fit
         output_ = Memory(device_.context, words * sizeof(std::uint32_t), "the image's hits");
@@ -92,17 +93,15 @@ void CudaSession::launch(const TraceJob& job)
 {
     make_current();
     poison_output(output_words(job));
-    LaunchParams params = launch_params(job, scene_.divisions, tile_height_, TetParts{}.log2_bytes);
-    const std::uint32_t tiles = tile_count(job, tile_height_);
-    kernel_s_ = 0;
     launched_tiles_ = 0;
-    while (params.first_tile < tiles) {
-        finish_launch(); // of the one before: its time decides how large this one is
-        const std::uint32_t count = std::min(launch_size_.tiles(), tiles - params.first_tile);
-        schedule_ == Schedule::persistent ? launch_persistent(params, count) : launch_tiles(params, count);
-        launched_tiles_ = count;
-        params.first_tile += count;
-    }
+    launches_.start(
+        launch_params(job, scene_.divisions, tile_height_, TetParts{}.log2_bytes),
+        [this](const LaunchParams& params, std::uint32_t tiles) {
+            finish_launch(); // of the one before: there is but one stopwatch
+            schedule_ == Schedule::persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
+            launched_tiles_ = tiles;
+        },
+        [this] { finish_launch(); });
 }
 
 void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
@@ -131,9 +130,7 @@ void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t ti
 void CudaSession::finish_launch()
 {
     if (launched_tiles_ == 0) return;
-    const double seconds = stopwatch_.seconds();
-    kernel_s_ += seconds;
-    launch_size_.took(launched_tiles_, seconds);
+    launches_.took(launched_tiles_, stopwatch_.seconds());
     launched_tiles_ = 0;
 }
 
@@ -141,16 +138,13 @@ double CudaSession::wait()
 {
     make_current();
     finish_launch();
-    return kernel_s_;
+    return launches_.seconds();
 }
 
 void CudaSession::read_output(std::span<std::uint32_t> words)
 {
     make_current();
-    if (words.size_bytes() != output_.bytes())
-        throw Error(ErrorKind::internal, "reading hits: " + std::to_string(words.size_bytes()) +
-                                             " bytes are asked for, the last launch made " +
-                                             std::to_string(output_.bytes()));
+    require_output_of_last_launch(words.size(), output_.bytes() / sizeof(words[0]));
     device_.context.check(
         device_.driver().copy_to_host(words.data(), output_.address(), words.size_bytes(), device_.stream.get()),
         "copying the hits to the host");

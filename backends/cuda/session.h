@@ -49,9 +49,8 @@ private:
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
     unsigned resident_blocks_ = 0; ///< of schedule persistent: as many as the device holds at once
-    LaunchSize launch_size_;
+    Launches launches_;
     std::uint32_t launched_tiles_ = 0; ///< of the launch that is under way; 0: none is
-    double kernel_s_ = 0;
     SetupTimes setup_;
     std::uint64_t bytes_;
 };

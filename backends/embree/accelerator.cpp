@@ -1,5 +1,6 @@
 #include "backends/embree/accelerator.h"
 
+#include "core/elapsed.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -59,7 +60,7 @@ Accelerator::Accelerator(const TriangleMesh& mesh, bool robust, unsigned threads
         attach_mesh(device_, scene_, mesh);
         const auto start = std::chrono::steady_clock::now();
         rtcCommitScene(scene_);
-        build_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        build_s_ = seconds_since(start);
         check(device_, "building the BVH");
     } catch (...) {
         rtcReleaseScene(scene_);

@@ -4,19 +4,11 @@
 #include "backends/opencl/probe.h"
 #include "backends/opencl/session.h"
 #include "backends/opencl/yardstick.h"
-
-#include <algorithm>
+#include "core/device_facts.h"
+#include "core/open_checks.h"
 
 namespace tetrace {
 namespace {
-
-std::vector<Device> facts_of(const std::vector<opencl::FoundDevice>& found)
-{
-    std::vector<Device> devices;
-    for (const opencl::FoundDevice& device : found)
-        devices.push_back(device.facts);
-    return devices;
-}
 
 class OpenclBackend : public Backend {
 public:
@@ -40,12 +32,8 @@ public:
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
                                                 const SessionOptions& options) override
     {
-        if (const auto reason = why_not(device, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
-        if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
-            throw Error(ErrorKind::internal,
-                        "opening opencl: the scene is not packed as " + std::string(name_of(kernel.layout)));
-        return std::make_unique<opencl::OpenclSession>(context(device, options.threads), kernel, *scene.packed,
-                                                       options);
+        const PackedScene& packed = packed_scene(*this, device, kernel, scene);
+        return std::make_unique<opencl::OpenclSession>(context(device, options.threads), kernel, packed, options);
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
@@ -56,8 +44,7 @@ public:
 
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
-        return opencl::measure_device(*context(device, options.threads),
-                                      opencl::largest_buffer(devices_.at(device), options));
+        return opencl::measure_device(*context(device, options.threads), largest_buffer(devices_.at(device), options));
     }
 
 private:

@@ -25,12 +25,6 @@ cl::Device part_of(cl::Device device, unsigned units)
 
 } // namespace
 
-std::uint64_t largest_buffer(const Device& device, const SessionOptions& options)
-{
-    return options.max_buffer_bytes == 0 ? device.max_buffer_bytes
-                                         : std::min(device.max_buffer_bytes, options.max_buffer_bytes);
-}
-
 double seconds_of(const cl::Event& event)
 {
     return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -

@@ -8,9 +8,6 @@
 
 namespace tetrace::opencl {
 
-/// The largest buffer of a session, in bytes: the device's, or what the options say it is.
-[[nodiscard]] std::uint64_t largest_buffer(const Device& device, const SessionOptions& options);
-
 /// Seconds that a finished command took on the device.
 [[nodiscard]] double seconds_of(const cl::Event& event);
 

@@ -1,6 +1,7 @@
 #include "backends/opencl/device.h"
 
 #include "backends/opencl/errors.h"
+#include "core/device_facts.h"
 #include "core/launch.h"
 
 #include <CL/cl_ext.h>
@@ -8,8 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
-#include <regex>
 
 namespace tetrace::opencl {
 
@@ -28,7 +27,9 @@ Value asked(const cl::Device& device, cl_device_info what)
 
 bool has_extension(const cl::Device& device, const std::string& name)
 {
-    return (" " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ").find(" " + name + " ") != std::string::npos;
+    std::string extensions = " ";
+    extensions.append(device.getInfo<CL_DEVICE_EXTENSIONS>()).append(" ");
+    return extensions.find(" " + name + " ") != std::string::npos;
 }
 
 std::string trimmed(const std::string& text)
@@ -42,27 +43,21 @@ std::string trimmed(const std::string& text)
 std::string uuid_of(const cl::Device& device)
 {
     if (!has_extension(device, "cl_khr_device_uuid")) return {};
-    std::string text;
-    for (const cl_uchar byte : asked<std::array<cl_uchar, CL_UUID_SIZE_KHR>>(device, CL_DEVICE_UUID_KHR)) {
-        std::array<char, 3> digits{};
-        std::snprintf(digits.data(), digits.size(), "%02x", unsigned{byte});
-        text += digits.data();
-    }
-    return text;
+    return hexadecimal(asked<std::array<cl_uchar, CL_UUID_SIZE_KHR>>(device, CL_DEVICE_UUID_KHR));
 }
 
 std::string pci_of(const cl::Device& device)
 {
     if (has_extension(device, "cl_khr_pci_bus_info")) {
         const auto pci = asked<cl_device_pci_bus_info_khr>(device, CL_DEVICE_PCI_BUS_INFO_KHR);
-        return pci_text(pci.pci_domain, pci.pci_bus, pci.pci_device, pci.pci_function);
+        return pci_address(pci.pci_domain, pci.pci_bus, pci.pci_device, pci.pci_function);
     }
     if (!has_extension(device, "cl_nv_device_attribute_query")) return {};
     constexpr cl_device_info bus_nv = 0x4008, slot_nv = 0x4009, domain_nv = 0x400A; // in no header of Khronos's
     const auto slot = asked<cl_uint>(device, slot_nv); // the device's number, then three bits of function
     cl_uint domain = 0;
     (void)clGetDeviceInfo(device(), domain_nv, sizeof(domain), &domain, nullptr); // older drivers: domain 0
-    return pci_text(domain, asked<cl_uint>(device, bus_nv), slot >> 3, slot & 7);
+    return pci_address(domain, asked<cl_uint>(device, bus_nv), slot >> 3, slot & 7);
 }
 
 unsigned group_width_of(const cl::Device& device)
@@ -107,7 +102,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     facts.implementation = implementation_of(platform_name, driver_version, platform_version);
     facts.uuid = uuid_of(device);
     facts.pci = pci_of(device);
-    facts.id = !facts.uuid.empty() ? facts.uuid : !facts.pci.empty() ? facts.pci : facts.name;
+    facts.id = id_of(facts);
     facts.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     facts.max_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     const auto sizes = device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
@@ -127,10 +122,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
 FoundDevice unusable(const std::string& name, const std::string& reason)
 {
     FoundDevice found;
-    found.facts.name = found.facts.id = name;
-    found.facts.type = "gpu";
-    found.facts.usable = false;
-    found.facts.reason = reason;
+    found.facts = unusable_device(name, reason);
     return found;
 }
 
@@ -166,28 +158,11 @@ std::vector<FoundDevice> devices_of(const cl::Platform& platform)
     return devices;
 }
 
-/// The first "number.number" of a text; empty where there is none.
-std::string version_in(std::string_view text)
-{
-    static const std::regex pattern(R"((\d+)\.(\d+))");
-    std::match_results<std::string_view::const_iterator> match;
-    return std::regex_search(text.begin(), text.end(), match, pattern) ? match.str() : std::string();
-}
-
 std::string short_name(std::string_view platform_name)
 {
     if (platform_name == "Portable Computing Language") return "pocl";
     if (platform_name.starts_with("NVIDIA")) return "nvidia";
-    std::string name;
-    for (const char c : platform_name) {
-        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-            name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        else if (!name.empty() && name.back() != '-')
-            name += '-';
-    }
-    while (!name.empty() && name.back() == '-')
-        name.pop_back();
-    return name.empty() ? "opencl" : name;
+    return platform_name.empty() ? "opencl" : std::string(platform_name);
 }
 
 } // namespace
@@ -195,21 +170,13 @@ std::string short_name(std::string_view platform_name)
 std::string implementation_of(std::string_view platform_name, std::string_view driver_version,
                               std::string_view platform_version)
 {
-    const std::string name = short_name(platform_name);
-    std::string version = version_in(driver_version);
-    if (version.empty() && platform_version.starts_with("OpenCL ")) { // "OpenCL <its version> <vendor's information>"
+    std::string_view version = driver_version;
+    const bool has_number = std::ranges::any_of(version, [](unsigned char c) { return std::isdigit(c) != 0; });
+    if (!has_number && platform_version.starts_with("OpenCL ")) { // "OpenCL <its version> <vendor's information>"
         const std::size_t space = platform_version.find(' ', 7);
-        if (space != std::string_view::npos) version = version_in(platform_version.substr(space));
+        version = space == std::string_view::npos ? "" : platform_version.substr(space);
     }
-    if (name == "nvidia") version = version.substr(0, version.find('.'));
-    return version.empty() ? name : name + "-" + version;
-}
-
-std::string pci_text(unsigned domain, unsigned bus, unsigned device, unsigned function)
-{
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "%04x:%02x:%02x.%x", domain, bus, device, function);
-    return text.data();
+    return implementation_name(short_name(platform_name), version);
 }
 
 std::vector<FoundDevice> find_devices()

@@ -25,7 +25,4 @@ struct FoundDevice {
 [[nodiscard]] std::string implementation_of(std::string_view platform_name, std::string_view driver_version,
                                             std::string_view platform_version);
 
-/// "0000:41:00.0"
-[[nodiscard]] std::string pci_text(unsigned domain, unsigned bus, unsigned device, unsigned function);
-
 } // namespace tetrace::opencl

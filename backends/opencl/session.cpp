@@ -1,5 +1,8 @@
 #include "backends/opencl/session.h"
 
+#include "core/elapsed.h"
+#include "core/open_checks.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -15,11 +18,6 @@ constexpr std::size_t smallest_buffer_bytes = 16; // OpenCL has no empty buffers
 /// No device holds more items than that in a compute unit at once (NVIDIA's most), and groups that do not fit start
 /// when all work is done; a processor's unit is one thread, which works on one group at a time.
 constexpr std::size_t resident_items = 2048;
-
-double seconds_since(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
@@ -37,10 +35,9 @@ cl::Buffer make_uploaded(const cl::Context& context, const cl::CommandQueue& que
 
 OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
-    : context_(std::move(context)), kernel_id_(kernel),
-      tile_height_(options.tile_height != 0 ? options.tile_height : default_tile_height(context_->facts())),
+    : context_(std::move(context)), kernel_id_(kernel), tile_height_(tile_height_for(context_->facts(), options)),
       max_buffer_bytes_(largest_buffer(context_->facts(), options)), divisions_(scene.divisions),
-      parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()), launch_size_(tile_height_)
+      parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()), launches_(tile_height_)
 {
     run("making a queue", 0, [&] { queue_ = context_->make_queue(); });
     upload(scene);
@@ -108,11 +105,8 @@ void OpenclSession::set_arguments()
 void OpenclSession::resize_output(std::size_t words)
 {
     if (words == output_words_) return;
+    require_output_fits(words, max_buffer_bytes_);
     const std::uint64_t bytes = words * sizeof(std::uint32_t);
-    if (bytes > max_buffer_bytes_)
-        throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
-                                                " bytes, the device's largest buffer " +
-                                                std::to_string(max_buffer_bytes_) + "; trace a smaller image");
     output_ = cl::Buffer(); // the old one goes first: both may not fit
     output_words_ = 0;
     run("making the output", bytes, [&] {
@@ -148,48 +142,35 @@ void OpenclSession::launch(const TraceJob& job)
 {
     resize_output(output_words(job));
     run("launching", output_bytes(), [&] {
-        kernel_s_ = 0;
         enqueued_.clear();
         queue_.enqueueFillBuffer(output_, POISON, 0, output_bytes());
-        LaunchParams params = launch_params(job, divisions_, tile_height_, parts_.log2_bytes);
-        const std::uint32_t end = tile_count(job, tile_height_);
-        while (params.first_tile < end) {
-            const std::uint32_t tiles = std::min(launch_size_.tiles(), end - params.first_tile);
-            enqueue(params, tiles);
-            params.first_tile += tiles;
-            if (!launch_size_is_known_) kernel_s_ += take_times(); // the first image, launch after launch
-        }
-        launch_size_is_known_ = true;
+        launches_.start(
+            launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
+            [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },
+            [this] { take_times(); });
         queue_.flush();
     });
 }
 
 double OpenclSession::wait()
 {
-    run("waiting", output_bytes(), [&] { kernel_s_ += take_times(); });
-    return kernel_s_;
+    run("waiting", output_bytes(), [&] { take_times(); });
+    return launches_.seconds();
 }
 
-/// Waits for what is enqueued; its seconds.
-double OpenclSession::take_times()
+void OpenclSession::take_times()
 {
     queue_.finish();
-    double sum = 0;
     for (const Enqueued& launched : enqueued_) {
         launched.event.wait(); // tells where the kernel failed
-        const double seconds = seconds_of(launched.event);
-        launch_size_.took(launched.tiles, seconds);
-        sum += seconds;
+        launches_.took(launched.tiles, seconds_of(launched.event));
     }
     enqueued_.clear();
-    return sum;
 }
 
 void OpenclSession::read_output(std::span<std::uint32_t> words)
 {
-    if (words.size() != output_words_)
-        throw Error(ErrorKind::internal,
-                    "reading back from opencl: the hits asked for are not those of the last launch");
+    require_output_of_last_launch(words.size(), output_words_);
     run("reading back", output_bytes(),
         [&] { queue_.enqueueReadBuffer(output_, CL_TRUE, 0, words.size_bytes(), words.data()); });
 }

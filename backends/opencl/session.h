@@ -31,7 +31,8 @@ private:
     void resize_output(std::size_t words);
     void enqueue(const LaunchParams& params, std::uint32_t tiles);
     [[nodiscard]] std::size_t groups_for(std::uint32_t tiles) const;
-    [[nodiscard]] double take_times();
+    /// Waits for what is enqueued, and counts its times.
+    void take_times();
     template <class Work>
     void run(const char* doing, std::uint64_t output_bytes, const Work& work);
     [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
@@ -50,8 +51,7 @@ private:
     TetParts parts_;
     std::uint64_t scene_bytes_ = 0;
     SetupTimes times_;
-    LaunchSize launch_size_;
-    bool launch_size_is_known_ = false;
+    Launches launches_;
     cl::CommandQueue queue_;
     cl::Kernel kernel_;
     std::array<cl::Buffer, SCENE_ARRAYS> arrays_;
@@ -59,7 +59,6 @@ private:
     cl::Buffer output_, counter_;
     std::size_t output_words_ = 0;
     std::vector<Enqueued> enqueued_;
-    double kernel_s_ = 0;
 };
 
 } // namespace tetrace::opencl

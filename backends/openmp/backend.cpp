@@ -3,9 +3,8 @@
 #include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
 #include "backends/openmp/yardstick.h"
-#include "core/error.h"
 #include "core/host.h"
-#include "core/launch.h"
+#include "core/open_checks.h"
 
 #include <omp.h>
 
@@ -51,14 +50,9 @@ public:
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData& scene,
                                                 const SessionOptions& options) override
     {
-        const auto* found = find_kernel(kernel);
-        if (const auto reason = why_not(0, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
-        if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
-            throw Error(ErrorKind::internal,
-                        "opening openmp: the scene is not packed as " + std::string(name_of(kernel.layout)));
-        return std::make_unique<openmp::OpenmpSession>(found->trace, *scene.packed, threads_of(options),
-                                                       options.tile_height != 0 ? options.tile_height
-                                                                                : default_tile_height(devices_[0]));
+        const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
+        return std::make_unique<openmp::OpenmpSession>(find_kernel(kernel)->trace, packed, threads_of(options),
+                                                       tile_height_for(devices_[0], options));
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode math, std::span<const Row> operations) override

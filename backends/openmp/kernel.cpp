@@ -32,8 +32,9 @@ namespace tetrace::openmp {
 void KERNEL_SYMBOL(const PackedScene& packed, const TraceJob& job, Hit* hits, unsigned threads, unsigned tile_height)
 {
     const SceneView scene = view_of(packed);
-    const auto launch = std::bit_cast<::LaunchParams>(launch_params(job, packed.divisions, tile_height, 0));
-    const uint tiles = tile_count(job, tile_height);
+    const LaunchParams params = launch_params(job, packed.divisions, tile_height, 0);
+    const auto launch = std::bit_cast<::LaunchParams>(params);
+    const uint tiles = tile_count(params);
 #pragma omp parallel num_threads(static_cast <int>(threads))
     {
         std::fenv_t environment;

@@ -1,11 +1,13 @@
 #include "backends/openmp/yardstick.h"
 
+#include "core/elapsed.h"
+#include "core/yardstick.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 namespace tetrace::openmp {
 
@@ -13,12 +15,6 @@ namespace {
 
 constexpr std::size_t words = std::size_t{128} << 17; // 128 MiB
 constexpr int passes = 6;                             // the first one touches the pages
-constexpr int launches = 101;
-
-double seconds_since(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void copy_words(std::uint64_t* to, const std::uint64_t* from, int threads)
 {
@@ -48,19 +44,14 @@ double copy_bytes_per_s(int team)
 
 double launch_s(int team)
 {
-    std::vector<double> seconds;
-    for (int i = 0; i < launches; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+    return median_seconds([&] {
         [[maybe_unused]] volatile int entered = 0;
 #pragma omp parallel num_threads(team)
         {
 #pragma omp single nowait
             entered = 1;
         }
-        seconds.push_back(seconds_since(start));
-    }
-    std::nth_element(seconds.begin(), seconds.begin() + launches / 2, seconds.end());
-    return seconds[launches / 2];
+    });
 }
 
 } // namespace

@@ -4,17 +4,11 @@
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
 #include "backends/vulkan/yardstick.h"
+#include "core/device_facts.h"
+#include "core/open_checks.h"
 
 namespace tetrace {
 namespace {
-
-std::vector<Device> facts_of(const std::vector<vulkan::FoundDevice>& found)
-{
-    std::vector<Device> devices;
-    for (const vulkan::FoundDevice& device : found)
-        devices.push_back(device.facts);
-    return devices;
-}
 
 class VulkanBackend : public Backend {
 public:
@@ -38,11 +32,8 @@ public:
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
                                                 const SessionOptions& options) override
     {
-        if (const auto reason = why_not(device, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
-        if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
-            throw Error(ErrorKind::internal,
-                        "opening vulkan: the scene is not packed as " + std::string(name_of(kernel.layout)));
-        return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, *scene.packed, options);
+        const PackedScene& packed = packed_scene(*this, device, kernel, scene);
+        return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, packed, options);
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
@@ -53,8 +44,7 @@ public:
 
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
-        return vulkan::measure_device(vulkan::Context(found_.at(device)),
-                                      vulkan::largest_buffer(devices_.at(device), options));
+        return vulkan::measure_device(vulkan::Context(found_.at(device)), largest_buffer(devices_.at(device), options));
     }
 
 private:

@@ -30,12 +30,6 @@ vk::raii::Device make_device(const FoundDevice& found)
 
 } // namespace
 
-std::uint64_t largest_buffer(const Device& device, const SessionOptions& options)
-{
-    return options.max_buffer_bytes == 0 ? device.max_buffer_bytes
-                                         : std::min(device.max_buffer_bytes, options.max_buffer_bytes);
-}
-
 Context::Context(const FoundDevice& found) : found_(found)
 {
     if (!found.facts.usable) throw Error(ErrorKind::missing, found.facts.reason);

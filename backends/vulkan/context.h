@@ -8,9 +8,6 @@
 
 namespace tetrace::vulkan {
 
-/// The largest buffer of a session, in bytes: the device's, or what the options say it is.
-[[nodiscard]] std::uint64_t largest_buffer(const Device& device, const SessionOptions& options);
-
 /// A logical device with one queue: what belongs to one session, so that a device that is lost is lost to it alone.
 class Context {
 public:

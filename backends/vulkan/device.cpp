@@ -1,13 +1,11 @@
 #include "backends/vulkan/device.h"
 
 #include "backends/vulkan/instance.h"
+#include "core/device_facts.h"
 #include "core/error.h"
 #include "core/launch.h"
 
 #include <algorithm>
-#include <cctype>
-#include <iomanip>
-#include <sstream>
 #include <thread>
 
 namespace tetrace::vulkan {
@@ -20,10 +18,7 @@ constexpr std::uint32_t tile_items = TILE_WIDTH * 8;
 FoundDevice no_device(const std::string& reason)
 {
     FoundDevice none;
-    none.facts.name = "none";
-    none.facts.type = "gpu";
-    none.facts.usable = false;
-    none.facts.reason = reason;
+    none.facts = unusable_device("none", reason);
     return none;
 }
 
@@ -40,21 +35,9 @@ std::string version_text(std::uint32_t version)
            std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-std::string hexadecimal(const vk::ArrayWrapper1D<std::uint8_t, VK_UUID_SIZE>& bytes)
+std::string address_of(const vk::PhysicalDevicePCIBusInfoPropertiesEXT& pci)
 {
-    std::ostringstream text;
-    text << std::hex << std::setfill('0');
-    for (const unsigned byte : bytes)
-        text << std::setw(2) << byte;
-    return text.str();
-}
-
-std::string pci_text(const vk::PhysicalDevicePCIBusInfoPropertiesEXT& pci)
-{
-    std::ostringstream text;
-    text << std::hex << std::setfill('0') << std::setw(4) << pci.pciDomain << ':' << std::setw(2) << pci.pciBus << ':'
-         << std::setw(2) << pci.pciDevice << '.' << pci.pciFunction;
-    return text.str();
+    return pci_address(pci.pciDomain, pci.pciBus, pci.pciDevice, pci.pciFunction);
 }
 
 std::uint64_t device_memory(const vk::raii::PhysicalDevice& device)
@@ -102,7 +85,6 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
         device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties,
                               vk::PhysicalDeviceSubgroupProperties, vk::PhysicalDeviceMaintenance3Properties>();
     found.facts.uuid = hexadecimal(chain.get<vk::PhysicalDeviceIDProperties>().deviceUUID);
-    found.facts.id = found.facts.uuid;
     found.facts.group_width = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
     found.limits.allocation_bytes = chain.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
     found.facts.max_buffer_bytes = std::min(found.facts.max_buffer_bytes, found.limits.allocation_bytes);
@@ -115,8 +97,8 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
     }
     if (has_extension(extensions, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME))
         found.facts.pci =
-            pci_text(device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDevicePCIBusInfoPropertiesEXT>()
-                         .get<vk::PhysicalDevicePCIBusInfoPropertiesEXT>());
+            address_of(device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDevicePCIBusInfoPropertiesEXT>()
+                           .get<vk::PhysicalDevicePCIBusInfoPropertiesEXT>());
     if (has_extension(extensions, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME))
         found.facts.threads =
             device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceShaderSMBuiltinsPropertiesNV>()
@@ -139,12 +121,12 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     found.reads_texels = facts.type == "emulated";
     facts.driver = "Vulkan driver " + version_text(properties.driverVersion);
     facts.implementation = "vulkan-" + std::to_string(properties.vendorID);
-    facts.id = facts.name;
     facts.memory_bytes = device_memory(device);
     facts.max_buffer_bytes = properties.limits.maxStorageBufferRange;
     facts.max_group_items = properties.limits.maxComputeWorkGroupInvocations;
     facts.timer_period_s = 1e-9 * static_cast<double>(properties.limits.timestampPeriod);
     if (properties.apiVersion >= VK_API_VERSION_1_1) describe(device, found);
+    facts.id = id_of(facts);
     facts.reason = why_not_usable(found.limits);
     facts.usable = facts.reason.empty();
     found.build_key = facts.name + ";" + facts.driver + ";" + std::to_string(properties.driverVersion) + ";" +
@@ -152,40 +134,11 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     return found;
 }
 
-/// The leading "22.3.6" of "Mesa 22.3.6 (LLVM 15.0.6)": its numbers up to so many.
-std::string version_in(std::string_view text, int most_numbers)
-{
-    const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-    const auto* const begin = std::find_if(text.begin(), text.end(), is_digit);
-    const auto* end = begin;
-    for (int numbers = 0; end != text.end(); end++) {
-        if (is_digit(*end)) continue;
-        if (*end != '.' || ++numbers == most_numbers) break;
-    }
-    std::string version(begin, end);
-    while (!version.empty() && version.back() == '.')
-        version.pop_back();
-    return version;
-}
-
 } // namespace
 
 std::string implementation_of(std::string_view driver_name, std::string_view driver_info)
 {
-    std::string name;
-    for (const char c : driver_name) {
-        const auto letter = static_cast<unsigned char>(c);
-        if (std::isalnum(letter) != 0)
-            name += static_cast<char>(std::tolower(letter));
-        else if (!name.empty() && name.back() != '-')
-            name += '-';
-    }
-    while (!name.empty() && name.back() == '-')
-        name.pop_back();
-    if (name.empty()) name = "unknown";
-    if (name == "llvmpipe") name = "lavapipe";
-    const std::string version = version_in(driver_info, name == "nvidia" ? 1 : 2);
-    return version.empty() ? name : name + "-" + version;
+    return implementation_name(driver_name == "llvmpipe" ? "lavapipe" : driver_name, driver_info);
 }
 
 std::string why_not_usable(const Limits& limits)

@@ -1,6 +1,8 @@
 #include "backends/vulkan/session.h"
 
 #include "backends/vulkan/kernels.h"
+#include "core/elapsed.h"
+#include "core/open_checks.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,11 +10,6 @@
 namespace tetrace::vulkan {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void require_storage_buffers(const FoundDevice& found, const TetParts& parts)
 {
@@ -53,9 +50,9 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
-      max_buffer_bytes_(largest_buffer(found.facts, options)),
-      tile_height_(options.tile_height != 0 ? options.tile_height : default_tile_height(found.facts)),
-      in_texels_(is_in_texels(found, scene, parts_)), divisions_(scene.divisions), launch_size_(tile_height_)
+      max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_for(found.facts, options)),
+      in_texels_(is_in_texels(found, scene, parts_)), divisions_(scene.divisions),
+      launches_(tile_height_, found.limits.groups)
 {
     require_storage_buffers(found, parts_);
     auto start = std::chrono::steady_clock::now();
@@ -125,11 +122,8 @@ void VulkanSession::bind_scene(const ProgramId& id)
 void VulkanSession::resize_output(std::size_t words)
 {
     if (words == output_words_) return;
+    require_output_fits(words, max_buffer_bytes_);
     const std::uint64_t bytes = words * sizeof(std::uint32_t);
-    if (bytes > max_buffer_bytes_)
-        throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
-                                                " bytes, the device's largest buffer " +
-                                                std::to_string(max_buffer_bytes_) + "; trace a smaller image");
     output_ = Buffer(); // the old ones go first: all may not fit
     staging_ = Buffer();
     output_words_ = 0;
@@ -176,51 +170,36 @@ void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
 void VulkanSession::launch(const TraceJob& job)
 {
     context_.run("launching", output_bytes(), [&] {
-        kernel_s_ = 0;
         take_times(); // of a launch that nobody waited for
         resize_output(output_words(job));
         fill_output();
-        LaunchParams params = launch_params(job, divisions_, tile_height_, parts_.log2_bytes);
-        const std::uint32_t end = tile_count(job, tile_height_);
-        while (params.first_tile < end) {
-            const std::uint32_t most = std::min(launch_size_.tiles(), context_.found().limits.groups);
-            const std::uint32_t tiles = std::min(most, end - params.first_tile);
-            enqueue(params, tiles);
-            params.first_tile += tiles;
-            if (!launch_size_is_known_) kernel_s_ += take_times(); // the first image, launch after launch
-        }
-        launch_size_is_known_ = true;
+        launches_.start(
+            launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
+            [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },
+            [this] { take_times(); });
     });
 }
 
 double VulkanSession::wait()
 {
-    context_.run("waiting", output_bytes(), [&] { kernel_s_ += take_times(); });
+    context_.run("waiting", output_bytes(), [&] { take_times(); });
     context_.check_validation("the next call");
-    return kernel_s_;
+    return launches_.seconds();
 }
 
-/// Waits for what is enqueued; its seconds.
-double VulkanSession::take_times()
+void VulkanSession::take_times()
 {
     context_.finish();
-    double sum = 0;
-    for (std::size_t i = 0; i < enqueued_.size(); i++) {
-        const double seconds = context_.seconds_of(chunks_[i].times);
-        launch_size_.took(enqueued_[i], seconds);
-        sum += seconds;
-    }
+    for (std::size_t i = 0; i < enqueued_.size(); i++)
+        launches_.took(enqueued_[i], context_.seconds_of(chunks_[i].times));
     enqueued_.clear();
-    return sum;
 }
 
 void VulkanSession::read_output(std::span<std::uint32_t> words)
 {
-    if (words.size() != output_words_)
-        throw Error(ErrorKind::internal,
-                    "reading back from vulkan: the hits asked for are not those of the last launch");
+    require_output_of_last_launch(words.size(), output_words_);
     context_.run("reading back", output_bytes(), [&] {
-        kernel_s_ += take_times(); // mapped memory is read at once: nothing may be writing it still
+        take_times(); // mapped memory is read at once: nothing may be writing it still
         vulkan::read_back(context_, output_, staging_, std::as_writable_bytes(words));
     });
     context_.check_validation("the next call");

@@ -36,7 +36,8 @@ private:
     /// Command buffer and timestamps number `index` of a launch, made when first asked for.
     const vk::raii::CommandBuffer& commands_for(std::size_t index);
     void enqueue(const LaunchParams& params, std::uint32_t tiles);
-    double take_times();
+    /// Waits for what is enqueued, and counts its times.
+    void take_times();
 
     Context context_; // outlives all that follows
     TetParts parts_;
@@ -60,9 +61,7 @@ private:
     };
     std::vector<Chunk> chunks_;           ///< those of the largest launch so far
     std::vector<std::uint32_t> enqueued_; ///< tiles of each chunk that has not been waited for
-    LaunchSize launch_size_;
-    bool launch_size_is_known_ = false;
-    double kernel_s_ = 0;
+    Launches launches_;
 };
 
 } // namespace tetrace::vulkan

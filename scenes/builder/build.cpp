@@ -1,11 +1,11 @@
 #include "scenes/builder/build.h"
 
+#include "core/elapsed.h"
 #include "core/error.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"
 #include "scenes/builder/self_intersection.h"
-#include "scenes/elapsed.h"
 
 #include <fmt/format.h>
 

@@ -4,6 +4,7 @@
 
 namespace tetrace {
 
+/// Seconds on the host's steady clock.
 [[nodiscard]] inline double seconds_since(std::chrono::steady_clock::time_point start)
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
