@@ -51,11 +51,9 @@ Table check_table(const std::vector<RowRun>& rows)
 }
 
 /// Whether the row fails the check; one without an answer does not by itself (see exit_code and --require).
-bool fails(const RowRun& row, const Options& options)
+bool fails_check(const RowRun& row, const Options& options)
 {
-    const Status status = status_of(row);
-    return status == Status::wrong || conformity_of(row) == Conformity::not_exact ||
-           (status == Status::flawed && !options.allow_flawed);
+    return fails(row, options.allow_flawed) || conformity_of(row) == Conformity::not_exact;
 }
 
 /// Without pictures where none are asked for.
@@ -146,7 +144,7 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options)
     if (!options.junit) return;
     std::vector<bool> failed;
     for (const RowRun& row : rows)
-        failed.push_back(fails(row, options));
+        failed.push_back(fails_check(row, options));
     write_text(*options.junit, junit_xml(rows, failed));
 }
 
@@ -225,7 +223,7 @@ int check_command(const Options& asked)
     deliver(options, check_report(checked, options));
     require_judged(rows, options.required);
     require_answers(rows);
-    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails(row, options); })) return 1;
+    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails_check(row, options); })) return 1;
     return exit_code(rows, options.allow_flawed);
 }
 

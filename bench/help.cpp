@@ -47,10 +47,13 @@ const VerbHelp verb_help[] = {
      "GPUs' APIs on the processor are told apart and never ranked with GPUs. A row is a combination of scene, "
      "structure, method, layout, kind "
      "of rays, math mode, backend and device. Defaults: maria on tet80 and tet96 with every usable device of every "
-     "backend, and Embree with single rays and packets of 16.\n\n"
-     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong (their number is told, the rate "
-     "stands); 'wrong', it differs from openmp's answers, or a walk reached its cap of steps and its ray is lost (no "
-     "rate, exit code 1); 'unsupported', the host or the device cannot run this kernel, and 'skipped', there is no "
+     "backend, and Embree with single rays and packets of 16; --method all brings the other exit-face searches too.\n\n"
+     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong or lost: its walk found no exit face, "
+     "or "
+     "reached its cap of steps (their numbers are told, the rate stands; lost rays of maria, which claims to have "
+     "none, "
+     "give exit code 1); 'wrong', it differs from openmp's answers (no rate, exit code 1); 'unsupported', the host or "
+     "the device cannot run this kernel, and 'skipped', there is no "
      "usable device here, with the reason; 'error', with the reason. 'noisy' is added where the interquartile range "
      "exceeds 5 % of the median.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
@@ -58,6 +61,7 @@ const VerbHelp verb_help[] = {
      "sample.",
      "  tetrace bench\n"
      "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
+     "  tetrace bench --scene bunny --method all\n"
      "  tetrace bench --scene cubes --method maria --math exact,fast --format csv\n"
      "  tetrace bench --filter 'tet96|embree' --list\n"
      "  tetrace bench --scene bunny --threads 1 --benchmark_repetitions=30\n"},
@@ -73,13 +77,15 @@ const VerbHelp verb_help[] = {
      "Is the method right? Each different answer is compared with Embree in robust mode, and each disagreement is "
      "settled in exact arithmetic on the original triangles. Both answers right within rounding of a shared edge are a "
      "tie; Embree's being the inexact one is settled; else the ray is wrong.\n\n"
-     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 where anything is wrong, "
-     "lost or not exact; --allow-flawed lets the wrong rays of a method itself pass, but no lost ones. Rows of "
-     "structure cdt are judged by default; Embree's own, which may be flawed, where --structure, --method, --layout, "
-     "--backend, --filter or --require names them.",
+     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 where a device is wrong "
+     "or "
+     "not exact, or where maria, which claims to be robust, has wrong or lost rays; --allow-flawed lets its wrong ones "
+     "pass. Those of plane, plucker, stp, ms06 and Embree are counted and fail nothing. maria's rows are judged by "
+     "default; the other exit-face searches' where --method names them, Embree's where --structure, --method, "
+     "--layout, --backend, --filter or --require does.",
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
      "  tetrace check --scene bunny --backend vulkan --picture differences\n"
-     "  tetrace check --scene bunny --structure cdt,bvh --allow-flawed\n"
+     "  tetrace check --scene bunny --method all\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "

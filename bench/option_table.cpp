@@ -38,6 +38,22 @@ std::function<void(Options&, const std::string&)> append(std::string option, std
         [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
 }
 
+/// "all" stands for every value.
+template <class T>
+std::function<void(Options&, const std::string&)> append_or_all(std::string option, std::vector<T> Options::*list,
+                                                                std::vector<T> accepted)
+{
+    return [=](Options& options, const std::string& text) {
+        std::vector<std::string> names = {"all"};
+        for (const T& value : accepted) {
+            names.emplace_back(name_of(value));
+            if (text == "all" || text == names.back()) (options.*list).push_back(value);
+        }
+        if (std::find(names.begin(), names.end(), text) == names.end())
+            reject_value(option, text, join_alternatives(names));
+    };
+}
+
 std::vector<std::string> backend_names()
 {
     std::vector<std::string> names;
@@ -133,9 +149,9 @@ std::vector<OptionRow> row_options()
          "--method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
-         "Keep the rows of this method: maria (exit-face search of the cdt), single or packet16 (Embree's entry "
-         "points). Default: all of the structures kept.",
-         tracing, true, append("--method", &Options::methods, kernels_have(&KernelId::method))},
+         "Keep the rows of this method: plane, plucker, stp, ms06 or maria (exit-face searches of the cdt), single or "
+         "packet16 (Embree's entry points), or 'all'. Default: maria, and Embree's of the structures kept.",
+         tracing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80, tet96, or embree, what Embree builds for itself. Default: all "
          "of the structures kept.",
@@ -225,7 +241,9 @@ std::vector<OptionRow> judging_options()
          "skipped or unsupported.",
          bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
         {"Judging", "--allow-flawed", "",
-         "Exit with 0 where a method itself has wrong rays; lost rays, and rows that differ from openmp, still fail.",
+         "Exit with 0 where maria itself has wrong rays; lost ones, and rows that differ from openmp, still fail. "
+         "Wrong "
+         "and lost rays of the other methods never do: those do not claim to have none.",
          bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "

@@ -105,7 +105,7 @@ void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_
         if (!verdicts.first_wrong)
             verdicts.first_wrong = WrongRay{number, x, y, ours, theirs.face_id, theirs.t, reason};
     };
-    if (ours.face_id == LOST) return blame(verdicts.lost, "the walk reached its cap of steps");
+    if (ours.face_id == LOST) return blame(verdicts.lost, "the walk found no exit face, or reached its cap of steps");
     const bool is_face = ours.face_id < mesh.triangles.size();
     if (!is_face && ours.face_id != NO_HIT)
         return blame(verdicts.wrong, "it names no triangle (was the hit written at all?)");

@@ -86,8 +86,8 @@ Status status_of(const RowRun& row)
     if (const auto* failed = std::get_if<Failed>(&row.outcome))
         return failed->kind == ErrorKind::wrong_result ? Status::wrong : Status::error;
     const Traced* result = traced(row);
-    if (result->different > 0 || result->verdicts.lost > 0) return Status::wrong;
-    return result->verdicts.wrong > 0 ? Status::flawed : Status::ok;
+    if (result->different > 0) return Status::wrong;
+    return result->verdicts.wrong + result->verdicts.lost > 0 ? Status::flawed : Status::ok;
 }
 
 std::string reason_of(const RowRun& row)
@@ -157,13 +157,16 @@ RowRun failed_row(const RowKey& key, const Error& error)
     return row;
 }
 
+bool fails(const RowRun& row, bool flawed_passes)
+{
+    const Status status = status_of(row);
+    if (status != Status::flawed) return status == Status::wrong;
+    return claims_robustness(row.key.kernel.method) && (traced(row)->verdicts.lost > 0 || !flawed_passes);
+}
+
 int exit_code(const std::vector<RowRun>& rows, bool flawed_passes)
 {
-    const auto fails = [&](const RowRun& row) {
-        const Status status = status_of(row);
-        return status == Status::wrong || (status == Status::flawed && !flawed_passes);
-    };
-    if (std::any_of(rows.begin(), rows.end(), fails)) return 1;
+    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails(row, flawed_passes); })) return 1;
     for (const RowRun& row : rows)
         if (const auto* failed = std::get_if<Failed>(&row.outcome)) return exit_code(failed->kind);
     return 0;

@@ -16,8 +16,8 @@
 
 namespace tetrace {
 
-/// How a row ended; see `tetrace help bench`. A row is wrong where it differs from openmp, has lost a ray, or its
-/// device left out rays, wrote elsewhere or changed its answers.
+/// How a row ended; see `tetrace help bench`. A row is wrong where it differs from openmp, or its device left out rays,
+/// wrote elsewhere or changed its answers; flawed where some of its rays are wrong or lost by the method's own doing.
 enum class Status { ok, flawed, wrong, unsupported, skipped, error };
 [[nodiscard]] std::string_view name_of(Status status);
 
@@ -102,8 +102,11 @@ struct RowRun {
 /// on.
 void guarded(RowRun& row, const std::function<void()>& work);
 
-/// The exit code that the rows' statuses come to: 1 where one is wrong, or flawed unless that passes; else that of the
-/// first error; else 0.
+/// Whether a row's answers fail a run: it is wrong, or its method claims robustness and has lost a ray, or mistaken one
+/// unless that passes. Rows without an answer do not fail by themselves.
+[[nodiscard]] bool fails(const RowRun& row, bool flawed_passes);
+
+/// The exit code that the rows' statuses come to: 1 where one fails; else that of the first error; else 0.
 [[nodiscard]] int exit_code(const std::vector<RowRun>& rows, bool flawed_passes);
 
 } // namespace tetrace

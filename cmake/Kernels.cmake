@@ -1,7 +1,7 @@
 # Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
 
 # kernels/<method>.h x kernels/<layout>.h: every backend compiles each pair in both math modes.
-set(TETRACE_METHODS maria)
+set(TETRACE_METHODS plane plucker stp ms06 maria)
 set(TETRACE_LAYOUTS tet80 tet96)
 
 # How kernels are compiled as host C++ in each math mode.

@@ -9,8 +9,9 @@ std::vector<KernelId> make_kernels()
     std::vector<KernelId> kernels;
     for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
         for (const MathMode math : {MathMode::exact, MathMode::fast})
-            for (const Layout layout : {Layout::tet80, Layout::tet96})
-                kernels.push_back({Structure::cdt, Method::maria, layout, math, schedule});
+            for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria})
+                for (const Layout layout : {Layout::tet80, Layout::tet96})
+                    kernels.push_back({Structure::cdt, method, layout, math, schedule});
     for (const Method method : {Method::single, Method::packet16})
         kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
     return kernels;
@@ -24,6 +25,11 @@ const std::vector<KernelId>& all_kernels()
     return kernels;
 }
 
+bool claims_robustness(Method value)
+{
+    return value == Method::maria;
+}
+
 std::string_view name_of(Structure value)
 {
     return value == Structure::cdt ? "cdt" : "bvh";
@@ -32,6 +38,10 @@ std::string_view name_of(Structure value)
 std::string_view name_of(Method value)
 {
     switch (value) {
+    case Method::plane: return "plane";
+    case Method::plucker: return "plucker";
+    case Method::stp: return "stp";
+    case Method::ms06: return "ms06";
     case Method::maria: return "maria";
     case Method::single: return "single";
     case Method::packet16: return "packet16";

@@ -9,8 +9,8 @@
 namespace tetrace {
 
 enum class Structure { cdt, bvh };
-/// How a structure is traversed: an exit-face search of the CDT, or one of Embree's entry points.
-enum class Method { maria, single, packet16 };
+/// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or one of Embree's entry points.
+enum class Method { plane, plucker, stp, ms06, maria, single, packet16 };
 /// A packed form of the mesh; `embree` is what Embree builds for itself.
 enum class Layout { tet80, tet96, embree };
 enum class MathMode { exact, fast };
@@ -32,9 +32,13 @@ struct KernelId {
     friend bool operator==(const KernelId&, const KernelId&) = default;
 };
 
-/// Every kernel that some backend can run, schedule tiles and exact mode first; the one list that options and rows come
-/// from.
+/// Every kernel that some backend can run, schedule tiles and exact mode first, the methods in the order of the enum;
+/// the one list that options and rows come from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
+
+/// Whether the method is published as one that loses and mistakes no ray: wrong and lost rays then fail a run. Those of
+/// the other methods are their nature: counted, told beside the rate, and no failure.
+[[nodiscard]] bool claims_robustness(Method value);
 
 [[nodiscard]] std::string_view name_of(Structure value);
 [[nodiscard]] std::string_view name_of(Method value);

@@ -9,6 +9,8 @@
 
 #include KERNEL_LAYOUT_HEADER
 
+#include "kernels/start.h"
+
 #include KERNEL_METHOD_HEADER
 
 #include "kernels/entry.h"

@@ -5,7 +5,7 @@
 
 // Hit.face_id beyond the input triangles.
 #define NO_HIT 0xFFFFFFFFu // the ray left the domain, or never met it
-#define LOST 0xFFFFFFFEu   // the walk reached its cap of steps: always a failure
+#define LOST 0xFFFFFFFEu   // the walk found no exit face, or reached its cap of steps: always a failure
 #define POISON 0xFFFFFFFDu // nothing was written: buffers are filled with it before a launch
 
 // A launch's output: guard words, six words a hit row after row, guard words; all of it is POISON before.
@@ -30,6 +30,7 @@
 #define NO_TET 0x3FFFFFFFu
 #define MAX_TETS 0x3FFFFFFFu
 #define FREE_FACE 0xFFFFFFFFu // a face that belongs to no input triangle
+#define NO_EXIT 4u            // instead of a face: the method found none to leave the tet by
 
 // Bindings: scene_arrays.h has 0 to 4; then the output, the counter of persistent threads, and the parts of the array
 // of tets beyond its first, where one buffer cannot hold it.

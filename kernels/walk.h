@@ -1,4 +1,5 @@
-// The walk from tet to tet, and the hit at its end. A method brings exit_face() and start_face().
+// The walk from tet to tet, and the hit at its end. A method brings exit_face() and start_face(), which return a face
+// of the tet, or NO_EXIT.
 
 // t, u, v on the input triangle (Moeller and Trumbore 1997). A ray within rounding of the triangle's plane gets the
 // centroid.
@@ -48,6 +49,14 @@ KERNEL_FN Hit make_no_hit(uint face_id, uint tet, uint steps)
     return hit;
 }
 
+// The link of a face, or NO_LINK where there is none to leave by. Such a walk reads face 0 instead: a load that all
+// lanes do, and no word behind the last tet.
+KERNEL_FN uint link_beyond(SceneView scene, uint tet, uint face)
+{
+    uint link = face_link(scene, tet, face & 3u);
+    return face == NO_EXIT ? NO_LINK : link;
+}
+
 // Only the loop's own variables live on after it; everything else is loaded again (some compilers lose the rest).
 KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
@@ -61,16 +70,17 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     } else {
         face = start_face(scene, tet, ray);
     }
-    uint link = face_link(scene, tet, face);
-    uint triangle = face_triangle(scene, tet, face);
+    uint link = link_beyond(scene, tet, face);
+    uint triangle = face_triangle(scene, tet, face & 3u);
     uint steps = 1u;
     while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps) {
         tet = link >> 2u;
         face = exit_face(scene, tet, link & 3u, ray);
-        link = face_link(scene, tet, face);
-        triangle = face_triangle(scene, tet, face);
+        link = link_beyond(scene, tet, face);
+        triangle = face_triangle(scene, tet, face & 3u);
         steps++;
     }
+    if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
     uint hit_triangle = face_triangle(scene, tet, face);
     if (hit_triangle != FREE_FACE) return make_hit(scene, ray, hit_triangle, tet, steps);
     bool left = face_link(scene, tet, face) == NO_LINK;

@@ -84,9 +84,9 @@ TEST(comparison, only_the_same_kernel_on_the_same_scene_compares)
 TEST(comparison, a_row_without_a_rate_neither_compares_nor_is_a_reference)
 {
     auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2));
-    std::get<Traced>(rows[0].outcome).verdicts.lost = 1;
+    std::get<Traced>(rows[0].outcome).different = 1;
     EXPECT_FALSE(compare_rows(rows)[1].has_value());
-    std::get<Traced>(rows[0].outcome).verdicts.lost = 0;
+    std::get<Traced>(rows[0].outcome).different = 0;
     EXPECT_TRUE(compare_rows(rows)[1].has_value());
     rows[1].outcome = Failed{ErrorKind::internal, "device lost"};
     EXPECT_FALSE(compare_rows(rows)[1].has_value());

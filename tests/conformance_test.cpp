@@ -4,6 +4,7 @@
 #include "bench/verify.h"
 #include "core/error.h"
 #include "scenes/procedural.h"
+#include "tests/random.h"
 #include "tests/temporary_folder.h"
 
 #include <algorithm>
@@ -20,16 +21,42 @@ using nlohmann::json;
 /// Small: interpreters of kernels are among the devices.
 Options small_run(const std::string& backend)
 {
-    return parse_options({"check", "--backend", backend, "--structure", "cdt", "--schedule", "tiles,persistent",
-                          "--size", "32x24", "--views", "0,2"});
+    return parse_options({"check", "--backend", backend, "--structure", "cdt", "--method", "all", "--schedule",
+                          "tiles,persistent", "--size", "32x24", "--views", "0,2"});
 }
 
-SceneWork small_cubes(const Options& options)
+LoadedScene small_cubes()
 {
     LoadedScene loaded;
     loaded.scene = make_cubes(6);
     loaded.scene.name = "cubes";
-    return {std::move(loaded), options};
+    return loaded;
+}
+
+/// Cubes whose free faces lead anywhere: walks enter tets that their rays miss.
+LoadedScene damaged_cubes()
+{
+    LoadedScene loaded = small_cubes();
+    auto& tets = loaded.scene.tets.tets;
+    const auto count = static_cast<std::uint32_t>(tets.size());
+    test::Random random(30);
+    for (Tet& tet : tets)
+        for (std::size_t face = 0; face < 4; face++)
+            if (tet.links[face] != NO_LINK && tet.faces[face] == FREE_FACE)
+                tet.links[face] = make_link(random.below(count), random.below(4));
+    return loaded;
+}
+
+std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& scene, const Options& options)
+{
+    std::vector<RowRun> rows;
+    std::vector<RowRun*> pointers;
+    for (const RowKey& key : keys)
+        rows.push_back(open_row(key, scene, options));
+    for (RowRun& row : rows)
+        pointers.push_back(&row);
+    verify_rows(pointers, scene, options);
+    return rows;
 }
 
 /// "cdt/maria/tet80", with "/persistent" behind it.
@@ -39,21 +66,22 @@ std::string expected_name(const RowKey& key)
 }
 
 /// What a device shows here, in the form of tests/expected/.
-json status_of_device(const std::vector<RowKey>& keys, SceneWork& scene, const Options& options)
+json status_of_device(const std::vector<RowRun>& rows)
 {
-    std::vector<RowRun> rows;
-    std::vector<RowRun*> pointers;
-    for (const RowKey& key : keys)
-        rows.push_back(open_row(key, scene, options));
-    for (RowRun& row : rows)
-        pointers.push_back(&row);
-    verify_rows(pointers, scene, options);
     json status = {{"self_test", nullptr}, {"rows", json::object()}};
     for (const RowRun& row : rows) {
         status["rows"][expected_name(row.key)] = name_of(conformity_of(row));
         if (row.self_test) status["self_test"] = self_test_json(*row.self_test);
     }
     return status;
+}
+
+std::vector<RowKey> rows_on(Backend& backend, std::size_t device, const Options& options)
+{
+    std::vector<RowKey> keys = select_rows(options, {"cubes"}, {&backend});
+    keys.erase(std::remove_if(keys.begin(), keys.end(), [&](const RowKey& key) { return key.device != device; }),
+               keys.end());
+    return keys;
 }
 
 /// Compares key by key, so that the message names what changed.
@@ -84,17 +112,19 @@ std::vector<std::string> backend_names()
     return names;
 }
 
+bool may_find_no_exit(Method method)
+{
+    return method == Method::plane || method == Method::plucker || method == Method::stp;
+}
+
 class conformance : public testing::TestWithParam<std::string> {
 protected:
     /// Returns the text of the file to write where there is none.
     static std::string check_device(Backend& backend, std::size_t device)
     {
         const Options options = small_run(backend.name());
-        std::vector<RowKey> keys = select_rows(options, {"cubes"}, {&backend});
-        keys.erase(std::remove_if(keys.begin(), keys.end(), [&](const RowKey& key) { return key.device != device; }),
-                   keys.end());
-        SceneWork scene = small_cubes(options);
-        const json found = status_of_device(keys, scene, options);
+        SceneWork scene(small_cubes(), options);
+        const json found = status_of_device(verified_rows(rows_on(backend, device, options), scene, options));
         const std::string name = backend.devices()[device].implementation + ".json";
         const std::filesystem::path file = std::filesystem::path(TETRACE_EXPECTED) / name;
         if (!std::filesystem::exists(file)) return fmt::format("tests/expected/{}:\n{}\n", name, found.dump(2));
@@ -120,6 +150,28 @@ TEST_P(conformance, of_each_device_is_what_is_expected_of_its_implementation)
     if (!found) GTEST_SKIP() << backend.devices().front().reason;
     if (!missing.empty())
         GTEST_SKIP() << "nothing is known of this implementation; where its answers are right, write " << missing;
+}
+
+TEST_P(conformance, of_lost_rays_is_that_of_all_others)
+{
+    Backend& backend = backend_named(GetParam());
+    const Options options = small_run(backend.name());
+    SceneWork scene(damaged_cubes(), options);
+    std::size_t compared = 0;
+    for (std::size_t device = 0; device < backend.devices().size(); device++) {
+        if (!backend.devices()[device].usable) continue;
+        for (const RowRun& row : verified_rows(rows_on(backend, device, options), scene, options)) {
+            if (status_of(row) == Status::unsupported) continue;
+            EXPECT_EQ(status_of(row), Status::flawed) << row_name(row.key) << ": " << reason_of(row);
+            ASSERT_NE(traced(row), nullptr);
+            EXPECT_EQ(traced(row)->different, 0u) << row_name(row.key);
+            if (may_find_no_exit(row.key.kernel.method)) {
+                EXPECT_GT(traced(row)->totals.lost, 100u) << row_name(row.key);
+            }
+            compared++;
+        }
+    }
+    if (compared == 0) GTEST_SKIP() << backend.devices().front().reason;
 }
 
 INSTANTIATE_TEST_SUITE_P(each, conformance, testing::ValuesIn(backend_names()), [](const auto& test) {

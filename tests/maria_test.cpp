@@ -1,10 +1,9 @@
 #include "core/backend.h"
-#include "core/exact.h"
-#include "tests/random.h"
+#include "tests/counted.h"
+#include "tests/random_tets.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -14,26 +13,7 @@
 
 namespace {
 
-// A number that counts what is done with it.
-struct Counted {
-    float value = 0;
-    static inline int operations = 0;
-
-    Counted() = default;
-    explicit Counted(float v) : value(v) {}
-    friend Counted operator+(Counted a, Counted b) { return operations++, Counted(a.value + b.value); }
-    friend Counted operator-(Counted a, Counted b) { return operations++, Counted(a.value - b.value); }
-    friend Counted operator*(Counted a, Counted b) { return operations++, Counted(a.value * b.value); }
-    friend Counted operator/(Counted a, Counted b) { return operations++, Counted(a.value / b.value); }
-    friend Counted operator-(Counted a) { return Counted(-a.value); }
-    friend bool operator==(Counted a, Counted b) { return a.value == b.value; }
-    friend bool operator<(Counted a, Counted b) { return a.value < b.value; }
-    friend bool operator>(Counted a, Counted b) { return a.value > b.value; }
-    friend bool operator<=(Counted a, Counted b) { return a.value <= b.value; }
-    friend bool operator>=(Counted a, Counted b) { return a.value >= b.value; }
-};
-
-#define KERNEL_REAL Counted
+#define KERNEL_REAL tetrace::test::Counted
 #define KERNEL_REAL_HAS_NO_BITS
 #define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
 #define KERNEL_METHOD_HEADER "kernels/maria.h"
@@ -41,78 +21,7 @@ struct Counted {
 
 using tetrace::Float3;
 using tetrace::orientation;
-
-struct RandomTet {
-    Float3 corners[4];
-};
-
-// One tet in layout tet96, without neighbours.
-tetrace::PackedScene packed_tet(const RandomTet& tet)
-{
-    tetrace::PackedScene packed;
-    packed.layout = tetrace::Layout::tet96;
-    packed.tet_count = 1;
-    for (const Float3 v : tet.corners)
-        packed.tets.push_back({std::bit_cast<uint>(v.x), std::bit_cast<uint>(v.y), std::bit_cast<uint>(v.z), 0});
-    packed.tets.resize(TET96_ROWS, {NO_LINK, FREE_FACE, NO_LINK, FREE_FACE});
-    return packed;
-}
-
-RandomTet random_tet(tetrace::test::Random& random)
-{
-    for (;;) {
-        RandomTet tet{{random.point(-1, 1), random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)}};
-        const int sign = orientation(tet.corners[0], tet.corners[1], tet.corners[2], tet.corners[3]);
-        if (sign > 0) std::swap(tet.corners[2], tet.corners[3]);
-        if (sign != 0) return tet;
-    }
-}
-
-Float3 direction_of(tetrace::test::Random& random)
-{
-    Float3 d;
-    for (int axis = 0; axis < 3; axis++)
-        d[axis] = without_dust(Counted(random.between(-1, 1))).value;
-    return d;
-}
-
-Float3 inner_point(const RandomTet& tet, tetrace::test::Random& random)
-{
-    const float weight[4] = {random.unit(), random.unit(), random.unit(), random.unit()};
-    const float sum = weight[0] + weight[1] + weight[2] + weight[3];
-    Float3 point;
-    for (int axis = 0; axis < 3; axis++)
-        for (int k = 0; k < 4; k++)
-            point[axis] += tet.corners[k][axis] * weight[k] / sum;
-    return tetrace::snap_to_grid(point);
-}
-
-Float3 toward(Float3 from, Float3 to)
-{
-    Float3 d;
-    for (int axis = 0; axis < 3; axis++)
-        d[axis] = without_dust(Counted(to[axis] - from[axis])).value;
-    return d;
-}
-
-// Faces that the exact line crosses in their interior, in the order in which it does.
-struct Crossed {
-    int count = 0;
-    uint first = 4, last = 4;
-};
-Crossed crossed_faces(const RandomTet& tet, Float3 origin, Float3 direction)
-{
-    std::vector<std::pair<double, uint>> crossings;
-    for (uint face = 0; face < 4; face++) {
-        const auto c = tetrace::cross_exactly(origin, direction, tet.corners[corner(face, 0)],
-                                              tet.corners[corner(face, 1)], tet.corners[corner(face, 2)]);
-        const int sum = c.edge_side[0] + c.edge_side[1] + c.edge_side[2];
-        if (c.met && std::abs(sum) == 3) crossings.push_back({c.t, face});
-    }
-    if (crossings.empty()) return {};
-    std::sort(crossings.begin(), crossings.end());
-    return {static_cast<int>(crossings.size()), crossings.front().second, crossings.back().second};
-}
+using namespace tetrace::test;
 
 Ray ray_of(Float3 origin, Float3 direction)
 {
@@ -121,7 +30,7 @@ Ray ray_of(Float3 origin, Float3 direction)
 
 TEST(Faces, corners_wind_one_way_on_all_faces)
 {
-    tetrace::test::Random random(4);
+    Random random(4);
     for (int i = 0; i < 100; i++) {
         const RandomTet tet = random_tet(random);
         for (uint face = 0; face < 4; face++)
@@ -133,10 +42,10 @@ TEST(Faces, corners_wind_one_way_on_all_faces)
 
 TEST(Maria, a_step_is_28_operations_and_a_start_three_products)
 {
-    tetrace::test::Random random(5);
+    Random random(5);
     for (int i = 0; i < 1000; i++) {
-        const auto packed = packed_tet(random_tet(random));
-        const Ray ray = ray_of(random.point(-2, 2), direction_of(random));
+        const auto packed = packed_tets({random_tet(random)});
+        const Ray ray = ray_of(random.point(-2, 2), random_direction(random));
         for (uint entry = 0; entry < 4; entry++) {
             Counted::operations = 0;
             (void)exit_face(view_of(packed), 0, entry, ray);
@@ -150,16 +59,16 @@ TEST(Maria, a_step_is_28_operations_and_a_start_three_products)
 
 TEST(Maria, leaves_by_the_face_that_the_exact_line_leaves_by)
 {
-    tetrace::test::Random random(6);
+    Random random(6);
     int compared = 0;
     int differing = 0;
     for (int i = 0; i < 20000; i++) {
         const RandomTet tet = random_tet(random);
         const Float3 origin = random.point(-2, 2);
-        const Float3 direction = toward(origin, inner_point(tet, random));
+        const Float3 direction = direction_between(origin, inner_point(tet, random));
         const Crossed crossed = crossed_faces(tet, origin, direction);
         if (crossed.count != 2) continue;
-        const auto packed = packed_tet(tet);
+        const auto packed = packed_tets({tet});
         compared++;
         differing += exit_face(view_of(packed), 0, crossed.first, ray_of(origin, direction)) != crossed.last;
     }
@@ -168,28 +77,26 @@ TEST(Maria, leaves_by_the_face_that_the_exact_line_leaves_by)
 }
 
 // A tet with corners on a coarse grid, where the whole step is exact: what falls on an edge, falls on it in float too.
-RandomTet coarse_tet(tetrace::test::Random& random)
+RandomTet coarse_tet(Random& random)
 {
     for (;;) {
         RandomTet tet;
         for (Float3& corner_point : tet.corners)
             for (int axis = 0; axis < 3; axis++)
                 corner_point[axis] = 0x1p-8f * 12 * (static_cast<float>(random.below(5)) - 2);
-        const int sign = orientation(tet.corners[0], tet.corners[1], tet.corners[2], tet.corners[3]);
-        if (sign > 0) std::swap(tet.corners[2], tet.corners[3]);
-        if (sign != 0) return tet;
+        if (orient(tet)) return tet;
     }
 }
 
 // The tie rule of the paper's Table 1: a product of zero counts as "not negative" in both tests.
 TEST(Maria, a_line_through_an_edge_leaves_by_the_face_that_the_tie_rule_names)
 {
-    tetrace::test::Random random(9);
+    Random random(9);
     constexpr uint excluded[] = {1, 2,
                                  0}; // the exit is opposite this corner when the line meets the edge of c0, c1, c2
     for (int i = 0; i < 500; i++) {
         const RandomTet tet = coarse_tet(random);
-        const auto packed = packed_tet(tet);
+        const auto packed = packed_tets({tet});
         for (uint entry = 0; entry < 4; entry++) {
             for (uint on_edge = 0; on_edge < 3; on_edge++) {
                 Float3 inside_face, on_apex_edge, direction, origin;
@@ -219,16 +126,16 @@ TEST(Ray, a_pixel_s_tiny_direction_components_are_dropped)
 
 TEST(Maria, starts_by_the_face_that_the_exact_ray_leaves_by)
 {
-    tetrace::test::Random random(7);
+    Random random(7);
     int compared = 0;
     int differing = 0;
     for (int i = 0; i < 20000; i++) {
         const RandomTet tet = random_tet(random);
         const Float3 origin = inner_point(tet, random);
-        const Float3 direction = direction_of(random);
+        const Float3 direction = random_direction(random);
         const Crossed crossed = crossed_faces(tet, origin, direction);
         if (crossed.count != 1) continue; // the origin fell on a face, or the ray meets an edge
-        const auto packed = packed_tet(tet);
+        const auto packed = packed_tets({tet});
         compared++;
         differing += start_face(view_of(packed), 0, ray_of(origin, direction)) != crossed.last;
     }

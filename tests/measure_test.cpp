@@ -226,7 +226,7 @@ TEST_F(measure, hits_that_change_after_verification_are_an_error_without_a_rate)
 
 TEST_F(measure, rows_that_are_wrong_are_not_timed)
 {
-    std::get<Traced>(rows_[0].outcome).verdicts.lost = 1;
+    std::get<Traced>(rows_[0].outcome).different = 1;
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
     EXPECT_TRUE(rows_[0].samples_s.empty());
     EXPECT_EQ(rows_[1].samples_s.size(), 30u);

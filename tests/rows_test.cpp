@@ -129,6 +129,16 @@ TEST(rows, the_default_is_maria_on_both_layouts_beside_embree)
                                         "bvh/packet16/embree/bunny/primary/math:fast/api:embree"}));
 }
 
+TEST(rows, every_method_has_rows_where_all_are_asked_for)
+{
+    const auto list = names({"bench", "--method", "all", "--layout", "tet80,embree"}, {"a"});
+    ASSERT_EQ(list.size(), 7u);
+    EXPECT_EQ(list[0], "cdt/plane/tet80/a/primary/math:exact/api:openmp");
+    EXPECT_EQ(list[4], "cdt/maria/tet80/a/primary/math:exact/api:openmp");
+    EXPECT_EQ(list[5], "bvh/single/embree/a/primary/math:fast/api:embree");
+    EXPECT_EQ(names({"check", "--method", "plucker"}, {"a"}).size(), 2u);
+}
+
 TEST(rows, options_select_and_rows_go_scene_after_scene)
 {
     EXPECT_EQ(names({"bench", "--layout", "tet96"}, {"a", "b"}),

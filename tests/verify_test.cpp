@@ -119,10 +119,10 @@ TEST_F(verify, a_method_with_a_wrong_face_is_flawed)
     EXPECT_TRUE(traced(row)->verdicts.first_wrong.has_value());
 }
 
-TEST_F(verify, a_lost_ray_makes_a_row_wrong)
+TEST_F(verify, a_lost_ray_makes_a_row_flawed)
 {
     const RowRun row = verified("openmp", [](std::span<Hit> hits) { hits[0].face_id = LOST; });
-    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(status_of(row), Status::flawed);
     EXPECT_EQ(reason_of(row), "2 lost");
     EXPECT_EQ(traced(row)->verdicts.lost, 2u);
 }

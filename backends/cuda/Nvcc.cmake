@@ -1,12 +1,14 @@
 # TETRACE_NVCC: nvcc, where there is one that works here (-DTETRACE_NVCC= does without). Sets TETRACE_NVCC_VERSION ("13.0"),
-# empty without; TETRACE_NVCC_ARCHITECTURES, those of sm_75 to sm_90 that it knows; TETRACE_NVCC_TARGETS, the options that
-# compile for them.
+# empty without; TETRACE_NVCC_ARCHITECTURES, those that machine code is made for; TETRACE_NVCC_TARGETS, the options that
+# compile for them. One architecture a generation: code for sm_80 runs on sm_86 and sm_89 as well, which would double the
+# time that a kernel takes to compile and the bytes that it has in the program.
 find_program(TETRACE_NVCC nvcc HINTS ENV CUDA_PATH ENV CUDA_HOME PATH_SUFFIXES bin PATHS /usr/local/cuda/bin /opt/cuda/bin
   DOC "NVIDIA's compiler; empty: kernels are compiled by NVRTC at run time")
 
 # An nvcc that does not know the host's compiler fails on any file.
-if(TETRACE_NVCC AND NOT "${TETRACE_NVCC}" STREQUAL "${TETRACE_NVCC_TRIED}")
-  set(TETRACE_NVCC_TRIED "${TETRACE_NVCC}" CACHE INTERNAL "what the entries beside this one are of")
+set(wanted 75 80 90)
+if(TETRACE_NVCC AND NOT "${TETRACE_NVCC} for ${wanted}" STREQUAL "${TETRACE_NVCC_TRIED}")
+  set(TETRACE_NVCC_TRIED "${TETRACE_NVCC} for ${wanted}" CACHE INTERNAL "what the entries beside this one are of")
   file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/try.cu "__global__ void nothing() {}\n")
   execute_process(COMMAND ${TETRACE_NVCC} --ptx -std=c++17 -o ${CMAKE_CURRENT_BINARY_DIR}/try.ptx ${CMAKE_CURRENT_BINARY_DIR}/try.cu
     RESULT_VARIABLE failed ERROR_VARIABLE errors OUTPUT_QUIET)
@@ -19,7 +21,7 @@ if(TETRACE_NVCC AND NOT "${TETRACE_NVCC}" STREQUAL "${TETRACE_NVCC_TRIED}")
     set(TETRACE_NVCC_FOUND_VERSION "" CACHE INTERNAL "")
   endif()
   set(architectures "")
-  foreach(number 75 80 86 89 90)
+  foreach(number IN LISTS wanted)
     if(known MATCHES "sm_${number}[ \n]")
       list(APPEND architectures ${number})
     endif()
