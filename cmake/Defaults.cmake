@@ -12,6 +12,9 @@ add_library(tetrace_options INTERFACE)
 target_compile_features(tetrace_options INTERFACE cxx_std_20)
 target_include_directories(tetrace_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+if(CMAKE_UNITY_BUILD) # a source that another includes looks like a header to it
+  target_compile_options(tetrace_options INTERFACE -Wno-subobject-linkage)
+endif()
 
 # All but the kernels of math mode fast: cameras, packed data and answers are the same bits on every machine.
 add_library(tetrace_exact INTERFACE)
@@ -20,6 +23,6 @@ target_compile_options(tetrace_exact INTERFACE -ffp-contract=off)
 
 option(TETRACE_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
 if(TETRACE_SANITIZE)
-  target_compile_options(tetrace_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_compile_options(tetrace_options INTERFACE -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(tetrace_options INTERFACE -fsanitize=address,undefined)
 endif()

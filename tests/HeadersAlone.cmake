@@ -1,5 +1,6 @@
-# Each header of ours compiles alone: a translation unit for each, built with the tests. Of kernels/ that is layout.h; the
-# others are parts of a kernel's source in several languages, which every backend compiles.
+# Each header of ours compiles alone. Where a source of the same name includes its header before all else, building that
+# shows it; the rest get a translation unit each, built with the tests. Of kernels/ that is layout.h; the others are parts
+# of a kernel's source in several languages, which every backend compiles.
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/kernels/layout.h ${PROJECT_SOURCE_DIR}/backends/*.h
   ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/bench/*.h)
@@ -9,6 +10,13 @@ endif()
 
 set(sources "")
 foreach(header IN LISTS headers)
+  string(REGEX REPLACE "h$" "cpp" own_source ${PROJECT_SOURCE_DIR}/${header})
+  if(EXISTS ${own_source})
+    file(STRINGS ${own_source} first_include REGEX "^#include" LIMIT_COUNT 1)
+    if(first_include STREQUAL "#include \"${header}\"")
+      continue()
+    endif()
+  endif()
   string(MAKE_C_IDENTIFIER ${header} name)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n#include \"${header}\" // guarded\n")

@@ -1,0 +1,1 @@
+// The object that compiles the precompiled header of the tests.
