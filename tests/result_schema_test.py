@@ -1,0 +1,195 @@
+"""Is every result what results/result.schema.json says, and does that say enough to find a mistake?
+
+usage: result_schema_test.py TETRACE RESULTS      (the program, the folder results/)
+Exit code 77 where the package python3-jsonschema is missing.
+"""
+
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import jsonschema
+except ImportError:
+    print("skipped: nothing here reads JSON Schema; install python3-jsonschema")
+    sys.exit(77)
+
+TETRACE, RESULTS = sys.argv[1], pathlib.Path(sys.argv[2])
+SCHEMA = json.loads((RESULTS / "result.schema.json").read_text())
+VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
+
+CLAIM = {"id": "table4-maria", "text": "maria has no wrong result", "verdict": "holds", "evidence": "0 of 10 rays"}
+TABLE = {
+    "id": "table4",
+    "title": "Robustness",
+    "source": "Maria et al. 2017, Table 4",
+    "columns": [{"key": "method", "title": "method"}, {"key": "lost", "title": "lost", "unit": "rays"}],
+    "rows": [{"method": "maria", "lost": {"value": 0, "low": 0, "high": 0.1, "paper": 1, "ratio": 0, "text": "none"}},
+             {"method": "plane", "lost": 3}],
+    "claims": [CLAIM],
+    "notes": ["sampled"],
+}
+FIGURE = {
+    "id": "figure6",
+    "title": "Time and tets",
+    "source": "Maria et al. 2017, Figure 6",
+    "x": {"title": "tets a ray", "unit": ""},
+    "y": {"title": "time", "unit": "ms"},
+    "series": [{"name": "cpu", "points": [[1, 2.5], [3, 4]]}],
+    "claims": [CLAIM],
+    "pictures": ["figure6/slowest.png"],
+    "notes": [],
+}
+# What lies below these has keys or types of its own choice: Google Benchmark's, scenes' and devices' names, columns.
+FREE_KEYS = {("matrix",), ("matrix", "*"), ("matrix", "*", "*"), ("tables", 0, "rows", 0), ("tables", 0, "rows", 1)}
+
+
+def fresh(arguments, accepted=(0,)):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "result.json"
+        command = [TETRACE, *arguments, "--out", str(file)]
+        ended = subprocess.run(command, capture_output=True, text=True, env={"PATH": "/usr/bin:/bin", "HOME": folder})
+        if ended.returncode not in accepted:
+            raise AssertionError(f"{command} ended with {ended.returncode}: {ended.stderr}")
+        return json.loads(file.read_text())
+
+
+def tiny(verb, *more):
+    return fresh([verb, "--scene", "cubes", "--resolution", "3", "--size", "8", "--backend", "openmp,embree,cuda", *more])
+
+
+def reproduced(bench):
+    """A result of `tetrace reproduce`, as results/README.md states it."""
+    head = ("schema_version", "date", "version", "commit", "compiler", "flags", "host")
+    section = {key: bench["tetrace"][key] for key in head}
+    return {"tetrace": {**section, "verb": "reproduce", "tables": [TABLE], "figures": [FIGURE]}}
+
+
+def places(value, path=()):
+    """Every object and every scalar below a value, with its path."""
+    if isinstance(value, dict):
+        yield path, value
+        for key, part in value.items():
+            yield from places(part, path + (key,))
+    elif isinstance(value, list):
+        for index, part in enumerate(value):
+            yield from places(part, path + (index,))
+    else:
+        yield path, value
+
+
+def is_free(path):
+    return path in FREE_KEYS or (path[:1] == ("matrix",) and ("matrix",) + ("*",) * (len(path) - 1) in FREE_KEYS)
+
+
+def twin(result, path, change):
+    """A copy of the result in which change(parent, key) was done at the path below `tetrace`."""
+    copied = copy.deepcopy(result)
+    parent = copied["tetrace"]
+    for step in path[:-1]:
+        parent = parent[step]
+    change(parent, path[-1])
+    return copied
+
+
+def rename(parent, key):
+    parent[key + "s"] = parent.pop(key)
+
+
+def change_type(parent, key):
+    parent[key] = 5 if isinstance(parent[key], (str, bool)) else "5"
+
+
+class ResultSchema(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.bench = tiny("bench", "--samples", "3")
+        cls.check = tiny("check")
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            json.dump(cls.bench, file)
+            file.flush()
+            cls.compare = fresh(["compare", file.name, file.name])
+        cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "reproduce": reproduced(cls.bench)}
+
+    def accepts(self, result, name):
+        errors = [f"{'.'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in VALIDATOR.iter_errors(result)]
+        self.assertEqual(errors, [], name)
+
+    def refuses(self, result, name):
+        self.assertFalse(VALIDATOR.is_valid(result), f"accepted: {name}")
+
+    def test_schema_is_one(self):
+        jsonschema.Draft202012Validator.check_schema(SCHEMA)
+
+    def test_results_of_the_repository_are_valid(self):
+        files = [file for file in RESULTS.rglob("*.json") if not file.name.endswith(".schema.json")]
+        self.assertTrue(files)
+        for file in files:
+            self.accepts(json.loads(file.read_text()), str(file))
+
+    def test_fresh_results_are_valid(self):
+        for verb, result in self.all.items():
+            self.accepts(result, verb)
+        self.assertTrue(any("samples_s" in row.get("times", {}) for row in self.bench["tetrace"]["rows"]))
+
+    def test_anonymous_results_are_valid(self):
+        self.accepts(tiny("bench", "--samples", "3", "--anonymous"), "bench")
+
+    def test_a_renamed_key_is_refused(self):
+        for verb, result in self.all.items():
+            for path, value in places(result["tetrace"]):
+                if isinstance(value, dict) and not is_free(path):
+                    for key in value:
+                        self.refuses(twin(result, path + (key,), rename), f"{verb}: {path} {key}")
+
+    def test_a_value_of_another_type_is_refused(self):
+        for verb, result in self.all.items():
+            for path, value in places(result["tetrace"]):
+                if not isinstance(value, dict) and not is_free(path[:-1]):
+                    self.refuses(twin(result, path, change_type), f"{verb}: {path}")
+
+    def test_values_that_cannot_be_are_refused(self):
+        def put(*path_and_value):
+            *path, value = path_and_value
+            return twin(self.all[path[0]], tuple(path[1:]), lambda parent, key: parent.__setitem__(key, value))
+
+        for bad in (
+            ("bench", "schema_version", 3),
+            ("bench", "verb", "benchmark"),
+            ("bench", "date", "today"),
+            ("bench", "rows", 0, "status", "fine"),
+            ("bench", "rows", 0, "status", "wrong"),
+            ("bench", "rows", 0, "hit_hash", "00000000000000FF"),
+            ("bench", "rows", 0, "times", "samples_s", 0, 0),
+            ("bench", "rows", 0, "times", "samples_s", []),
+            ("bench", "rows", 0, "counts", "hits", -1),
+            ("bench", "rows", 0, "counts", "hits", 1.5),
+            ("bench", "copy_bytes_per_s", 1e9),
+            ("bench", "scenes", 0, "file", "/home/somebody/cubes.tet"),
+            ("reproduce", "tables", 0, "claims", 0, "verdict", "perhaps"),
+            ("reproduce", "tables", 0, "rows", 0, "lost", True),
+            ("reproduce", "tables", 0, "rows", 0, "lost", "value", "none"),
+            ("reproduce", "figures", 0, "series", 0, "points", 0, [1, 2, 3]),
+            ("reproduce", "figures", 0, "pictures", 0, "/tmp/picture.png"),
+            ("compare", "comparison", "rows", 0, "verdict", "same"),
+        ):
+            self.refuses(put(*bad), str(bad))
+
+    def test_a_result_without_what_its_verb_promises_is_refused(self):
+        for verb, keys in {
+            "bench": ("rows", "devices", "ratios", "scenes", "host", "commit"),
+            "check": ("rows", "matrix", "missing_devices"),
+            "compare": ("comparison",),
+        }.items():
+            for key in keys:
+                self.refuses(twin(self.all[verb], (key,), lambda parent, name: parent.pop(name)), f"{verb}: no {key}")
+        self.refuses({}, "nothing")
+        self.refuses({**self.bench, "more": 1}, "a key beside tetrace")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
