@@ -1,6 +1,9 @@
 #include "bench/bench_report.h"
 #include "bench/commands.h"
 #include "bench/progress.h"
+#include "core/error.h"
+
+#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -15,11 +18,22 @@ int list_rows(const std::vector<RowKey>& keys)
     return 0;
 }
 
+/// Google Benchmark's own JSON names the host, whatever it is told.
+void check_anonymous(const Options& options, const BenchmarkFlags& flags)
+{
+    const bool prints_json = flags.format == "json", writes_json = !flags.out.empty() && flags.out_format == "json";
+    if (options.anonymous && (prints_json || writes_json))
+        throw Error(ErrorKind::usage,
+                    fmt::format("--anonymous: the JSON of {} names the host; --out FILE.json holds the same without it",
+                                prints_json ? "--benchmark_format" : "--benchmark_out"));
+}
+
 } // namespace
 
 int bench_command(const Options& options)
 {
     const BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
+    check_anonymous(options, flags);
     const auto keys =
         selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
     if (options.list || flags.list_tests) return list_rows(keys);

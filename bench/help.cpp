@@ -92,6 +92,22 @@ const VerbHelp verb_help[] = {
      "ray in false colour with a scale bar. The first selected row of each scene makes them.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"},
+    {Verb::compare, "compare two results of bench, row by row",
+     "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "
+     "commit, driver, compiler or machine, as the head of the output tells. For each row it prints the ratio of the "
+     "rates (of the medians; above 1 B is faster) with its interval, and a verdict: 'SAME', the interval lies within "
+     "--tolerance; 'FASTER' and 'SLOWER', it does not hold 1; 'UNSURE', it does, and reaches beyond the tolerance: "
+     "more samples would tell. Rows that only one of them timed are 'FAILED' (wrong or in error in B), 'MISSING' (not "
+     "in B, skipped or unsupported there) or 'NEW'; they have no part in the geometric mean.\n\n"
+     "The intervals come from ranks and make no assumption on the noise but that samples are independent: where "
+     "nothing changed, the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from "
+     "10 samples a row on; with fewer, down to 5, that is so for each row. What differs between two runs apart from "
+     "noise is not in their samples: it is what the tolerance is for.\n\n"
+     "Exits with 1 where a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing); with 2, "
+     "naming the rows, where scenes, views or hit hashes differ, since times of different work do not compare.",
+     "  tetrace compare before.json after.json\n"
+     "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
+     "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},
     {Verb::help, "describe the program or a verb",
      "Describes the program, or a verb; 'tetrace help options' prints a Markdown table of all options.",
      "  tetrace help bench\n"},
@@ -99,7 +115,7 @@ const VerbHelp verb_help[] = {
 
 const char* const exit_codes = "Exit codes\n"
                                "  0  good\n"
-                               "  1  a wrong result, or a scene that could not be built\n"
+                               "  1  a wrong result, a scene that could not be built, or a regression\n"
                                "  2  a command line or an input that is not accepted\n"
                                "  3  something required is missing or not supported here\n"
                                "  4  an internal error\n";
@@ -127,9 +143,11 @@ std::string option_entries(Verb verb)
 std::string verb_text(const VerbHelp& entry)
 {
     const std::string_view name = name_of(entry.verb);
-    std::string text = fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}\n\n{}\n", name, entry.summary, name,
-                                   entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
-                                   wrapped(entry.description, page_width, 0));
+    const FileArguments files = file_arguments(entry.verb);
+    std::string text =
+        fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}{}{}\n\n{}\n", name, entry.summary, name, files.names,
+                    files.most > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
+                    wrapped(entry.description, page_width, 0));
     if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
     text += fmt::format("Examples\n{}\n", entry.examples);
     return text + exit_codes;

@@ -18,7 +18,8 @@ constexpr unsigned bit(Verb verb)
 constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
 constexpr unsigned tracing = measuring | bit(Verb::render);
 constexpr unsigned building = bit(Verb::build) | tracing;
-constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes);
+constexpr unsigned reporting =
+    measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) | bit(Verb::compare);
 
 /// What all kernels have at one place of their id, each once: the accepted values of an option.
 template <class T>
@@ -181,8 +182,8 @@ std::vector<OptionRow> row_options()
          "is left. Rows of structure cdt only, on the backends that have such kernels. Default: tiles.",
          tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",
-         "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.", measuring, false,
-         set_filter},
+         "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.",
+         measuring | bit(Verb::compare), false, set_filter},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false,
          [](Options& o, const std::string&) { o.list = true; }},
     };
@@ -245,6 +246,14 @@ std::vector<OptionRow> judging_options()
          "Wrong "
          "and lost rays of the other methods never do: those do not claim to have none.",
          bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
+        {"Judging", "--tolerance", "PERCENT",
+         "Differences in time up to so many percent do not matter: a row that is SLOWER by more is a regression, one "
+         "whose whole interval lies within is the SAME. 0 to 100. Default: 3.",
+         bit(Verb::compare), false,
+         [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
+        {"Judging", "--allow-missing", "",
+         "Exit with 0 where rows that A timed are missing, skipped or unsupported in B; failed ones still count.",
+         bit(Verb::compare), false, [](Options& o, const std::string&) { o.allow_missing = true; }},
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
@@ -271,6 +280,9 @@ std::vector<OptionRow> output_options()
          "Also write the result to FILE; without --format, its ending chooses the form: .json, .csv, .md, or .txt for "
          "the table. The table is printed on standard output all the same.",
          reporting, false, set_path("--out", &Options::out)},
+        {"Output", "--anonymous", "",
+         "Leave out of the result what tells whose machine it comes from: the host's name, and the folders of files.",
+         reporting, false, [](Options& o, const std::string&) { o.anonymous = true; }},
         {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
@@ -291,6 +303,12 @@ std::vector<OptionRow> make_table()
 }
 
 } // namespace
+
+FileArguments file_arguments(Verb verb)
+{
+    if (verb == Verb::compare) return {"A.json B.json", 2, 2};
+    return {};
+}
 
 const std::vector<OptionRow>& option_table()
 {

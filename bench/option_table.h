@@ -21,6 +21,13 @@ struct OptionRow {
 
 [[nodiscard]] const std::vector<OptionRow>& option_table();
 
+/// The files that a verb reads, named without an option: how help writes them, and how many there may be.
+struct FileArguments {
+    std::string_view names = "";
+    std::size_t least = 0, most = 0;
+};
+[[nodiscard]] FileArguments file_arguments(Verb verb);
+
 [[nodiscard]] inline bool takes(Verb verb, const OptionRow& row)
 {
     return (row.verbs >> static_cast<unsigned>(verb) & 1u) != 0;

@@ -91,6 +91,16 @@ double parse_seconds(const std::string& option, const std::string& text)
     return value * unit;
 }
 
+double parse_percent(const std::string& option, const std::string& text)
+{
+    std::string_view digits = text;
+    if (!digits.empty() && digits.back() == '%') digits.remove_suffix(1);
+    double value = 0;
+    if (!read_whole(digits, value) || !(value >= 0 && value <= 100))
+        reject_value(option, text, "a percentage from 0 to 100, as 3 or 2.5%");
+    return value;
+}
+
 std::uint64_t parse_bytes(const std::string& option, const std::string& text)
 {
     constexpr std::string_view units = "KMGT";

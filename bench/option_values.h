@@ -38,6 +38,9 @@ template <class T>
 /// Seconds, positive and finite: "90", "1.5", "10m", "2h". Throws Error{usage}.
 [[nodiscard]] double parse_seconds(const std::string& option, const std::string& text);
 
+/// A percentage from 0 to 100: "3", "2.5" or "3%". Throws Error{usage}.
+[[nodiscard]] double parse_percent(const std::string& option, const std::string& text);
+
 /// Bytes: a whole number with K, M, G or T (powers of 1024). Throws Error{usage}.
 [[nodiscard]] std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 

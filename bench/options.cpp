@@ -12,8 +12,8 @@ namespace {
 
 const std::vector<Verb>& all_verbs()
 {
-    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes, Verb::build, Verb::bench,
-                                            Verb::check,   Verb::render, Verb::help};
+    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes, Verb::build,   Verb::bench,
+                                            Verb::check,   Verb::render, Verb::compare, Verb::help};
     return verbs;
 }
 
@@ -48,6 +48,11 @@ std::vector<std::string> accepted_options(Verb verb)
                                               name_of(verb), reason, join_alternatives(accepted_options(verb))));
 }
 
+std::string counted_files(std::size_t count)
+{
+    return count == 0 ? "no file is" : count == 1 ? "one file is" : fmt::format("{} files are", count);
+}
+
 void add_row(CLI::App& app, const OptionRow& row)
 {
     if (row.value.empty()) {
@@ -55,7 +60,7 @@ void add_row(CLI::App& app, const OptionRow& row)
         return;
     }
     // Each occurrence takes one value; how many occurrences there may be is checked after parsing, in our own words.
-    app.add_option(row.name, [](const CLI::results_t&) { return true; })->expected(1, 1000)->allow_extra_args(false);
+    app.add_option(row.name, [](const CLI::results_t&) { return true; })->expected(1, -1)->allow_extra_args(false);
 }
 
 void apply_values(Options& options, const OptionRow& row, const std::vector<std::string>& occurrences)
@@ -88,6 +93,15 @@ void apply_row(Options& options, const OptionRow& row, CLI::App& app)
     }
 }
 
+void set_files(Options& options, const std::vector<std::string>& given)
+{
+    const FileArguments files = file_arguments(options.verb);
+    if (given.size() < files.least || given.size() > files.most)
+        throw Error(ErrorKind::usage, fmt::format("{0}: {1} given; usage: tetrace {0} {2} [OPTION]...",
+                                                  name_of(options.verb), counted_files(given.size()), files.names));
+    options.files.assign(given.begin(), given.end());
+}
+
 void check_single(const Options& options, const char* name, std::size_t count)
 {
     if (options.verb != Verb::build && count > 1)
@@ -111,6 +125,8 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     app.set_help_flag("--help,-h");
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) add_row(app, row);
+    std::vector<std::string> files;
+    if (file_arguments(verb).most > 0) app.add_option("FILE", files);
     auto ours = without_benchmark_flags(arguments, options);
     std::reverse(ours.begin(), ours.end()); // CLI11 takes them from the back
     try {
@@ -124,6 +140,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     }
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
+    set_files(options, files);
     check_together(options);
     return options;
 }
@@ -157,6 +174,7 @@ std::string_view name_of(Verb verb)
     case Verb::bench: return "bench";
     case Verb::check: return "check";
     case Verb::render: return "render";
+    case Verb::compare: return "compare";
     case Verb::help: return "help";
     case Verb::version: return "version";
     }

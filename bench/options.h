@@ -14,7 +14,7 @@
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
-enum class Verb { devices, scenes, build, bench, check, render, help, version };
+enum class Verb { devices, scenes, build, bench, check, render, compare, help, version };
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -26,6 +26,8 @@ enum class Picture { normals, steps };
 struct Options {
     Verb verb = Verb::help;
     std::string help_topic; ///< verb that help is about; empty: the program
+
+    std::vector<std::filesystem::path> files; ///< result files that the verb reads, as many as file_arguments() says
 
     std::vector<std::string> scenes; ///< catalogue names or paths, as given
     std::vector<DomainKind> domains = {BuildOptions{}.domain};
@@ -59,6 +61,8 @@ struct Options {
 
     std::vector<std::string> required; ///< backends that must have a usable device
     bool allow_flawed = false;
+    double tolerance = 0.03;    ///< of `compare`, a share: slower by more is a regression
+    bool allow_missing = false; ///< of `compare`
     bool clear = false;
     std::vector<Picture> pictures;
     std::optional<std::filesystem::path> junit;          ///< of `check`
@@ -66,6 +70,7 @@ struct Options {
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;
+    bool anonymous = false; ///< no host's name and no folders in results
     std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
 };
 

@@ -1,5 +1,6 @@
 #include "bench/report.h"
 
+#include "bench/anonymous.h"
 #include "bench/identity.h"
 #include "bench/progress.h"
 #include "core/error.h"
@@ -27,13 +28,16 @@ Format format_of_file(const Options& options)
                             options.out->string()));
 }
 
-std::string in_format(const Report& report, Format format)
+std::string in_format(const Report& report, Format format, const Options& options)
 {
+    const auto shown = [&](const std::string& text) {
+        return options.anonymous ? anonymous_text(text, options) : text;
+    };
     switch (format) {
-    case Format::table: return report.text;
-    case Format::json: return report.json.dump(2) + "\n";
-    case Format::csv: return report.table.csv();
-    case Format::markdown: return report.table.markdown();
+    case Format::table: return shown(report.text);
+    case Format::json: return (options.anonymous ? anonymous_json(report.json, options) : report.json).dump(2) + "\n";
+    case Format::csv: return shown(report.table.csv());
+    case Format::markdown: return shown(report.table.markdown());
     }
     throw Error(ErrorKind::internal, "in_format: no such format");
 }
@@ -70,14 +74,14 @@ void write_text(const std::filesystem::path& path, const std::string& text)
 
 void deliver_to_file(const Options& options, const Report& report)
 {
-    write_text(*options.out, in_format(report, format_of_file(options)));
+    write_text(*options.out, in_format(report, format_of_file(options), options));
 }
 
 void deliver(const Options& options, const Report& report)
 {
     if (options.out) deliver_to_file(options, report);
     const Format format = options.format.value_or(Format::table);
-    if (format == Format::table || !options.out) print(in_format(report, format));
+    if (format == Format::table || !options.out) print(in_format(report, format, options));
 }
 
 nlohmann::json to_json(const Table& table)

@@ -26,7 +26,8 @@ void check_output(const Options& options);
 /// reason where it cannot be written.
 void check_writable(const char* option, const std::filesystem::path& path);
 
-/// Writes the report where --format and --out say: standard output, the file, or both.
+/// Writes the report where --format and --out say: standard output, the file, or both; with --anonymous, as
+/// bench/anonymous.h has it.
 /// Throws Error{invalid_input} naming the file and the system's reason.
 void deliver(const Options& options, const Report& report);
 

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint64_t oldest_schema_version = 1;
 constexpr std::size_t largest_file = std::size_t{256} << 20;
+constexpr std::size_t longest_name = 1000; // of a row, in bytes: regular expressions are matched with it
 
 [[noreturn]] void reject_file(const std::filesystem::path& path, ErrorKind kind, const std::string& why)
 {
@@ -106,7 +107,7 @@ std::vector<double> read_samples(const ResultValue& row)
     if (!array) return samples;
     for (const ResultValue& sample : array->items()) {
         samples.push_back(sample.number());
-        if (samples.back() <= 0) sample.reject("is no duration: it is not positive");
+        if (samples.back() < 1e-12 || samples.back() > 1e12) sample.reject("is no duration: 1e-12 to 1e12 s are");
     }
     return samples;
 }
@@ -120,14 +121,23 @@ std::string read_status(const ResultValue& value)
     return status;
 }
 
+/// With a '?' for each character that would do something to a terminal; lines stay.
+std::string printable(std::string text)
+{
+    for (char& c : text)
+        if ((static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f) c = '?';
+    return text;
+}
+
 ResultRow read_row(const ResultValue& value)
 {
     ResultRow row;
     row.name = value.at("name").line();
+    if (row.name.size() > longest_name) value.at("name").reject("is longer than 1,000 bytes, which no row's name is");
     row.scene = value.at("scene").line();
     row.backend = value.at("backend").line();
     row.status = read_status(value.at("status"));
-    if (const auto reason = value.find("reason")) row.reason = reason->text();
+    if (const auto reason = value.find("reason")) row.reason = printable(reason->text());
     if (const auto device = value.find("device")) {
         row.device = device->at("name").line();
         row.device_type = device->at("type").line();
@@ -135,6 +145,8 @@ ResultRow read_row(const ResultValue& value)
     }
     if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
     row.samples_s = read_samples(value);
+    if (const auto rates = value.find("rates"))
+        if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();
     return row;
 }
 

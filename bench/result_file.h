@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,12 @@ struct ResultScene {
 /// A row of a result; texts are empty where the file has none.
 struct ResultRow {
     std::string name;
-    std::string scene, backend, status, reason;
+    std::string scene, backend, status;
+    std::string reason; ///< several lines perhaps; no other control characters
     std::string device, device_type, driver;
-    std::string hit_hash;          ///< empty where no rays were traced
-    std::vector<double> samples_s; ///< device seconds, each positive; empty where the row was not timed
+    std::string hit_hash;              ///< empty where no rays were traced
+    std::optional<double> mrays_per_s; ///< of the median sample
+    std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 };
 
 /// A result file that has been read and checked as far as these members go; the rest is reached by section(), whose

@@ -79,7 +79,7 @@ TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert or input"));
-    EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render or help"));
+    EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, compare or help"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
 }
 
@@ -88,6 +88,7 @@ TEST(options, options_of_other_verbs_are_not_accepted)
     EXPECT_TRUE(contains(rejection({"scenes", "--samples", "3"}), "--samples"));
     EXPECT_TRUE(contains(rejection({"check", "--benchmark_filter=x"}), "--benchmark_filter"));
     EXPECT_TRUE(contains(rejection({"bench", "stray"}), "stray"));
+    EXPECT_TRUE(contains(rejection({"bench", "--scene", "cubes", "stray"}), "stray")) << "a value each";
 }
 
 TEST(options, build_takes_lists_where_others_take_one_value)
@@ -131,11 +132,24 @@ TEST(options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
         EXPECT_NE(row.verbs, 0u) << row.name;
         EXPECT_EQ(row.help.back(), '.') << row.name;
         EXPECT_EQ(row.name.rfind("--", 0), 0u) << row.name;
-        for (unsigned verb = 0; verb < 8; ++verb)
+        for (unsigned verb = 0; verb < 32; ++verb)
             if ((row.verbs >> verb & 1u) != 0) {
                 EXPECT_TRUE(seen.insert({row.name, verb}).second) << row.name;
             }
     }
+}
+
+TEST(options, compare_takes_two_files_and_a_tolerance_in_percent)
+{
+    const Options options = parse_options({"compare", "a.json", "--tolerance", "2.5%", "b.json"});
+    EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b.json"}));
+    EXPECT_DOUBLE_EQ(options.tolerance, 0.025);
+    EXPECT_TRUE(contains(rejection({"compare", "a.json"}), "one file is given; usage: tetrace compare A.json B.json"));
+    EXPECT_TRUE(contains(rejection({"compare", "a", "b", "c"}), "3 files are given"));
+    EXPECT_TRUE(contains(rejection({"compare", "a", "b", "--samples", "3"}), "--tolerance"));
+    EXPECT_EQ(parse_percent("--tolerance", "0"), 0);
+    for (const char* const bad : {"", "%", "-1", "101", "nan", "3 %", "three"})
+        EXPECT_THROW(static_cast<void>(parse_percent("--tolerance", bad)), Error) << bad;
 }
 
 TEST(option_values, views_take_numbers_ranges_and_strides)

@@ -1,4 +1,4 @@
-#include "tests/temporary_folder.h"
+#include "tests/program_fixture.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,34 +14,7 @@ using namespace tetrace;
 
 namespace {
 
-struct Ended {
-    int code = -1;
-    std::string out, errors;
-};
-
-/// The program in a folder of its own, with a cache of its own.
-class program : public testing::Test {
-protected:
-    Ended run(const std::string& arguments)
-    {
-        const auto out = folder_.path() / "stdout", errors = folder_.path() / "stderr";
-        const std::string command =
-            fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' '{1}' {2} > '{3}' 2> '{4}'", folder_.path().string(),
-                        TETRACE_PROGRAM, arguments, out.string(), errors.string());
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(errors)};
-    }
-
-    Ended bench(const std::string& arguments)
-    {
-        // Not on this machine's GPU interfaces, whose number nobody knows.
-        return run("bench --backend openmp,embree --scene cubes --resolution 6 --size 24 --samples 3 " + arguments);
-    }
-
-    [[nodiscard]] std::string file(const char* name) const { return read_text(folder_.path() / name); }
-
-    TemporaryFolder folder_;
-};
+class program : public ProgramTest {};
 
 } // namespace
 
@@ -49,7 +22,7 @@ TEST_F(program, describes_itself)
 {
     EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
     EXPECT_TRUE(contains(run("--version").out, "tetrace "));
-    for (const char* const verb : {"devices", "scenes", "build", "bench", "check", "render", "help"}) {
+    for (const char* const verb : {"devices", "scenes", "build", "bench", "check", "render", "compare", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
         EXPECT_EQ(help.code, 0);
         EXPECT_TRUE(contains(help.out, "Examples")) << verb;

@@ -1,0 +1,16 @@
+#include "bench/commands.h"
+#include "bench/compare_report.h"
+
+namespace tetrace {
+
+int compare_command(const Options& options)
+{
+    check_output(options);
+    const ResultFile before = read_result(options.files.at(0));
+    const ResultFile after = read_result(options.files.at(1));
+    const ResultComparison comparison = compare_results(before, after, options.filter, options.tolerance);
+    deliver(options, compare_report(comparison, options));
+    return comparison.regressions(options.allow_missing).empty() ? 0 : 1;
+}
+
+} // namespace tetrace
