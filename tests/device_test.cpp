@@ -201,8 +201,8 @@ TEST_P(Devices, time_an_image_in_one_launch_too)
     const DeviceRays rays(make_cubes(4), Layout::tet80);
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, {}, rays.data(), {});
-        for (int image = 0; image < 2; image++) { // the first is launched in steps
-            session->launch(rays.from_outside(200, 200));
+        for (const std::uint32_t size : {200u, 8u}) { // in steps that are waited for; one tile, in one launch
+            session->launch(rays.from_outside(size, size));
             const double seconds = session->wait();
             EXPECT_GT(seconds, 0);
             EXPECT_LT(seconds, 60);
@@ -244,7 +244,7 @@ TEST_P(Devices, are_not_harmed_by_a_launch_that_nobody_waits_for)
 TEST_P(Devices, give_whole_hits_before_anybody_waits)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
-    const TraceJob job = rays.from_outside(200, 200);
+    const TraceJob job = rays.from_outside(800, 800);
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, {}, rays.data(), {});
         (void)traced(*session, job); // the next one is not launched in steps that are waited for

@@ -61,7 +61,6 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
     start = std::chrono::steady_clock::now();
     make_program(kernel, options);
     setup_.compile_s = seconds_since(start);
-    context_.run("making commands", 0, [&] { fill_ = context_.make_commands(); });
     context_.check_validation("the first launch");
 }
 
@@ -135,15 +134,6 @@ void VulkanSession::resize_output(std::size_t words)
     output_words_ = words;
 }
 
-void VulkanSession::fill_output()
-{
-    fill_.begin({});
-    fill_.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
-    record_barrier(fill_);
-    fill_.end();
-    context_.submit(fill_);
-}
-
 const vk::raii::CommandBuffer& VulkanSession::commands_for(std::size_t index)
 {
     while (chunks_.size() <= index)
@@ -156,6 +146,10 @@ void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
     const vk::raii::CommandBuffer& commands = commands_for(enqueued_.size());
     const vk::raii::QueryPool& times = chunks_[enqueued_.size()].times;
     commands.begin({});
+    if (params.first_tile == 0) { // in the kernel's own commands, so that the validation layers see both
+        commands.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
+        record_barrier(commands);
+    }
     program_->record(commands);
     commands.pushConstants<LaunchParams>(*program_->layout(), vk::ShaderStageFlagBits::eCompute, 0, params);
     record_begin_time(commands, times);
@@ -172,7 +166,6 @@ void VulkanSession::launch(const TraceJob& job)
     context_.run("launching", output_bytes(), [&] {
         take_times(); // of a launch that nobody waited for
         resize_output(output_words(job));
-        fill_output();
         launches_.start(
             launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
             [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },

@@ -32,9 +32,9 @@ private:
     void bind_scene(const ProgramId& id);
     void resize_output(std::size_t words);
     [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
-    void fill_output();
     /// Command buffer and timestamps number `index` of a launch, made when first asked for.
     const vk::raii::CommandBuffer& commands_for(std::size_t index);
+    /// The image's first launch poisons the output before its kernel.
     void enqueue(const LaunchParams& params, std::uint32_t tiles);
     /// Waits for what is enqueued, and counts its times.
     void take_times();
@@ -54,7 +54,6 @@ private:
     std::size_t output_words_ = 0;
     std::optional<Program> program_;
 
-    vk::raii::CommandBuffer fill_{nullptr};
     struct Chunk {
         vk::raii::CommandBuffer commands{nullptr};
         vk::raii::QueryPool times{nullptr};
