@@ -23,7 +23,9 @@ bench: build
 	@mkdir -p build/bench
 	$(TETRACE) bench --out build/bench/result.json
 	$(TETRACE) render --views 0 --picture normals,steps --out build/bench
-	@echo "Result: build/bench/result.json (its schema: results/README.md); pictures: build/bench/ too"
+	pictures=$$(ls build/bench/*.png 2>/dev/null | paste -sd,); \
+	    $(TETRACE) report build/bench/result.json $${pictures:+--picture "$$pictures"} --out build/bench/report.html
+	@echo "Page: build/bench/report.html; result: build/bench/result.json (its schema: results/README.md)"
 
 bundle: build
 	cmake --build --preset release -j $(JOBS) --target bundle

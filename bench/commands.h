@@ -15,6 +15,7 @@ int bench_command(const Options& options);
 int check_command(const Options& options);
 int render_command(const Options& options);
 int compare_command(const Options& options);
+int report_command(const Options& options);
 
 /// Throws Error{missing} naming the first backend of the list that has no usable device.
 void require_devices(const std::vector<std::string>& backends);

@@ -108,6 +108,15 @@ const VerbHelp verb_help[] = {
      "  tetrace compare before.json after.json\n"
      "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
      "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},
+    {Verb::report, "write one HTML page from results",
+     "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
+     "APIs beside each other with intervals, each device's roofline with its rows on it, the matrix of check, and "
+     "pictures. The page loads nothing and runs no script; it follows the reader's choice of light or dark, and "
+     "prints. Rows of several results stand in one chart where they traced the same rays through the same scene; "
+     "emulated "
+     "devices and GPUs never do.",
+     "  tetrace report bench.json check.json --out report.html\n"
+     "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
     {Verb::help, "describe the program or a verb",
      "Describes the program, or a verb; 'tetrace help options' prints a Markdown table of all options.",
      "  tetrace help bench\n"},

@@ -266,6 +266,16 @@ std::vector<OptionRow> judging_options()
     };
 }
 
+std::vector<OptionRow> report_options()
+{
+    return {
+        {"Pictures", "--picture", "FILE",
+         "Put this picture into the page, a PNG file as 'tetrace render' writes it. May be repeated; several with "
+         "commas between. Default: none but those that a figure of a result names.",
+         bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
+    };
+}
+
 std::vector<OptionRow> output_options()
 {
     return {
@@ -290,13 +300,15 @@ std::vector<OptionRow> output_options()
          "in front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png, or "
          ".ppm, which needs no library, where OpenImageIO is missing.",
          bit(Verb::render), false, set_path("--out", &Options::out)},
+        {"Output", "--out", "FILE", "Write the page to FILE. Default: report.html.", bit(Verb::report), false,
+         set_path("--out", &Options::out)},
     };
 }
 
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {scene_options, row_options, ray_options, judging_options, output_options})
+    for (auto part : {scene_options, row_options, ray_options, judging_options, report_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     return table;
@@ -307,6 +319,7 @@ std::vector<OptionRow> make_table()
 FileArguments file_arguments(Verb verb)
 {
     if (verb == Verb::compare) return {"A.json B.json", 2, 2};
+    if (verb == Verb::report) return {"RESULT...", 1, 1000};
     return {};
 }
 

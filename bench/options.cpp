@@ -12,8 +12,8 @@ namespace {
 
 const std::vector<Verb>& all_verbs()
 {
-    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes, Verb::build,   Verb::bench,
-                                            Verb::check,   Verb::render, Verb::compare, Verb::help};
+    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes,  Verb::build,  Verb::bench, Verb::check,
+                                            Verb::render,  Verb::compare, Verb::report, Verb::help};
     return verbs;
 }
 
@@ -60,7 +60,9 @@ void add_row(CLI::App& app, const OptionRow& row)
         return;
     }
     // Each occurrence takes one value; how many occurrences there may be is checked after parsing, in our own words.
-    app.add_option(row.name, [](const CLI::results_t&) { return true; })->expected(1, -1)->allow_extra_args(false);
+    app.add_option(row.name, [](const CLI::results_t&) { return true; })
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void apply_values(Options& options, const OptionRow& row, const std::vector<std::string>& occurrences)
@@ -175,6 +177,7 @@ std::string_view name_of(Verb verb)
     case Verb::check: return "check";
     case Verb::render: return "render";
     case Verb::compare: return "compare";
+    case Verb::report: return "report";
     case Verb::help: return "help";
     case Verb::version: return "version";
     }

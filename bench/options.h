@@ -14,7 +14,7 @@
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
-enum class Verb { devices, scenes, build, bench, check, render, compare, help, version };
+enum class Verb { devices, scenes, build, bench, check, render, compare, report, help, version };
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -67,6 +67,8 @@ struct Options {
     std::vector<Picture> pictures;
     std::optional<std::filesystem::path> junit;          ///< of `check`
     std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of what differs
+
+    std::vector<std::filesystem::path> report_pictures; ///< of `report`: PNG files
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;

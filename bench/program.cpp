@@ -20,6 +20,7 @@ int run_verb(const Options& options)
     case Verb::check: return check_command(options);
     case Verb::render: return render_command(options);
     case Verb::compare: return compare_command(options);
+    case Verb::report: return report_command(options);
     case Verb::help: print(help_text(options.help_topic)); return 0;
     case Verb::version: print(version_text()); return 0;
     }

@@ -79,7 +79,7 @@ TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert or input"));
-    EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, compare or help"));
+    EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, compare, report or help"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
 }
 
@@ -196,6 +196,17 @@ TEST(options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_EQ(options.buffer_limit, 65536u);
     EXPECT_TRUE(contains(rejection({"bench", "--tile", "4x8"}), "8x4 or 8x8"));
     EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles or persistent"));
+}
+
+TEST(options, files_stand_between_options_wherever_they_are_given)
+{
+    const Options options = parse_options({"report", "a.json", "--out", "page.html", "b,c.json"});
+    EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b,c.json"}));
+    EXPECT_EQ(options.out, "page.html");
+    EXPECT_EQ(parse_options({"report", "--picture", "a.png,b.png", "a.json"}).report_pictures,
+              (std::vector<std::filesystem::path>{"a.png", "b.png"}));
+    EXPECT_TRUE(contains(rejection({"report"}), "no file is given"));
+    EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "9"}), "not expected: 9"));
 }
 
 TEST(options, a_picture_is_a_kind_of_render_and_a_folder_of_check)

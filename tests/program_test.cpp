@@ -22,13 +22,36 @@ TEST_F(program, describes_itself)
 {
     EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
     EXPECT_TRUE(contains(run("--version").out, "tetrace "));
-    for (const char* const verb : {"devices", "scenes", "build", "bench", "check", "render", "compare", "help"}) {
+    for (const char* const verb :
+         {"devices", "scenes", "build", "bench", "check", "render", "compare", "report", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
         EXPECT_EQ(help.code, 0);
         EXPECT_TRUE(contains(help.out, "Examples")) << verb;
         EXPECT_EQ(help.errors, "");
     }
     EXPECT_TRUE(contains(run("help options").out, "| `--scene SCENE` |"));
+}
+
+TEST_F(program, report_writes_a_page_from_results)
+{
+    ASSERT_EQ(bench("--out a.json").code, 0);
+    const Ended report = run("report a.json a.json --out page.html");
+    EXPECT_EQ(report.code, 0) << report.errors;
+    EXPECT_TRUE(contains(report.errors, "page.html"));
+    EXPECT_TRUE(contains(file("page.html"), "cdt maria tet80"));
+    EXPECT_TRUE(contains(file("page.html"), "2 results"));
+    EXPECT_EQ(run("report a.json").code, 0);
+    EXPECT_FALSE(file("report.html").empty()) << "the default name";
+}
+
+TEST_F(program, report_names_what_it_cannot_use)
+{
+    const Ended nothing = run("report");
+    EXPECT_EQ(nothing.code, 2);
+    EXPECT_TRUE(contains(nothing.errors, "no file is given"));
+    EXPECT_EQ(run("report none.json").code, 3);
+    EXPECT_EQ(run("report stdout").code, 2) << "no JSON";
+    EXPECT_TRUE(contains(run("help report").out, "Usage: tetrace report RESULT... [OPTION]..."));
 }
 
 TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)

@@ -1,0 +1,75 @@
+#include "bench/report/sections.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+const char* const how_to_read =
+    "Exact mode: all bits of all hits, compared with openmp's for the same method and layout. Within N ulp: only t, u "
+    "and v "
+    "differ, by no more than the device's own self-test allows. Not exact: the hits are openmp's, but the device "
+    "contracts or rounds otherwise.";
+
+/// Devices in order of appearance, those with the reference first.
+std::vector<std::string> devices_of(const ResultValue& scene)
+{
+    std::vector<std::string> devices;
+    for (const auto& [kernel, cells] : scene.members())
+        for (const auto& [device, cell] : cells.members())
+            if (std::find(devices.begin(), devices.end(), device) == devices.end()) devices.push_back(device);
+    std::stable_partition(devices.begin(), devices.end(), [](const std::string& name) { return name == "openmp"; });
+    return devices;
+}
+
+Html matrix_of(const ResultValue& scene)
+{
+    const auto devices = devices_of(scene);
+    std::vector<HtmlColumn> columns = {{"row"}};
+    for (const std::string& device : devices)
+        columns.push_back({device});
+    HtmlTable table(columns);
+    for (const auto& [kernel, cells] : scene.members()) {
+        std::vector<Html> row = {text(kernel)};
+        for (const std::string& device : devices) {
+            const auto cell = cells.find(device);
+            row.push_back(cell ? badge(cell->at("cell").text()) : Html());
+        }
+        table.add(std::move(row));
+    }
+    return table.html();
+}
+
+/// Rows of results of `check` that say more than their cell.
+Html reasons(const ReportInput& input)
+{
+    std::vector<const ReportRow*> rows;
+    for (const ReportRow& row : input.rows)
+        if (input.files.at(row.file).head.verb == "check" && !row.row->reason.empty()) rows.push_back(&row);
+    return rows.empty() ? Html() : heading("What is not as it should be") + reason_table(rows, input.files.size());
+}
+
+} // namespace
+
+Section conformance_section(const ReportInput& input)
+{
+    Section section{"conformance", "Conformance", {}};
+    Html matrices;
+    for (std::size_t file = 0; file < input.files.size(); ++file) {
+        const std::string letter = file_letter(file, input.files.size());
+        if (const auto matrix = input.files[file].section().find("matrix"))
+            for (const auto& [scene, cells] : matrix->members())
+                matrices += heading(letter.empty() ? scene : scene + " · " + letter) + matrix_of(cells);
+    }
+    section.content =
+        matrices.empty()
+            ? paragraph("None of these results is of 'tetrace check --out FILE.json', which compares every "
+                        "device with openmp bit for bit.")
+            : note(how_to_read) + matrices;
+    section.content += reasons(input);
+    return section;
+}
+
+} // namespace tetrace

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "bench/report/html.h"
+
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+struct Series {
+    std::string name;
+    std::vector<std::pair<double, double>> points; ///< x, y; finite
+};
+
+/// Series over a common pair of linear axes; titles with their units.
+struct LineChart {
+    std::string label, x_title, y_title;
+    std::vector<Series> series;
+};
+
+/// A series whose x ascend is drawn as a line, another as a cloud of its shape; its name stands beside its last point.
+/// A vertical axis of values that are not negative starts at zero, unless they fill less than half of it.
+/// Precondition: a series has a point.
+[[nodiscard]] Html draw(const LineChart& chart);
+
+} // namespace tetrace

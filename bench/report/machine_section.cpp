@@ -1,0 +1,250 @@
+#include "bench/report/axis.h"
+#include "bench/report/sections.h"
+#include "bench/text.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+std::string text_at(const ResultValue& object, const char* key)
+{
+    const auto value = object.find(key);
+    return value ? value->text() : std::string();
+}
+
+Html scaled(const ResultValue& object, const char* key, double factor)
+{
+    const auto value = object.find(key);
+    return value ? text(short_number(factor * value->number())) : Html();
+}
+
+Html count_at(const ResultValue& object, const char* key)
+{
+    const auto value = object.find(key);
+    return value ? text(with_commas(value->count())) : Html();
+}
+
+/// "2026-11-21 17:34" of "2026-11-21T17:34:21Z".
+std::string minute_of(std::string date)
+{
+    if (date.size() >= 16 && date[10] == 'T') return date.replace(10, 1, " ").substr(0, 16);
+    return date;
+}
+
+Html results_table(const ReportInput& input)
+{
+    HtmlTable table({{"result"},
+                     {"file"},
+                     {"verb"},
+                     {"date", "UTC"},
+                     {"processor"},
+                     {"system"},
+                     {"threads", {}, true},
+                     {"samples", "a row", true},
+                     {"commit"},
+                     {"compiler"}});
+    for (std::size_t i = 0; i < input.files.size(); ++i) {
+        const ResultFile& file = input.files[i];
+        const ResultHead& head = file.head;
+        const ResultValue section = file.section();
+        table.add({text_element("b", "", file_letter(i, input.files.size())),
+                   text_element("code", "", file.path.filename().string()), text(head.verb),
+                   text_element("span", "date", minute_of(head.date)), text(head.cpu), text(head.system),
+                   count_at(section, "threads"), count_at(section, "samples_a_row"),
+                   text_element("code", "", head.commit), text(text_at(section, "compiler"))});
+    }
+    return table.html();
+}
+
+/// A device as results tell it; several results may.
+struct ToldDevice {
+    std::string host, api, name, type, driver, self_test, problem;
+    std::string letters;
+    Html copy, launch, memory;
+};
+
+std::string self_test_text(const ResultValue& device)
+{
+    const auto tests = device.find("self_test");
+    const auto exact = tests ? tests->find("exact") : std::nullopt;
+    return exact && exact->json().is_object() ? text_at(*exact, "text") : std::string();
+}
+
+std::string api_with_index(const ResultValue& object, const char* index_key)
+{
+    const auto index = object.find(index_key);
+    const std::string backend = object.at("backend").line();
+    return index && index->count() > 0 ? fmt::format("{}:{}", backend, index->count()) : backend;
+}
+
+ToldDevice device_of_bench(const ResultValue& device)
+{
+    ToldDevice told;
+    told.api = api_with_index(device, "index");
+    told.name = device.at("name").line();
+    told.type = device.at("type").line();
+    told.driver = text_at(device, "driver");
+    told.self_test = self_test_text(device);
+    told.problem = text_at(device, "problem");
+    told.copy = scaled(device, "copy_bytes_per_s", 1e-9);
+    told.launch = scaled(device, "launch_s", 1e6);
+    told.memory = scaled(device, "memory_bytes", 1e-9);
+    return told;
+}
+
+/// Results of `check`, and of schema version 1, tell devices with their rows alone.
+std::optional<ToldDevice> device_of_row(const ResultValue& row)
+{
+    const auto device = row.find("device");
+    if (!device) return std::nullopt;
+    ToldDevice told;
+    told.api = api_with_index(row, "device_index");
+    told.name = device->at("name").line();
+    told.type = device->at("type").line();
+    told.driver = text_at(*device, "driver");
+    told.memory = scaled(*device, "memory_bytes", 1e-9);
+    if (const auto test = row.find("self_test")) told.self_test = text_at(*test, "text");
+    return told;
+}
+
+std::vector<ToldDevice> devices_of(const ResultFile& file)
+{
+    std::vector<ToldDevice> told;
+    const ResultValue section = file.section();
+    if (const auto devices = section.find("devices")) {
+        if (file.head.verb == "devices") return told; // lists them in another form, and has no rows
+        for (const ResultValue& device : devices->items())
+            told.push_back(device_of_bench(device));
+    } else if (const auto rows = section.find("rows"); rows && !file.rows.empty()) {
+        std::set<std::string> seen;
+        for (const ResultValue& row : rows->items())
+            if (auto device = device_of_row(row); device && seen.insert(device->api).second)
+                told.push_back(*std::move(device));
+    }
+    return told;
+}
+
+/// Devices of all results; one that several tell alike, but for what only one of them measured, is told once.
+std::vector<ToldDevice> all_devices(const ReportInput& input)
+{
+    std::vector<ToldDevice> all;
+    for (std::size_t i = 0; i < input.files.size(); ++i)
+        for (ToldDevice& device : devices_of(input.files[i])) {
+            device.host = input.files[i].head.cpu;
+            device.letters = file_letter(i, input.files.size());
+            const auto same = std::find_if(all.begin(), all.end(), [&](const ToldDevice& other) {
+                return other.host == device.host && other.api == device.api && other.name == device.name &&
+                       other.driver == device.driver && (other.copy.empty() || device.copy.empty());
+            });
+            if (same == all.end()) {
+                all.push_back(std::move(device));
+                continue;
+            }
+            same->letters += " " + device.letters;
+            if (same->copy.empty()) same->copy = device.copy, same->launch = device.launch;
+        }
+    return all;
+}
+
+/// "exact; division correctly rounded": what stands behind the first semicolon in small letters under the verdict.
+Html verdict_and_rest(const std::string& self_test)
+{
+    const std::size_t end = self_test.find("; ");
+    if (end == std::string::npos) return text(self_test);
+    return text(self_test.substr(0, end)) + text_element("small", "", self_test.substr(end + 2));
+}
+
+Html device_table(const ReportInput& input)
+{
+    HtmlTable table({{"result"},
+                     {"API"},
+                     {"device"},
+                     {"type"},
+                     {"driver"},
+                     {"memory", "GB", true},
+                     {"copy", "GB/s", true},
+                     {"launch", "µs", true},
+                     {"self-test, exact mode"},
+                     {"problem"}});
+    for (const ToldDevice& device : all_devices(input))
+        table.add({text(device.letters), text(device.api), text(device.name),
+                   text_element("span", device.type == "emulated" ? "type emulated" : "type", device.type),
+                   text(device.driver), device.memory, device.copy, device.launch, verdict_and_rest(device.self_test),
+                   text(device.problem)});
+    if (table.empty()) return paragraph("These results name no device.");
+    return table.html() +
+           note("copy: memory of the device copied to its own memory, bytes read and written; launch: an "
+                "empty kernel, from launching to the end of waiting. Emulated devices are APIs of GPUs "
+                "that run on the processor.");
+}
+
+std::string text_of_rays(const ResultScene& scene)
+{
+    return fmt::format("{} {} of {}, {} × {}", scene.views.size(), scene.views.size() == 1 ? "view" : "views",
+                       scene.camera_set, scene.width, scene.height);
+}
+
+std::string steps_text(const ResultFile& file, const std::string& scene)
+{
+    for (const ResultValue& row : file.section().at("rows").items()) {
+        const auto counts = row.at("scene").line() == scene ? row.find("counts") : std::nullopt;
+        const auto mean = counts ? counts->find("mean_steps") : std::nullopt;
+        if (mean) return fmt::format("{:.2f}", mean->number());
+    }
+    return {};
+}
+
+Html scene_table(const ReportInput& input)
+{
+    HtmlTable table({{"scene"},
+                     {"from"},
+                     {"tets", {}, true},
+                     {"occlusive", "faces", true},
+                     {"free", "faces", true},
+                     {"domain"},
+                     {"switches"},
+                     {"rays"},
+                     {"steps", "a ray", true},
+                     {"hash"}});
+    std::set<std::string> seen;
+    for (const ResultFile& file : input.files)
+        for (std::size_t i = 0; i < file.scenes.size(); ++i) {
+            const ResultScene& scene = file.scenes[i];
+            if (!seen.insert(scene.name + scene.hash + text_of_rays(scene)).second) continue;
+            const ResultValue value = file.section().at("scenes").items().at(i);
+            table.add({text(scene.name), text(text_at(value, "source")), count_at(value, "tets"),
+                       count_at(value, "occlusive_faces"), count_at(value, "free_faces"),
+                       text(text_at(value, "domain")), text_element("code", "", text_at(value, "switches")),
+                       text(text_of_rays(scene)), text(file.rows.empty() ? "" : steps_text(file, scene.name)),
+                       text_element("code", "", scene.hash)});
+        }
+    return table.empty() ? paragraph("These results name no scene.") : table.html();
+}
+
+/// Sentences about scenes and devices that could not be had.
+Html missing_list(const ReportInput& input)
+{
+    Html items;
+    for (const ResultFile& file : input.files)
+        for (const char* const key : {"missing_devices", "missing_scenes"})
+            if (const auto sentences = file.section().find(key))
+                for (const ResultValue& sentence : sentences->items())
+                    items += text_element("li", "", sentence.text());
+    return items.empty() ? items : heading("Missing") + element("ul", {{"class", "missing"}}, items);
+}
+
+} // namespace
+
+Section machine_section(const ReportInput& input)
+{
+    return {"machines", "Machines and devices",
+            results_table(input) + heading("Devices") + device_table(input) + heading("Scenes") + scene_table(input) +
+                missing_list(input)};
+}
+
+} // namespace tetrace

@@ -1,0 +1,170 @@
+#include "bench/report/axis.h"
+#include "bench/report/line_chart.h"
+#include "bench/report/png.h"
+#include "bench/report/sections.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+std::string text_at(const ResultValue& object, const char* key)
+{
+    const auto value = object.find(key);
+    return value ? value->text() : std::string();
+}
+
+std::string title_with_source(const ResultValue& part)
+{
+    const std::string source = text_at(part, "source");
+    return part.at("title").text() + (source.empty() ? "" : " · " + source);
+}
+
+/// A measured value with what the paper has in its place.
+Html value_with_paper(const ResultValue& cell)
+{
+    Html content = cell.find("text") ? text(cell.at("text").text()) : Html();
+    if (const auto value = cell.find("value"); value && content.empty()) content = text(short_number(value->number()));
+    const auto low = cell.find("low"), high = cell.find("high");
+    if (low && high)
+        content += text_element("small", "",
+                                fmt::format("{} to {}", short_number(low->number()), short_number(high->number())));
+    if (const auto paper = cell.find("paper")) {
+        const auto ratio = cell.find("ratio");
+        content += text_element("small", "paper",
+                                fmt::format("paper {}{}", short_number(paper->number()),
+                                            ratio ? ", × " + short_number(ratio->number()) : ""));
+    }
+    return content;
+}
+
+Html cell_html(const ResultValue& cell)
+{
+    if (cell.json().is_object()) return value_with_paper(cell);
+    return text(cell.json().is_string() ? cell.text() : short_number(cell.number()));
+}
+
+/// Whether all that the column holds are numbers.
+bool is_number_column(const ResultValue& rows, const std::string& key)
+{
+    for (const ResultValue& row : rows.items())
+        if (const auto cell = row.find(key); cell && cell->json().is_string()) return false;
+    return true;
+}
+
+Html table_of(const ResultValue& part)
+{
+    const ResultValue rows = part.at("rows");
+    std::vector<HtmlColumn> columns;
+    std::vector<std::string> keys;
+    for (const ResultValue& column : part.at("columns").items()) {
+        keys.push_back(column.at("key").text());
+        columns.push_back({column.at("title").text(), text_at(column, "unit"), is_number_column(rows, keys.back())});
+    }
+    HtmlTable table(columns);
+    for (const ResultValue& row : rows.items()) {
+        std::vector<Html> cells;
+        for (const std::string& key : keys) {
+            const auto cell = row.find(key);
+            cells.push_back(cell ? cell_html(*cell) : Html());
+        }
+        table.add(std::move(cells));
+    }
+    return table.empty() ? paragraph("This table has no rows.") : table.html();
+}
+
+Html claims_of(const ResultValue& part)
+{
+    const auto claims = part.find("claims");
+    HtmlTable table({{"verdict"}, {"claim"}, {"evidence"}});
+    if (claims)
+        for (const ResultValue& claim : claims->items())
+            table.add(
+                {badge(claim.at("verdict").line()), text(claim.at("text").text()), text(text_at(claim, "evidence"))});
+    return table.html();
+}
+
+Html notes_of(const ResultValue& part)
+{
+    Html notes;
+    if (const auto list = part.find("notes"))
+        for (const ResultValue& sentence : list->items())
+            notes += note(sentence.text());
+    return notes;
+}
+
+/// "time, ms".
+std::string axis_title(const ResultValue& axis)
+{
+    const std::string unit = text_at(axis, "unit");
+    return axis.at("title").text() + (unit.empty() ? "" : ", " + unit);
+}
+
+double coordinate(const ResultValue& value)
+{
+    if (value.number() < -1e18 || value.number() > 1e18) value.reject("is beyond 1e18");
+    return value.number();
+}
+
+Series series_of(const ResultValue& value)
+{
+    Series series{value.at("name").text(), {}};
+    for (const ResultValue& point : value.at("points").items()) {
+        const auto pair = point.items();
+        if (pair.size() != 2) point.reject("is not a point: it has not two numbers");
+        series.points.emplace_back(coordinate(pair[0]), coordinate(pair[1]));
+    }
+    return series;
+}
+
+Html chart_of(const ResultValue& part)
+{
+    LineChart chart{part.at("title").text(), axis_title(part.at("x")), axis_title(part.at("y")), {}};
+    std::size_t points = 0;
+    for (const ResultValue& series : part.at("series").items()) {
+        chart.series.push_back(series_of(series));
+        points += chart.series.back().points.size();
+    }
+    return points == 0 ? paragraph("This figure has no points.") : figure("", draw(chart), "");
+}
+
+Html pictures_of(const ResultValue& part, const std::filesystem::path& result)
+{
+    Html pictures;
+    if (const auto names = part.find("pictures"))
+        for (const ResultValue& name : names->items())
+            pictures += picture_figure(result.parent_path() / name.line());
+    return pictures.empty() ? pictures : side_by_side(pictures);
+}
+
+Html part_html(const ResultValue& part, const Html& content)
+{
+    return element("article", {}, heading(title_with_source(part)) + content + claims_of(part) + notes_of(part));
+}
+
+Html parts_of(const ResultFile& file)
+{
+    Html parts;
+    if (const auto tables = file.section().find("tables"))
+        for (const ResultValue& part : tables->items())
+            parts += part_html(part, table_of(part));
+    if (const auto figures = file.section().find("figures"))
+        for (const ResultValue& part : figures->items())
+            parts += part_html(part, chart_of(part) + pictures_of(part, file.path));
+    return parts;
+}
+
+} // namespace
+
+Section paper_section(const ReportInput& input)
+{
+    Section section{"paper", "The paper's tables and figures", {}};
+    for (const ResultFile& file : input.files)
+        section.content += parts_of(file);
+    if (section.content.empty())
+        section.content = paragraph("None of these results is of 'tetrace reproduce', which measures them again.");
+    return section;
+}
+
+} // namespace tetrace

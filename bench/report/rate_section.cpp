@@ -1,0 +1,140 @@
+#include "bench/report/axis.h"
+#include "bench/report/bar_chart.h"
+#include "bench/report/sections.h"
+#include "bench/text.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <map>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+const char* const how_to_read =
+    "Millions of rays a second, of the median sample, kernel time alone. The whisker spans the middle half of the "
+    "samples, a tick is a sample; a row whose whisker exceeds 5 % of its median is noisy. Only what stands in one "
+    "chart may be ranked: emulated devices are APIs of GPUs that run on the processor, and say nothing of a GPU.";
+
+std::string scene_title(const RowGroup& group)
+{
+    const ResultScene& scene = group.scene;
+    return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
+                       scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height,
+                       group.rays);
+}
+
+std::string bar_note(const ReportRow& row)
+{
+    std::string text = row.row->status == "flawed" ? row.row->reason : "";
+    if (row.rate->noisy) text += text.empty() ? "noisy" : ", noisy";
+    return text;
+}
+
+/// Which devices of which results a group has.
+std::set<std::string> devices_in(const RowGroup& group, std::size_t files)
+{
+    std::set<std::string> devices;
+    for (const ReportRow* row : group.rows)
+        devices.insert(device_text(*row, files));
+    return devices;
+}
+
+/// Whether bars have to name their devices; the APIs tell the emulated ones of one result apart.
+bool needs_devices(const RowGroup& group, std::size_t files)
+{
+    const bool one_result = std::all_of(group.rows.begin(), group.rows.end(),
+                                        [&](const ReportRow* row) { return row->file == group.rows.front()->file; });
+    return devices_in(group, files).size() > 1 && (group.device_class != DeviceClass::emulated || !one_result);
+}
+
+BarChart chart_of(const RowGroup& group, std::size_t files)
+{
+    const bool tell_device = needs_devices(group, files);
+    BarChart chart{
+        fmt::format("Rates of the {} on {}", name_of(group.device_class), scene_title(group)), "Mrays/s", {}};
+    for (const ReportRow* row : group.rows)
+        chart.bars.push_back({row->name(), row->kernel + "  " + row->api, tell_device ? device_text(*row, files) : "",
+                              api_series(row->row->backend), row->rate->mrays_per_s, row->rate->low, row->rate->high,
+                              row->rate->samples, bar_note(*row)});
+    return chart;
+}
+
+std::string group_title(const RowGroup& group, std::size_t files)
+{
+    switch (group.device_class) {
+    case DeviceClass::emulated: return "Emulated by the processor";
+    case DeviceClass::gpu:
+    case DeviceClass::processor: {
+        const auto devices = devices_in(group, files);
+        const std::string kind = group.device_class == DeviceClass::gpu ? "GPU" : "Processor";
+        return devices.size() == 1 ? fmt::format("{}: {}", kind, *devices.begin()) : kind + "s";
+    }
+    case DeviceClass::not_run: break;
+    }
+    return "Not run";
+}
+
+Html rows_without_rate(const ReportInput& input)
+{
+    std::vector<const ReportRow*> rows;
+    for (const ReportRow& row : input.rows)
+        if (!row.rate && input.files.at(row.file).head.verb != "check") rows.push_back(&row);
+    return rows.empty() ? Html() : heading("Rows without a rate") + reason_table(rows, input.files.size());
+}
+
+} // namespace
+
+std::string device_text(const ReportRow& row, std::size_t files)
+{
+    const std::string letter = file_letter(row.file, files);
+    return row.row->device + (letter.empty() ? "" : " · " + letter);
+}
+
+std::size_t api_series(const std::string& backend)
+{
+    constexpr std::array known = {"openmp", "embree", "opencl", "vulkan", "cuda", "cuda-host"};
+    const auto found = std::find(known.begin(), known.end(), backend);
+    return static_cast<std::size_t>(found - known.begin());
+}
+
+Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files)
+{
+    std::map<std::array<std::string, 3>, Html> lists;
+    for (const ReportRow* row : rows)
+        lists[{file_letter(row->file, files), row->row->status, row->row->reason}] +=
+            element("li", {{"class", "unrated"}, {"data-row", row->name()}},
+                    text(fmt::format("{}: {} {}", row->row->scene, row->kernel, row->api)));
+    HtmlTable table({{"result"}, {"status"}, {"reason"}, {"rows"}});
+    for (const auto& [key, list] : lists)
+        table.add({text(key[0]), badge(key[1]), text(key[2]), element("ul", {{"class", "plain"}}, list)});
+    return table.html();
+}
+
+Section rate_section(const ReportInput& input)
+{
+    Section section{"rates", "Rates", {}};
+    const auto groups = rated_groups(input.files, input.rows);
+    if (groups.empty())
+        section.content += paragraph("No row of these results has a rate; 'tetrace bench --out FILE.json' measures.");
+    else
+        section.content += note(how_to_read);
+    for (std::size_t begin = 0; begin < groups.size();) {
+        const std::string title = scene_title(groups[begin]);
+        Html charts;
+        std::size_t end = begin;
+        for (; end < groups.size() && groups[end].scene.hash == groups[begin].scene.hash &&
+               scene_title(groups[end]) == title;
+             ++end)
+            charts += figure(group_title(groups[end], input.files.size()),
+                             draw(chart_of(groups[end], input.files.size())), "");
+        section.content += heading(title) + side_by_side(charts);
+        begin = end;
+    }
+    section.content += rows_without_rate(input);
+    return section;
+}
+
+} // namespace tetrace

@@ -1,0 +1,92 @@
+#include "bench/report/bar_chart.h"
+#include "bench/report/sections.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+namespace tetrace {
+
+namespace {
+
+const char* const how_to_read =
+    "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
+    "with the 95 % interval of the ratio. A hollow dot's interval holds 1: no difference can be told.";
+
+/// What one chart shows.
+struct RatioKey {
+    std::size_t file;
+    std::string scene;
+    DeviceClass device_class;
+    std::string reference; ///< API
+
+    [[nodiscard]] bool operator==(const RatioKey&) const = default;
+};
+
+struct RatioGroup {
+    RatioKey key;
+    std::vector<Interval> intervals;
+};
+
+const ReportRow& row_named(const ReportInput& input, std::size_t file, const ResultValue& name)
+{
+    const std::string wanted = name.line();
+    const auto found = std::find_if(input.rows.begin(), input.rows.end(),
+                                    [&](const ReportRow& row) { return row.file == file && row.name() == wanted; });
+    if (found == input.rows.end()) name.reject(fmt::format("is '{}', and there is no row of that name", wanted));
+    return *found;
+}
+
+double ratio_at(const ResultValue& ratio, const char* key)
+{
+    const ResultValue value = ratio.at(key);
+    if (value.number() < 1e-9 || value.number() > 1e9) value.reject("is not between 1e-9 and 1e9");
+    return value.number();
+}
+
+void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::size_t file, const ResultValue& ratio)
+{
+    const ReportRow& row = row_named(input, file, ratio.at("row"));
+    const RatioKey key{file, row.row->scene, row.device_class, row_named(input, file, ratio.at("reference")).api};
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const RatioGroup& other) { return other.key == key; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
+    group->intervals.push_back({row.name(), row.kernel + "  " + row.api, "", api_series(row.row->backend),
+                                ratio_at(ratio, "ratio"), ratio_at(ratio, "low"), ratio_at(ratio, "high")});
+}
+
+Html chart_of(const RatioGroup& group, const ReportInput& input)
+{
+    const RatioKey& key = group.key;
+    const std::string letter = file_letter(key.file, input.files.size());
+    const std::string title =
+        fmt::format("{}, {}{}", key.scene, name_of(key.device_class), letter.empty() ? "" : " · " + letter);
+    return figure(title,
+                  draw(IntervalChart{fmt::format("Rates over those of {}: {}", key.reference, title),
+                                     "slower than " + key.reference, "faster", group.intervals}),
+                  "");
+}
+
+} // namespace
+
+Section ratio_section(const ReportInput& input)
+{
+    std::vector<RatioGroup> groups;
+    for (std::size_t file = 0; file < input.files.size(); ++file)
+        if (const auto ratios = input.files[file].section().find("ratios"))
+            for (const ResultValue& ratio : ratios->items())
+                add_ratio(groups, input, file, ratio);
+    Section section{"ratios", "APIs beside each other", {}};
+    if (groups.empty()) {
+        section.content =
+            paragraph("These results compare no APIs: 'tetrace bench' does where a kernel ran under two on "
+                      "one piece of hardware.");
+        return section;
+    }
+    Html charts;
+    for (const RatioGroup& group : groups)
+        charts += chart_of(group, input);
+    section.content = note(how_to_read) + side_by_side(charts);
+    return section;
+}
+
+} // namespace tetrace

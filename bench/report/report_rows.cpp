@@ -1,0 +1,178 @@
+#include "bench/report/report_rows.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+DeviceClass class_of(const ResultRow& row)
+{
+    if (row.device_type == "cpu") return DeviceClass::processor;
+    if (row.device_type == "gpu") return DeviceClass::gpu;
+    return row.device_type.empty() ? DeviceClass::not_run : DeviceClass::emulated;
+}
+
+/// Products of such numbers stay finite.
+double positive(const ResultValue& value)
+{
+    if (value.number() < 1e-18 || value.number() > 1e18) value.reject("is not between 1e-18 and 1e18");
+    return value.number();
+}
+
+std::optional<double> positive_or_nothing(const ResultValue& object, const char* key)
+{
+    const auto value = object.find(key);
+    return value ? std::optional(positive(*value)) : std::nullopt;
+}
+
+std::optional<double> launch_share(const ResultValue& times)
+{
+    const auto overhead = times.find("overhead_s");
+    const auto wall = positive_or_nothing(times, "wall_s");
+    if (!overhead || !wall) return std::nullopt;
+    return std::max(0.0, overhead->number()) / *wall; // two clocks: their difference may fall below nothing
+}
+
+std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>& samples_s)
+{
+    const auto rates = row.find("rates");
+    if (!rates) return std::nullopt;
+    const ResultValue times = row.at("times");
+    const double median_s = positive(times.at("median_s"));
+    RowRate rate;
+    rate.mrays_per_s = positive(rates->at("mrays_per_s"));
+    const double mrays = rate.mrays_per_s * median_s;
+    rate.low = mrays / positive(times.at("upper_quartile_s"));
+    rate.high = mrays / positive(times.at("lower_quartile_s"));
+    for (const double seconds : samples_s)
+        rate.samples.push_back(mrays / seconds);
+    rate.msteps_per_s = positive_or_nothing(*rates, "msteps_per_s");
+    rate.bytes_per_step = positive_or_nothing(*rates, "bytes_per_step");
+    rate.launch_share = launch_share(times);
+    if (const auto noisy = times.find("noisy")) rate.noisy = noisy->flag();
+    return rate;
+}
+
+/// The parts of a row's name behind its scene that say more than its own keys do, such as "schedule:persistent".
+std::string unusual_parts(const std::string& name)
+{
+    std::string parts;
+    for (std::size_t begin = 0; begin <= name.size();) {
+        const std::size_t end = std::min(name.find('/', begin), name.size());
+        const std::string part = name.substr(begin, end - begin);
+        for (const char* const key : {"order:", "schedule:"})
+            if (part.rfind(key, 0) == 0) parts += " " + part.substr(part.find(':') + 1);
+        begin = end + 1;
+    }
+    return parts;
+}
+
+std::string kernel_of(const ResultValue& row)
+{
+    const std::string structure = row.at("structure").line(), method = row.at("method").line();
+    if (structure == "bvh") return structure + " " + method;
+    const std::string math = row.at("math").line();
+    return fmt::format("{} {} {}{}{}", structure, method, row.at("layout").line(), math == "exact" ? "" : " " + math,
+                       unusual_parts(row.at("name").line()));
+}
+
+std::string api_of(const ResultValue& row)
+{
+    const auto index = row.find("device_index");
+    const std::string backend = row.at("backend").line();
+    return index && index->count() > 0 ? fmt::format("{}:{}", backend, index->count()) : backend;
+}
+
+bool same_rays(const ResultScene& a, const ResultScene& b)
+{
+    return a.name == b.name && a.hash == b.hash && a.camera_set == b.camera_set && a.views == b.views &&
+           a.width == b.width && a.height == b.height;
+}
+
+RowGroup& group_for(std::vector<RowGroup>& groups, const ResultScene& scene, const ReportRow& row)
+{
+    for (RowGroup& group : groups)
+        if (same_rays(group.scene, scene) && group.rays == row.rays && group.device_class == row.device_class)
+            return group;
+    return groups.emplace_back(RowGroup{scene, row.rays, row.device_class, {}});
+}
+
+/// Groups of one scene stand together, in the order in which scenes appear.
+void order_groups(std::vector<RowGroup>& groups)
+{
+    std::vector<RowGroup> ordered;
+    while (!groups.empty()) {
+        const ResultScene scene = groups.front().scene;
+        const std::string rays = groups.front().rays;
+        const auto others = std::stable_partition(groups.begin(), groups.end(), [&](const RowGroup& group) {
+            return same_rays(group.scene, scene) && group.rays == rays;
+        });
+        std::stable_sort(groups.begin(), others,
+                         [](const RowGroup& a, const RowGroup& b) { return a.device_class < b.device_class; });
+        std::move(groups.begin(), others, std::back_inserter(ordered));
+        groups.erase(groups.begin(), others);
+    }
+    groups = std::move(ordered);
+}
+
+} // namespace
+
+std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
+{
+    std::vector<ReportRow> rows;
+    const auto values = result.section().find("rows");
+    if (!values) return rows;
+    const auto items = values->items();
+    for (std::size_t i = 0; i < result.rows.size(); ++i) {
+        ReportRow row;
+        row.file = file;
+        row.row = &result.rows[i];
+        row.kernel = kernel_of(items[i]);
+        row.api = api_of(items[i]);
+        row.rays = items[i].at("rays").line();
+        row.device_class = class_of(result.rows[i]);
+        row.rate = rate_of(items[i], result.rows[i].samples_s);
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files, const std::vector<ReportRow>& rows)
+{
+    std::vector<RowGroup> groups;
+    for (const ReportRow& row : rows) {
+        if (!row.rate) continue;
+        const ResultScene* scene = files.at(row.file).find_scene(row.row->scene);
+        if (scene == nullptr)
+            throw Error(ErrorKind::invalid_input,
+                        fmt::format("reading the result '{}': row '{}' has a rate on scene '{}', which is not among "
+                                    "its scenes",
+                                    files[row.file].path.string(), row.name(), row.row->scene));
+        group_for(groups, *scene, row).rows.push_back(&row);
+    }
+    for (RowGroup& group : groups)
+        std::stable_sort(group.rows.begin(), group.rows.end(), [](const ReportRow* a, const ReportRow* b) {
+            return a->rate->mrays_per_s > b->rate->mrays_per_s;
+        });
+    order_groups(groups);
+    return groups;
+}
+
+std::string file_letter(std::size_t file, std::size_t files)
+{
+    if (files < 2) return {};
+    return file < 26 ? std::string(1, static_cast<char>('A' + file)) : std::to_string(file + 1);
+}
+
+const char* name_of(DeviceClass device_class)
+{
+    constexpr std::array names = {"processors", "GPUs", "emulated", "not run"};
+    return names.at(static_cast<std::size_t>(device_class));
+}
+
+} // namespace tetrace

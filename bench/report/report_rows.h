@@ -1,0 +1,58 @@
+#pragma once
+
+#include "bench/result_file.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// How fast a row is, with its spread; rates of the samples' quartiles.
+struct RowRate {
+    double mrays_per_s = 0, low = 0, high = 0;
+    std::vector<double> samples; ///< Mrays/s of each sample
+    std::optional<double> msteps_per_s, bytes_per_step;
+    std::optional<double> launch_share; ///< launching and waiting, as share of the wall time
+    bool noisy = false;
+};
+
+/// Rows that may be ranked with each other are of one class.
+enum class DeviceClass { processor, gpu, emulated, not_run };
+
+/// A row as the page shows it. Refers to its file.
+struct ReportRow {
+    std::size_t file = 0; ///< its number in the order of the command line
+    const ResultRow* row = nullptr;
+    std::string kernel; ///< "cdt maria tet80", with what is not as usual
+    std::string api;    ///< "vulkan", "vulkan:1"
+    std::string rays;   ///< kind
+    DeviceClass device_class = DeviceClass::not_run;
+    std::optional<RowRate> rate;
+
+    [[nodiscard]] const std::string& name() const { return row->name; }
+};
+
+/// Rows of any file that trace the same rays through the same scene on devices of one class.
+struct RowGroup {
+    ResultScene scene;
+    std::string rays;
+    DeviceClass device_class = DeviceClass::not_run;
+    std::vector<const ReportRow*> rows; ///< those with a rate, fastest first
+};
+
+/// All rows of a file. Throws Error{invalid_input} naming file and key where a rate or a time is not as
+/// results/README.md has it.
+[[nodiscard]] std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file);
+
+/// Rows with a rate, grouped; by scene in order of appearance, then processors, GPUs, emulated devices.
+[[nodiscard]] std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files,
+                                                 const std::vector<ReportRow>& rows);
+
+/// What names a result on the page: A, B, ... Z, then 27, 28, ...; nothing where there is only one.
+[[nodiscard]] std::string file_letter(std::size_t file, std::size_t files);
+
+[[nodiscard]] const char* name_of(DeviceClass device_class);
+
+} // namespace tetrace

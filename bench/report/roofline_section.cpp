@@ -1,0 +1,120 @@
+#include "bench/report/axis.h"
+#include "bench/report/roofline_chart.h"
+#include "bench/report/sections.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <optional>
+
+namespace tetrace {
+
+namespace {
+
+const char* const how_to_read =
+    "Msteps/s against the ceiling that memory sets: the copy bandwidth that the device reached in the same run (bytes "
+    "read and written), over the bytes that a step loads of its tet's record. Both are estimates, not limits: "
+    "memory moves whole lines, which lowers what can be reached, and caches keep some of them, which lifts a row above "
+    "the line. Percentages are shares of the ceiling.";
+
+/// A device of a result under its roof.
+struct DeviceRoof {
+    std::string title;
+    DeviceClass device_class = DeviceClass::not_run;
+    Roofline roofline;
+    std::optional<double> launch_s, largest_launch_share;
+};
+
+std::string without_structure(const std::string& kernel)
+{
+    return kernel.rfind("cdt ", 0) == 0 ? kernel.substr(4) : kernel;
+}
+
+/// Scenes of a result have shapes in their order.
+std::size_t scene_number(const ResultFile& file, const std::string& scene)
+{
+    const auto found = std::find_if(file.scenes.begin(), file.scenes.end(),
+                                    [&](const ResultScene& other) { return other.name == scene; });
+    return static_cast<std::size_t>(found - file.scenes.begin());
+}
+
+void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
+{
+    const RowRate& rate = *row.rate;
+    roof.device_class = row.device_class;
+    roof.roofline.points.push_back({row.name(), without_structure(row.kernel) + "  " + row.row->scene,
+                                    scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
+                                    *rate.msteps_per_s});
+    if (rate.launch_share)
+        roof.largest_launch_share = std::max(roof.largest_launch_share.value_or(0), *rate.launch_share);
+}
+
+std::string device_api(const ResultValue& device)
+{
+    const std::uint64_t index = device.at("index").count();
+    const std::string backend = device.at("backend").line();
+    return index > 0 ? fmt::format("{}:{}", backend, index) : backend;
+}
+
+/// Nothing for a device without a measured bandwidth, or without a row that has steps.
+std::optional<DeviceRoof> roof_of(const ResultValue& device, std::size_t file, const ReportInput& input)
+{
+    const auto bandwidth = device.find("copy_bytes_per_s");
+    if (!bandwidth) return std::nullopt;
+    DeviceRoof roof;
+    const std::string api = device_api(device), letter = file_letter(file, input.files.size());
+    roof.title = fmt::format("{}: {}{}", api, device.at("name").line(), letter.empty() ? "" : " · " + letter);
+    roof.roofline.copy_bytes_per_s = bandwidth->number();
+    if (roof.roofline.copy_bytes_per_s < 1 || roof.roofline.copy_bytes_per_s > 1e18)
+        bandwidth->reject("is not between 1 and 1e18");
+    if (const auto launch = device.find("launch_s")) roof.launch_s = launch->number();
+    for (const ReportRow& row : input.rows)
+        if (row.file == file && row.api == api && row.rate && row.rate->msteps_per_s && row.rate->bytes_per_step)
+            add_row(roof, row, input);
+    if (roof.roofline.points.empty()) return std::nullopt;
+    std::stable_sort(roof.roofline.points.begin(), roof.roofline.points.end(),
+                     [](const RooflinePoint& a, const RooflinePoint& b) { return a.msteps_per_s > b.msteps_per_s; });
+    roof.roofline.label = "Roofline of " + roof.title;
+    return roof;
+}
+
+std::string launch_text(const DeviceRoof& roof)
+{
+    std::string text;
+    if (roof.launch_s) text = fmt::format("An empty launch takes {} µs", short_number(1e6 * *roof.launch_s));
+    if (roof.largest_launch_share)
+        text += fmt::format("{} at most {} of a row's wall time",
+                            text.empty() ? "Launching and waiting take" : "; launching and waiting are",
+                            short_percent(*roof.largest_launch_share));
+    return text.empty() ? text : text + ".";
+}
+
+Html charts_of(const std::vector<DeviceRoof>& roofs, DeviceClass device_class, const char* title)
+{
+    Html charts;
+    for (const DeviceRoof& roof : roofs)
+        if (roof.device_class == device_class) charts += figure(roof.title, draw(roof.roofline), launch_text(roof));
+    return charts.empty() ? charts : heading(title) + side_by_side(charts);
+}
+
+} // namespace
+
+Section roofline_section(const ReportInput& input)
+{
+    std::vector<DeviceRoof> roofs;
+    for (std::size_t file = 0; file < input.files.size(); ++file)
+        if (const auto devices = input.files[file].section().find("devices"))
+            for (const ResultValue& device : devices->items())
+                if (auto roof = roof_of(device, file, input)) roofs.push_back(*std::move(roof));
+    Section section{"roofline", "Roofline", {}};
+    if (roofs.empty())
+        section.content =
+            paragraph("No device of these results has both a measured copy bandwidth and a row with a step "
+                      "rate; 'tetrace bench' measures both in one run.");
+    else
+        section.content = note(how_to_read) + charts_of(roofs, DeviceClass::processor, "Processors") +
+                          charts_of(roofs, DeviceClass::gpu, "GPUs") +
+                          charts_of(roofs, DeviceClass::emulated, "Emulated by the processor");
+    return section;
+}
+
+} // namespace tetrace

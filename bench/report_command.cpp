@@ -1,0 +1,21 @@
+#include "bench/commands.h"
+#include "bench/progress.h"
+#include "bench/report.h"
+#include "bench/report/page.h"
+#include "bench/text.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+int report_command(const Options& options)
+{
+    const std::filesystem::path out = options.out.value_or("report.html");
+    const std::string page = report_page(read_report_input(options.files, options.report_pictures));
+    write_text(out, page);
+    say(fmt::format("{}: {}, from {} {}", out.string(), size_text(page.size()), options.files.size(),
+                    options.files.size() == 1 ? "result" : "results"));
+    return 0;
+}
+
+} // namespace tetrace
