@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tetrace {
 
@@ -15,6 +16,25 @@ struct EmbeddedKernel {
     std::span<const std::byte> bytes; ///< a 0 stands behind them, so that a text is a C string
 
     [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+};
+
+/// A kernel as it lies in the program: gzip's bytes, a tenth of its own.
+struct PackedKernel {
+    std::string_view name;
+    std::span<const unsigned char> bytes;
+    std::size_t length; ///< of what they unpack to
+};
+
+/// Kernels unpacked, all at once: a list's first use takes some 10 ms.
+/// Throws Error{internal} naming the kernel whose bytes are not gzip's of that length.
+class UnpackedKernels {
+public:
+    explicit UnpackedKernels(std::span<const PackedKernel> packed);
+    [[nodiscard]] std::span<const EmbeddedKernel> list() const { return list_; }
+
+private:
+    std::vector<std::vector<std::byte>> storage_; ///< aligned by operator new, for those who read words
+    std::vector<EmbeddedKernel> list_;
 };
 
 /// The kernel of that name; null where there is none.

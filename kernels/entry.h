@@ -56,7 +56,8 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
     return square;
 }
 
-// How deep the ray is inside a boundary face: the smallest of its three side products, negative outside.
+// How deep the ray is inside a boundary face: the smallest of its three side products, negative outside. They are the
+// method's own, so that no walk begins by a face that its method would not have left by.
 KERNEL_FN real depth_in_face(SceneView scene, uint link, Ray ray)
 {
     uint tet = link >> 2u;
@@ -64,9 +65,9 @@ KERNEL_FN real depth_in_face(SceneView scene, uint link, Ray ray)
     Vec3 a = vertex(scene, tet, corner(face, 0u));
     Vec3 b = vertex(scene, tet, corner(face, 1u));
     Vec3 c = vertex(scene, tet, corner(face, 2u));
-    real ab = side_of_edge(ray, a, b);
-    real bc = side_of_edge(ray, b, c);
-    real ca = side_of_edge(ray, c, a);
+    real ab = side_at_entry(ray, a, b);
+    real bc = side_at_entry(ray, b, c);
+    real ca = side_at_entry(ray, c, a);
     real least = ab < bc ? ab : bc;
     return ca < least ? ca : least;
 }

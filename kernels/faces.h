@@ -13,3 +13,11 @@ KERNEL_FN real side_of_edge(Ray ray, Vec3 from, Vec3 to)
 {
     return dot3(cross3(sub3(ray.origin, from), ray.direction), sub3(to, from));
 }
+
+// The same as the permuted inner product of Pluecker coordinates, {direction, moment} of the ray and {to - from, from x
+// to} of the edge. Exactly negated where from and to change places.
+KERNEL_FN real edge_product(Ray ray, Vec3 from, Vec3 to)
+{
+    PRECISE real product = dot3(ray.moment, sub3(to, from)) + dot3(ray.direction, cross3(from, to));
+    return product;
+}

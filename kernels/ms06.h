@@ -2,26 +2,24 @@
 // Source: Marmitt and Slusallek, "Fast Ray Traversal of Tetrahedral and Hexahedral Meshes for Direct Volume Rendering",
 // EuroVis 2006. 23 operations a product, as in plucker; (2 + 3 + 3) / 3 products on average.
 
-// The Pluecker side product of the ray and the edge from `corner_point` to the apex of the entry face.
-KERNEL_FN real side_of_apex(Ray ray, Vec3 corner_point, Vec3 apex)
-{
-    PRECISE real product = dot3(ray.moment, sub3(apex, corner_point)) + dot3(ray.direction, cross3(corner_point, apex));
-    return product;
-}
-
 // Two edges to the apex bound the first candidate; where it is not the exit, the third edge tells which of the others
 // is.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
     Vec3 apex = vertex(scene, tet, entry);
-    real s0 = side_of_apex(ray, vertex(scene, tet, corner(entry, 0u)), apex);
-    real s1 = side_of_apex(ray, vertex(scene, tet, corner(entry, 1u)), apex);
+    real s0 = edge_product(ray, vertex(scene, tet, corner(entry, 0u)), apex);
+    real s1 = edge_product(ray, vertex(scene, tet, corner(entry, 1u)), apex);
     if (s0 <= real(0.0f) && s1 >= real(0.0f)) return corner(entry, 2u);
-    real s2 = side_of_apex(ray, vertex(scene, tet, corner(entry, 2u)), apex);
+    real s2 = edge_product(ray, vertex(scene, tet, corner(entry, 2u)), apex);
     return corner(entry, s2 >= real(0.0f) ? 0u : 1u);
 }
 
 KERNEL_FN uint start_face(SceneView scene, uint tet, Ray ray)
 {
     return start_face_by_edges(scene, tet, ray);
+}
+
+KERNEL_FN real side_at_entry(Ray ray, Vec3 from, Vec3 to)
+{
+    return edge_product(ray, from, to);
 }

@@ -74,3 +74,8 @@ KERNEL_FN uint start_face(SceneView scene, uint tet, Ray ray)
     }
     return nearest.face;
 }
+
+KERNEL_FN real side_at_entry(Ray ray, Vec3 from, Vec3 to)
+{
+    return side_of_edge(ray, from, to);
+}

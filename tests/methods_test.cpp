@@ -33,6 +33,7 @@ namespace plucker {
 #include "kernels/kernel_cpp.h"
 }
 #undef KERNEL_METHOD_HEADER
+#undef AS_SEEN
 #define KERNEL_METHOD_HEADER "kernels/stp.h"
 namespace stp {
 #include "kernels/kernel_cpp.h"
