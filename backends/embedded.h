@@ -18,7 +18,7 @@ struct EmbeddedKernel {
     [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 };
 
-/// A kernel as it lies in the program: gzip's bytes, a tenth of its own.
+/// A kernel as it lies in the program: gzip's bytes, a third of its own or less.
 struct PackedKernel {
     std::string_view name;
     std::span<const unsigned char> bytes;
