@@ -72,7 +72,7 @@ struct Options {
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;
-    bool anonymous = false; ///< no host's name and no folders in results
+    bool anonymous = false;                   ///< no host's name and no folders in results
     std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
 };
 

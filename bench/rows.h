@@ -30,7 +30,8 @@ struct RowKey {
 
 /// The rows that the options select, scene after scene, rows of one scene in the order of kernels, backends and
 /// devices. Math mode, order and schedule select among rows of structure cdt only; without those options, exact,
-/// hilbert and tiles, and without methods only maria of the cdt's. A backend has rows of its usable devices; one that has none, of its first where --backend or
+/// hilbert and tiles, and without methods only maria of the cdt's. A backend has rows of its usable devices; one that
+/// has none, of its first where --backend or
 /// --require names it. A kernel that a backend has and a device cannot run is a row all the same: it will end as
 /// unsupported.
 /// Throws Error{usage} where nothing is selected: it names the options, and what there would be without them.
