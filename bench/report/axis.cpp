@@ -47,7 +47,8 @@ std::string with_decimals(double value, int decimals)
 {
     std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
     const std::size_t point = std::min(digits.find('.'), digits.size());
-    return (value < 0 ? "-" : "") + with_commas(std::stoull(digits.substr(0, point))) + digits.substr(point);
+    return fmt::format("{}{}{}", value < 0 ? "-" : "", with_commas(std::stoull(digits.substr(0, point))),
+                       digits.substr(point));
 }
 
 constexpr double largest_plain = 1e15;

@@ -11,7 +11,8 @@ Html text(std::string_view plain)
 
 Html element(std::string_view name, const Attributes& attributes, const Html& content)
 {
-    std::string markup = "<" + std::string(name);
+    std::string markup("<");
+    markup += name;
     for (const auto& [key, value] : attributes)
         markup.append(" ").append(key).append("=\"").append(xml_text(value)).append("\"");
     markup += ">";

@@ -66,7 +66,7 @@ std::string unusual_parts(const std::string& name)
         const std::size_t end = std::min(name.find('/', begin), name.size());
         const std::string part = name.substr(begin, end - begin);
         for (const char* const key : {"order:", "schedule:"})
-            if (part.rfind(key, 0) == 0) parts += " " + part.substr(part.find(':') + 1);
+            if (part.starts_with(key)) parts.append(" ").append(part, part.find(':') + 1);
         begin = end + 1;
     }
     return parts;
