@@ -14,6 +14,7 @@ int build_command(const Options& options);
 int bench_command(const Options& options);
 int check_command(const Options& options);
 int render_command(const Options& options);
+int reproduce_command(const Options& options);
 int compare_command(const Options& options);
 int report_command(const Options& options);
 

@@ -17,9 +17,10 @@ constexpr unsigned bit(Verb verb)
 
 constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
 constexpr unsigned tracing = measuring | bit(Verb::render);
-constexpr unsigned building = bit(Verb::build) | tracing;
+constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
+constexpr unsigned building = bit(Verb::build) | reproducing;
 constexpr unsigned reporting =
-    measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) | bit(Verb::compare);
+    measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) | bit(Verb::reproduce) | bit(Verb::compare);
 
 /// What all kernels have at one place of their id, each once: the accepted values of an option.
 template <class T>
@@ -85,6 +86,14 @@ void set_filter(Options& options, const std::string& text)
     options.filter = text;
 }
 
+std::string target_names()
+{
+    std::vector<std::string> names;
+    for (const PaperTarget target : all_targets())
+        names.emplace_back(name_of(target));
+    return join_alternatives(names);
+}
+
 std::function<void(Options&, const std::string&)> set_path(const std::string& option,
                                                            std::optional<std::filesystem::path> Options::*path)
 {
@@ -98,6 +107,27 @@ void set_tile(Options& options, const std::string& text)
 {
     if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
     options.tile_height = text == "8x4" ? 4 : 8;
+}
+
+void set_samples(Options& options, const std::string& text)
+{
+    options.samples = static_cast<unsigned>(parse_count("--samples", text, 3, 10000));
+}
+
+/// Tables of the paper that are not made anew yet are told from mistakes.
+void add_target(Options& options, const std::string& text)
+{
+    if (text == "table5" || text == "table6")
+        reject_value("reproduce", text, target_names() + "; this version makes no " + text + " yet");
+    options.targets.push_back(choose("reproduce", text, all_targets()));
+}
+
+std::vector<OptionRow> reproduce_options()
+{
+    return {
+        {"Tables", "TABLE", "LIST", "What of the paper to make anew: " + target_names() + ". Default: all.",
+         bit(Verb::reproduce), true, add_target},
+    };
 }
 
 std::vector<OptionRow> scene_options()
@@ -151,22 +181,23 @@ std::vector<OptionRow> row_options()
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: plane, plucker, stp, ms06 or maria (exit-face searches of the cdt), single or "
-         "packet16 (Embree's entry points), or 'all'. Default: maria, and Embree's of the structures kept.",
-         tracing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
+         "packet16 (Embree's entry points), or 'all'. Default: maria, and Embree's of the structures kept; of "
+         "'reproduce', all of the cdt.",
+         reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80, tet96, or embree, what Embree builds for itself. Default: all "
          "of the structures kept.",
-         tracing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
+         reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "
          "where "
          "it is named here or by --require; they are skipped with the reason. Default: all that have a usable device "
          "and a kernel of the structures kept.",
-         tracing, true, append_backend("--backend", &Options::backends)},
+         reproducing, true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, in whatever case, for "
          "example 'gpu', 'llvmpipe' or 'vulkan:1', the second one of vulkan. Default: all.",
-         tracing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
+         reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
         {"Rows", "--rays", "KIND", "Keep the rows of this kind of rays: primary. Default: primary.", measuring, true,
          append("--rays", &Options::rays, std::vector<RayKind>{RayKind::primary})},
         {"Rows", "--math", "MODE",
@@ -191,12 +222,12 @@ std::vector<OptionRow> row_options()
 
 std::vector<OptionRow> ray_options()
 {
-    const unsigned with_rays = tracing | bit(Verb::build);
+    const unsigned with_rays = reproducing | bit(Verb::build);
     return {
         {"Rays", "--camera-set", "SET",
          "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii. "
          "Default: smoke.",
-         with_rays, false,
+         tracing | bit(Verb::build), false,
          [](Options& o, const std::string& v) {
              o.camera_set =
                  choose<CameraSet>("--camera-set", v, {CameraSet::smoke, CameraSet::orbit, CameraSet::flight});
@@ -214,13 +245,14 @@ std::vector<OptionRow> ray_options()
              o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
          }},
         {"Rays", "--tile", "WxH",
-         "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", tracing, false,
-         set_tile},
+         "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
+         false, set_tile},
         {"Rays", "--buffer-limit", "SIZE",
          "Treat every device's largest buffer as this small: bytes, or with K, M, G or T behind it. The array of tets "
          "is bound in parts that fit; where they do not suffice, the row is unsupported. Default: what each device "
          "says.",
-         tracing, false, [](Options& o, const std::string& v) { o.buffer_limit = parse_bytes("--buffer-limit", v); }},
+         reproducing, false,
+         [](Options& o, const std::string& v) { o.buffer_limit = parse_bytes("--buffer-limit", v); }},
     };
 }
 
@@ -229,9 +261,9 @@ std::vector<OptionRow> judging_options()
     return {
         {"Measuring", "--samples", "N",
          "Samples a row, 3 to 10000; a sample traces all selected views once. Default: 10.", bit(Verb::bench), false,
-         [](Options& o, const std::string& v) {
-             o.samples = static_cast<unsigned>(parse_count("--samples", v, 3, 10000));
-         }},
+         set_samples},
+        {"Measuring", "--samples", "N", "Samples a view and row, 3 to 10000. Default: 5.", bit(Verb::reproduce), false,
+         set_samples},
         {"Measuring", "--budget", "TIME",
          "Wall clock for the timed part: where it would take longer, fewer samples are taken, and the result says so; "
          "but no fewer than 5, below which intervals are too narrow, where as many are asked for. Default: 2m.",
@@ -293,6 +325,11 @@ std::vector<OptionRow> output_options()
         {"Output", "--anonymous", "",
          "Leave out of the result what tells whose machine it comes from: the host's name, and the folders of files.",
          reporting, false, [](Options& o, const std::string&) { o.anonymous = true; }},
+        {"Output", "--resume", "",
+         "Go on with the run whose journal lies beside FILE of --out, as FILE.journal: views that it has are not "
+         "traced "
+         "again. Where there is none, begin one.",
+         bit(Verb::reproduce), false, [](Options& o, const std::string&) { o.resume = true; }},
         {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
@@ -308,7 +345,8 @@ std::vector<OptionRow> output_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {scene_options, row_options, ray_options, judging_options, report_options, output_options})
+    for (auto part :
+         {reproduce_options, scene_options, row_options, ray_options, judging_options, report_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     return table;

@@ -12,8 +12,8 @@ namespace {
 
 const std::vector<Verb>& all_verbs()
 {
-    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes,  Verb::build,  Verb::bench, Verb::check,
-                                            Verb::render,  Verb::compare, Verb::report, Verb::help};
+    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes,    Verb::build,   Verb::bench,  Verb::check,
+                                            Verb::render,  Verb::reproduce, Verb::compare, Verb::report, Verb::help};
     return verbs;
 }
 
@@ -119,10 +119,21 @@ void check_together(const Options& options)
     static_cast<void>(selected_views(options));
 }
 
-Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
+/// What a verb does unless it is told otherwise.
+Options defaults_of(Verb verb)
 {
     Options options;
     options.verb = verb;
+    if (verb != Verb::reproduce) return options;
+    options.camera_set = CameraSet::flight; // as many views as the paper has, over its range of steps
+    options.structures = {Structure::cdt};
+    options.samples = 5;
+    return options;
+}
+
+Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
+{
+    Options options = defaults_of(verb);
     CLI::App app;
     app.set_help_flag("--help,-h");
     for (const OptionRow& row : option_table())
@@ -176,6 +187,7 @@ std::string_view name_of(Verb verb)
     case Verb::bench: return "bench";
     case Verb::check: return "check";
     case Verb::render: return "render";
+    case Verb::reproduce: return "reproduce";
     case Verb::compare: return "compare";
     case Verb::report: return "report";
     case Verb::help: return "help";
@@ -198,6 +210,22 @@ std::string_view name_of(Format format)
 std::string_view name_of(Picture picture)
 {
     return picture == Picture::normals ? "normals" : "steps";
+}
+
+std::string_view name_of(PaperTarget target)
+{
+    switch (target) {
+    case PaperTarget::table3: return "table3";
+    case PaperTarget::table4: return "table4";
+    case PaperTarget::figure6: return "figure6";
+    }
+    throw Error(ErrorKind::internal, "name_of(PaperTarget): no such target");
+}
+
+const std::vector<PaperTarget>& all_targets()
+{
+    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4, PaperTarget::figure6};
+    return targets;
 }
 
 Options parse_options(const std::vector<std::string>& arguments)

@@ -14,13 +14,16 @@
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
-enum class Verb { devices, scenes, build, bench, check, render, compare, report, help, version };
+enum class Verb { devices, scenes, build, bench, check, render, reproduce, compare, report, help, version };
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
 
 /// A picture that `render` makes.
 enum class Picture { normals, steps };
+
+/// A table or a figure of the paper that `reproduce` makes anew.
+enum class PaperTarget { table3, table4, figure6 };
 
 /// A command line, checked. Empty lists select by default (see rows.h); all else holds its default.
 struct Options {
@@ -59,6 +62,9 @@ struct Options {
     unsigned samples = 10;
     double budget_s = 120; ///< for the timed part
 
+    std::vector<PaperTarget> targets; ///< of `reproduce`; empty: all
+    bool resume = false;              ///< of `reproduce`: go on from the journal
+
     std::vector<std::string> required; ///< backends that must have a usable device
     bool allow_flawed = false;
     double tolerance = 0.03;    ///< of `compare`, a share: slower by more is a regression
@@ -79,6 +85,8 @@ struct Options {
 [[nodiscard]] std::string_view name_of(Verb verb);
 [[nodiscard]] std::string_view name_of(Format format);
 [[nodiscard]] std::string_view name_of(Picture picture);
+[[nodiscard]] std::string_view name_of(PaperTarget target);
+[[nodiscard]] const std::vector<PaperTarget>& all_targets();
 
 /// Reads a command line, the program's name left out.
 /// Throws Error{usage} naming what is not accepted, and what is.

@@ -19,6 +19,7 @@ int run_verb(const Options& options)
     case Verb::bench: return bench_command(options);
     case Verb::check: return check_command(options);
     case Verb::render: return render_command(options);
+    case Verb::reproduce: return reproduce_command(options);
     case Verb::compare: return compare_command(options);
     case Verb::report: return report_command(options);
     case Verb::help: print(help_text(options.help_topic)); return 0;

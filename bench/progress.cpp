@@ -80,10 +80,11 @@ ProgressLine make_progress_line()
 
 } // namespace
 
-std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width)
+std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width, double left_s)
 {
     std::string text = fmt::format("{}  {}", stage, seconds_text(elapsed_s));
     if (fraction >= 0) text += fmt::format("  {:.0f} %", 100 * std::min(fraction, 1.0));
+    if (left_s >= 0) text += fmt::format("  {} left", seconds_text(left_s));
     if (display_width(text) <= width) return text;
     std::size_t end = 0; // byte after the last character that fits
     for (std::size_t columns = 0; end < text.size(); ++end)
@@ -101,7 +102,7 @@ ProgressLine::~ProgressLine()
     clear();
 }
 
-void ProgressLine::show(const std::string& stage, double fraction)
+void ProgressLine::show(const std::string& stage, double fraction, double left_s)
 {
     if (!draws_) return;
     if (stage != stage_) {
@@ -110,7 +111,7 @@ void ProgressLine::show(const std::string& stage, double fraction)
     }
     // Counted from the last output, not from the stage: a person waits for the whole, however short its stages are.
     if (seconds_since(last_draw_) < (drawn_ == 0 ? quiet_s : redraw_s)) return;
-    const std::string text = progress_text(stage, seconds_since(stage_start_), fraction, terminal_width() - 1);
+    const std::string text = progress_text(stage, seconds_since(stage_start_), fraction, terminal_width() - 1, left_s);
     const std::size_t columns = display_width(text);
     const std::string rest(drawn_ > columns ? drawn_ - columns : 0, ' ');
     std::fputs(fmt::format(fmt::runtime(colour_ ? "\r\x1b[2m{}\x1b[0m{}" : "\r{}{}"), text, rest).c_str(), stderr);

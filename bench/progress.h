@@ -17,8 +17,8 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// fraction: done so far in [0, 1]; negative where it cannot be known.
-    void show(const std::string& stage, double fraction);
+    /// fraction: done so far in [0, 1]; left_s: seconds that it will still take. Negative where it cannot be known.
+    void show(const std::string& stage, double fraction, double left_s = -1);
     /// Takes the line away, before anything else is written, and when the work is done.
     void clear();
     [[nodiscard]] Progress callback();
@@ -35,7 +35,8 @@ private:
 };
 
 /// The line as show() draws it, at most `width` columns.
-[[nodiscard]] std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width);
+[[nodiscard]] std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width,
+                                        double left_s = -1);
 
 /// The program's one line: draws where standard error is a terminal that is not dumb, in colour unless NO_COLOR is set.
 /// SIGINT and SIGTERM then take the line away before they end the program.

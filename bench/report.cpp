@@ -37,7 +37,7 @@ std::string in_format(const Report& report, Format format, const Options& option
     case Format::table: return shown(report.text);
     case Format::json: return (options.anonymous ? anonymous_json(report.json, options) : report.json).dump(2) + "\n";
     case Format::csv: return shown(report.table.csv());
-    case Format::markdown: return shown(report.table.markdown());
+    case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
     }
     throw Error(ErrorKind::internal, "in_format: no such format");
 }

@@ -16,6 +16,7 @@ struct Report {
     std::string text; ///< for people
     Table table;      ///< flat, for CSV and Markdown
     nlohmann::json json;
+    std::string markdown = {}; ///< where it is more than the table's; empty: the table's
 };
 
 /// Fails early where deliver() would: the form cannot be told from the file's ending, or the file cannot be written.

@@ -53,11 +53,11 @@ TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
     return job;
 }
 
-SceneWork load_work(const SceneRequest& request, const Options& options)
+SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label)
 {
     LoadedScene loaded = load_scene(request, progress_line().callback());
     progress_line().clear();
-    loaded.scene.name = scene_label(request.name);
+    loaded.scene.name = label.empty() ? scene_label(request.name) : label;
     for (const std::string& message : loaded.messages)
         say(fmt::format("{}: {}", loaded.scene.name, message));
     progress_line().show("preparing " + loaded.scene.name, -1);

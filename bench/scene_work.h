@@ -50,8 +50,9 @@ private:
     std::map<std::pair<Layout, TetOrder>, Packed> packed_;
 };
 
-/// Loads a scene, says its messages, and makes it ready. Throws what load_scene() throws.
-[[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options);
+/// Loads a scene, says its messages, and makes it ready. label: what rows call it; empty: its scene_label().
+/// Throws what load_scene() throws.
+[[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label = {});
 
 /// Which defaults cannot be had here, and how to get them, a sentence each; empty where scenes were named.
 [[nodiscard]] std::vector<std::string> missing_default_scenes(const Options& options);

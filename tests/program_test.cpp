@@ -23,7 +23,7 @@ TEST_F(program, describes_itself)
     EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
     EXPECT_TRUE(contains(run("--version").out, "tetrace "));
     for (const char* const verb :
-         {"devices", "scenes", "build", "bench", "check", "render", "compare", "report", "help"}) {
+         {"devices", "scenes", "build", "bench", "check", "render", "reproduce", "compare", "report", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
         EXPECT_EQ(help.code, 0);
         EXPECT_TRUE(contains(help.out, "Examples")) << verb;

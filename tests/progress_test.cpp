@@ -12,6 +12,7 @@ TEST(progress, tells_stage_time_and_percentage_where_known)
 {
     EXPECT_EQ(progress_text("TetGen", 3.21, -1, 80), "TetGen  3.2 s");
     EXPECT_EQ(progress_text("verifying bunny", 75, 0.416, 80), "verifying bunny  1 min 15 s  42 %");
+    EXPECT_EQ(progress_text("table4", 75, 0.25, 80, 225), "table4  1 min 15 s  25 %  3 min 45 s left");
 }
 
 TEST(progress, is_cut_at_the_terminals_width_between_characters)

@@ -1,0 +1,72 @@
+#include "bench/reproduce/claims.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+std::string_view name_of(ClaimVerdict verdict)
+{
+    switch (verdict) {
+    case ClaimVerdict::holds: return "holds";
+    case ClaimVerdict::does_not_hold: return "does not hold";
+    case ClaimVerdict::not_testable: return "not testable here";
+    }
+    throw Error(ErrorKind::internal, "name_of(ClaimVerdict): no such verdict");
+}
+
+ClaimVerdict judge_none(const Estimate& count)
+{
+    if (count.value > 0) return ClaimVerdict::does_not_hold;
+    return count.highest() < count_resolution ? ClaimVerdict::holds : ClaimVerdict::not_testable;
+}
+
+ClaimVerdict judge_some(const Estimate& count)
+{
+    switch (judge_none(count)) {
+    case ClaimVerdict::holds: return ClaimVerdict::does_not_hold;
+    case ClaimVerdict::does_not_hold: return ClaimVerdict::holds;
+    case ClaimVerdict::not_testable: break;
+    }
+    return ClaimVerdict::not_testable;
+}
+
+ClaimVerdict judge_less(const Estimate& first, const std::vector<Estimate>& others)
+{
+    const auto is_below = [](const Estimate& a, const Estimate& b) { return a.highest() < b.lowest(); };
+    if (std::any_of(others.begin(), others.end(), [&](const Estimate& other) { return is_below(other, first); }))
+        return ClaimVerdict::does_not_hold;
+    const bool all = std::all_of(others.begin(), others.end(), [&](const Estimate& e) { return is_below(first, e); });
+    return all && !others.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
+}
+
+ClaimVerdict judge_above(const std::vector<Estimate>& ratios, double boundary)
+{
+    if (std::any_of(ratios.begin(), ratios.end(), [&](const Estimate& r) { return r.highest() < boundary; }))
+        return ClaimVerdict::does_not_hold;
+    const bool all =
+        std::all_of(ratios.begin(), ratios.end(), [&](const Estimate& r) { return r.lowest() > boundary; });
+    return all && !ratios.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
+}
+
+ClaimVerdict judge_equal(double ours, double papers, double tolerance)
+{
+    return std::abs(ours - papers) <= tolerance * papers ? ClaimVerdict::holds : ClaimVerdict::does_not_hold;
+}
+
+nlohmann::json claim_json(const Claim& claim)
+{
+    return {{"id", claim.id}, {"text", claim.text}, {"verdict", name_of(claim.verdict)}, {"evidence", claim.evidence}};
+}
+
+std::string estimate_text(const Estimate& estimate)
+{
+    const std::string value = fmt::format("{:.4g}", estimate.value);
+    if (!estimate.low || !estimate.high) return value;
+    return fmt::format("{} [{:.4g}, {:.4g}]", value, *estimate.low, *estimate.high);
+}
+
+} // namespace tetrace

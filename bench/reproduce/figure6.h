@@ -1,0 +1,21 @@
+#pragma once
+
+#include "bench/reproduce/paper_table.h"
+#include "bench/reproduce/scene_run.h"
+
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// Figure 6: time and tets traversed, a point a view.
+/// runs: timed.
+[[nodiscard]] PaperFigure figure6(const SceneRuns& runs);
+
+/// The same as a table: range of tets and of times, correlation and line of each row.
+[[nodiscard]] PaperTable figure6_table(const SceneRuns& runs);
+
+/// The views (indices) in which a row's rays leave the fewest and the most tets.
+[[nodiscard]] std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row);
+
+} // namespace tetrace

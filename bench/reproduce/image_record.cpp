@@ -1,0 +1,140 @@
+#include "bench/reproduce/image_record.h"
+
+#include "bench/row_json.h"
+#include "core/hash.h"
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+std::uint64_t hash_from(const json& text)
+{
+    return std::stoull(text.get<std::string>(), nullptr, 16);
+}
+
+Hit hit_from(const json& object)
+{
+    return {object.at("face_id"), object.at("tet"), object.at("t"), object.at("u"), object.at("v"), object.at("steps")};
+}
+
+json totals_json(const RayTotals& t)
+{
+    return {t.rays, t.hits, t.misses, t.lost, t.unwritten, t.hit_steps, t.miss_steps, t.lost_steps};
+}
+
+RayTotals totals_from(const json& t)
+{
+    return {t.at(0), t.at(1), t.at(2), t.at(3), t.at(4), t.at(5), t.at(6), t.at(7)};
+}
+
+json wrong_ray_json(const WrongRay& ray)
+{
+    return {{"view", ray.view},
+            {"x", ray.x},
+            {"y", ray.y},
+            {"ours", hit_json(ray.ours)},
+            {"reference_face", ray.reference_face},
+            {"reference_t", ray.reference_t},
+            {"reason", ray.reason}};
+}
+
+WrongRay wrong_ray_from(const json& object)
+{
+    return {object.at("view"),           object.at("x"),           object.at("y"),     hit_from(object.at("ours")),
+            object.at("reference_face"), object.at("reference_t"), object.at("reason")};
+}
+
+json verdicts_json(const Verdicts& v)
+{
+    json object = {{"counts", {v.rays, v.agreed, v.ties, v.settled, v.wrong, v.lost}},
+                   {"largest_tie_distance", v.largest_tie_distance}};
+    if (v.first_wrong) object["first_wrong"] = wrong_ray_json(*v.first_wrong);
+    return object;
+}
+
+Verdicts verdicts_from(const json& object)
+{
+    const json& c = object.at("counts");
+    Verdicts verdicts{c.at(0), c.at(1), c.at(2), c.at(3), c.at(4), c.at(5), object.at("largest_tie_distance"), {}, {}};
+    if (object.contains("first_wrong")) verdicts.first_wrong = wrong_ray_from(object["first_wrong"]);
+    return verdicts;
+}
+
+json differing_ray_json(const DifferingRay& ray)
+{
+    return {
+        {"view", ray.view}, {"x", ray.x}, {"y", ray.y}, {"ours", hit_json(ray.ours)}, {"openmp", hit_json(ray.openmp)}};
+}
+
+json verdict_json(const ImageVerdict& verdict)
+{
+    json object = {{"totals", totals_json(verdict.totals)},
+                   {"verdicts", verdicts_json(verdict.verdicts)},
+                   {"hit_hash", hash_text(verdict.hit_hash)},
+                   {"seconds", {verdict.kernel_s, verdict.wall_s, verdict.download_s}}};
+    if (verdict.compared) object["compared"] = {verdict.different, verdict.inexact, verdict.largest_ulps};
+    if (verdict.first_different) object["first_different"] = differing_ray_json(*verdict.first_different);
+    return object;
+}
+
+ImageVerdict verdict_from(const json& object)
+{
+    ImageVerdict verdict;
+    verdict.totals = totals_from(object.at("totals"));
+    verdict.verdicts = verdicts_from(object.at("verdicts"));
+    verdict.hit_hash = hash_from(object.at("hit_hash"));
+    const json& seconds = object.at("seconds");
+    verdict.kernel_s = seconds.at(0), verdict.wall_s = seconds.at(1), verdict.download_s = seconds.at(2);
+    verdict.compared = object.contains("compared");
+    if (verdict.compared) {
+        const json& compared = object["compared"];
+        verdict.different = compared.at(0), verdict.inexact = compared.at(1), verdict.largest_ulps = compared.at(2);
+    }
+    if (object.contains("first_different")) {
+        const json& ray = object["first_different"];
+        verdict.first_different = {ray.at("view"), ray.at("x"), ray.at("y"), hit_from(ray.at("ours")),
+                                   hit_from(ray.at("openmp"))};
+    }
+    return verdict;
+}
+
+json record_json(const ImageRecord& record)
+{
+    return {{"verdict", verdict_json(record.verdict)},
+            {"chained_hash", hash_text(record.chained_hash)},
+            {"lost_at_cap", record.lost_at_cap},
+            {"flat", {record.flawed.rays, record.flawed.through_flat, record.any.rays, record.any.through_flat}},
+            {"samples_s", record.samples_s},
+            {"wall_samples_s", record.wall_samples_s}};
+}
+
+ImageRecord record_from(const json& object)
+{
+    const json& flat = object.at("flat");
+    return {verdict_from(object.at("verdict")), hash_from(object.at("chained_hash")),
+            object.at("lost_at_cap"),           {flat.at(0), flat.at(1)},
+            {flat.at(2), flat.at(3)},           object.at("samples_s"),
+            object.at("wall_samples_s")};
+}
+
+} // namespace
+
+nlohmann::json outcome_json(const ImageOutcome& outcome)
+{
+    if (const auto* skipped = std::get_if<Skipped>(&outcome))
+        return {{"skipped", skipped->reason}, {"status", static_cast<int>(skipped->status)}};
+    if (const auto* failed = std::get_if<Failed>(&outcome))
+        return {{"failed", failed->what}, {"kind", static_cast<int>(failed->kind)}};
+    return record_json(std::get<ImageRecord>(outcome));
+}
+
+ImageOutcome outcome_from_json(const nlohmann::json& json)
+{
+    if (json.contains("skipped")) return Skipped{static_cast<Status>(json.at("status").get<int>()), json["skipped"]};
+    if (json.contains("failed")) return Failed{static_cast<ErrorKind>(json.at("kind").get<int>()), json["failed"]};
+    return record_from(json);
+}
+
+} // namespace tetrace

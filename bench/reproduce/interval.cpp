@@ -1,0 +1,116 @@
+#include "bench/reproduce/interval.h"
+
+#include "bench/statistics.h"
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <random>
+
+namespace tetrace {
+
+namespace {
+
+constexpr int resamples = 2000;
+constexpr std::uint64_t seed = 0x7e77ace;
+constexpr double tail = (1 - reproduce_confidence) / 2;
+constexpr double normal_quantile = 1.959964; // of 1 - tail
+
+/// statistic: of the views with these indices.
+Estimate bootstrap(std::size_t views, const std::function<double(const std::vector<std::size_t>&)>& statistic)
+{
+    std::vector<std::size_t> indices(views);
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+    Estimate estimate{statistic(indices), {}, {}, false};
+    if (views < 2) return estimate;
+    std::mt19937_64 random(seed);
+    std::vector<double> values;
+    for (int i = 0; i < resamples; ++i) {
+        // The standard's distributions draw differently in each library.
+        for (std::size_t& index : indices)
+            index = random() % views;
+        values.push_back(statistic(indices));
+    }
+    estimate.low = quantile(values, tail);
+    estimate.high = quantile(values, 1 - tail);
+    return estimate;
+}
+
+double sum_of(const std::vector<double>& values, const std::vector<std::size_t>& indices)
+{
+    double sum = 0;
+    for (const std::size_t index : indices)
+        sum += values[index];
+    return sum;
+}
+
+void check_pairs(const char* what, const std::vector<double>& a, const std::vector<double>& b)
+{
+    if (a.size() != b.size() || a.empty())
+        throw Error(ErrorKind::internal, std::string(what) + ": values of other views, or of none");
+}
+
+/// Sums of squares and products about the means.
+struct Moments {
+    double mean_x = 0, mean_y = 0, xx = 0, yy = 0, xy = 0;
+};
+
+Moments moments_of(const std::vector<double>& x, const std::vector<double>& y)
+{
+    check_pairs("a correlation", x, y);
+    Moments m;
+    const auto n = static_cast<double>(x.size());
+    m.mean_x = std::accumulate(x.begin(), x.end(), 0.0) / n;
+    m.mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double dx = x[i] - m.mean_x, dy = y[i] - m.mean_y;
+        m.xx += dx * dx;
+        m.yy += dy * dy;
+        m.xy += dx * dy;
+    }
+    return m;
+}
+
+} // namespace
+
+Estimate mean_count(const std::vector<double>& counts, std::size_t population, double unit)
+{
+    if (counts.empty() || counts.size() > population)
+        throw Error(ErrorKind::internal, "the mean of counts of no views, or of more than there are");
+    const auto views = static_cast<double>(counts.size());
+    const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
+    if (counts.size() == population) return {sum / views, {}, {}, true};
+    if (sum == 0) return {0, 0, 3 * unit / views, false};
+    return bootstrap(counts.size(), [&](const auto& indices) { return sum_of(counts, indices) / views; });
+}
+
+Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator)
+{
+    check_pairs("a ratio", numerator, denominator);
+    if (std::any_of(denominator.begin(), denominator.end(), [](double value) { return !(value > 0); }))
+        throw Error(ErrorKind::internal, "a ratio to what is not positive");
+    return bootstrap(numerator.size(),
+                     [&](const auto& indices) { return sum_of(numerator, indices) / sum_of(denominator, indices); });
+}
+
+std::optional<Estimate> correlation(const std::vector<double>& x, const std::vector<double>& y)
+{
+    const Moments m = moments_of(x, y);
+    if (x.size() < 4 || !(m.xx > 0) || !(m.yy > 0)) return std::nullopt;
+    const double r = std::clamp(m.xy / std::sqrt(m.xx * m.yy), -1.0, 1.0);
+    if (std::abs(r) == 1) return Estimate{r, r, r, false}; // its z is infinite
+    const double reach = normal_quantile / std::sqrt(static_cast<double>(x.size()) - 3);
+    return Estimate{r, std::tanh(std::atanh(r) - reach), std::tanh(std::atanh(r) + reach), false};
+}
+
+Line fit_line(const std::vector<double>& x, const std::vector<double>& y)
+{
+    const Moments m = moments_of(x, y);
+    const double slope = m.xy / m.xx;
+    return {slope, m.mean_y - slope * m.mean_x};
+}
+
+} // namespace tetrace

@@ -1,0 +1,37 @@
+#include "bench/reproduce/paper.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace tetrace::paper {
+
+namespace {
+
+constexpr SceneCounts table3[] = {
+    {"bunny", 69'451, 682'733, 222'775}, // GRAPP 2017, Table 3; triangles: of Stanford's reconstruction
+};
+
+constexpr NearestBuild builds[] = {
+    {"bunny", "pq8/4"},
+    {"armadillo", "pq8/4"},
+    {"banana", "pq5"},
+};
+
+} // namespace
+
+std::optional<SceneCounts> counts_of(std::string_view scene)
+{
+    const auto* const found =
+        std::find_if(std::begin(table3), std::end(table3), [&](const SceneCounts& row) { return row.scene == scene; });
+    if (found == std::end(table3)) return std::nullopt;
+    return *found;
+}
+
+std::string_view nearest_switches(std::string_view scene)
+{
+    const auto* const found =
+        std::find_if(std::begin(builds), std::end(builds), [&](const NearestBuild& row) { return row.scene == scene; });
+    return found == std::end(builds) ? "pq8/4" : found->switches;
+}
+
+} // namespace tetrace::paper

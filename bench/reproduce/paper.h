@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace tetrace::paper {
+
+// The numbers of the paper that results are set beside: Maria, Horna, Aveneau, "Efficient Ray Traversal of Constrained
+// Delaunay Tetrahedralization", GRAPP 2017. This is not all that its tables hold: what is not here is not compared.
+
+inline constexpr std::string_view citation = "Maria, Horna, Aveneau, GRAPP 2017";
+inline constexpr std::string_view rest_is_there =
+    "Only those of the paper's numbers stand here that this program has; for the others consult the paper's own table.";
+
+/// Table 3: a scene and its tetrahedralization.
+struct SceneCounts {
+    std::string_view scene; ///< as the catalogue calls it
+    std::uint64_t triangles = 0;
+    std::uint64_t tets = 0;
+    std::uint64_t occlusive_faces = 0;
+};
+/// The paper's counts of a scene; empty where they are not known here.
+[[nodiscard]] std::optional<SceneCounts> counts_of(std::string_view scene);
+
+/// TetGen's switches that come nearest to the paper's counts, found by trying (see results/README.md), in a domain that
+/// holds the cameras, its sides uncut.
+struct NearestBuild {
+    std::string_view scene, switches;
+};
+[[nodiscard]] std::string_view nearest_switches(std::string_view scene);
+
+/// Table 4: rays with a wrong result per image of 1024 x 1024, averaged over 1,282 images.
+inline constexpr double least_wrong_of_older = 0.004, most_wrong_of_older = 457, wrong_of_maria = 0;
+inline constexpr std::uint32_t image_pixels = 1024u * 1024u;
+
+/// Figure 6: mean tets that a ray traverses, over all views: the least and the most.
+inline constexpr double least_tets_a_ray = 9.2, most_tets_a_ray = 21.7;
+
+/// The evaluation on the CPU: millions of tets traversed a second.
+inline constexpr double least_cpu_msteps = 25, most_cpu_msteps = 40;
+
+} // namespace tetrace::paper

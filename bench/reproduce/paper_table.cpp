@@ -1,0 +1,278 @@
+#include "bench/reproduce/paper_table.h"
+
+#include "bench/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array label_keys = {"scene", "build", "method", "layout", "device"};
+
+const Quantity* quantity(const PaperCell& cell)
+{
+    return std::get_if<Quantity>(&cell);
+}
+
+void set_finite(json& object, const char* key, std::optional<double> value)
+{
+    if (value && std::isfinite(*value)) object[key] = *value;
+}
+
+json quantity_json(const Quantity& number)
+{
+    json object = json::object();
+    set_finite(object, "value", number.ours.value);
+    set_finite(object, "low", number.ours.low);
+    set_finite(object, "high", number.ours.high);
+    set_finite(object, "paper", number.paper);
+    set_finite(object, "ratio", number.ratio());
+    return object;
+}
+
+json rows_json(const PaperTable& table)
+{
+    json rows = json::array();
+    for (const auto& cells : table.rows) {
+        json row = json::object();
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const std::string& key = table.columns[c].key;
+            if (const auto* text = std::get_if<std::string>(&cells[c])) row[key] = *text;
+            if (const auto* number = quantity(cells[c])) row[key] = quantity_json(*number);
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+json claims_json(const std::vector<Claim>& claims)
+{
+    json list = json::array();
+    for (const Claim& claim : claims)
+        list.push_back(claim_json(claim));
+    return list;
+}
+
+/// Whole numbers without decimals.
+Cell number_cell(double value, const Column& column)
+{
+    if (column.decimals == 0 && value >= 0) return static_cast<std::uint64_t>(std::llround(value));
+    return value;
+}
+
+Cell plain_cell(const PaperCell& cell, const Column& column)
+{
+    if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+    if (const auto* number = quantity(cell)) return number_cell(number->ours.value, column);
+    return {};
+}
+
+Cell interval_cell(const PaperCell& cell, const Column& column)
+{
+    const Quantity* number = quantity(cell);
+    if (number == nullptr || !number->ours.low || !number->ours.high) return {};
+    return fmt::format("{:.{}f} to {:.{}f}", *number->ours.low, column.decimals, *number->ours.high, column.decimals);
+}
+
+Cell paper_cell(const PaperCell& cell, const Column& column)
+{
+    const Quantity* number = quantity(cell);
+    return number != nullptr && number->paper ? number_cell(*number->paper, column) : Cell();
+}
+
+Cell ratio_cell(const PaperCell& cell, const Column&)
+{
+    const Quantity* number = quantity(cell);
+    return number != nullptr ? cell_of(number->ratio()) : Cell();
+}
+
+std::string claims_text(const std::vector<Claim>& claims)
+{
+    std::string text;
+    for (const Claim& claim : claims)
+        text += wrapped(fmt::format("{}: {}. {}", claim.text, name_of(claim.verdict), claim.evidence), 110, 2);
+    return text.empty() ? text : "\n" + text;
+}
+
+std::string notes_text(const std::vector<std::string>& notes)
+{
+    std::string text;
+    for (const std::string& note : notes)
+        text += wrapped(note, 110, 2);
+    return text.empty() ? text : "\n" + text;
+}
+
+std::string claims_markdown(const std::vector<Claim>& claims)
+{
+    if (claims.empty()) return {};
+    Table table({{"claim", "claim"}, {"verdict", "verdict"}, {"evidence", "evidence"}});
+    for (const Claim& claim : claims)
+        table.add({claim.text, std::string(name_of(claim.verdict)), claim.evidence});
+    return "\n" + table.markdown();
+}
+
+std::string notes_markdown(const std::vector<std::string>& notes)
+{
+    std::string text;
+    for (const std::string& note : notes)
+        text += fmt::format("{}- {}\n", text.empty() ? "\n" : "", note);
+    return text;
+}
+
+std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell>& row)
+{
+    std::vector<Cell> labels = {table.id};
+    for (const char* key : label_keys) {
+        const auto column =
+            std::find_if(table.columns.begin(), table.columns.end(), [&](const Column& one) { return one.key == key; });
+        const bool has = column != table.columns.end();
+        labels.push_back(has ? plain_cell(row[static_cast<std::size_t>(column - table.columns.begin())], *column)
+                             : Cell());
+    }
+    return labels;
+}
+
+void add_tidy_rows(Table& tidy, const PaperTable& table, const std::vector<PaperCell>& row)
+{
+    for (std::size_t c = 0; c < row.size(); ++c)
+        if (const Quantity* number = quantity(row[c])) {
+            auto cells = labels_of(table, row);
+            cells.insert(cells.end(),
+                         {table.columns[c].key, table.columns[c].unit, number->ours.value, cell_of(number->ours.low),
+                          cell_of(number->ours.high), cell_of(number->paper), cell_of(number->ratio())});
+            tidy.add(std::move(cells));
+        }
+}
+
+std::string headline(const std::string& id, const std::string& title, const std::string& source)
+{
+    return fmt::format("{}: {} ({})", id, title, source);
+}
+
+} // namespace
+
+std::optional<double> Quantity::ratio() const
+{
+    if (!paper || *paper == 0) return std::nullopt;
+    return ours.value / *paper;
+}
+
+PaperCell exact_cell(double value, std::optional<double> paper)
+{
+    return Quantity{{value, {}, {}, true}, paper};
+}
+
+nlohmann::json table_json(const PaperTable& table)
+{
+    json columns = json::array();
+    for (const Column& column : table.columns) {
+        columns.push_back({{"key", column.key}, {"title", column.title}});
+        if (!column.unit.empty()) columns.back()["unit"] = column.unit;
+    }
+    return {{"id", table.id},           {"title", table.title},
+            {"source", table.source},   {"columns", std::move(columns)},
+            {"rows", rows_json(table)}, {"claims", claims_json(table.claims)},
+            {"notes", table.notes}};
+}
+
+nlohmann::json figure_json(const PaperFigure& figure)
+{
+    json series = json::array();
+    for (const PaperFigure::Series& one : figure.series) {
+        json points = json::array();
+        for (const auto& [x, y] : one.points)
+            points.push_back({x, y});
+        series.push_back({{"name", one.name}, {"points", std::move(points)}});
+    }
+    return {{"id", figure.id},
+            {"title", figure.title},
+            {"source", figure.source},
+            {"x", {{"title", figure.x.title}, {"unit", figure.x.unit}}},
+            {"y", {{"title", figure.y.title}, {"unit", figure.y.unit}}},
+            {"series", std::move(series)},
+            {"claims", claims_json(figure.claims)},
+            {"pictures", figure.pictures},
+            {"notes", figure.notes}};
+}
+
+Table with_paper_columns(const PaperTable& table)
+{
+    std::vector<Column> columns;
+    std::vector<std::vector<Cell>> rows(table.rows.size());
+    const auto add = [&](const Column& column, const std::vector<Cell>& cells, bool even_empty) {
+        const auto is_empty = [](const Cell& cell) { return std::holds_alternative<std::monostate>(cell); };
+        if (!even_empty && std::all_of(cells.begin(), cells.end(), is_empty)) return;
+        columns.push_back(column);
+        for (std::size_t r = 0; r < rows.size(); ++r)
+            rows[r].push_back(cells[r]);
+    };
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const Column& column = table.columns[c];
+        const auto cells = [&](const auto& make) {
+            std::vector<Cell> list;
+            for (const auto& row : table.rows)
+                list.push_back(make(row.at(c), column));
+            return list;
+        };
+        add(column, cells(plain_cell), true);
+        add({column.key + "_interval", "95 %"}, cells(interval_cell), false);
+        add({column.key + "_paper", "paper", {}, column.decimals}, cells(paper_cell), false);
+        add({column.key + "_ratio", "ratio"}, cells(ratio_cell), false);
+    }
+    Table result(std::move(columns));
+    for (auto& row : rows)
+        result.add(std::move(row));
+    return result;
+}
+
+Table tidy_table(const std::vector<PaperTable>& tables)
+{
+    std::vector<Column> columns = {{"table", "table"}};
+    for (const char* key : label_keys)
+        columns.push_back({key, key});
+    for (const char* key : {"quantity", "unit", "value", "low", "high", "paper", "ratio"})
+        columns.push_back({key, key});
+    Table tidy(std::move(columns));
+    for (const PaperTable& table : tables)
+        for (const auto& row : table.rows)
+            add_tidy_rows(tidy, table, row);
+    return tidy;
+}
+
+std::string table_text(const PaperTable& table)
+{
+    return headline(table.id, table.title, table.source) + "\n\n" + with_paper_columns(table).text(2) +
+           claims_text(table.claims) + notes_text(table.notes) + "\n";
+}
+
+std::string table_markdown(const PaperTable& table)
+{
+    return "## " + headline(table.id, table.title, table.source) + "\n\n" + with_paper_columns(table).markdown() +
+           claims_markdown(table.claims) + notes_markdown(table.notes) + "\n";
+}
+
+std::string figure_text(const PaperFigure& figure)
+{
+    std::string text =
+        headline(figure.id, figure.title, figure.source) + "\n" + claims_text(figure.claims) + notes_text(figure.notes);
+    for (const std::string& picture : figure.pictures)
+        text += "  picture: " + picture + "\n";
+    return text + "\n";
+}
+
+std::string figure_markdown(const PaperFigure& figure)
+{
+    std::string text = "## " + headline(figure.id, figure.title, figure.source) + "\n" +
+                       claims_markdown(figure.claims) + notes_markdown(figure.notes);
+    for (const std::string& picture : figure.pictures)
+        text += fmt::format("\n![{0}]({0})\n", picture);
+    return text + "\n";
+}
+
+} // namespace tetrace

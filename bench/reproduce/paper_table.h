@@ -1,0 +1,70 @@
+#pragma once
+
+#include "bench/reproduce/claims.h"
+#include "bench/table.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tetrace {
+
+/// A number of ours, and the paper's where it is known.
+struct Quantity {
+    Estimate ours;
+    std::optional<double> paper;
+
+    /// Ours over the paper's; empty without one, or where it is 0.
+    [[nodiscard]] std::optional<double> ratio() const;
+};
+/// A cell: nothing, a text or a number.
+using PaperCell = std::variant<std::monostate, std::string, Quantity>;
+
+[[nodiscard]] PaperCell exact_cell(double value, std::optional<double> paper = {});
+
+/// A table of the paper, made anew.
+struct PaperTable {
+    std::string id, title, source;
+    std::vector<Column> columns;
+    std::vector<std::vector<PaperCell>> rows; ///< a cell a column
+    std::vector<Claim> claims;
+    std::vector<std::string> notes;
+};
+
+/// A figure of the paper, made anew.
+struct PaperFigure {
+    struct Axis {
+        std::string title, unit;
+    };
+    struct Series {
+        std::string name;
+        std::vector<std::pair<double, double>> points;
+    };
+    std::string id, title, source;
+    Axis x, y;
+    std::vector<Series> series;
+    std::vector<Claim> claims;
+    std::vector<std::string> pictures; ///< file names, relative to the result's file
+    std::vector<std::string> notes;
+};
+
+/// As results/README.md describes them. Numbers that are not finite are left out.
+[[nodiscard]] nlohmann::json table_json(const PaperTable& table);
+[[nodiscard]] nlohmann::json figure_json(const PaperFigure& figure);
+
+/// The rows with columns of their own for intervals, the paper's numbers and ratios, where there are any.
+[[nodiscard]] Table with_paper_columns(const PaperTable& table);
+
+/// All numbers of all tables, one a row: which table and row they are of, value, interval, the paper's, the ratio.
+[[nodiscard]] Table tidy_table(const std::vector<PaperTable>& tables);
+
+/// Title, rows, claims and notes, for people.
+[[nodiscard]] std::string table_text(const PaperTable& table);
+[[nodiscard]] std::string table_markdown(const PaperTable& table);
+[[nodiscard]] std::string figure_text(const PaperFigure& figure);
+[[nodiscard]] std::string figure_markdown(const PaperFigure& figure);
+
+} // namespace tetrace

@@ -1,0 +1,273 @@
+#include "bench/bench_report.h"
+#include "bench/commands.h"
+#include "bench/device_json.h"
+#include "bench/identity.h"
+#include "bench/progress.h"
+#include "bench/reproduce/figure6.h"
+#include "bench/reproduce/paper.h"
+#include "bench/reproduce/paper_table.h"
+#include "bench/reproduce/pictures.h"
+#include "bench/reproduce/scene_run.h"
+#include "bench/reproduce/table3.h"
+#include "bench/reproduce/table4.h"
+#include "bench/row_json.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+/// All that there is to tell.
+struct Reproduction {
+    std::vector<SceneRun> runs;
+
+    [[nodiscard]] SceneRuns of_build(const std::string& build) const
+    {
+        SceneRuns found;
+        for (const SceneRun& run : runs)
+            if (build.empty() || run.build.build == build) found.push_back(&run);
+        return found;
+    }
+
+    std::vector<RowDevice> devices;
+    std::vector<PaperTable> tables;
+    std::vector<PaperFigure> figures;
+    std::vector<std::string> missing_scenes; ///< a sentence each
+};
+
+bool wants(const Options& options, PaperTarget target)
+{
+    return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
+}
+
+/// All methods of the paper, and of its scenes those that can be had here, else the embedded one, where none are named.
+Options with_defaults(Options options, std::vector<std::string>& missing)
+{
+    if (options.targets.empty()) options.targets = all_targets();
+    if (options.methods.empty())
+        for (const KernelId& kernel : all_kernels())
+            if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
+    if (!options.scenes.empty()) return options;
+    for (const char* const name : {"banana", "bunny", "armadillo"}) {
+        const std::string reason = why_not_available(name);
+        if (reason.empty())
+            options.scenes.emplace_back(name);
+        else
+            missing.push_back(fmt::format("{} is left out: {}", name, reason));
+    }
+    if (options.scenes.empty()) options.scenes = {"cubes"};
+    return options;
+}
+
+/// Whether TetGen makes the scene's tets, with the switches that it is given.
+bool has_switches(const std::string& name)
+{
+    const CatalogueEntry* entry = find_in_catalogue(name);
+    if (entry != nullptr) return entry->source != SceneSource::cubes;
+    return std::filesystem::path(name).extension() != ".tet";
+}
+
+SceneBuild papers(SceneBuild build)
+{
+    BuildOptions& how = build.request.build;
+    how.domain = DomainKind::wide;
+    how.divisions = 1;
+    how.switches = paper::nearest_switches(build.scene);
+    build.build = papers_build;
+    build.label += "-paper";
+    build.robustness = false;
+    return build;
+}
+
+/// The builds that the tables asked for need.
+std::vector<SceneBuild> scene_builds(const Options& options)
+{
+    const bool table3 = wants(options, PaperTarget::table3);
+    std::vector<SceneBuild> builds;
+    for (const SceneRequest& request : scene_requests(options)) {
+        const std::string label = scene_label(request.name);
+        const SceneBuild ours = {request,
+                                 label,
+                                 our_build,
+                                 label,
+                                 wants(options, PaperTarget::table4),
+                                 table3 || wants(options, PaperTarget::figure6)};
+        builds.push_back(ours);
+        if (table3 && has_switches(request.name)) builds.push_back(papers(ours));
+    }
+    return builds;
+}
+
+/// Each device once: scenes run on the same ones, but for those that could not be loaded.
+void add_devices(Reproduction& all, const SceneRun& run, const Options& options)
+{
+    progress_line().show("measuring the devices themselves", -1);
+    auto devices = devices_of(run.rows);
+    measure_devices(devices, session_options(options)); // at the first call
+    if (devices.size() > all.devices.size()) all.devices = std::move(devices);
+}
+
+/// All that decides what the views come to, and how they are timed.
+json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
+{
+    const BuildIdentity program = build_identity();
+    json head = {{"version", program.version},
+                 {"commit", program.commit},
+                 {"compiler", program.compiler},
+                 {"flags", program.flags},
+                 {"cpu", host_identity().cpu},
+                 {"views", selected_views(options)},
+                 {"size", {options.width, options.height}},
+                 {"threads", resolved_threads(options)},
+                 {"tile", options.tile_height},
+                 {"buffer_limit", options.buffer_limit},
+                 {"samples", options.samples},
+                 {"scenes", json::array()},
+                 {"rows", json::array()},
+                 {"devices", json::array()}};
+    for (const SceneBuild& build : builds) {
+        const BuildOptions& how = build.request.build;
+        head["scenes"].push_back({{"label", build.label},
+                                  {"name", build.request.name},
+                                  {"domain", name_of(how.domain)},
+                                  {"divisions", how.divisions},
+                                  {"switches", how.switches},
+                                  {"resolution", how.resolution},
+                                  {"robustness", build.robustness},
+                                  {"timing", build.timing}});
+        for (const RowKey& key : select_rows(options, {build.label}))
+            head["rows"].push_back(row_name(key));
+    }
+    for (const Backend* backend : all_backends())
+        for (const Device& device : backend->devices())
+            if (device.usable) head["devices"].push_back({backend->name(), device.name, device.driver});
+    return head;
+}
+
+/// Throws Error{usage} where two scenes would be called the same.
+void check_labels(const std::vector<SceneBuild>& builds)
+{
+    for (std::size_t i = 0; i < builds.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (builds[i].label == builds[j].label)
+                throw Error(ErrorKind::usage,
+                            fmt::format("--scene: '{}' and '{}' would both be called '{}' in the "
+                                        "results; name each scene once",
+                                        builds[j].request.name, builds[i].request.name, builds[i].label));
+}
+
+std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<SceneBuild>& builds)
+{
+    if (!options.out) {
+        if (options.resume)
+            throw Error(ErrorKind::usage, "--resume: the journal lies beside the result; name its file with --out");
+        return nullptr;
+    }
+    return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
+}
+
+void make_tables(Reproduction& all, const Options& options)
+{
+    const SceneRuns ours = all.of_build(our_build);
+    if (wants(options, PaperTarget::table3)) {
+        all.tables.push_back(table3(all.of_build("")));
+        all.tables.push_back(table3_rates(all.of_build("")));
+    }
+    if (wants(options, PaperTarget::table4)) {
+        all.tables.push_back(table4(ours, view_count(options.camera_set)));
+        all.figures.push_back(table4_views(ours));
+    }
+    if (wants(options, PaperTarget::figure6)) {
+        all.tables.push_back(figure6_table(ours));
+        all.figures.push_back(figure6(ours));
+    }
+}
+
+json reproduction_json(const Reproduction& all, const Options& options)
+{
+    json section = result_head(options);
+    section["threads"] = resolved_threads(options);
+    section["missing_scenes"] = all.missing_scenes;
+    section["missing_devices"] = missing_devices(options);
+    for (const char* key : {"scenes", "devices", "rows", "tables", "figures"})
+        section[key] = json::array();
+    for (const SceneRun& run : all.runs) {
+        if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
+        section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
+    }
+    for (const RowDevice& device : all.devices)
+        section["devices"].push_back(row_device_json(device));
+    for (const PaperTable& table : all.tables)
+        section["tables"].push_back(table_json(table));
+    for (const PaperFigure& figure : all.figures)
+        section["figures"].push_back(figure_json(figure));
+    return {{"tetrace", std::move(section)}};
+}
+
+std::string closing_text(const Reproduction& all, const Options& options)
+{
+    std::string text;
+    for (const auto& sentences : {all.missing_scenes, missing_devices(options)})
+        for (const std::string& sentence : sentences)
+            text += labelled("Missing", sentence);
+    if (options.out) text += labelled("Result", options.out->string());
+    return text;
+}
+
+Report reproduction_report(const Reproduction& all, const Options& options)
+{
+    Report report{{}, tidy_table(all.tables), reproduction_json(all, options), {}};
+    for (const PaperTable& table : all.tables) {
+        report.text += table_text(table);
+        report.markdown += table_markdown(table);
+    }
+    for (const PaperFigure& figure : all.figures) {
+        report.text += figure_text(figure);
+        report.markdown += figure_markdown(figure);
+    }
+    report.text += closing_text(all, options);
+    return report;
+}
+
+int rows_exit_code(const Reproduction& all)
+{
+    int code = 0;
+    for (const SceneRun& run : all.runs)
+        code = code == 1 ? code : std::max(code, exit_code(run.rows, true));
+    return code;
+}
+
+} // namespace
+
+int reproduce_command(const Options& asked)
+{
+    Reproduction all;
+    const Options options = with_defaults(asked, all.missing_scenes);
+    check_output(options);
+    const auto builds = scene_builds(options);
+    check_labels(builds);
+    const auto journal = open_journal(options, builds);
+    for (const std::string& sentence : all.missing_scenes)
+        say(sentence);
+    const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
+    ViewProgress progress;
+    progress.all = builds.size() * selected_views(options).size();
+    for (const SceneBuild& build : builds) {
+        SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
+        run_views(run, options, journal.get(), progress);
+        const bool is_ours = build.build == our_build;
+        if (pictures != nullptr && is_ours) pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
+        run.close();
+        add_devices(all, run, options);
+    }
+    make_tables(all, options);
+    deliver(options, reproduction_report(all, options));
+    if (journal != nullptr) journal->finish();
+    return rows_exit_code(all);
+}
+
+} // namespace tetrace

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "bench/reproduce/flat_tets.h"
+#include "bench/reproduce/image_record.h"
+#include "bench/reproduce/journal.h"
+#include "bench/stopwatch.h"
+#include "bench/verify.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// The builds that tables compare: as the options ask for it, and as near to the paper as known.
+inline constexpr const char* our_build = "ours";
+inline constexpr const char* papers_build = "paper's";
+
+/// A scene in one of the builds that tables compare.
+struct SceneBuild {
+    SceneRequest request;
+    std::string scene;      ///< what tables call it
+    std::string build;      ///< "ours" or "paper's"
+    std::string label;      ///< what rows call it: the scene, "-paper" behind it for the paper's build
+    bool robustness = true; ///< whether to look for flat tets
+    bool timing = true;     ///< whether to take samples
+};
+
+/// How far a run is, for the progress line.
+struct ViewProgress {
+    std::size_t all = 0;  ///< views of all scenes
+    std::size_t done = 0; ///< those of a journal included
+    std::size_t here = 0; ///< done by this process
+    Stopwatch watch;
+
+    void show(const std::string& stage) const;
+};
+
+/// A scene with its rows, and what came of each view. Rows end as those of `bench` do: their outcome and samples are
+/// those of all views.
+struct SceneRun {
+    SceneBuild build;
+    std::unique_ptr<SceneWork> scene; ///< null where it could not be loaded
+    std::unique_ptr<Verifier> verifier;
+    std::unique_ptr<FlatTets> flat; ///< null where nobody asks
+    std::vector<RowRun> rows;
+    std::vector<std::vector<ImageRecord>> images; ///< row by row, view by view; fewer where a row failed
+
+    std::vector<std::string> flawed_pictures, extreme_pictures; ///< names of files beside the result's
+    std::vector<std::string> picture_problems;                  ///< why one is missing, a sentence each
+    nlohmann::json row_records;                                 ///< the rows as results have them; made by close()
+
+    /// Keeps what results need of the devices, and frees the rest: scenes follow each other, and memory is limited.
+    void close();
+};
+
+/// Those of a run that a table is about.
+using SceneRuns = std::vector<const SceneRun*>;
+
+/// Loads the scene and opens its rows; a scene that cannot be loaded ends its rows with the reason.
+[[nodiscard]] SceneRun open_scene_run(const SceneBuild& build, const Options& options);
+
+/// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
+/// journal; views that the journal has are taken from there. journal: may be null.
+/// Throws Error{usage} where the journal is of another scene or of other rows.
+void run_views(SceneRun& run, const Options& options, Journal* journal, ViewProgress& progress);
+
+} // namespace tetrace

@@ -1,0 +1,177 @@
+#include "bench/reproduce/speed.h"
+
+#include "bench/figures.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+/// The rated row of that method, with the same layout and device as the other; none where there is none.
+std::size_t find_beside(const SceneRun& run, const RowRun& other, std::string_view method)
+{
+    for (std::size_t i = 0; i < run.rows.size(); ++i) {
+        const RowKey& key = run.rows[i].key;
+        if (name_of(key.kernel.method) == method && key.kernel.layout == other.key.kernel.layout &&
+            key.backend == other.key.backend && key.device == other.key.device && !view_seconds(run, i).empty())
+            return i;
+    }
+    return none;
+}
+
+/// The interval of views knows nothing of a machine that others use: noisy rows decide nothing.
+void withdraw_if_noisy(Claim& claim, bool noisy)
+{
+    if (!noisy) return;
+    claim.verdict = ClaimVerdict::not_testable;
+    claim.evidence +=
+        fmt::format(" Rows are noisy (spread above {:.0f} %): measure again on a quieter machine.", 100 * noisy_spread);
+}
+
+bool is_noisy(const RowRun& row)
+{
+    const auto figures = figures_of(row);
+    return figures && figures->kernel_s.noisy();
+}
+
+/// Gathers ratios of rows' times, and the words that tell them.
+struct Ratios {
+    std::vector<Estimate> estimates;
+    std::string missing, text;
+    bool noisy = false;
+
+    void add(const SceneRun& run, const RowRun& other, std::string_view above, std::string_view below)
+    {
+        const std::size_t a = find_beside(run, other, above), b = find_beside(run, other, below);
+        if (a == none || b == none) {
+            missing = fmt::format("{} has no rate beside {} on {} {}.", a == none ? above : below,
+                                  a == none ? below : above, run.build.label, device_label(other.key));
+            return;
+        }
+        noisy = noisy || is_noisy(run.rows[a]) || is_noisy(run.rows[b]);
+        estimates.push_back(ratio_of_sums(view_seconds(run, a), view_seconds(run, b)));
+        text += fmt::format("{}{} {} {}: {} / {} {}", text.empty() ? "" : "; ", run.build.label,
+                            name_of(other.key.kernel.layout), device_label(other.key), above, below,
+                            estimate_text(estimates.back()));
+    }
+
+    void decide(Claim& claim) const
+    {
+        claim.evidence = "Times over the same views: " + text + ".";
+        if (!missing.empty())
+            claim.evidence = missing;
+        else if (estimates.empty())
+            claim.evidence = "No row that it is about has a rate.";
+        else {
+            claim.verdict = judge_above(estimates, 1);
+            withdraw_if_noisy(claim, noisy);
+        }
+    }
+};
+
+/// Rows of maria that have a rate on a device of that type.
+template <class Visit>
+void for_marias(const SceneRuns& runs, const std::string& type, const Visit& visit)
+{
+    for (const SceneRun* run : runs)
+        for (std::size_t i = 0; i < run->rows.size(); ++i)
+            if (run->rows[i].key.kernel.method == Method::maria && run->rows[i].device.type == type &&
+                !view_seconds(*run, i).empty())
+                visit(*run, run->rows[i]);
+}
+
+} // namespace
+
+const std::vector<Method>& older_methods()
+{
+    static const std::vector<Method> methods = [] {
+        std::vector<Method> found;
+        for (const KernelId& kernel : all_kernels())
+            if (kernel.structure == Structure::cdt && kernel.method != Method::maria &&
+                std::find(found.begin(), found.end(), kernel.method) == found.end())
+                found.push_back(kernel.method);
+        return found;
+    }();
+    return methods;
+}
+
+std::vector<double> view_seconds(const SceneRun& run, std::size_t row)
+{
+    std::vector<double> seconds;
+    if (!figures_of(run.rows[row])) return seconds;
+    for (const ImageRecord& image : run.images[row])
+        seconds.push_back(quantile(image.samples_s, 0.5));
+    return seconds;
+}
+
+std::vector<double> view_steps(const SceneRun& run, std::size_t row)
+{
+    std::vector<double> steps;
+    for (const ImageRecord& image : run.images[row]) {
+        const RayTotals& totals = image.verdict.totals;
+        steps.push_back(static_cast<double>(totals.steps()) / static_cast<double>(totals.rays));
+    }
+    return steps;
+}
+
+std::string series_name(const SceneRun& run, const RowRun& row)
+{
+    return fmt::format("{} {} {} {}", run.build.label, name_of(row.key.kernel.method), name_of(row.key.kernel.layout),
+                       device_label(row.key));
+}
+
+Claim fastest_claim(const SceneRuns& runs)
+{
+    Claim claim{"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU", {}, ""};
+    if (older_methods().empty()) {
+        claim.evidence = "This program has no other method.";
+        return claim;
+    }
+    Ratios ratios;
+    for_marias(runs, "cpu", [&](const SceneRun& run, const RowRun& row) {
+        for (const Method method : older_methods())
+            ratios.add(run, row, name_of(method), "maria");
+    });
+    ratios.decide(claim);
+    return claim;
+}
+
+Claim overtaking_claim(const SceneRuns& runs)
+{
+    Claim claim{"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp", {}, ""};
+    Ratios ratios;
+    for_marias(runs, "gpu", [&](const SceneRun& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
+    ratios.decide(claim);
+    if (ratios.estimates.empty() && ratios.missing.empty()) claim.evidence = "No row of a GPU has a rate.";
+    return claim;
+}
+
+Claim proportional_claim(const SceneRuns& runs, const std::string& type)
+{
+    Claim claim{"time-is-proportional-to-tets-" + type,
+                fmt::format("time is proportional to the tets traversed, on a {}", type == "gpu" ? "GPU" : "CPU"),
+                {},
+                ""};
+    std::vector<Estimate> correlations;
+    bool noisy = false;
+    for (const SceneRun* run : runs)
+        for (std::size_t i = 0; i < run->rows.size(); ++i) {
+            const auto seconds = view_seconds(*run, i);
+            if (run->rows[i].device.type != type || seconds.empty()) continue;
+            noisy = noisy || is_noisy(run->rows[i]);
+            correlations.push_back(correlation(view_steps(*run, i), seconds).value_or(Estimate{}));
+            claim.evidence += fmt::format("{}{}: r = {}", claim.evidence.empty() ? "" : "; ",
+                                          series_name(*run, run->rows[i]), estimate_text(correlations.back()));
+        }
+    claim.verdict = judge_above(correlations, proportional_above);
+    claim.evidence += correlations.empty() ? fmt::format("No row of a {} has a rate.", type == "gpu" ? "GPU" : "CPU")
+                                           : fmt::format(". Above {} is taken for proportional.", proportional_above);
+    withdraw_if_noisy(claim, noisy);
+    return claim;
+}
+
+} // namespace tetrace

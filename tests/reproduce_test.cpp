@@ -1,0 +1,246 @@
+#include "bench/reproduce/flat_tets.h"
+#include "tests/temporary_folder.h"
+
+#include <chrono>
+#include <csignal>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+using namespace tetrace;
+using nlohmann::json;
+
+namespace {
+
+struct Ended {
+    int code = -1;
+    std::string out, errors;
+};
+
+/// The program in a folder of its own, on a scene that it makes itself.
+class reproduce : public testing::Test {
+protected:
+    /// Starts it; its process.
+    [[nodiscard]] pid_t start(const std::string& arguments) const
+    {
+        std::istringstream words("tetrace reproduce " + arguments + " --backend openmp --scene cubes --resolution 6");
+        std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
+        std::vector<char*> pointers;
+        for (std::string& word : list)
+            pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        const pid_t child = ::fork();
+        if (child != 0) return child;
+        if (::chdir(folder_.path().c_str()) != 0) ::_exit(126);
+        ::dup2(::open("stdout", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+        ::dup2(::open("stderr", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+        ::execv(TETRACE_PROGRAM, pointers.data());
+        ::_exit(127);
+    }
+
+    [[nodiscard]] Ended end(pid_t child) const
+    {
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout"),
+                read_text(folder_ / "stderr")};
+    }
+
+    [[nodiscard]] Ended run(const std::string& arguments) const { return end(start(arguments)); }
+
+    [[nodiscard]] json result(const std::string& name) const
+    {
+        return json::parse(read_text(folder_ / name)).at("tetrace");
+    }
+
+    [[nodiscard]] std::size_t lines(const std::string& name) const
+    {
+        const std::string text = read_text(folder_ / name);
+        return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    }
+
+    /// Kills the run when its journal has a few views, and gives back how many.
+    std::size_t kill_in_the_middle(const std::string& arguments, const std::string& journal) const
+    {
+        const pid_t child = start(arguments);
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+        while (lines(journal) < 4 && std::chrono::steady_clock::now() < deadline)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ::kill(child, SIGKILL);
+        EXPECT_EQ(end(child).code, -1) << "it ended before it was killed";
+        return lines(journal) - 1;
+    }
+
+    TemporaryFolder folder_;
+};
+
+const json& claim(const json& table, const std::string& id)
+{
+    for (const json& one : table.at("claims"))
+        if (one.at("id") == id) return one;
+    throw std::runtime_error("no claim " + id);
+}
+
+const json& of_id(const json& list, const std::string& id)
+{
+    for (const json& one : list)
+        if (one.at("id") == id) return one;
+    throw std::runtime_error("nothing of id " + id);
+}
+
+} // namespace
+
+TEST_F(reproduce, table4_of_a_sample_of_views)
+{
+    const Ended ended = run("table4 --method maria --size 24 --views 0-1281:100 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    EXPECT_EQ(section["verb"], "reproduce");
+    const json table = of_id(section["tables"], "table4");
+    ASSERT_EQ(table["rows"].size(), 2u) << "tet80 and tet96";
+    for (const json& row : table["rows"]) {
+        EXPECT_EQ(row["scene"], "cubes");
+        EXPECT_EQ(row["method"], "maria");
+        EXPECT_EQ(row["status"], "ok");
+        EXPECT_EQ(row["views"]["value"], 13);
+        EXPECT_EQ(row["flawed"]["value"], 0);
+        EXPECT_EQ(row["flawed"]["paper"], 0);
+        EXPECT_FALSE(row["flawed"].contains("ratio")) << "nothing over nothing";
+        EXPECT_DOUBLE_EQ(row["flawed"]["high"].get<double>(), 3.0 / 13 * (1024 * 1024) / (24 * 24))
+            << "rule of three, in an image of the paper's size";
+    }
+    EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
+    EXPECT_EQ(claim(table, "maria-has-the-fewest")["verdict"], "not testable here") << "nothing to compare with";
+    EXPECT_EQ(section["rows"][0]["verification"]["rays"], 13 * 24 * 24);
+    EXPECT_FALSE(section["rows"][0].contains("rates")) << "nothing was timed";
+    EXPECT_TRUE(contains(ended.out, "table4: Rays with a wrong result"));
+}
+
+TEST_F(reproduce, all_views_without_a_wrong_ray_make_the_claim_hold)
+{
+    const Ended ended = run("table4 --method maria --layout tet80 --size 4 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json table = result("r.json")["tables"][0];
+    EXPECT_EQ(table["rows"][0]["views"]["value"], 1282);
+    EXPECT_FALSE(table["rows"][0]["flawed"].contains("high")) << "nothing was sampled";
+    EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "holds");
+}
+
+TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
+{
+    const Ended ended =
+        run("figure6 --method maria --layout tet80 --size 64 --samples 3 --views 0-1281:60 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    const json figure = of_id(section["figures"], "figure6");
+    ASSERT_EQ(figure["series"].size(), 1u);
+    EXPECT_EQ(figure["series"][0]["points"].size(), 22u);
+    for (const json& point : figure["series"][0]["points"])
+        EXPECT_GT(point[1].get<double>(), 0);
+    EXPECT_EQ(figure["pictures"].size(), 4u);
+    for (const json& name : figure["pictures"])
+        EXPECT_TRUE(std::filesystem::exists(folder_ / name.get<std::string>())) << name;
+    const json row = of_id(section["tables"], "figure6")["rows"][0];
+    EXPECT_LE(row["correlation"]["low"], row["correlation"]["value"]);
+    EXPECT_LT(row["fewest_tets"]["value"], row["most_tets"]["value"]);
+    EXPECT_EQ(section["rows"][0]["times"]["samples_s"].size(), 3u);
+    EXPECT_GT(section["rows"][0]["rates"]["mrays_per_s"], 0);
+    EXPECT_EQ(claim(figure, "time-is-proportional-to-tets-gpu")["verdict"], "not testable here");
+}
+
+TEST_F(reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
+{
+    const Ended ended = run("table3 --method maria --size 24 --samples 3 --views 0,1 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    const json scenes = of_id(section["tables"], "table3")["rows"];
+    ASSERT_EQ(scenes.size(), 1u) << "no TetGen makes this scene: there is no paper's build of it";
+    EXPECT_EQ(scenes[0]["tets"]["value"], 6 * 6 * 6 * 6);
+    EXPECT_LT(scenes[0]["tet80_mb"]["value"], scenes[0]["tet96_mb"]["value"]);
+    const json rates = of_id(section["tables"], "table3-rates")["rows"];
+    ASSERT_EQ(rates.size(), 2u);
+    EXPECT_GT(rates[0]["mrays_per_s"]["value"], 0);
+}
+
+TEST_F(reproduce, goes_on_after_kill_9_to_the_same_result)
+{
+    const std::string arguments =
+        "table4,figure6 --method maria,ms06 --layout tet80 --size 48 --samples 3 --views 0-1281:40 --out ";
+    const std::size_t views = kill_in_the_middle(arguments + "killed.json", "killed.json.journal");
+    ASSERT_LT(views, 33u);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "killed.json"));
+    std::ofstream(folder_ / "killed.json.journal", std::ios::app)
+        << R"({"scene": "cub)"; // as a cut-off write leaves it
+    EXPECT_EQ(run(arguments + "killed.json").code, 2) << "not overwritten unasked";
+    const std::string journal = read_text(folder_ / "killed.json.journal");
+    const Ended ended = run(arguments + "killed.json --resume");
+    ASSERT_EQ(ended.code, run(arguments + "whole.json").code) << ended.errors;
+    const json resumed = result("killed.json"), whole = result("whole.json");
+    EXPECT_EQ(of_id(resumed["tables"], "table4"), of_id(whole["tables"], "table4"));
+    EXPECT_EQ(resumed["rows"][0]["hit_hash"], whole["rows"][0]["hit_hash"]);
+    EXPECT_EQ(resumed["rows"][0]["verification"], whole["rows"][0]["verification"]);
+    // Times of finished views are the journal's, not measured again.
+    std::istringstream before(journal), after(read_text(folder_ / "killed.json.journal"));
+    std::string first, second;
+    for (std::size_t line = 0; line <= views; ++line) {
+        std::getline(before, first), std::getline(after, second);
+        EXPECT_EQ(first, second) << "line " << line;
+    }
+    EXPECT_EQ(lines("killed.json.journal"), 1u + 33 + 1) << "head, views, end";
+    EXPECT_EQ(run(arguments + "killed.json --resume").code, ended.code) << "once more, from the journal alone";
+    const json again = result("killed.json");
+    EXPECT_EQ(of_id(again["figures"], "figure6")["series"], of_id(resumed["figures"], "figure6")["series"]);
+}
+
+TEST_F(reproduce, a_journal_of_other_options_is_refused)
+{
+    const std::string arguments = "table4 --method maria --size 32 --views 0-1281:20 --out r.json ";
+    (void)kill_in_the_middle(arguments + "--layout tet80", "r.json.journal");
+    const Ended other = run(arguments + "--layout tet96 --resume");
+    EXPECT_EQ(other.code, 2);
+    EXPECT_TRUE(contains(other.errors, "is of another run"));
+    EXPECT_TRUE(contains(other.errors, "rows:")) << "it says what differs";
+    EXPECT_EQ(run("table4 --size 33 --method maria --layout tet80 --views 0-1281:20 --out r.json --resume").code, 2);
+}
+
+TEST_F(reproduce, refuses_what_it_does_not_make)
+{
+    const Ended unknown = run("table9");
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_TRUE(contains(unknown.errors, "table3, table4 or figure6"));
+    for (const char* const name : {"table5", "table6"}) {
+        const Ended later = run(name);
+        EXPECT_EQ(later.code, 2);
+        EXPECT_TRUE(contains(later.errors, std::string("makes no ") + name + " yet"));
+    }
+    EXPECT_TRUE(contains(run("table4 --resume").errors, "--out"));
+}
+
+TEST_F(reproduce, as_csv_and_markdown)
+{
+    const std::string arguments = "table4 --method maria --layout tet80 --size 24 --views 0,1 --format ";
+    const Ended csv = run(arguments + "csv");
+    ASSERT_EQ(csv.code, 0) << csv.errors;
+    EXPECT_EQ(csv.out.rfind("table,scene,build,method,layout,device,quantity,unit,value,low,high,paper,ratio\n", 0),
+              0u);
+    EXPECT_TRUE(contains(csv.out, "table4,cubes,,maria,tet80,openmp,flawed,rays an image,0,0,"));
+    const Ended markdown = run(arguments + "markdown");
+    EXPECT_TRUE(contains(markdown.out, "## table4: Rays with"));
+    EXPECT_TRUE(contains(markdown.out, "| maria has no wrong result | not testable here |"));
+}
+
+TEST(flat_tets, flatness_is_the_shortest_altitude_over_the_longest_edge)
+{
+    TetMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.25f, 0.25f, 1e-4f}};
+    mesh.tets = {{{0, 1, 2, 3}, {}, {}}, {{0, 1, 2, 4}, {}, {}}};
+    // The corner of a cube: volume 1/6, largest face sqrt(3)/2, longest edge sqrt(2).
+    EXPECT_NEAR(flatness(mesh, 0), 1 / std::sqrt(3.0) / std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(flatness(mesh, 1), 1e-4 / std::sqrt(2.0), 1e-9);
+    EXPECT_LT(flatness(mesh, 1), flat_below);
+}
