@@ -33,7 +33,7 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
     const auto [shortest, longest] = std::minmax_element(seconds.begin(), seconds.end());
     const auto r = correlation(steps, seconds);
     const auto rays = static_cast<double>(run.scene->rays_per_view());
-    const auto line = r ? std::optional(fit_line(steps, seconds)) : std::nullopt;
+    const Line line = r ? fit_line(steps, seconds) : Line{};
     return {run.build.scene,
             std::string(name_of(row.key.kernel.method)),
             std::string(name_of(row.key.kernel.layout)),
@@ -46,8 +46,8 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
             exact_cell(1e3 * *longest),
             exact_cell(figures_of(row)->msteps_per_s.value_or(0)),
             r ? PaperCell(Quantity{*r, {}}) : PaperCell(),
-            line ? exact_cell(1e9 * line->slope / rays) : PaperCell(),
-            line ? exact_cell(1e3 * line->intercept) : PaperCell()};
+            r ? exact_cell(1e9 * line.slope / rays) : PaperCell(),
+            r ? exact_cell(1e3 * line.intercept) : PaperCell()};
 }
 
 } // namespace

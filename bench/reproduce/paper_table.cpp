@@ -114,7 +114,7 @@ std::string claims_markdown(const std::vector<Claim>& claims)
     Table table({{"claim", "claim"}, {"verdict", "verdict"}, {"evidence", "evidence"}});
     for (const Claim& claim : claims)
         table.add({claim.text, std::string(name_of(claim.verdict)), claim.evidence});
-    return "\n" + table.markdown();
+    return std::string("\n").append(table.markdown());
 }
 
 std::string notes_markdown(const std::vector<std::string>& notes)
