@@ -28,7 +28,8 @@ protected:
     /// Starts it; its process.
     [[nodiscard]] pid_t start(const std::string& arguments) const
     {
-        std::istringstream words("tetrace reproduce " + arguments + " --backend openmp --scene cubes --resolution 6");
+        std::istringstream words("tetrace reproduce " + arguments +
+                                 " --backend openmp --threads 1 --scene cubes --resolution 6");
         std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
         std::vector<char*> pointers;
         for (std::string& word : list)
