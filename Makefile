@@ -2,11 +2,12 @@
 JOBS ?= $(shell nproc)
 TETRACE = build/release/bin/tetrace
 
-.PHONY: help bench test build bundle format lint clean
+.PHONY: help bench test sanitize build bundle format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/)"
-	@echo "make test     install what is missing, build, run all tests, and the small ones under sanitizers"
+	@echo "make test     install what is missing, build, run all tests"
+	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make format   format the sources"
@@ -35,11 +36,14 @@ test:
 	cmake --preset release -G Ninja -DBUILD_TESTING=ON
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS) --output-log build/release/test.log
+	@echo "== release"; grep -A 1000 '% tests passed' build/release/test.log
+
+sanitize:
+	@scripts/install-packages build test
 	cmake --preset asan -G Ninja -DBUILD_TESTING=ON
 	cmake --build --preset asan -j $(JOBS) --target small_tests
 	ctest --preset asan -j $(JOBS) -L small --output-log build/asan/test.log
-	@for preset in release asan; do \
-	    echo "== $$preset"; grep -A 1000 '% tests passed' build/$$preset/test.log; done
+	@echo "== asan"; grep -A 1000 '% tests passed' build/asan/test.log
 
 format:
 	@scripts/install-packages lint
