@@ -46,11 +46,6 @@ bool names_one_point(const TriangleMesh& mesh, const ExactRay& ray, const Hit& h
 
 } // namespace
 
-double tie_bound(Float3 origin)
-{
-    return 10 * 0x1p-24 * (length(to_double(origin)) + std::sqrt(3.0));
-}
-
 void Verdicts::add(const Verdicts& other)
 {
     rays += other.rays;

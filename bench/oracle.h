@@ -39,10 +39,6 @@ struct Verdicts {
     [[nodiscard]] bool clean() const { return wrong == 0 && lost == 0; }
 };
 
-/// Largest distance between a ray and an edge at which float32 may decide the edge either way:
-/// 10 ulp(1/2) (|origin| + sqrt 3), derived for the side products of `maria` in kernels/SPEC.md. Domain units.
-[[nodiscard]] double tie_bound(Float3 origin);
-
 /// Judges hits. Shares no code with the kernels but the making of primary rays: every ray is compared with Embree in
 /// robust mode, and each disagreement is settled by exact arithmetic on the original triangles.
 class Oracle {

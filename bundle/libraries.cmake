@@ -35,7 +35,7 @@ function(copy_libraries programs loaded folder variable)
 endfunction()
 
 # Header-only or linked statically, so that no library shows them; and the package of the meshes.
-set(compiled_in libarchive-dev libcli11-dev nlohmann-json3-dev libboost-dev libxxhash-dev opencl-clhpp-headers
+set(compiled_in libarchive-dev libcli11-dev nlohmann-json3-dev libboost-dev libxxhash-dev librandom123-dev opencl-clhpp-headers
   libvulkan-dev libcgal-demo)
 
 # copy_licences(<files> <folder> <variable>): the copyright files of the packages that the files are of, and of

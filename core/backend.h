@@ -47,13 +47,17 @@ struct SessionOptions {
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
 };
 
-/// One image's worth of primary rays.
+/// One image's worth of primary rays. Sessions of task search read its size alone: see search_job().
 struct TraceJob {
     View view;
     std::uint32_t width = 0, height = 0;
     std::uint32_t start_tet = NO_TET; ///< tet that holds view.origin, in packed order; NO_TET: rays enter from outside
     std::uint32_t max_steps = 0;      ///< a walk that long is LOST
 };
+
+/// The job that searches the exits of so many rays, all that a session was given: a column of tiles.
+/// rays: a multiple of TILE_WIDTH.
+[[nodiscard]] TraceJob search_job(std::size_t rays);
 
 /// Seconds that are paid once a session, apart from any kernel.
 struct SetupTimes {
@@ -73,6 +77,10 @@ struct Yardstick {
 class Session {
 public:
     virtual ~Session() = default;
+    /// Task search: gives the device the rays of the launches that follow, in place of those before. rows: RAY_ROWS a
+    /// ray (kernels/layout.h), for a multiple of TILE_WIDTH rays, each entering a tet of the scene. Before any launch.
+    /// Throws Error{unsupported} with both numbers where they exceed the largest buffer.
+    virtual void set_rays(std::span<const Row> rows);
     /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so
     /// long that a watchdog fires (core/launch.h).
     virtual void launch(const TraceJob& job) = 0;
@@ -81,6 +89,9 @@ public:
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
     /// Throws Error{wrong_result} where the kernel wrote outside its hits.
     void read_back(std::span<Hit> hits);
+    /// Task search: copies the faces that were found by the last launch, 0 to 3 or NO_EXIT, in the order of the rays.
+    /// faces.size(): their number. Throws Error{wrong_result} where the kernel wrote elsewhere, or no face.
+    void read_back(std::span<std::uint32_t> faces);
     /// Seconds that copying the output took in the last read_back(), its checks left out.
     [[nodiscard]] double download_s() const { return download_s_; }
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;
@@ -88,7 +99,8 @@ public:
     [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
 private:
-    /// Copies the whole output: GUARD_WORDS, HIT_WORDS a hit row after row, GUARD_WORDS.
+    [[nodiscard]] std::vector<std::uint32_t> checked_output(std::size_t words);
+    /// Copies the whole output: GUARD_WORDS, words_per_ray() a ray row after row, GUARD_WORDS.
     virtual void read_output(std::span<std::uint32_t> words) = 0;
 
     double download_s_ = 0;

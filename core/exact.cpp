@@ -117,4 +117,9 @@ std::strong_ordering compare_distance(Float3 origin, Float3 direction, const Flo
     return order <=> 0;
 }
 
+double tie_bound(Float3 origin)
+{
+    return 10 * 0x1p-24 * (length(to_double(origin)) + std::sqrt(3.0));
+}
+
 } // namespace tetrace

@@ -31,4 +31,8 @@ struct ExactCrossing {
 [[nodiscard]] std::strong_ordering compare_distance(Float3 origin, Float3 direction, const Float3 (&a)[3],
                                                     const Float3 (&b)[3]);
 
+/// Largest distance between a ray and an edge at which float32 may decide the edge either way:
+/// 10 ulp(1/2) (|origin| + sqrt 3), derived for the side products of `maria` in kernels/SPEC.md. Domain units.
+[[nodiscard]] double tie_bound(Float3 origin);
+
 } // namespace tetrace

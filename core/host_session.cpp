@@ -11,11 +11,10 @@ namespace tetrace {
 
 void HostSession::launch(const TraceJob& job)
 {
-    output_.assign(output_words(job), POISON);
-    // A hit is six words without padding: the output holds hits as every device's does.
-    const std::span hits(reinterpret_cast<Hit*>(output_.data() + GUARD_WORDS), std::size_t{job.width} * job.height);
+    output_.assign(output_words(job, task_), POISON);
+    const auto between_guards = std::span(output_).subspan(GUARD_WORDS, output_.size() - 2 * std::size_t{GUARD_WORDS});
     const auto start = std::chrono::steady_clock::now();
-    trace(job, hits);
+    run(job, between_guards);
     kernel_s_ = seconds_since(start);
 }
 

@@ -17,11 +17,28 @@ std::vector<KernelId> make_kernels()
     return kernels;
 }
 
+std::vector<KernelId> make_search_kernels()
+{
+    std::vector<KernelId> kernels;
+    for (KernelId kernel : all_kernels()) {
+        if (kernel.structure != Structure::cdt || kernel.schedule != Schedule::tiles) continue;
+        kernel.task = Task::search;
+        kernels.push_back(kernel);
+    }
+    return kernels;
+}
+
 } // namespace
 
 const std::vector<KernelId>& all_kernels()
 {
     static const std::vector<KernelId> kernels = make_kernels();
+    return kernels;
+}
+
+const std::vector<KernelId>& search_kernels()
+{
+    static const std::vector<KernelId> kernels = make_search_kernels();
     return kernels;
 }
 
@@ -74,6 +91,11 @@ std::string_view name_of(Schedule value)
     return value == Schedule::tiles ? "tiles" : "persistent";
 }
 
+std::string_view name_of(Task value)
+{
+    return value == Task::trace ? "trace" : "search";
+}
+
 std::string_view name_of(TetOrder value)
 {
     return value == TetOrder::hilbert ? "hilbert" : "input";
@@ -81,7 +103,7 @@ std::string_view name_of(TetOrder value)
 
 std::string name_of(const KernelId& kernel)
 {
-    std::string name(name_of(kernel.structure));
+    std::string name(kernel.task == Task::search ? name_of(kernel.task) : name_of(kernel.structure));
     name.append("/").append(name_of(kernel.method)).append("/").append(name_of(kernel.layout));
     return name;
 }

@@ -18,6 +18,8 @@ enum class RayKind { primary };
 /// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
 /// (Aila, Laine, Karras 2012).
 enum class Schedule { tiles, persistent };
+/// What a kernel does with a ray: walks from tet to tet until it hits, or searches for the exit face of one tet alone.
+enum class Task { trace, search };
 /// The order of the tets in memory.
 enum class TetOrder { hilbert, input };
 
@@ -28,13 +30,16 @@ struct KernelId {
     Layout layout = Layout::tet80;
     MathMode math = MathMode::exact;
     Schedule schedule = Schedule::tiles;
+    Task task = Task::trace;
 
     friend bool operator==(const KernelId&, const KernelId&) = default;
 };
 
-/// Every kernel that some backend can run, schedule tiles and exact mode first, the methods in the order of the enum;
-/// the one list that options and rows come from.
+/// Every kernel of task trace that some backend can run, schedule tiles and exact mode first, the methods in the order
+/// of the enum; the one list that options and rows come from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
+/// Those of task search: the methods of the cdt with schedule tiles, in the same order.
+[[nodiscard]] const std::vector<KernelId>& search_kernels();
 
 /// Whether the method is published as one that loses and mistakes no ray: wrong and lost rays then fail a run. Those of
 /// the other methods are their nature: counted, told beside the rate, and no failure.
@@ -46,9 +51,10 @@ struct KernelId {
 [[nodiscard]] std::string_view name_of(MathMode value);
 [[nodiscard]] std::string_view name_of(RayKind value);
 [[nodiscard]] std::string_view name_of(Schedule value);
+[[nodiscard]] std::string_view name_of(Task value);
 [[nodiscard]] std::string_view name_of(TetOrder value);
 
-/// structure/method/layout, for example "cdt/maria/tet80".
+/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" of task search.
 [[nodiscard]] std::string name_of(const KernelId& kernel);
 
 } // namespace tetrace

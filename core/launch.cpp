@@ -27,9 +27,14 @@ std::uint32_t tile_count(const LaunchParams& image)
     return ((image.width + TILE_WIDTH - 1) / TILE_WIDTH) * ((image.height + image.tile_height - 1) / image.tile_height);
 }
 
-std::size_t output_words(const TraceJob& job)
+std::size_t words_per_ray(Task task)
 {
-    return 2 * std::size_t{GUARD_WORDS} + std::size_t{HIT_WORDS} * job.width * job.height;
+    return task == Task::search ? 1 : HIT_WORDS;
+}
+
+std::size_t output_words(const TraceJob& job, Task task)
+{
+    return 2 * std::size_t{GUARD_WORDS} + words_per_ray(task) * job.width * job.height;
 }
 
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)
@@ -39,6 +44,13 @@ void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)
     throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
                                             " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
                                             "; trace a smaller image");
+}
+
+void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes)
+{
+    if (max_buffer_bytes == 0 || rows.size_bytes() <= max_buffer_bytes) return;
+    throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(rows.size_bytes()) +
+                                            " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes));
 }
 
 void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words)

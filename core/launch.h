@@ -22,12 +22,18 @@ static_assert(sizeof(LaunchParams) == 80, "every backend reads LaunchParams; see
 /// Tiles of an image, row after row.
 [[nodiscard]] std::uint32_t tile_count(const LaunchParams& image);
 
+/// Words that a kernel writes a ray: a hit, or a face.
+[[nodiscard]] std::size_t words_per_ray(Task task);
+
 /// Words of an image's output, guards included.
-[[nodiscard]] std::size_t output_words(const TraceJob& job);
+[[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
 
 /// Throws Error{unsupported} with both numbers where an image's output of so many words exceeds the largest buffer;
 /// max_buffer_bytes: 0 is no limit.
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
+
+/// The same for a session's rays.
+void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes);
 
 /// Throws Error{internal} where other hits are read back than those of the last launch.
 void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words);

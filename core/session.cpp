@@ -20,18 +20,51 @@ void check_guard(std::span<const std::uint32_t> guard, const char* where)
 
 } // namespace
 
-void Session::read_back(std::span<Hit> hits)
+TraceJob search_job(std::size_t rays)
 {
-    static_assert(sizeof(Hit) == HIT_WORDS * sizeof(std::uint32_t));
-    // Not kept: many sessions are open at a time.
-    std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + HIT_WORDS * hits.size());
+    if (rays % TILE_WIDTH != 0)
+        throw Error(ErrorKind::internal,
+                    "a search of " + std::to_string(rays) + " rays, no multiple of " + std::to_string(TILE_WIDTH));
+    TraceJob job;
+    job.width = TILE_WIDTH;
+    job.height = static_cast<std::uint32_t>(rays / TILE_WIDTH);
+    return job;
+}
+
+void Session::set_rays(std::span<const Row>)
+{
+    throw Error(ErrorKind::internal, "rays are given to a session that makes its own");
+}
+
+/// Not kept: many sessions are open at a time.
+std::vector<std::uint32_t> Session::checked_output(std::size_t words)
+{
+    std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + words);
     const auto start = std::chrono::steady_clock::now();
     read_output(output);
     download_s_ = seconds_since(start);
-    const std::span<const std::uint32_t> words = output;
-    check_guard(words.first(GUARD_WORDS), "before");
-    check_guard(words.last(GUARD_WORDS), "behind");
-    std::memcpy(hits.data(), words.data() + GUARD_WORDS, hits.size_bytes());
+    const std::span<const std::uint32_t> all = output;
+    check_guard(all.first(GUARD_WORDS), "before");
+    check_guard(all.last(GUARD_WORDS), "behind");
+    return output;
+}
+
+void Session::read_back(std::span<Hit> hits)
+{
+    static_assert(sizeof(Hit) == HIT_WORDS * sizeof(std::uint32_t));
+    const auto output = checked_output(HIT_WORDS * hits.size());
+    std::memcpy(hits.data(), output.data() + GUARD_WORDS, hits.size_bytes());
+}
+
+void Session::read_back(std::span<std::uint32_t> faces)
+{
+    const auto output = checked_output(faces.size());
+    std::copy_n(output.begin() + GUARD_WORDS, faces.size(), faces.begin());
+    const auto found = std::find_if(faces.begin(), faces.end(), [](std::uint32_t face) { return face > NO_EXIT; });
+    if (found == faces.end()) return;
+    throw Error(ErrorKind::wrong_result,
+                "ray " + std::to_string(found - faces.begin()) +
+                    (*found == POISON ? ": no face was written" : ": face " + std::to_string(*found) + " was written"));
 }
 
 } // namespace tetrace

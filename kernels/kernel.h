@@ -18,3 +18,5 @@
 #include "kernels/walk.h"
 
 #include "kernels/launch.h"
+
+#include "kernels/search.h"

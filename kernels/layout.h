@@ -11,6 +11,9 @@
 // A launch's output: guard words, six words a hit row after row, guard words; all of it is POISON before.
 #define HIT_WORDS 6u
 #define GUARD_WORDS 64u
+// A ray that is given: its rows stand a whole list of rays apart, all first rows before all second ones.
+//   {direction, link of its entry face}  {origin, 0}  {moment, 0}
+#define RAY_ROWS 3u
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.
 #define TILE_WIDTH 8u
 
@@ -39,6 +42,7 @@
 #define COUNTER_BINDING 6u
 #define SECOND_PART_BINDING 7u
 #define MAX_TET_PARTS 8u
+#define RAYS_BINDING (SECOND_PART_BINDING + MAX_TET_PARTS - 1u)
 #define FIRST_ROWS_BINDING 16u // of rows, where words and rows of one array are bound apart
 
 // tet80: rows of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.

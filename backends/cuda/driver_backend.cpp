@@ -52,7 +52,9 @@ const DriverBackend::Found& DriverBackend::require(std::size_t device) const
 
 bool DriverBackend::has_kernel(const KernelId& kernel) const
 {
-    return kernel.structure == Structure::cdt && find_kernel(embedded_sources(), program_of(kernel).source) != nullptr;
+    const bool has_entry = kernel.task == Task::trace || kernel.schedule == Schedule::tiles;
+    return kernel.structure == Structure::cdt && has_entry &&
+           find_kernel(embedded_sources(), program_of(kernel).source) != nullptr;
 }
 
 std::string DriverBackend::why_not(std::size_t device, const KernelId& kernel) const

@@ -49,3 +49,15 @@ extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene
         trace_pixel(scene, launch, launch.first_tile + index / tile_items, index % tile_items, output);
     }
 }
+
+// An exit search a thread, a tile a block.
+extern "C" __global__ void ENTRY(search_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                             const uint4* __restrict__ rays)
+{
+    Pixel pixel = pixel_of(launch, launch.first_tile + blockIdx.x, threadIdx.x);
+    if (!is_in_image(launch, pixel)) return;
+    uint ray = ray_index(pixel);
+    uint count = ray_count(launch);
+    output[GUARD_WORDS + ray] =
+        search_exit(scene, __ldg(rays + ray), __ldg(rays + count + ray), __ldg(rays + 2u * count + ray));
+}

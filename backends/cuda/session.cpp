@@ -15,7 +15,7 @@ constexpr unsigned persistent_block_threads = 128; // four warps: enough blocks 
 
 std::string entry_of(const KernelId& kernel)
 {
-    return "trace_" + std::string(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
+    return std::string(name_of(kernel.task)).append("_").append(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
 }
 
 /// One address space needs no limit and no parts; whoever asks for smaller buffers gets an answer all the same.
@@ -35,9 +35,9 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
                          const PackedScene& scene, const SessionOptions& options, unsigned tile_height)
     : device_(driver, device),
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
-      schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))), stopwatch_(device_.context),
-      tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
-      launches_(tile_height), bytes_(scene.bytes())
+      task_(kernel.task), schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))),
+      stopwatch_(device_.context), tile_height_(tile_height), threads_(options.threads),
+      max_buffer_bytes_(options.max_buffer_bytes), launches_(tile_height), bytes_(scene.bytes())
 {
     require_arrays_fit(scene, max_buffer_bytes_);
     setup_.compile_s = program_.compile_s;
@@ -78,12 +78,22 @@ void CudaSession::upload(const PackedScene& scene)
     scene_.divisions = scene.divisions;
 }
 
+void CudaSession::set_rays(std::span<const Row> rows)
+{
+    require_rays_fit(rows, max_buffer_bytes_);
+    make_current();
+    finish_launch(); // which reads the old ones
+    rays_ = {};      // before the new ones: both may not fit
+    rays_ = Memory(device_.context, std::as_bytes(rows), "the rays", device_.stream.get());
+    device_.synchronize();
+}
+
 void CudaSession::poison_output(std::size_t words)
 {
     require_output_fits(words, max_buffer_bytes_);
     if (output_.bytes() != words * sizeof(std::uint32_t)) {
         output_ = {}; // before the new one: both may not fit
-        output_ = Memory(device_.context, words * sizeof(std::uint32_t), "the image's hits");
+        output_ = Memory(device_.context, words * sizeof(std::uint32_t), "the output");
     }
     device_.context.check(device_.driver().fill_words(output_.address(), POISON, words, device_.stream.get()),
                           "filling the output");
@@ -92,7 +102,7 @@ void CudaSession::poison_output(std::size_t words)
 void CudaSession::launch(const TraceJob& job)
 {
     make_current();
-    poison_output(output_words(job));
+    poison_output(output_words(job, task_));
     launched_tiles_ = 0;
     launches_.start(
         launch_params(job, scene_.divisions, tile_height_, TetParts{}.log2_bytes),
@@ -107,8 +117,8 @@ void CudaSession::launch(const TraceJob& job)
 void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
 {
     LaunchParams launch = params;
-    Address output = output_.address();
-    void* parameters[] = {&scene_, &launch, &output};
+    Address output = output_.address(), rays = rays_.address();
+    void* parameters[] = {&scene_, &launch, &output, &rays}; // the last one is of task search alone
     stopwatch_.start(device_.stream.get());
     device_.launch(kernel_, tiles, TILE_WIDTH * tile_height_, parameters);
     stopwatch_.stop(device_.stream.get());
@@ -147,7 +157,7 @@ void CudaSession::read_output(std::span<std::uint32_t> words)
     require_output_of_last_launch(words.size(), output_.bytes() / sizeof(words[0]));
     device_.context.check(
         device_.driver().copy_to_host(words.data(), output_.address(), words.size_bytes(), device_.stream.get()),
-        "copying the hits to the host");
+        "copying the output to the host");
     device_.synchronize();
 }
 

@@ -15,6 +15,7 @@ public:
                 const PackedScene& scene, const SessionOptions& options, unsigned tile_height);
     ~CudaSession() override;
 
+    void set_rays(std::span<const Row> rows) override;
     void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
@@ -40,11 +41,12 @@ private:
 
     OpenDevice device_;
     LoadedProgram program_;
+    Task task_;
     Schedule schedule_;
     FunctionHandle kernel_;
     std::array<Memory, SCENE_ARRAYS> arrays_;
     SceneView scene_{};
-    Memory output_, counter_;
+    Memory output_, counter_, rays_;
     Stopwatch stopwatch_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;

@@ -23,4 +23,9 @@ void ENTRY(run_trace_persistent_, KERNEL_NAME)(void** arguments)
     call(ENTRY(trace_persistent_, KERNEL_NAME), arguments);
 }
 
+void ENTRY(run_search_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(search_tiles_, KERNEL_NAME), arguments);
+}
+
 } // namespace tetrace::cuda_host

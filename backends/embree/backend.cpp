@@ -27,7 +27,7 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree;
+        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree && kernel.task == Task::trace;
     }
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override

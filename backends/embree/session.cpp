@@ -103,13 +103,13 @@ void trace_image(const Accelerator& accelerator, Method method, const TraceJob& 
 }
 
 EmbreeSession::EmbreeSession(Method method, std::shared_ptr<const Accelerator> accelerator, unsigned threads)
-    : method_(method), accelerator_(std::move(accelerator)), threads_(threads)
+    : HostSession(Task::trace), method_(method), accelerator_(std::move(accelerator)), threads_(threads)
 {
 }
 
-void EmbreeSession::trace(const TraceJob& job, std::span<tetrace::Hit> hits)
+void EmbreeSession::run(const TraceJob& job, std::span<std::uint32_t> output)
 {
-    trace_image(*accelerator_, method_, job, hits, threads_);
+    trace_image(*accelerator_, method_, job, as_hits(output), threads_);
 }
 
 } // namespace tetrace::embree

@@ -15,7 +15,7 @@ public:
     [[nodiscard]] std::uint64_t bytes() const override { return accelerator_->bytes(); }
 
 private:
-    void trace(const TraceJob& job, std::span<Hit> hits) override;
+    void run(const TraceJob& job, std::span<std::uint32_t> output) override;
 
     Method method_;
     std::shared_ptr<const Accelerator> accelerator_;

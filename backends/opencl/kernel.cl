@@ -1,14 +1,21 @@
 // A layout and method as an OpenCL program (CMakeLists.txt): a thin entry round the shared kernel. Build options
 // (program.cpp): GROUP_ITEMS, the items of a work group, which has a tile at a time; PERSISTENT for that schedule;
-// MATH_FAST; TETS_IN_PARTS.
+// SEARCH for that task; MATH_FAST; TETS_IN_PARTS.
 #include "kernels/dialect_opencl.h"
 
 #include "kernels/kernel.h"
 
-KERNEL_FN void trace_item(SceneView scene, LaunchParams launch, uint tile, __global uint* output)
+// rays: of task search.
+KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __global uint* output,
+                        __global const uint4* rays)
 {
     Pixel pixel = pixel_of(launch, tile, (uint)get_local_id(0));
     if (!is_in_image(launch, pixel)) return;
+#ifdef SEARCH
+    uint ray = ray_index(pixel);
+    uint count = ray_count(launch);
+    output[GUARD_WORDS + ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2u * count + ray]);
+#else
     Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
     __global uint* words = output + output_word(launch, pixel);
     words[0] = hit.face_id;
@@ -17,12 +24,14 @@ KERNEL_FN void trace_item(SceneView scene, LaunchParams launch, uint tile, __glo
     words[3] = as_bits(hit.u);
     words[4] = as_bits(hit.v);
     words[5] = hit.steps;
+#endif
 }
 
-// Traces the tiles from launch.first_tile to end_tile - 1. counter: the next tile that no group has, used by schedule
+// Does the tiles from launch.first_tile to end_tile - 1. counter: the next tile that no group has, used by schedule
 // persistent. The arguments in this order: session.cpp sets them.
-__kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void trace_image(
-    const LaunchParams launch, const uint end_tile, __global uint* restrict output, __global uint* restrict counter
+__kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image(
+    const LaunchParams launch, const uint end_tile, __global uint* restrict output, __global uint* restrict counter,
+    __global const uint4* restrict rays
 #define SCENE_ARRAY(element, name, member, binding) , __global const element* restrict name
 #include "kernels/scene_arrays.h"
 #undef SCENE_ARRAY
@@ -52,9 +61,9 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void trace_ima
         uint tile = fetched;
         barrier(CLK_LOCAL_MEM_FENCE); // all have read it before it changes
         if (tile >= end_tile) break;
-        trace_item(scene, launch, tile, output);
+        run_item(scene, launch, tile, output, rays);
     }
 #else
-    trace_item(scene, launch, launch.first_tile + (uint)get_group_id(0), output);
+    run_item(scene, launch, launch.first_tile + (uint)get_group_id(0), output, rays);
 #endif
 }

@@ -11,7 +11,14 @@ namespace tetrace::opencl {
 namespace {
 
 // The arguments of kernel.cl's entry: these, then the scene's arrays, then the parts of the tets.
-enum Argument : cl_uint { launch_argument, end_tile_argument, output_argument, counter_argument, first_array_argument };
+enum Argument : cl_uint {
+    launch_argument,
+    end_tile_argument,
+    output_argument,
+    counter_argument,
+    rays_argument,
+    first_array_argument
+};
 
 constexpr std::size_t smallest_buffer_bytes = 16; // OpenCL has no empty buffers
 
@@ -62,9 +69,10 @@ void OpenclSession::upload(const PackedScene& scene)
             more_parts_[part] = make_uploaded(context_->handle(), queue_, parts_.part(buffers[0].bytes, part));
         queue_.finish();
         counter_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint));
+        rays_ = make_buffer(context_->handle(), CL_MEM_READ_ONLY, 0);
     });
     times_.upload_s = seconds_since(start);
-    resize_output(output_words({}));
+    resize_output(output_words({}, kernel_id_.task));
 }
 
 /// Compiles, and runs the kernel on no pixel: some drivers finish compiling at the first launch.
@@ -73,10 +81,11 @@ void OpenclSession::compile(const ProgramCache& cache)
     const auto start = std::chrono::steady_clock::now();
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height_);
     if (kernel_id_.schedule == Schedule::persistent) defines += " -DPERSISTENT";
+    if (kernel_id_.task == Task::search) defines += " -DSEARCH";
     if (parts_.count > 1) defines += " -DTETS_IN_PARTS";
     const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache);
     run("making the kernel", output_bytes(), [&] {
-        kernel_ = cl::Kernel(program.handle(), "trace_image");
+        kernel_ = cl::Kernel(program.handle(), "run_image");
         set_arguments();
         LaunchParams nothing{};
         nothing.width = 1;
@@ -99,7 +108,20 @@ void OpenclSession::set_arguments()
     for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; part++)
         kernel_.setArg(argument++, part < parts_.count ? more_parts_[part] : arrays_[0]);
     kernel_.setArg(counter_argument, counter_);
+    kernel_.setArg(rays_argument, rays_);
     kernel_.setArg(output_argument, output_);
+}
+
+void OpenclSession::set_rays(std::span<const Row> rows)
+{
+    require_rays_fit(rows, max_buffer_bytes_);
+    run("uploading rays", rows.size_bytes(), [&] {
+        queue_.finish();      // what is enqueued reads the old ones
+        rays_ = cl::Buffer(); // which go first: both may not fit
+        rays_ = make_uploaded(context_->handle(), queue_, std::as_bytes(rows));
+        queue_.finish();
+        kernel_.setArg(rays_argument, rays_);
+    });
 }
 
 void OpenclSession::resize_output(std::size_t words)
@@ -140,7 +162,7 @@ void OpenclSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
 
 void OpenclSession::launch(const TraceJob& job)
 {
-    resize_output(output_words(job));
+    resize_output(output_words(job, kernel_id_.task));
     run("launching", output_bytes(), [&] {
         enqueued_.clear();
         queue_.enqueueFillBuffer(output_, POISON, 0, output_bytes());

@@ -11,13 +11,14 @@
 
 namespace tetrace::opencl {
 
-/// A packed scene in a device's buffers, and the kernel that traces it.
+/// A packed scene in a device's buffers, and the kernel that reads it.
 class OpenclSession : public Session {
 public:
     /// Compiles and uploads. Throws Error as Backend::open says.
     OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
                   const SessionOptions& options);
 
+    void set_rays(std::span<const Row> rows) override;
     void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return times_; }
@@ -56,7 +57,7 @@ private:
     cl::Kernel kernel_;
     std::array<cl::Buffer, SCENE_ARRAYS> arrays_;
     std::array<cl::Buffer, MAX_TET_PARTS> more_parts_; ///< from 1 on; 0 is arrays_[0]
-    cl::Buffer output_, counter_;
+    cl::Buffer output_, counter_, rays_;
     std::size_t output_words_ = 0;
     std::vector<Enqueued> enqueued_;
 };

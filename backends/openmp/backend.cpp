@@ -13,8 +13,9 @@
 namespace tetrace {
 namespace {
 
-const openmp::CompiledKernel* find_kernel(const KernelId& id)
+const openmp::CompiledKernel* find_kernel(KernelId id)
 {
+    id.task = Task::trace; // what is compiled does both
     const auto& kernels = openmp::compiled_kernels();
     const auto found =
         std::find_if(kernels.begin(), kernels.end(), [&](const auto& kernel) { return kernel.id == id; });
@@ -51,7 +52,7 @@ public:
                                                 const SessionOptions& options) override
     {
         const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
-        return std::make_unique<openmp::OpenmpSession>(find_kernel(kernel)->trace, packed, threads_of(options),
+        return std::make_unique<openmp::OpenmpSession>(*find_kernel(kernel), kernel.task, packed, threads_of(options),
                                                        tile_height_for(devices_[0], options));
     }
 

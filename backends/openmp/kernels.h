@@ -8,10 +8,15 @@ namespace tetrace::openmp {
 using TraceFunction = void (*)(const PackedScene& scene, const TraceJob& job, Hit* hits, unsigned threads,
                                unsigned tile_height);
 
-/// One compiled kernel; CMake compiles kernel.cpp once for each.
+/// Searches the exits of a job's rays, whose rows are given, into faces, on that many threads.
+using SearchFunction = void (*)(const PackedScene& scene, const Row* rays, const TraceJob& job, std::uint32_t* faces,
+                                unsigned threads, unsigned tile_height);
+
+/// One compiled kernel, as both tasks; CMake compiles kernel.cpp once for each.
 struct CompiledKernel {
-    KernelId id;
+    KernelId id; ///< of task trace
     TraceFunction trace;
+    SearchFunction search;
 };
 [[nodiscard]] const std::vector<CompiledKernel>& compiled_kernels();
 

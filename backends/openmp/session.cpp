@@ -2,14 +2,19 @@
 
 namespace tetrace::openmp {
 
-OpenmpSession::OpenmpSession(TraceFunction kernel, const PackedScene& scene, unsigned threads, unsigned tile_height)
-    : kernel_(kernel), scene_(scene), threads_(threads), tile_height_(tile_height)
+OpenmpSession::OpenmpSession(const CompiledKernel& kernel, Task task, const PackedScene& scene, unsigned threads,
+                             unsigned tile_height)
+    : HostSession(task), kernel_(kernel), searches_(task == Task::search), scene_(scene), threads_(threads),
+      tile_height_(tile_height)
 {
 }
 
-void OpenmpSession::trace(const TraceJob& job, std::span<Hit> hits)
+void OpenmpSession::run(const TraceJob& job, std::span<std::uint32_t> output)
 {
-    kernel_(scene_, job, hits.data(), threads_, tile_height_);
+    if (searches_)
+        kernel_.search(scene_, rays_.data(), job, output.data(), threads_, tile_height_);
+    else
+        kernel_.trace(scene_, job, as_hits(output).data(), threads_, tile_height_);
 }
 
 } // namespace tetrace::openmp

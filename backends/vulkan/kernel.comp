@@ -1,6 +1,6 @@
 #version 450
 // A layout and method as a compute shader (CMakeLists.txt): a thin entry round the shared kernel. A work group is a
-// tile.
+// tile. SEARCH: for that task.
 #include "kernels/dialect_glsl.h"
 
 #ifdef SCENE_IN_TEXELS
@@ -21,11 +21,30 @@ layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
     uint output_words[];
 };
 
+#ifdef SEARCH
+#ifdef SCENE_IN_TEXELS
+layout(set = 0, binding = FIRST_ROWS_BINDING + RAYS_BINDING) uniform usamplerBuffer rays;
+#define RAY_ROW(index) texelFetch(rays, int(index))
+#else
+layout(std430, set = 0, binding = RAYS_BINDING) readonly buffer Rays
+{
+    uint4 rays[];
+};
+#define RAY_ROW(index) rays[index]
+#endif
+#endif
+
 void main()
 {
     Pixel pixel = pixel_of(launch, launch.first_tile + gl_WorkGroupID.x, gl_LocalInvocationIndex);
     if (!is_in_image(launch, pixel)) return;
     SceneView scene = SceneView(launch.divisions, launch.part_log2);
+#ifdef SEARCH
+    uint ray = ray_index(pixel);
+    uint count = ray_count(launch);
+    output_words[GUARD_WORDS + ray] =
+        search_exit(scene, RAY_ROW(ray), RAY_ROW(count + ray), RAY_ROW(2u * count + ray));
+#else
     Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
     uint word = output_word(launch, pixel);
     output_words[word] = hit.face_id;
@@ -34,4 +53,5 @@ void main()
     output_words[word + 3u] = as_bits(hit.u);
     output_words[word + 4u] = as_bits(hit.v);
     output_words[word + 5u] = hit.steps;
+#endif
 }

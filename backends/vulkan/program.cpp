@@ -116,9 +116,10 @@ void Program::bind(const Context& context, std::uint32_t binding, const Buffer& 
 
 void Program::bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer)
 {
-    views_.push_back(context.device().createBufferView(
-        vk::BufferViewCreateInfo{}.setBuffer(buffer.handle()).setFormat(texels.format).setRange(VK_WHOLE_SIZE)));
-    const vk::BufferView view = *views_.back();
+    const auto info =
+        vk::BufferViewCreateInfo{}.setBuffer(buffer.handle()).setFormat(texels.format).setRange(VK_WHOLE_SIZE);
+    views_.insert_or_assign(texels.binding, context.device().createBufferView(info));
+    const vk::BufferView view = *views_.at(texels.binding);
     const auto write = vk::WriteDescriptorSet{}
                            .setDstSet(*set_)
                            .setDstBinding(texels.binding)

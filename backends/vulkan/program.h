@@ -5,6 +5,7 @@
 #include "core/program_cache.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ public:
     [[nodiscard]] bool is_cached() const { return is_cached_; }
     /// Every binding needs a buffer before record() is called; not while commands that use the program run.
     void bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const;
+    /// The buffer that was bound there before must live until then.
     void bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer);
     /// Records that the program and its buffers are what a dispatch runs.
     void record(const vk::raii::CommandBuffer& commands) const;
@@ -48,8 +50,8 @@ private:
     vk::raii::DescriptorSetLayout set_layout_{nullptr};
     vk::raii::PipelineLayout layout_{nullptr};
     vk::raii::DescriptorPool pool_{nullptr};
-    vk::raii::DescriptorSet set_{nullptr}; // null where there are no bindings
-    std::vector<vk::raii::BufferView> views_;
+    vk::raii::DescriptorSet set_{nullptr};                // null where there are no bindings
+    std::map<std::uint32_t, vk::raii::BufferView> views_; // by binding
     vk::raii::Pipeline pipeline_{nullptr};
     bool is_cached_ = false;
 };

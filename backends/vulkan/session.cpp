@@ -45,16 +45,26 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
     return std::ranges::all_of(scene_buffers(scene), fits);
 }
 
+constexpr TexelBinding rays_as_texels{FIRST_ROWS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
+
+void require_variant(const KernelId& kernel, const TetParts& parts)
+{
+    if (kernel.task == Task::search && parts.count > 1)
+        throw Error(ErrorKind::unsupported,
+                    "vulkan searches exits of tets in one buffer, and these are in " + std::to_string(parts.count));
+}
+
 } // namespace
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_for(found.facts, options)),
-      in_texels_(is_in_texels(found, scene, parts_)), divisions_(scene.divisions),
+      task_(kernel.task), in_texels_(is_in_texels(found, scene, parts_)), divisions_(scene.divisions),
       launches_(tile_height_, found.limits.groups)
 {
     require_storage_buffers(found, parts_);
+    require_variant(kernel, parts_);
     auto start = std::chrono::steady_clock::now();
     context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
     setup_.upload_s = seconds_since(start);
@@ -92,30 +102,57 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
 
 void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
 {
+    const bool searches = kernel.task == Task::search;
     const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
-    ProgramId id{.name = embedded_name(kernel) + variant,
+    ProgramId id{.name = embedded_name(kernel) + (searches ? "_search" : "") + variant,
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_};
     if (in_texels_) id.texels = texel_bindings();
     for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
         id.bindings.push_back(binding);
+    if (searches && in_texels_) id.texels.push_back(rays_as_texels);
+    if (searches && !in_texels_) id.bindings.push_back(RAYS_BINDING);
     for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
     program_.emplace(context_, id, ProgramCache(options.program_cache));
     setup_.compile_cached = program_->is_cached();
-    bind_scene(id);
+    bind_scene();
 }
 
-void VulkanSession::bind_scene(const ProgramId& id)
+void VulkanSession::bind_scene()
 {
-    for (const TexelBinding& texels : id.texels)
+    for (const TexelBinding& texels : in_texels_ ? texel_bindings() : std::vector<TexelBinding>{})
         program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_ROWS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
         program_->bind(context_, binding, arrays_[binding]);
     for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++) // those beyond the last are never read
         program_->bind(context_, SECOND_PART_BINDING - 1 + part,
                        part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
+}
+
+void VulkanSession::set_rays(std::span<const Row> rows)
+{
+    require_rays_fit(rows, max_buffer_bytes_);
+    const std::uint64_t words = rows.size_bytes() / sizeof(std::uint32_t);
+    if (in_texels_ && words > context_.found().limits.texels)
+        throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(words) + " words, the device's views " +
+                                                std::to_string(context_.found().limits.texels));
+    context_.run("uploading rays", rows.size_bytes(), [&] {
+        take_times(); // of what still reads the old ones
+        if (rays_.bytes() != rows.size_bytes()) bind_rays(Buffer(context_, rows.size_bytes(), Place::device));
+        upload(context_, rays_, std::as_bytes(rows));
+    });
+}
+
+/// The old ones' view goes before they do.
+void VulkanSession::bind_rays(Buffer rays)
+{
+    if (in_texels_)
+        program_->bind_texels(context_, rays_as_texels, rays);
+    else
+        program_->bind(context_, RAYS_BINDING, rays);
+    rays_ = std::move(rays);
 }
 
 void VulkanSession::resize_output(std::size_t words)
@@ -165,7 +202,7 @@ void VulkanSession::launch(const TraceJob& job)
 {
     context_.run("launching", output_bytes(), [&] {
         take_times(); // of a launch that nobody waited for
-        resize_output(output_words(job));
+        resize_output(output_words(job, task_));
         launches_.start(
             launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
             [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },

@@ -19,6 +19,7 @@ public:
     VulkanSession(const VulkanSession&) = delete;
     VulkanSession& operator=(const VulkanSession&) = delete;
 
+    void set_rays(std::span<const Row> rows) override;
     void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
@@ -29,7 +30,8 @@ private:
 
     void make_scene_buffers(const PackedScene& scene);
     void make_program(const KernelId& kernel, const SessionOptions& options);
-    void bind_scene(const ProgramId& id);
+    void bind_scene();
+    void bind_rays(Buffer rays);
     void resize_output(std::size_t words);
     [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
     /// Command buffer and timestamps number `index` of a launch, made when first asked for.
@@ -43,6 +45,7 @@ private:
     TetParts parts_;
     std::uint64_t max_buffer_bytes_;
     unsigned tile_height_;
+    Task task_;
     bool in_texels_; ///< the scene's arrays are read as texels
     std::uint32_t divisions_;
     std::uint64_t bytes_ = 0;
@@ -50,7 +53,7 @@ private:
 
     std::vector<Buffer> arrays_;     ///< by binding
     std::vector<Buffer> more_parts_; ///< of the tets, from the second on
-    Buffer output_, staging_;
+    Buffer rays_, output_, staging_;
     std::size_t output_words_ = 0;
     std::optional<Program> program_;
 
