@@ -87,7 +87,7 @@ public:
     /// Waits for the launch; returns device seconds of the kernel alone.
     [[nodiscard]] virtual double wait() = 0;
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
-    /// Throws Error{wrong_result} where the kernel wrote outside its hits.
+    /// Throws Error{wrong_result} where the kernel wrote elsewhere.
     void read_back(std::span<Hit> hits);
     /// Task search: copies the faces that were found by the last launch, 0 to 3 or NO_EXIT, in the order of the rays.
     /// faces.size(): their number. Throws Error{wrong_result} where the kernel wrote elsewhere, or no face.

@@ -15,7 +15,7 @@ void check_guard(std::span<const std::uint32_t> guard, const char* where)
     const auto intact = [](std::uint32_t word) { return word == POISON; };
     if (std::all_of(guard.begin(), guard.end(), intact)) return;
     throw Error(ErrorKind::wrong_result,
-                std::string("the kernel wrote ") + where + " its hits: the guard words there are overwritten");
+                std::string("the kernel wrote ") + where + " its output: the guard words there are overwritten");
 }
 
 } // namespace

@@ -97,9 +97,9 @@ TEST(session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
 {
     std::vector<Hit> hits(3);
     FixedSession before([](std::span<std::uint32_t> words) { words[GUARD_WORDS - 1] = 0; });
-    EXPECT_TRUE(contains(message_of([&] { before.read_back(hits); }), "before its hits"));
+    EXPECT_TRUE(contains(message_of([&] { before.read_back(hits); }), "before its output"));
     FixedSession behind([](std::span<std::uint32_t> words) { words[GUARD_WORDS + 3 * HIT_WORDS] = 0; });
-    EXPECT_TRUE(contains(message_of([&] { behind.read_back(hits); }), "behind its hits"));
+    EXPECT_TRUE(contains(message_of([&] { behind.read_back(hits); }), "behind its output"));
 }
 
 TEST(launch_size, starts_small_grows_by_steps_and_shrinks_at_once)
@@ -281,7 +281,39 @@ TEST(launch_params, carry_the_job_word_for_word)
     EXPECT_EQ(params.tile_height, 4u);
     EXPECT_EQ(params.part_log2, 20u);
     EXPECT_EQ(tile_count(params), 3u * 3u);
-    EXPECT_EQ(output_words(job), 2 * GUARD_WORDS + HIT_WORDS * 17 * 9);
+    EXPECT_EQ(output_words(job, Task::trace), 2 * GUARD_WORDS + HIT_WORDS * 17 * 9);
+    EXPECT_EQ(output_words(job, Task::search), 2 * GUARD_WORDS + 17 * 9);
+}
+
+TEST(searches, are_of_whole_rows_of_a_tile)
+{
+    EXPECT_EQ(search_job(24).width * search_job(24).height, 24u);
+    EXPECT_EQ(search_job(24).width, TILE_WIDTH);
+    EXPECT_TRUE(contains(message_of([] { (void)search_job(13); }), "13"));
+    FixedSession session([](std::span<std::uint32_t>) {});
+    EXPECT_TRUE(contains(message_of([&] { session.set_rays({}); }), "makes its own"));
+}
+
+TEST(searches, find_faces_and_nothing_else)
+{
+    std::vector<std::uint32_t> faces(8);
+    std::uint32_t written = NO_EXIT;
+    std::size_t guard = GUARD_WORDS; // a word of the output that is no guard
+    FixedSession session([&](std::span<std::uint32_t> words) {
+        std::fill(words.begin() + GUARD_WORDS, words.end() - GUARD_WORDS, 2u);
+        words[GUARD_WORDS + 5] = written;
+        words[guard] = 2;
+    });
+    session.read_back(faces);
+    EXPECT_EQ(faces, (std::vector<std::uint32_t>{2, 2, 2, 2, 2, NO_EXIT, 2, 2}));
+    written = NO_EXIT + 1;
+    EXPECT_TRUE(contains(message_of([&] { session.read_back(faces); }), "ray 5: face 5 was written"));
+    written = POISON;
+    EXPECT_TRUE(contains(message_of([&] { session.read_back(faces); }), "ray 5: no face was written"));
+    guard = GUARD_WORDS - 1;
+    EXPECT_TRUE(contains(message_of([&] { session.read_back(faces); }), "before its output"));
+    guard = GUARD_WORDS + 8;
+    EXPECT_TRUE(contains(message_of([&] { session.read_back(faces); }), "behind its output"));
 }
 
 TEST(tet_parts, cut_the_tets_at_powers_of_two_and_lose_no_byte)

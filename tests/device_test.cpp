@@ -3,6 +3,7 @@
 // test.
 #include "backends/cuda/driver_backend.h"
 #include "core/scene_buffers.h"
+#include "core/search_set.h"
 #include "core/self_test.h"
 #include "tests/device_rays.h"
 #include "tests/temporary_folder.h"
@@ -52,6 +53,25 @@ Backend& backend_of(const Api& api)
     const auto is_named = [&](const Backend* backend) { return backend->name() == api.name; };
     const auto found = std::ranges::find_if(all_backends(), is_named);
     return found != all_backends().end() ? **found : cuda_stub_backend();
+}
+
+/// The faces of one launch.
+std::vector<std::uint32_t> searched(Session& session, const SearchRays& rays)
+{
+    session.set_rays(rays.rows);
+    session.launch(search_job(rays.count()));
+    EXPECT_GT(session.wait(), 0);
+    std::vector<std::uint32_t> faces(rays.count());
+    session.read_back(faces);
+    return faces;
+}
+
+std::size_t wrong_searches(const SearchRays& rays, const std::vector<std::uint32_t>& faces)
+{
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < faces.size(); i++)
+        if (judge(rays, i, faces[i]) != SearchVerdict::right) count++;
+    return count;
 }
 
 class Devices : public UsableDevices, public ::testing::WithParamInterface<Api> {
@@ -269,6 +289,48 @@ TEST_P(Devices, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)
     }
 }
 
+TEST_P(Devices, find_openmps_exits_for_each_method_and_layout)
+{
+    const auto first = search_rays(0, 30, 512), second = search_rays(30, 9, 200); // of another number
+    for (const KernelId& kernel : search_kernels()) {
+        if (kernel.math != MathMode::exact) continue;
+        const PackedScene tets = search_tets(39, kernel.layout);
+        const auto on_host = openmp_backend().open(0, kernel, {nullptr, &tets}, {.threads = 2});
+        for (const std::size_t device : usable) {
+            const auto session = backend.open(device, kernel, {nullptr, &tets}, {.threads = 2});
+            for (const SearchRays* rays : {&first, &second, &first})
+                EXPECT_EQ(searched(*session, *rays), searched(*on_host, *rays)) << name_of(kernel);
+        }
+    }
+}
+
+TEST_P(Devices, search_exits_of_the_rays_that_they_were_given_last)
+{
+    const KernelId kernel{.task = Task::search};
+    const PackedScene tets = search_tets(2, kernel.layout);
+    const auto first = search_rays(0, 1, 4096), second = search_rays(1, 1, 4096); // as many
+    for (const std::size_t device : usable) {
+        const auto session = backend.open(device, kernel, {nullptr, &tets}, {});
+        session->set_rays(first.rows);
+        session->launch(search_job(first.count())); // nobody waits for it
+        EXPECT_EQ(wrong_searches(second, searched(*session, second)), 0u);
+        EXPECT_EQ(wrong_searches(first, searched(*session, first)), 0u);
+    }
+}
+
+TEST_P(Devices, refuse_rays_that_exceed_a_buffer)
+{
+    const KernelId kernel{.task = Task::search};
+    const PackedScene tets = search_tets(1, kernel.layout);
+    const auto rays = search_rays(0, 1, 2048);
+    for (const std::size_t device : usable) {
+        const auto session = backend.open(device, kernel, {nullptr, &tets}, {.max_buffer_bytes = 50'000});
+        const std::string problem = error_of([&] { session->set_rays(rays.rows); });
+        EXPECT_TRUE(problem.starts_with("unsupported: ")) << problem;
+        EXPECT_TRUE(contains(problem, "98304") && contains(problem, "50000")) << problem;
+    }
+}
+
 TEST_P(Devices, refuse_what_exceeds_a_limit_with_both_numbers)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
@@ -315,6 +377,8 @@ TEST_P(Devices, have_the_kernels_of_the_cdt_and_no_others)
 {
     EXPECT_TRUE(backend.has_kernel({.layout = Layout::tet96, .math = MathMode::fast}));
     EXPECT_EQ(backend.has_kernel({.schedule = Schedule::persistent}), GetParam().is_persistent);
+    EXPECT_TRUE(backend.has_kernel({.method = Method::ms06, .task = Task::search}));
+    EXPECT_FALSE(backend.has_kernel({.schedule = Schedule::persistent, .task = Task::search}));
     EXPECT_FALSE(backend.has_kernel({.structure = Structure::bvh, .layout = Layout::embree}));
     EXPECT_FALSE(backend.has_kernel({.method = Method::single}));
     EXPECT_TRUE(contains(backend.why_not(0, {.method = Method::single}), "has no kernel"));

@@ -35,8 +35,13 @@ std::vector<EmbeddedKernel> modules()
     return found;
 }
 
+bool is_search(std::string_view name)
+{
+    return name.find("_search") != std::string_view::npos;
+}
+
 /// What a kernel's storage buffers must be: kernels/scene_arrays.h and kernels/layout.h.
-std::map<std::string, Array> expected_arrays(bool in_parts)
+std::map<std::string, Array> expected_arrays(bool in_parts, bool searches)
 {
     using uint = std::uint32_t;
     using uint4 = Row;
@@ -45,6 +50,7 @@ std::map<std::string, Array> expected_arrays(bool in_parts)
 #include "kernels/scene_arrays.h"
 #undef SCENE_ARRAY
     arrays["output_words"] = {OUTPUT_BINDING, 4, true};
+    if (searches) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
     for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++) {
         arrays["tet_words_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 4, false};
         arrays["tet_rows_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
@@ -53,7 +59,7 @@ std::map<std::string, Array> expected_arrays(bool in_parts)
 }
 
 /// What a kernel's texel buffers must be: words at their array's binding, rows FIRST_ROWS_BINDING behind it.
-std::map<std::string, std::uint32_t> expected_texels()
+std::map<std::string, std::uint32_t> expected_texels(bool searches)
 {
     using uint = std::uint32_t;
     using uint4 = Row;
@@ -62,6 +68,7 @@ std::map<std::string, std::uint32_t> expected_texels()
     bindings[#name] = binding + (sizeof(element) == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
 #include "kernels/scene_arrays.h"
 #undef SCENE_ARRAY
+    if (searches) bindings["rays"] = FIRST_ROWS_BINDING + RAYS_BINDING;
     return bindings;
 }
 
@@ -106,11 +113,11 @@ TEST(Spirv, no_operation_of_an_exact_module_may_be_contracted)
     for (const EmbeddedKernel& kernel : modules()) {
         if (!is_exact(kernel.name)) continue;
         const Module module(kernel.bytes);
-        EXPECT_GE(module.rounding_operations(), is_probe(kernel.name) ? 5u : 30u) << kernel.name;
+        EXPECT_GE(module.rounding_operations(), is_probe(kernel.name) ? 5u : 25u) << kernel.name;
         EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
         checked++;
     }
-    EXPECT_GE(checked, 7u); // two layouts, each whole, in parts and in texels, and the probe
+    EXPECT_GE(checked, 11u); // two layouts, each whole, in parts, in texels and two of task search; the probe
 }
 
 TEST(Spirv, the_same_source_without_precise_would_be_found)
@@ -129,10 +136,11 @@ TEST(Spirv, storage_buffers_are_those_of_scene_arrays_and_layout)
         if (is_probe(kernel.name)) continue;
         const Module module(kernel.bytes);
         if (kernel.name.ends_with("_texels")) {
-            EXPECT_EQ(module.texels(), expected_texels()) << kernel.name;
+            EXPECT_EQ(module.texels(), expected_texels(is_search(kernel.name))) << kernel.name;
             EXPECT_EQ(module.arrays(), (std::map<std::string, Array>{{"output_words", {OUTPUT_BINDING, 4, true}}}));
         } else {
-            EXPECT_EQ(module.arrays(), expected_arrays(kernel.name.ends_with("_parts"))) << kernel.name;
+            EXPECT_EQ(module.arrays(), expected_arrays(kernel.name.ends_with("_parts"), is_search(kernel.name)))
+                << kernel.name;
             EXPECT_TRUE(module.texels().empty());
         }
     }
@@ -152,8 +160,8 @@ TEST(Spirv, vectors_of_three_and_rows_read_as_words_would_be_found)
     EXPECT_NE(twin().push_constants(), expected_push_constants());
     ASSERT_FALSE(twin().push_constants().empty());
     EXPECT_EQ(twin().push_constants().front().type, "vector");
-    EXPECT_NE(twin().arrays().at("triangles"), expected_arrays(false).at("triangles"));
-    EXPECT_EQ(twin().arrays().at("output_words"), expected_arrays(false).at("output_words"));
+    EXPECT_NE(twin().arrays().at("triangles"), expected_arrays(false, false).at("triangles"));
+    EXPECT_EQ(twin().arrays().at("output_words"), expected_arrays(false, false).at("output_words"));
 }
 
 TEST(Spirv, damaged_modules_are_refused)
