@@ -52,9 +52,9 @@ format:
 lint:
 	@scripts/install-packages build test lint
 	scripts/check-format
-	cmake --preset release -G Ninja -DBUILD_TESTING=ON
-	cmake --build --preset release -j $(JOBS)
-	run-clang-tidy -quiet -j $(JOBS) -p build/release '$(CURDIR)/(core|kernels|backends|scenes|bench|tests)/.*'
+	cmake --preset debug -G Ninja -DBUILD_TESTING=ON
+	cmake --build --preset debug -j $(JOBS)
+	run-clang-tidy -quiet -j $(JOBS) -p build/debug '$(CURDIR)/(core|kernels|backends|scenes|bench|tests)/.*'
 
 clean:
 	rm -rf build

@@ -2,6 +2,7 @@
 
 #include "backends/embree/session.h"
 #include "bench/settle.h"
+#include "core/exact.h"
 
 #include <omp.h>
 

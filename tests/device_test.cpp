@@ -293,7 +293,9 @@ TEST_P(Devices, find_openmps_exits_for_each_method_and_layout)
 {
     const auto first = search_rays(0, 30, 512), second = search_rays(30, 9, 200); // of another number
     for (const KernelId& kernel : search_kernels()) {
-        if (kernel.math != MathMode::exact) continue;
+        // The layouts are one piece of text for all methods: one method shows it, and compiling each takes a second.
+        if (kernel.math != MathMode::exact || (kernel.layout == Layout::tet96 && kernel.method != Method::maria))
+            continue;
         const PackedScene tets = search_tets(39, kernel.layout);
         const auto on_host = openmp_backend().open(0, kernel, {nullptr, &tets}, {.threads = 2});
         for (const std::size_t device : usable) {

@@ -84,8 +84,8 @@ TEST(SearchSet, tets_have_a_volume_and_the_orientation_of_packed_ones)
 
 TEST(SearchSet, is_the_same_on_every_machine)
 {
-    EXPECT_EQ(hash_bytes(std::as_bytes(std::span(search_tets(100, Layout::tet80).tets)), 0), 0u);
-    EXPECT_EQ(hash_bytes(std::as_bytes(std::span(search_rays(0, 100, 64).rows)), 0), 0u);
+    EXPECT_EQ(hash_of(search_tets(100, Layout::tet80).tets), 9813976517486629394u);
+    EXPECT_EQ(hash_of(search_rays(0, 100, 64).rows), 16852513402178649653u);
 }
 
 TEST(SearchSet, a_tet_is_the_same_in_both_layouts_and_in_any_number_of_them)
@@ -137,7 +137,7 @@ TEST(SearchSet, rays_enter_by_their_face_and_leave_by_the_exits)
         EXPECT_EQ(ray.moment, (Float3{p.y * u.z - p.z * u.y, p.z * u.x - p.x * u.z, p.x * u.y - p.y * u.x}));
     }
     for (std::size_t i = 0; i < 16; i++) // twelve pairs of faces, each as often as the others
-        if (i % 5 != 0) EXPECT_NEAR(static_cast<double>(entries_and_exits[i]), 1600, 200) << i;
+        EXPECT_NEAR(static_cast<double>(entries_and_exits[i]), i % 5 == 0 ? 0 : 1600, 200) << i;
 }
 
 TEST(SearchSet, a_face_within_rounding_is_a_tie_and_any_other_is_wrong)
@@ -164,7 +164,7 @@ TEST(SearchSet, a_face_within_rounding_is_a_tie_and_any_other_is_wrong)
         }
     }
     EXPECT_GT(ties, 0u);
-    EXPECT_LT(ties, 100u) << "edges within 2e-6 of a ray are rare";
+    EXPECT_LT(ties, 400u) << "of 819,200: edges within 4e-6 of a ray are rare";
 }
 
 TEST(SearchSet, openmp_finds_the_exits_with_every_method)
@@ -183,9 +183,6 @@ TEST(SearchSet, openmp_finds_the_exits_with_every_method)
         for (std::size_t i = 0; i < found.size(); i++)
             if (judge(rays, i, found[i]) != SearchVerdict::right) others++;
         EXPECT_LE(others, 20u) << name_of(kernel) << ' ' << name_of(kernel.math) << ", of 102,400";
-        if (kernel.math == MathMode::exact)
-            EXPECT_EQ(std::count_if(found.begin(), found.end(), [](auto face) { return face == NO_EXIT; }), 0)
-                << name_of(kernel);
     }
 }
 

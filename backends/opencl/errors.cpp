@@ -78,7 +78,7 @@ bool is_about_memory(cl_int code)
     return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_INVALID_BUFFER_SIZE || code == CL_OUT_OF_HOST_MEMORY;
 }
 
-Error to_error(const cl::Error& failure, const Task& task)
+Error to_error(const cl::Error& failure, const Doing& task)
 {
     const std::string what =
         task.doing + " on '" + task.device + "': " + failure.what() + " gave " + error_name(failure.err());

@@ -15,7 +15,7 @@ namespace tetrace::opencl {
 [[nodiscard]] bool is_about_memory(cl_int code);
 
 /// What was being done when the API failed, for the error's text.
-struct Task {
+struct Doing {
     std::string doing;              ///< "launching cdt/maria/tet80"
     std::string device;             ///< its name
     std::uint64_t bytes = 0;        ///< that the session holds or asks for on the device
@@ -23,6 +23,6 @@ struct Task {
 };
 
 /// unsupported with both numbers where memory does not suffice, else internal; both name call, code and device.
-[[nodiscard]] Error to_error(const cl::Error& failure, const Task& task);
+[[nodiscard]] Error to_error(const cl::Error& failure, const Doing& task);
 
 } // namespace tetrace::opencl

@@ -8,7 +8,7 @@ bool is_about_memory(vk::Result code)
            code == vk::Result::eErrorOutOfPoolMemory;
 }
 
-Error to_error(const vk::SystemError& failure, const Task& task)
+Error to_error(const vk::SystemError& failure, const Doing& task)
 {
     // The bindings' text is the call and the code: "vk::Queue::submit: ErrorDeviceLost".
     const std::string what = task.doing + " on '" + task.device + "': " + failure.what();

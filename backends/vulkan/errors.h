@@ -12,7 +12,7 @@ namespace tetrace::vulkan {
 [[nodiscard]] bool is_about_memory(vk::Result code);
 
 /// What was being done when the API failed, for the error's text.
-struct Task {
+struct Doing {
     std::string doing;              ///< "launching"
     std::string device;             ///< its name
     std::uint64_t bytes = 0;        ///< that the work needs on the device
@@ -20,6 +20,6 @@ struct Task {
 };
 
 /// unsupported with both numbers where memory does not suffice, else internal; both name call, code and device.
-[[nodiscard]] Error to_error(const vk::SystemError& failure, const Task& task);
+[[nodiscard]] Error to_error(const vk::SystemError& failure, const Doing& task);
 
 } // namespace tetrace::vulkan
