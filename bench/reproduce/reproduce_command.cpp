@@ -254,7 +254,7 @@ int reproduce_command(const Options& asked)
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
     const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
-    ViewProgress progress;
+    RunProgress progress;
     progress.all = builds.size() * selected_views(options).size();
     for (const SceneBuild& build : builds) {
         SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));

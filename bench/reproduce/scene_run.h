@@ -1,9 +1,7 @@
 #pragma once
 
 #include "bench/reproduce/flat_tets.h"
-#include "bench/reproduce/image_record.h"
-#include "bench/reproduce/journal.h"
-#include "bench/stopwatch.h"
+#include "bench/reproduce/row_recorder.h"
 #include "bench/verify.h"
 
 #include <memory>
@@ -26,25 +24,12 @@ struct SceneBuild {
     bool timing = true;     ///< whether to take samples
 };
 
-/// How far a run is, for the progress line.
-struct ViewProgress {
-    std::size_t all = 0;  ///< views of all scenes
-    std::size_t done = 0; ///< those of a journal included
-    std::size_t here = 0; ///< done by this process
-    Stopwatch watch;
-
-    void show(const std::string& stage) const;
-};
-
-/// A scene with its rows, and what came of each view. Rows end as those of `bench` do: their outcome and samples are
-/// those of all views.
-struct SceneRun {
+/// A scene with its rows, and what came of each view.
+struct SceneRun : RecordedRows {
     SceneBuild build;
     std::unique_ptr<SceneWork> scene; ///< null where it could not be loaded
     std::unique_ptr<Verifier> verifier;
     std::unique_ptr<FlatTets> flat; ///< null where nobody asks
-    std::vector<RowRun> rows;
-    std::vector<std::vector<ImageRecord>> images; ///< row by row, view by view; fewer where a row failed
 
     std::vector<std::string> flawed_pictures, extreme_pictures; ///< names of files beside the result's
     std::vector<std::string> picture_problems;                  ///< why one is missing, a sentence each
@@ -63,6 +48,6 @@ using SceneRuns = std::vector<const SceneRun*>;
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
 /// journal; views that the journal has are taken from there. journal: may be null.
 /// Throws Error{usage} where the journal is of another scene or of other rows.
-void run_views(SceneRun& run, const Options& options, Journal* journal, ViewProgress& progress);
+void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress);
 
 } // namespace tetrace

@@ -1,0 +1,174 @@
+#include "bench/reproduce/row_recorder.h"
+
+#include "bench/progress.h"
+#include "bench/rows.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+bool is_timed(const RowRun& row)
+{
+    const Status status = status_of(row);
+    return row.session != nullptr && (status == Status::ok || status == Status::flawed);
+}
+
+void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
+{
+    if (traced(row) == nullptr || images.empty()) return;
+    Traced sum;
+    row.samples_s.assign(images.front().samples_s.size(), 0);
+    row.wall_samples_s = row.samples_s;
+    for (const ImageRecord& image : images) {
+        sum.add(image.verdict);
+        sum.hit_hash = image.chained_hash;
+        // A row that turned out wrong was timed no more; it has no rate.
+        for (std::size_t s = 0; s < std::min(row.samples_s.size(), image.samples_s.size()); ++s) {
+            row.samples_s[s] += image.samples_s[s];
+            row.wall_samples_s[s] += image.wall_samples_s[s];
+        }
+    }
+    sum.first_view_hash = images.front().verdict.hit_hash;
+    sum.last_view_hash = images.back().verdict.hit_hash;
+    row.outcome = std::move(sum);
+}
+
+} // namespace
+
+void RunProgress::show(const std::string& stage) const
+{
+    const auto fraction = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(all, 1));
+    const double left_s =
+        here == 0 ? -1 : watch.seconds() / static_cast<double>(here) * static_cast<double>(all - done);
+    progress_line().show(stage, fraction, left_s);
+}
+
+void RowRecorder::run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress)
+{
+    std::size_t part = 0;
+    if (journal != nullptr)
+        for (const json& entry : journal->entries())
+            if (is_ours(entry)) restore(part++, entry);
+    progress.done += part;
+    for (; part < parts; ++part) {
+        progress.show(stage);
+        const json entry = run_part(part);
+        if (journal != nullptr) journal->append(entry);
+        progress.done += 1;
+        progress.here += 1;
+    }
+    repeat_first_part();
+    for (std::size_t i = 0; i < run_->rows.size(); ++i)
+        sum_up(run_->rows[i], run_->images[i]);
+    progress_line().clear();
+}
+
+void RowRecorder::reject_journal(const std::string& why)
+{
+    throw Error(ErrorKind::usage, "--resume: " + why + "; remove the journal to begin anew");
+}
+
+/// The journal's entry of the part.
+json RowRecorder::run_part(std::size_t part)
+{
+    records_.assign(run_->rows.size(), {});
+    begun_.clear();
+    for (std::size_t i = 0; i < run_->rows.size(); ++i)
+        if (run_->rows[i].session != nullptr) {
+            begun_.push_back(i);
+            guarded(run_->rows[i], [&] {
+                records_[i] = examine(i, part);
+                // A row that turns out wrong is not timed.
+                std::get<Traced>(run_->rows[i].outcome).add(records_[i].verdict);
+            });
+        }
+    if (samples_ > 0) time_rows(part);
+    json entry = head_of(part);
+    entry["rows"] = json::object();
+    for (const std::size_t i : begun_) {
+        entry["rows"][row_name(run_->rows[i].key)] = outcome_json(outcome(i));
+        if (traced(run_->rows[i]) != nullptr) run_->images[i].push_back(std::move(records_[i]));
+    }
+    return entry;
+}
+
+/// Interleaved, so that what drifts hits all rows alike. The first launch after another row's wakes the caches.
+void RowRecorder::time_rows(std::size_t part)
+{
+    for (unsigned sample = 0; sample <= samples_; ++sample)
+        for (const std::size_t i : begun_)
+            if (is_timed(run_->rows[i])) guarded(run_->rows[i], [&] { time_row(i, part, sample > 0); });
+    // A device that answers differently under repetition must not keep its rate.
+    for (const std::size_t i : begun_)
+        if (is_timed(run_->rows[i]))
+            guarded(run_->rows[i], [&] {
+                if (hash_of_answers(run_->rows[i], part) != records_[i].verdict.hit_hash)
+                    throw Error(ErrorKind::wrong_result, "the answers changed while they were timed");
+            });
+}
+
+void RowRecorder::time_row(std::size_t i, std::size_t part, bool counts)
+{
+    RowRun& row = run_->rows[i];
+    const TraceJob job = job_of(row, part);
+    const Stopwatch watch;
+    row.session->launch(job);
+    const double kernel_s = row.session->wait();
+    const double wall_s = watch.seconds();
+    if (!counts) return;
+    records_[i].samples_s.push_back(kernel_s);
+    records_[i].wall_samples_s.push_back(wall_s);
+}
+
+ImageOutcome RowRecorder::outcome(std::size_t i) const
+{
+    const Outcome& end = run_->rows[i].outcome;
+    if (const auto* skipped = std::get_if<Skipped>(&end)) return *skipped;
+    if (const auto* failed = std::get_if<Failed>(&end)) return *failed;
+    return records_[i];
+}
+
+void RowRecorder::restore(std::size_t part, const json& entry)
+{
+    check_entry(part, entry);
+    for (const RowRun& row : run_->rows)
+        if (row.session != nullptr && !entry.at("rows").contains(row_name(row.key)))
+            reject_journal(
+                fmt::format("the journal has no answers of {}, which could not run then", row_name(row.key)));
+    for (std::size_t i = 0; i < run_->rows.size(); ++i)
+        if (run_->rows[i].session != nullptr) restore(i, outcome_from_json(entry["rows"][row_name(run_->rows[i].key)]));
+}
+
+void RowRecorder::restore(std::size_t i, ImageOutcome outcome)
+{
+    RowRun& row = run_->rows[i];
+    if (auto* record = std::get_if<ImageRecord>(&outcome)) {
+        std::get<Traced>(row.outcome).add(record->verdict);
+        run_->images[i].push_back(std::move(*record));
+        return;
+    }
+    if (auto* skipped = std::get_if<Skipped>(&outcome)) row.outcome = *skipped;
+    if (auto* failed = std::get_if<Failed>(&outcome)) row.outcome = *failed;
+    row.session.reset();
+}
+
+/// Once more, after everything else that the device was given; a part of the journal's, after a resume.
+void RowRecorder::repeat_first_part()
+{
+    for (std::size_t i = 0; i < run_->rows.size(); ++i)
+        if (run_->rows[i].session != nullptr)
+            guarded(run_->rows[i], [&] {
+                prepare(run_->rows[i], 0);
+                run_->rows[i].session->launch(job_of(run_->rows[i], 0));
+                static_cast<void>(run_->rows[i].session->wait());
+                if (hash_of_answers(run_->rows[i], 0) != run_->images[i].front().verdict.hit_hash)
+                    throw Error(ErrorKind::wrong_result, "the first answers changed when they were asked for again");
+            });
+}
+
+} // namespace tetrace
