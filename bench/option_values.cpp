@@ -1,5 +1,7 @@
 #include "bench/option_values.h"
 
+#include "kernels/layout.h"
+
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -128,6 +130,21 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, co
     if (!read || width < 1 || height < 1 || width > largest || height > largest)
         reject_value(option, text, fmt::format("WxH or N, each from 1 to {}", largest));
     return {width, height};
+}
+
+SearchSize parse_searches(const std::string& text)
+{
+    constexpr std::uint32_t most_tets = 1'000'000, most_rays = 1u << 20;
+    const auto cross = text.find('x');
+    SearchSize size;
+    const bool read = cross != std::string::npos && read_whole(std::string_view(text).substr(0, cross), size.tets) &&
+                      read_whole(std::string_view(text).substr(cross + 1), size.rays);
+    const bool in_range = size.tets >= 1 && size.tets <= most_tets && size.rays >= 1 && size.rays <= most_rays;
+    if (!read || !in_range || size.rays % TILE_WIDTH != 0)
+        reject_value("--searches", text,
+                     fmt::format("TETSxRAYS, 1 to {} tets with {} to {} rays each, a multiple of {}", most_tets,
+                                 TILE_WIDTH, most_rays, TILE_WIDTH));
+    return size;
 }
 
 std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/options.h"
 #include "core/error.h"
 
 #include <cstdint>
@@ -46,6 +47,9 @@ template <class T>
 
 /// "WxH", or "N" for N x N; each from 1 to 16384. Throws Error{usage}.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, const std::string& text);
+
+/// "TETSxRAYS" for --searches: at most 1,000,000 tets of 1,048,576 rays, a multiple of 8. Throws Error{usage}.
+[[nodiscard]] SearchSize parse_searches(const std::string& text);
 
 /// View numbers: commas between numbers, ranges "10-20" and strides "0-1281:64"; empty is all. Ascending, each once.
 /// Throws Error{usage} naming the part that cannot be read, or the number that is not below view_count.

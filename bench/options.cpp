@@ -217,6 +217,7 @@ std::string_view name_of(PaperTarget target)
     switch (target) {
     case PaperTarget::table3: return "table3";
     case PaperTarget::table4: return "table4";
+    case PaperTarget::table5: return "table5";
     case PaperTarget::figure6: return "figure6";
     }
     throw Error(ErrorKind::internal, "name_of(PaperTarget): no such target");
@@ -224,7 +225,8 @@ std::string_view name_of(PaperTarget target)
 
 const std::vector<PaperTarget>& all_targets()
 {
-    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4, PaperTarget::figure6};
+    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4, PaperTarget::table5,
+                                                     PaperTarget::figure6};
     return targets;
 }
 

@@ -23,7 +23,16 @@ enum class Format { table, json, csv, markdown };
 enum class Picture { normals, steps };
 
 /// A table or a figure of the paper that `reproduce` makes anew.
-enum class PaperTarget { table3, table4, figure6 };
+enum class PaperTarget { table3, table4, table5, figure6 };
+
+/// How many exit searches Table 5 is made from. Default: the paper's.
+struct SearchSize {
+    std::uint32_t tets = 10'000;
+    std::uint32_t rays = 16'384; ///< of each tet; a multiple of TILE_WIDTH
+
+    [[nodiscard]] std::uint64_t count() const { return std::uint64_t{tets} * rays; }
+    friend bool operator==(const SearchSize&, const SearchSize&) = default;
+};
 
 /// A command line, checked. Empty lists select by default (see rows.h); all else holds its default.
 struct Options {
@@ -63,6 +72,7 @@ struct Options {
     double budget_s = 120; ///< for the timed part
 
     std::vector<PaperTarget> targets; ///< of `reproduce`; empty: all
+    SearchSize searches;              ///< of `reproduce`
     bool resume = false;              ///< of `reproduce`: go on from the journal
 
     std::vector<std::string> required; ///< backends that must have a usable device

@@ -11,27 +11,40 @@ namespace tetrace {
 
 namespace {
 
-Backend& backend_named(const std::string& name)
+Backend& backend_named(const std::string& name, const std::vector<Backend*>& backends)
 {
-    for (Backend* backend : all_backends())
+    for (Backend* backend : backends)
         if (backend->name() == name) return *backend;
     throw Error(ErrorKind::internal, "no backend is named " + name);
 }
 
-void open_session(RowRun& row, const Options& options)
+/// Finds the row's device; whether a session can be opened there.
+bool find_device(RowRun& row, const std::vector<Backend*>& backends)
 {
-    row.backend = &backend_named(row.key.backend);
+    row.backend = &backend_named(row.key.backend, backends);
     row.device = row.backend->devices().at(row.key.device);
     if (!row.device.usable) {
         row.outcome = Skipped{Status::skipped, fmt::format("{}: {}", row.device.name, row.device.reason)};
-        return;
+        return false;
     }
     if (row.backend->why_not(row.key.device, row.key.kernel).empty())
         row.self_test = self_test_of(*row.backend, row.key.device, row.key.kernel.math);
+    return true;
+}
+
+void open_session(RowRun& row, const SceneData& data, const Options& options)
+{
+    SessionOptions session = session_options(options);
+    if (row.key.threads != 0) session.threads = row.key.threads;
+    row.session = row.backend->open(row.key.device, row.key.kernel, data, session);
+}
+
+void open_on_scene(RowRun& row, const Options& options)
+{
+    if (!find_device(row, all_backends())) return;
     if (row.key.kernel.structure == Structure::cdt)
         row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
-    const SceneData data{&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr};
-    row.session = row.backend->open(row.key.device, row.key.kernel, data, session_options(options));
+    open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr}, options);
 }
 
 std::string traced_reason(const Traced& traced)
@@ -145,7 +158,18 @@ RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options)
     RowRun row;
     row.key = key;
     row.scene = &scene;
-    guarded(row, [&] { open_session(row, options); });
+    guarded(row, [&] { open_on_scene(row, options); });
+    return row;
+}
+
+RowRun open_row(const RowKey& key, const Packed& tets, const Options& options, const std::vector<Backend*>& backends)
+{
+    RowRun row;
+    row.key = key;
+    row.packed = &tets;
+    guarded(row, [&] {
+        if (find_device(row, backends)) open_session(row, {nullptr, &tets.scene}, options);
+    });
     return row;
 }
 

@@ -95,6 +95,11 @@ struct RowRun {
 /// Opens a row's session on its device. Never throws but Error{interrupted}.
 [[nodiscard]] RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options);
 
+/// Opens the session of a row of task search on tets that outlive it, on a device of one of the backends. Throws as the
+/// other.
+[[nodiscard]] RowRun open_row(const RowKey& key, const Packed& tets, const Options& options,
+                              const std::vector<Backend*>& backends);
+
 /// A row that could not be opened since its scene could not be loaded.
 [[nodiscard]] RowRun failed_row(const RowKey& key, const Error& error);
 

@@ -1,5 +1,6 @@
 #include "bench/rows.h"
 
+#include "bench/scene_work.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -110,10 +111,11 @@ void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, con
 }
 
 std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene,
-                                  const std::vector<Backend*>& backends)
+                                  const std::vector<Backend*>& backends,
+                                  const std::vector<KernelId>& kernels = all_kernels())
 {
     std::vector<RowKey> rows;
-    for (const KernelId& kernel : all_kernels())
+    for (const KernelId& kernel : kernels)
         for (const Backend* backend : backends)
             if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()) &&
                 backend->has_kernel(kernel))
@@ -162,18 +164,28 @@ std::string reasons(const Options& options)
     throw Error(ErrorKind::usage, text);
 }
 
+std::string numbered_backend(const RowKey& key)
+{
+    return key.device == 0 ? key.backend : fmt::format("{}:{}", key.backend, key.device);
+}
+
 } // namespace
 
 std::string row_name(const RowKey& key)
 {
-    return fmt::format("{}/{}/{}/math:{}{}{}/api:{}", name_of(key.kernel), key.scene, name_of(key.rays),
-                       name_of(key.kernel.math), key.order == TetOrder::hilbert ? "" : "/order:input",
-                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", device_label(key));
+    const std::string rays =
+        key.kernel.task == Task::search ? std::string() : std::string("/").append(name_of(key.rays));
+    return fmt::format("{}/{}{}/math:{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
+                       key.order == TetOrder::hilbert ? "" : "/order:input",
+                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", numbered_backend(key),
+                       key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
 }
 
 std::string device_label(const RowKey& key)
 {
-    return key.device == 0 ? key.backend : fmt::format("{}:{}", key.backend, key.device);
+    const std::string device = numbered_backend(key);
+    if (key.threads == 0) return device;
+    return fmt::format("{}, {} {}", device, key.threads, key.threads == 1 ? "thread" : "threads");
 }
 
 std::vector<std::string> missing_devices(const Options& options, const std::vector<Backend*>& backends)
@@ -206,6 +218,22 @@ std::vector<RowKey> select_rows(const Options& options, const std::vector<std::s
     for (const RowKey& key : unfiltered)
         if (filter_keeps(options.filter, row_name(key))) rows.push_back(key);
     if (rows.empty()) reject_selection(options, unfiltered);
+    return rows;
+}
+
+std::vector<RowKey> select_search_rows(const Options& options, const std::vector<Backend*>& backends)
+{
+    std::vector<RowKey> rows;
+    for (RowKey key : rows_of_scene(options, search_scene, backends, search_kernels())) {
+        if (key.backend == reference_backend) {
+            key.threads = 1;
+            rows.push_back(key);
+            key.threads = 0;
+            if (resolved_threads(options) == 1) continue;
+        }
+        rows.push_back(key);
+    }
+    if (rows.empty()) reject_selection(options, rows);
     return rows;
 }
 

@@ -16,13 +16,15 @@ struct RowKey {
     RayKind rays = RayKind::primary;
     TetOrder order = TetOrder::hilbert;
     std::size_t device = 0; ///< index in the backend's devices()
+    unsigned threads = 0;   ///< host threads, where not those of the whole run
 
     friend bool operator==(const RowKey&, const RowKey&) = default;
 };
 
 /// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; no device's name and no
 /// counts in it. Rows of another order than hilbert have "order:input" before the api, rows of another schedule than
-/// tiles "schedule:persistent"; rows of a backend's later devices have their index behind it, "api:opencl:1".
+/// tiles "schedule:persistent"; rows of a backend's later devices have their index behind it, "api:opencl:1". Rows of
+/// task search have no rays: theirs are given.
 [[nodiscard]] std::string row_name(const RowKey& key);
 
 /// Name without the scene, for tables headed by it: "cdt maria tet80".
@@ -38,11 +40,21 @@ struct RowKey {
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 
+/// The backend whose answers every other's are compared with.
+inline constexpr const char* reference_backend = "openmp";
+
+/// What rows of task search call the tets of core/search_set.h.
+inline constexpr const char* search_scene = "random-tets";
+
+/// The rows of task search that the options select, in the same way; openmp has one more in front, on one thread.
+[[nodiscard]] std::vector<RowKey> select_search_rows(const Options& options,
+                                                     const std::vector<Backend*>& backends = all_backends());
+
 /// "cuda: no device: <reason>" for each backend that select_rows() leaves out since none of its devices is usable.
 [[nodiscard]] std::vector<std::string> missing_devices(const Options& options,
                                                        const std::vector<Backend*>& backends = all_backends());
 
-/// "opencl", with ":1" behind it for a backend's later devices: a row's device in tables.
+/// "opencl", with ":1" behind it for a backend's later devices, "openmp, 1 thread": a row's device in tables.
 [[nodiscard]] std::string device_label(const RowKey& key);
 
 /// Whether Google Benchmark's --benchmark_filter would keep the name: a regular expression found anywhere, negated by a

@@ -12,8 +12,6 @@ namespace tetrace {
 
 namespace {
 
-constexpr const char* reference_backend = "openmp";
-
 bool needs_reference(const RowKey& key)
 {
     return key.kernel.structure == Structure::cdt && key.kernel.math == MathMode::exact &&

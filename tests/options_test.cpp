@@ -226,6 +226,17 @@ TEST(options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
     EXPECT_EQ(options.scenes, std::vector<std::string>{"cubes"});
     EXPECT_EQ(options.camera_set, CameraSet::flight);
     EXPECT_TRUE(options.resume);
-    EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4 or figure6"));
-    EXPECT_TRUE(contains(rejection({"reproduce", "table5"}), "makes no table5 yet"));
+    EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4, table5 or figure6"));
+    EXPECT_TRUE(contains(rejection({"reproduce", "table6"}), "makes no table6 yet"));
+}
+
+TEST(options, searches_are_tets_times_rays_and_the_papers_unless_told)
+{
+    EXPECT_EQ(parse_options({"reproduce", "table5"}).searches, (SearchSize{10'000, 16'384}));
+    EXPECT_EQ(parse_options({"reproduce", "--searches", "3x1048576"}).searches, (SearchSize{3, 1'048'576}));
+    for (const char* const bad :
+         {"", "x", "8", "3x", "x8", "3x8x8", "0x8", "3x0", "-3x8", "3x12", "1000001x8", "3x1048584", "3x8 ", "3.5x8"})
+        EXPECT_TRUE(contains(rejection({"reproduce", "--searches", bad}), "TETSxRAYS, 1 to 1000000 tets with 8 to"))
+            << bad;
+    EXPECT_TRUE(contains(rejection({"bench", "--searches", "3x8"}), "--searches"));
 }

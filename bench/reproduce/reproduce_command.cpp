@@ -10,6 +10,7 @@
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/table3.h"
 #include "bench/reproduce/table4.h"
+#include "bench/reproduce/table5.h"
 #include "bench/row_json.h"
 
 #include <algorithm>
@@ -24,6 +25,7 @@ using nlohmann::json;
 /// All that there is to tell.
 struct Reproduction {
     std::vector<SceneRun> runs;
+    std::optional<SearchRun> searches;
 
     [[nodiscard]] SceneRuns of_build(const std::string& build) const
     {
@@ -44,6 +46,13 @@ bool wants(const Options& options, PaperTarget target)
     return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
 }
 
+bool wants_scenes(const Options& options)
+{
+    const auto& targets = options.targets;
+    return std::any_of(targets.begin(), targets.end(),
+                       [](PaperTarget target) { return target != PaperTarget::table5; });
+}
+
 /// All methods of the paper, and of its scenes those that can be had here, else the embedded one, where none are named.
 Options with_defaults(Options options, std::vector<std::string>& missing)
 {
@@ -51,7 +60,7 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
     if (options.methods.empty())
         for (const KernelId& kernel : all_kernels())
             if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
-    if (!options.scenes.empty()) return options;
+    if (!options.scenes.empty() || !wants_scenes(options)) return options;
     for (const char* const name : {"banana", "bunny", "armadillo"}) {
         const std::string reason = why_not_available(name);
         if (reason.empty())
@@ -88,6 +97,7 @@ std::vector<SceneBuild> scene_builds(const Options& options)
 {
     const bool table3 = wants(options, PaperTarget::table3);
     std::vector<SceneBuild> builds;
+    if (!wants_scenes(options)) return builds;
     for (const SceneRequest& request : scene_requests(options)) {
         const std::string label = scene_label(request.name);
         const SceneBuild ours = {request,
@@ -102,8 +112,8 @@ std::vector<SceneBuild> scene_builds(const Options& options)
     return builds;
 }
 
-/// Each device once: scenes run on the same ones, but for those that could not be loaded.
-void add_devices(Reproduction& all, const SceneRun& run, const Options& options)
+/// Each device once: all run on the same ones, but for scenes that could not be loaded.
+void add_devices(Reproduction& all, const RecordedRows& run, const Options& options)
 {
     progress_line().show("measuring the devices themselves", -1);
     auto devices = devices_of(run.rows);
@@ -111,7 +121,7 @@ void add_devices(Reproduction& all, const SceneRun& run, const Options& options)
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
 
-/// All that decides what the views come to, and how they are timed.
+/// All that decides what the views and searches come to, and how they are timed.
 json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
 {
     const BuildIdentity program = build_identity();
@@ -140,6 +150,11 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                                   {"robustness", build.robustness},
                                   {"timing", build.timing}});
         for (const RowKey& key : select_rows(options, {build.label}))
+            head["rows"].push_back(row_name(key));
+    }
+    if (wants(options, PaperTarget::table5)) {
+        head["searches"] = {options.searches.tets, options.searches.rays};
+        for (const RowKey& key : select_search_rows(options))
             head["rows"].push_back(row_name(key));
     }
     for (const Backend* backend : all_backends())
@@ -181,6 +196,7 @@ void make_tables(Reproduction& all, const Options& options)
         all.tables.push_back(table4(ours, view_count(options.camera_set)));
         all.figures.push_back(table4_views(ours));
     }
+    if (all.searches) all.tables.push_back(table5(*all.searches, all.devices));
     if (wants(options, PaperTarget::figure6)) {
         all.tables.push_back(figure6_table(ours));
         all.figures.push_back(figure6(ours));
@@ -235,10 +251,31 @@ Report reproduction_report(const Reproduction& all, const Options& options)
 
 int rows_exit_code(const Reproduction& all)
 {
-    int code = 0;
+    int code = all.searches ? exit_code(all.searches->rows, true) : 0;
     for (const SceneRun& run : all.runs)
         code = code == 1 ? code : std::max(code, exit_code(run.rows, true));
     return code;
+}
+
+void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Journal* journal,
+               RunProgress& progress)
+{
+    const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
+    SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
+    run_views(run, options, journal, progress);
+    const bool is_ours = build.build == our_build;
+    if (pictures != nullptr && is_ours) pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
+    run.close();
+    add_devices(all, run, options);
+}
+
+void run_all_searches(Reproduction& all, const Options& options, Journal* journal, RunProgress& progress)
+{
+    SearchRun& run = all.searches.emplace(open_search_run(options));
+    run_searches(run, options, journal, progress);
+    for (RowRun& row : run.rows)
+        row.session.reset();
+    add_devices(all, run, options);
 }
 
 } // namespace
@@ -253,17 +290,12 @@ int reproduce_command(const Options& asked)
     const auto journal = open_journal(options, builds);
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
-    const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
+    const bool with_searches = wants(options, PaperTarget::table5);
     RunProgress progress;
-    progress.all = builds.size() * selected_views(options).size();
-    for (const SceneBuild& build : builds) {
-        SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
-        run_views(run, options, journal.get(), progress);
-        const bool is_ours = build.build == our_build;
-        if (pictures != nullptr && is_ours) pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
-        run.close();
-        add_devices(all, run, options);
-    }
+    progress.all = builds.size() * selected_views(options).size() + (with_searches ? batch_count(options.searches) : 0);
+    for (const SceneBuild& build : builds)
+        run_scene(all, build, options, journal.get(), progress);
+    if (with_searches) run_all_searches(all, options, journal.get(), progress);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (journal != nullptr) journal->finish();

@@ -12,12 +12,13 @@ namespace {
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 /// The rated row of that method, with the same layout and device as the other; none where there is none.
-std::size_t find_beside(const SceneRun& run, const RowRun& other, std::string_view method)
+std::size_t find_beside(const RecordedRows& run, const RowRun& other, std::string_view method)
 {
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
         const RowKey& key = run.rows[i].key;
         if (name_of(key.kernel.method) == method && key.kernel.layout == other.key.kernel.layout &&
-            key.backend == other.key.backend && key.device == other.key.device && !view_seconds(run, i).empty())
+            key.backend == other.key.backend && key.device == other.key.device && key.threads == other.key.threads &&
+            !view_seconds(run, i).empty())
             return i;
     }
     return none;
@@ -44,24 +45,24 @@ struct Ratios {
     std::string missing, text;
     bool noisy = false;
 
-    void add(const SceneRun& run, const RowRun& other, std::string_view above, std::string_view below)
+    void add(const RecordedRows& run, const RowRun& other, std::string_view above, std::string_view below)
     {
         const std::size_t a = find_beside(run, other, above), b = find_beside(run, other, below);
         if (a == none || b == none) {
             missing = fmt::format("{} has no rate beside {} on {} {}.", a == none ? above : below,
-                                  a == none ? below : above, run.build.label, device_label(other.key));
+                                  a == none ? below : above, other.key.scene, device_label(other.key));
             return;
         }
         noisy = noisy || is_noisy(run.rows[a]) || is_noisy(run.rows[b]);
         estimates.push_back(ratio_of_sums(view_seconds(run, a), view_seconds(run, b)));
-        text += fmt::format("{}{} {} {}: {} / {} {}", text.empty() ? "" : "; ", run.build.label,
+        text += fmt::format("{}{} {} {}: {} / {} {}", text.empty() ? "" : "; ", other.key.scene,
                             name_of(other.key.kernel.layout), device_label(other.key), above, below,
                             estimate_text(estimates.back()));
     }
 
     void decide(Claim& claim) const
     {
-        claim.evidence = "Times over the same views: " + text + ".";
+        claim.evidence = "Times of the same rays: " + text + ".";
         if (!missing.empty())
             claim.evidence = missing;
         else if (estimates.empty())
@@ -73,15 +74,20 @@ struct Ratios {
     }
 };
 
-/// Rows of maria that have a rate on a device of that type.
+/// Rows of maria that have a rate and are meant.
 template <class Visit>
-void for_marias(const SceneRuns& runs, const std::string& type, const Visit& visit)
+void for_marias(const RecordedRuns& runs, const IsMeant& is_meant, const Visit& visit)
 {
-    for (const SceneRun* run : runs)
+    for (const RecordedRows* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (run->rows[i].key.kernel.method == Method::maria && run->rows[i].device.type == type &&
+            if (run->rows[i].key.kernel.method == Method::maria && is_meant(run->rows[i]) &&
                 !view_seconds(*run, i).empty())
                 visit(*run, run->rows[i]);
+}
+
+IsMeant of_type(const std::string& type)
+{
+    return [=](const RowRun& row) { return row.device.type == type; };
 }
 
 } // namespace
@@ -99,7 +105,7 @@ const std::vector<Method>& older_methods()
     return methods;
 }
 
-std::vector<double> view_seconds(const SceneRun& run, std::size_t row)
+std::vector<double> view_seconds(const RecordedRows& run, std::size_t row)
 {
     std::vector<double> seconds;
     if (!figures_of(run.rows[row])) return seconds;
@@ -108,7 +114,7 @@ std::vector<double> view_seconds(const SceneRun& run, std::size_t row)
     return seconds;
 }
 
-std::vector<double> view_steps(const SceneRun& run, std::size_t row)
+std::vector<double> view_steps(const RecordedRows& run, std::size_t row)
 {
     std::vector<double> steps;
     for (const ImageRecord& image : run.images[row]) {
@@ -118,21 +124,20 @@ std::vector<double> view_steps(const SceneRun& run, std::size_t row)
     return steps;
 }
 
-std::string series_name(const SceneRun& run, const RowRun& row)
+std::string series_name(const RowRun& row)
 {
-    return fmt::format("{} {} {} {}", run.build.label, name_of(row.key.kernel.method), name_of(row.key.kernel.layout),
+    return fmt::format("{} {} {} {}", row.key.scene, name_of(row.key.kernel.method), name_of(row.key.kernel.layout),
                        device_label(row.key));
 }
 
-Claim fastest_claim(const SceneRuns& runs)
+Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_meant)
 {
-    Claim claim{"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU", {}, ""};
     if (older_methods().empty()) {
         claim.evidence = "This program has no other method.";
         return claim;
     }
     Ratios ratios;
-    for_marias(runs, "cpu", [&](const SceneRun& run, const RowRun& row) {
+    for_marias(runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
         for (const Method method : older_methods())
             ratios.add(run, row, name_of(method), "maria");
     });
@@ -140,17 +145,24 @@ Claim fastest_claim(const SceneRuns& runs)
     return claim;
 }
 
-Claim overtaking_claim(const SceneRuns& runs)
+Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 {
-    Claim claim{"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp", {}, ""};
     Ratios ratios;
-    for_marias(runs, "gpu", [&](const SceneRun& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
+    for_marias(runs, of_type("gpu"),
+               [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
     ratios.decide(claim);
     if (ratios.estimates.empty() && ratios.missing.empty()) claim.evidence = "No row of a GPU has a rate.";
     return claim;
 }
 
-Claim proportional_claim(const SceneRuns& runs, const std::string& type)
+std::vector<Claim> speed_claims(const RecordedRuns& runs)
+{
+    return {fastest_claim({"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU", {}, ""},
+                          runs, of_type("cpu")),
+            overtaking_claim({"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp", {}, ""}, runs)};
+}
+
+Claim proportional_claim(const RecordedRuns& runs, const std::string& type)
 {
     Claim claim{"time-is-proportional-to-tets-" + type,
                 fmt::format("time is proportional to the tets traversed, on a {}", type == "gpu" ? "GPU" : "CPU"),
@@ -158,14 +170,14 @@ Claim proportional_claim(const SceneRuns& runs, const std::string& type)
                 ""};
     std::vector<Estimate> correlations;
     bool noisy = false;
-    for (const SceneRun* run : runs)
+    for (const RecordedRows* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i) {
             const auto seconds = view_seconds(*run, i);
             if (run->rows[i].device.type != type || seconds.empty()) continue;
             noisy = noisy || is_noisy(run->rows[i]);
             correlations.push_back(correlation(view_steps(*run, i), seconds).value_or(Estimate{}));
-            claim.evidence += fmt::format("{}{}: r = {}", claim.evidence.empty() ? "" : "; ",
-                                          series_name(*run, run->rows[i]), estimate_text(correlations.back()));
+            claim.evidence += fmt::format("{}{}: r = {}", claim.evidence.empty() ? "" : "; ", series_name(run->rows[i]),
+                                          estimate_text(correlations.back()));
         }
     claim.verdict = judge_above(correlations, proportional_above);
     claim.evidence += correlations.empty() ? fmt::format("No row of a {} has a rate.", type == "gpu" ? "GPU" : "CPU")

@@ -148,7 +148,7 @@ PaperTable table3_rates(const SceneRuns& runs)
                       {"spread_percent", "spread", "%", 1},
                       {"status", "status"}},
                      {},
-                     {fastest_claim(runs), overtaking_claim(runs)},
+                     speed_claims({runs.begin(), runs.end()}),
                      {fmt::format("A sample is all views traced once, device seconds of the kernel alone; rates are of "
                                   "the median sample, spread is its interquartile range over the median. The paper has "
                                   "{} to {} Msteps/s on its CPU. {}",

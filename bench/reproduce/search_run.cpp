@@ -1,0 +1,213 @@
+#include "bench/reproduce/search_run.h"
+
+#include "backends/openmp/backend.h"
+#include "bench/rows.h"
+#include "core/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+using Faces = std::vector<std::uint32_t>;
+
+constexpr std::uint32_t batch_rays = 1'638'400;
+constexpr std::uint32_t fewest_batches = 20;
+
+/// openmp's faces of a batch, for those of other backends: its own row's, else found for the comparison alone.
+class FaceReferences {
+public:
+    FaceReferences(const SearchRun& run, const Options& options) : run_(&run), options_(&options) {}
+
+    void forget() { faces_.clear(); } ///< another batch begins
+
+    void set(const KernelId& kernel, const Faces& faces) { faces_.insert_or_assign(name_of(kernel), faces); }
+
+    const Faces& of(const KernelId& kernel, const SearchRays& rays)
+    {
+        const std::string name = name_of(kernel);
+        if (const auto known = faces_.find(name); known != faces_.end()) return known->second;
+        auto& session = sessions_[name];
+        if (session == nullptr)
+            session = openmp_backend().open(0, kernel, {nullptr, &run_->tets.at(kernel.layout).scene},
+                                            session_options(*options_));
+        session->set_rays(rays.rows);
+        session->launch(search_job(rays.count()));
+        static_cast<void>(session->wait());
+        Faces faces(rays.count(), POISON);
+        session->read_back(faces);
+        return faces_[name] = std::move(faces);
+    }
+
+private:
+    const SearchRun* run_;
+    const Options* options_;
+    std::map<std::string, std::unique_ptr<Session>> sessions_; ///< by the kernel's name
+    std::map<std::string, Faces> faces_;                       ///< of the batch at hand
+};
+
+Verdicts judge_all(const SearchRays& rays, const Faces& faces)
+{
+    Verdicts verdicts;
+    verdicts.rays = faces.size();
+    for (std::size_t ray = 0; ray < faces.size(); ++ray)
+        switch (judge(rays, ray, faces[ray])) {
+        case SearchVerdict::right: ++verdicts.agreed; break;
+        case SearchVerdict::tie: ++verdicts.ties; break;
+        case SearchVerdict::wrong: ++verdicts.wrong; break;
+        case SearchVerdict::lost: ++verdicts.lost; break;
+        }
+    return verdicts;
+}
+
+std::uint64_t count_different(const Faces& ours, const Faces& others)
+{
+    std::uint64_t different = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i)
+        different += ours[i] != others[i];
+    return different;
+}
+
+/// The batches of a run.
+class BatchRecorder : public RowRecorder {
+public:
+    BatchRecorder(SearchRun& run, const Options& options)
+        : RowRecorder(run, options.samples), run_(&run), references_(run, options)
+    {
+    }
+
+private:
+    [[nodiscard]] json head_of(std::size_t batch) const override { return {{"batch", batch}}; }
+
+    [[nodiscard]] bool is_ours(const json& entry) const override { return entry.contains("batch"); }
+
+    void check_entry(std::size_t batch, const json& entry) const override
+    {
+        if (batch >= batch_count(run_->size) || entry["batch"] != batch)
+            reject_journal("the journal's batches of searches are not those asked for");
+    }
+
+    void prepare(RowRun& row, std::size_t batch) override
+    {
+        load(batch);
+        row.session->set_rays(rays_.rows);
+    }
+
+    [[nodiscard]] TraceJob job_of(const RowRun&, std::size_t batch) const override
+    {
+        return search_job(std::size_t{tets_of(batch)} * run_->size.rays);
+    }
+
+    [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t batch) override
+    {
+        RowRun& row = run_->rows[i];
+        ImageRecord record;
+        ImageVerdict& verdict = record.verdict;
+        prepare(row, batch);
+        const Stopwatch watch;
+        row.session->launch(job_of(row, batch));
+        verdict.kernel_s = row.session->wait();
+        verdict.wall_s = watch.seconds();
+        verdict.hit_hash = hash_of_answers(row, batch);
+        verdict.download_s = row.session->download_s();
+        record.chained_hash = hash_of(faces_, run_->images[i].empty() ? 0 : run_->images[i].back().chained_hash);
+        compare(row, verdict);
+        verdict.verdicts = judged(verdict.hit_hash);
+        verdict.totals.rays = faces_.size();
+        verdict.totals.lost = verdict.verdicts.lost;
+        verdict.totals.hits = verdict.totals.rays - verdict.totals.lost;
+        return record;
+    }
+
+    [[nodiscard]] std::uint64_t hash_of_answers(RowRun& row, std::size_t) override
+    {
+        faces_.assign(rays_.count(), POISON);
+        row.session->read_back(faces_);
+        return hash_of(faces_);
+    }
+
+    /// Exact mode promises the same faces on every device, and on any number of threads.
+    void compare(const RowRun& row, ImageVerdict& verdict)
+    {
+        if (is_reference(row.key)) {
+            references_.set(row.key.kernel, faces_);
+            return;
+        }
+        verdict.compared = true;
+        verdict.different = count_different(faces_, references_.of(row.key.kernel, rays_));
+        verdict.inexact = verdict.different;
+    }
+
+    /// Faces of one hash are the same but with a probability of 2^-64 a pair: what was judged once holds for all rows.
+    const Verdicts& judged(std::uint64_t hash)
+    {
+        const auto found = judged_.find(hash);
+        return found != judged_.end() ? found->second : judged_.emplace(hash, judge_all(rays_, faces_)).first->second;
+    }
+
+    [[nodiscard]] std::uint32_t tets_of(std::size_t batch) const
+    {
+        return std::min(run_->batch_tets, run_->size.tets - static_cast<std::uint32_t>(batch) * run_->batch_tets);
+    }
+
+    void load(std::size_t batch)
+    {
+        if (loaded_ == batch) return;
+        rays_ = search_rays(static_cast<std::uint32_t>(batch) * run_->batch_tets, tets_of(batch), run_->size.rays);
+        references_.forget();
+        judged_.clear();
+        loaded_ = batch;
+    }
+
+    SearchRun* run_;
+    FaceReferences references_;
+    std::optional<std::size_t> loaded_;
+    SearchRays rays_; ///< of the batch loaded
+    Faces faces_;     ///< that were read back last
+    std::map<std::uint64_t, Verdicts> judged_;
+};
+
+} // namespace
+
+bool is_reference(const RowKey& key)
+{
+    return key.backend == reference_backend && key.threads == 1;
+}
+
+std::uint32_t tets_of_batch(const SearchSize& size)
+{
+    const std::uint32_t fitting = std::max(batch_rays / size.rays, 1u);
+    return std::clamp(size.tets / fewest_batches, 1u, fitting);
+}
+
+std::uint32_t batch_count(const SearchSize& size)
+{
+    const std::uint32_t batch_tets = tets_of_batch(size);
+    return (size.tets + batch_tets - 1) / batch_tets;
+}
+
+SearchRun open_search_run(const Options& options, const std::vector<Backend*>& backends)
+{
+    SearchRun run;
+    run.size = options.searches;
+    run.batch_tets = tets_of_batch(run.size);
+    run.threads = resolved_threads(options);
+    for (const RowKey& key : select_search_rows(options, backends)) {
+        Packed& tets = run.tets[key.kernel.layout];
+        if (tets.scene.tet_count == 0) tets.scene = search_tets(run.size.tets, key.kernel.layout);
+        run.rows.push_back(open_row(key, tets, options, backends));
+    }
+    run.images.resize(run.rows.size());
+    return run;
+}
+
+void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress)
+{
+    BatchRecorder recorder(run, options);
+    recorder.run(batch_count(run.size), "reproducing, exit searches", journal, progress);
+}
+
+} // namespace tetrace
