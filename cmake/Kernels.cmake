@@ -39,4 +39,5 @@ function(tetrace_embed output namespace)
             -P ${tetrace_kernels_scripts}/embed.cmake
     DEPENDS ${files} ${tetrace_kernels_scripts}/embed.cmake
     COMMENT "Embedding kernels of ${namespace}" VERBATIM)
+  set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON) # tests/mutants puts others in its place
 endfunction()

@@ -46,7 +46,8 @@ double ratio_at(const ResultValue& ratio, const char* key)
 
 void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::size_t file, const ResultValue& ratio)
 {
-    const ReportRow& row = row_named(input, file, ratio.at("row"));
+    const ResultValue name = ratio.at("row");
+    const ReportRow& row = row_named(input, file, name);
     const RatioKey key{file, row.row->scene, row.device_class, row_named(input, file, ratio.at("reference")).api};
     auto group = std::find_if(groups.begin(), groups.end(), [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
