@@ -40,6 +40,11 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
 
 } // namespace
 
+bool is_whole(const RowRun& row)
+{
+    return traced(row) != nullptr && traced(row)->totals.rays > 0;
+}
+
 void RunProgress::show(const std::string& stage) const
 {
     const auto fraction = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(all, 1));

@@ -16,6 +16,9 @@ struct RecordedRows {
     std::vector<std::vector<ImageRecord>> images; ///< row by row, part by part; fewer where a row failed
 };
 
+/// Whether the row came through all parts with an answer.
+[[nodiscard]] bool is_whole(const RowRun& row);
+
 /// How far a run is, for the progress line.
 struct RunProgress {
     std::size_t all = 0;  ///< parts of all that is run

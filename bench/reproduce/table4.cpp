@@ -14,12 +14,6 @@ namespace {
 
 using Count = std::function<std::uint64_t(const ImageRecord&)>;
 
-/// Whether the row came through all views with an answer.
-bool is_whole(const RowRun& row)
-{
-    return traced(row) != nullptr && traced(row)->totals.rays > 0;
-}
-
 /// What a ray counts in an image of the paper's size.
 double scale_of(const SceneRun& run)
 {

@@ -11,13 +11,7 @@ namespace tetrace {
 
 namespace {
 
-/// Whether the row came through all batches with an answer.
-bool is_whole(const RowRun& row)
-{
-    return traced(row) != nullptr && traced(row)->totals.rays > 0;
-}
-
-const std::vector<Column>& columns()
+const std::vector<Column>& search_columns()
 {
     static const std::vector<Column> list = {{"method", "method"},
                                              {"layout", "layout"},
@@ -37,7 +31,7 @@ const std::vector<Column>& columns()
     return list;
 }
 
-std::string agreement(const RowRun& row)
+std::string face_agreement(const RowRun& row)
 {
     const Traced& result = *traced(row);
     if (is_reference(row.key)) return "reference";
@@ -75,7 +69,7 @@ std::vector<PaperCell> count_cells(const RowRun& row)
     const auto a_million = [&](std::uint64_t count) {
         return exact_cell(1e6 * static_cast<double>(count) / static_cast<double>(verdicts.rays));
     };
-    return {a_million(verdicts.wrong), a_million(verdicts.lost), a_million(verdicts.ties), agreement(row)};
+    return {a_million(verdicts.wrong), a_million(verdicts.lost), a_million(verdicts.ties), face_agreement(row)};
 }
 
 std::vector<PaperCell> cells_of(const SearchRun& run, const RowRun& row, const std::vector<RowDevice>& devices)
@@ -155,7 +149,7 @@ PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices)
     PaperTable table{"table5",
                      "Exit search alone, on random tets and rays",
                      fmt::format("{}, Table 5", paper::citation),
-                     columns(),
+                     search_columns(),
                      {},
                      claims_of(run),
                      notes_of(run)};
