@@ -100,12 +100,17 @@ const VerbHelp verb_help[] = {
      "options say.\n\n"
      "table4: rays with a wrong result per image, by method, scene and device, as the exact oracle of 'check' judges "
      "them, and where they are.\n\n"
+     "table5: the exit search alone, without the walk around it: random tets, random rays that enter each by a known "
+     "face, on one thread of the CPU and on every device. Every face that is found is compared with exact arithmetic. "
+     "It needs no scene; --searches takes fewer. A row takes about 80 MB for its rays.\n\n"
      "figure6: time and tets traversed, a point a view, their correlation, and pictures of the two extreme views.\n\n"
      "The views are those of the camera set 'flight'; --views takes a sample of them, and numbers then have 95 % "
      "intervals. Default scenes: banana, bunny and armadillo, as far as they can be had. With --out FILE, each "
-     "finished view is kept in FILE.journal: a run that was stopped goes on with --resume, and pictures lie beside "
+     "finished view or batch of searches is kept in FILE.journal: a run that was stopped goes on with --resume, and "
+     "pictures lie beside "
      "FILE. Exits with 1 where a row differs from openmp's.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
+     "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::compare, "compare two results of bench, row by row",
      "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "

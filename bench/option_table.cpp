@@ -329,9 +329,8 @@ std::vector<OptionRow> output_options()
          "Leave out of the result what tells whose machine it comes from: the host's name, and the folders of files.",
          reporting, false, [](Options& o, const std::string&) { o.anonymous = true; }},
         {"Output", "--resume", "",
-         "Go on with the run whose journal lies beside FILE of --out, as FILE.journal: views that it has are not "
-         "traced "
-         "again. Where there is none, begin one.",
+         "Go on with the run whose journal lies beside FILE of --out, as FILE.journal: views and batches of "
+         "searches that it has are not done again. Where there is none, begin one.",
          bit(Verb::reproduce), false, [](Options& o, const std::string&) { o.resume = true; }},
         {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
