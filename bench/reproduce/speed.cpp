@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 
 namespace tetrace {
 
@@ -39,10 +40,31 @@ bool is_noisy(const RowRun& row)
     return figures && figures->kernel_s.noisy();
 }
 
+/// One row's time over that of another with the same layout and device.
+struct TimeRatio {
+    std::string pair, where; ///< "plane / maria"; "bunny tet80 openmp"
+    Estimate estimate;
+};
+
+/// The ratios of one pair: where it is least and where it is most.
+std::string range_text(const std::string& pair, const std::vector<TimeRatio>& ratios)
+{
+    std::vector<TimeRatio> of_pair;
+    std::copy_if(ratios.begin(), ratios.end(), std::back_inserter(of_pair),
+                 [&](const TimeRatio& ratio) { return ratio.pair == pair; });
+    const auto [least, most] = std::minmax_element(of_pair.begin(), of_pair.end(), [](const auto& a, const auto& b) {
+        return a.estimate.value < b.estimate.value;
+    });
+    const auto text = [](const TimeRatio& ratio) {
+        return fmt::format("{} ({})", estimate_text(ratio.estimate), ratio.where);
+    };
+    return pair + ' ' + (of_pair.size() == 1 ? text(*least) : text(*least) + " to " + text(*most));
+}
+
 /// Gathers ratios of rows' times, and the words that tell them.
 struct Ratios {
-    std::vector<Estimate> estimates;
-    std::string missing, text;
+    std::vector<TimeRatio> ratios;
+    std::string missing;
     bool noisy = false;
 
     void add(const RecordedRows& run, const RowRun& other, std::string_view above, std::string_view below)
@@ -54,23 +76,39 @@ struct Ratios {
             return;
         }
         noisy = noisy || is_noisy(run.rows[a]) || is_noisy(run.rows[b]);
-        estimates.push_back(ratio_of_sums(view_seconds(run, a), view_seconds(run, b)));
-        text += fmt::format("{}{} {} {}: {} / {} {}", text.empty() ? "" : "; ", other.key.scene,
-                            name_of(other.key.kernel.layout), device_label(other.key), above, below,
-                            estimate_text(estimates.back()));
+        ratios.push_back(
+            {fmt::format("{} / {}", above, below),
+             fmt::format("{} {} {}", other.key.scene, name_of(other.key.kernel.layout), device_label(other.key)),
+             ratio_of_sums(view_seconds(run, a), view_seconds(run, b))});
     }
 
     void decide(Claim& claim) const
     {
-        claim.evidence = "Times of the same rays: " + text + ".";
+        claim.evidence = "Times of the same rays: " + text() + ".";
         if (!missing.empty())
             claim.evidence = missing;
-        else if (estimates.empty())
+        else if (ratios.empty())
             claim.evidence = "No row that it is about has a rate.";
         else {
+            std::vector<Estimate> estimates;
+            for (const TimeRatio& ratio : ratios)
+                estimates.push_back(ratio.estimate);
             claim.verdict = judge_above(estimates, 1);
             withdraw_if_noisy(claim, noisy);
         }
+    }
+
+private:
+    [[nodiscard]] std::string text() const
+    {
+        std::vector<std::string> told;
+        std::string all;
+        for (const TimeRatio& ratio : ratios) {
+            if (std::find(told.begin(), told.end(), ratio.pair) != told.end()) continue;
+            told.push_back(ratio.pair);
+            all += (all.empty() ? "" : "; ") + range_text(ratio.pair, ratios);
+        }
+        return all;
     }
 };
 
@@ -151,7 +189,7 @@ Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
     for_marias(runs, of_type("gpu"),
                [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
     ratios.decide(claim);
-    if (ratios.estimates.empty() && ratios.missing.empty()) claim.evidence = "No row of a GPU has a rate.";
+    if (ratios.ratios.empty() && ratios.missing.empty()) claim.evidence = "No row of a GPU has a rate.";
     return claim;
 }
 
