@@ -73,11 +73,18 @@ Cell plain_cell(const PaperCell& cell, const Column& column)
     return {};
 }
 
-Cell interval_cell(const PaperCell& cell, const Column& column)
+bool has_interval(const PaperCell& cell)
 {
     const Quantity* number = quantity(cell);
-    if (number == nullptr || !number->ours.low || !number->ours.high) return {};
-    return fmt::format("{:.{}f} to {:.{}f}", *number->ours.low, column.decimals, *number->ours.high, column.decimals);
+    return number != nullptr && number->ours.low && number->ours.high;
+}
+
+/// "1.25 [1.10, 1.40]"; plain where there is no interval.
+Cell interval_cell(const PaperCell& cell, const Column& column)
+{
+    if (!has_interval(cell)) return plain_cell(cell, column);
+    const Estimate& ours = quantity(cell)->ours;
+    return fmt::format("{0:.{3}f} [{1:.{3}f}, {2:.{3}f}]", ours.value, *ours.low, *ours.high, column.decimals);
 }
 
 Cell paper_cell(const PaperCell& cell, const Column& column)
@@ -220,8 +227,9 @@ Table with_paper_columns(const PaperTable& table)
                 list.push_back(make(row.at(c), column));
             return list;
         };
-        add(column, cells(plain_cell), true);
-        add({column.key + "_interval", "95 %"}, cells(interval_cell), false);
+        const bool intervals =
+            std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return has_interval(row.at(c)); });
+        add(column, intervals ? cells(interval_cell) : cells(plain_cell), true);
         add({column.key + "_paper", "paper", {}, column.decimals}, cells(paper_cell), false);
         add({column.key + "_ratio", "ratio"}, cells(ratio_cell), false);
     }

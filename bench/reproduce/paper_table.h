@@ -55,7 +55,8 @@ struct PaperFigure {
 [[nodiscard]] nlohmann::json table_json(const PaperTable& table);
 [[nodiscard]] nlohmann::json figure_json(const PaperFigure& figure);
 
-/// The rows with columns of their own for intervals, the paper's numbers and ratios, where there are any.
+/// The rows, numbers with their 95 % intervals, where there are any, and columns of their own for the paper's numbers
+/// and ratios.
 [[nodiscard]] Table with_paper_columns(const PaperTable& table);
 
 /// All numbers of all tables, one a row: which table and row they are of, value, interval, the paper's, the ratio.

@@ -66,7 +66,7 @@ const std::vector<Column>& columns()
                                              {"flawed", "wrong or lost", "rays an image", 3},
                                              {"wrong_face", "wrong face", "rays an image", 3},
                                              {"lost", "lost", "rays an image", 3},
-                                             {"lost_at_cap", "of these in a cycle", "rays an image", 3},
+                                             {"lost_at_cap", "in a cycle", "rays an image", 3},
                                              {"ties", "ties", "rays an image", 3},
                                              {"flawed_through_flat", "past flat tets", "% of these rays", 1},
                                              {"any_through_flat", "past flat tets", "% of all rays", 1},
