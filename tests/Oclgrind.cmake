@@ -3,12 +3,16 @@
 find_program(OCLGRIND oclgrind)
 mark_as_advanced(OCLGRIND)
 
-# Asks a device of Oclgrind's own, a tiny scene and image: it interprets some million instructions a second.
-foreach(schedule tiles persistent)
-  set(name oclgrind_${schedule})
+# Ask a device of Oclgrind's own, tiny scenes and images: it interprets some million instructions a second.
+set(check check --scene cubes --resolution 3 --size 12 --views 0)
+set(asked_tiles ${check} --schedule tiles)
+set(asked_persistent ${check} --schedule persistent)
+set(asked_search reproduce table5 --searches 5x16 --method maria --samples 3)
+foreach(asked tiles persistent search)
+  set(name oclgrind_${asked})
   if(OCLGRIND)
-    add_test(NAME ${name} COMMAND ${OCLGRIND} --check-api --data-races $<TARGET_FILE:tetrace> check --scene cubes
-      --resolution 3 --backend opencl --device oclgrind --schedule ${schedule} --size 12 --views 0)
+    add_test(NAME ${name} COMMAND ${OCLGRIND} --check-api --data-races $<TARGET_FILE:tetrace> ${asked_${asked}}
+      --backend opencl --device oclgrind)
     set_tests_properties(${name} PROPERTIES
       FAIL_REGULAR_EXPRESSION "Oclgrind - |OCLGRIND|data race at|Invalid (read|write)")
   else()
