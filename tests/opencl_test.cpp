@@ -93,7 +93,7 @@ TEST(OpenclImplementation, is_read_from_whatever_drivers_say)
 
 TEST(OpenclErrors, name_the_call_the_code_and_the_device)
 {
-    const opencl::Task task{"launching", "a device", 1234, 999};
+    const opencl::Doing task{"launching", "a device", 1234, 999};
     const Error lost = opencl::to_error(cl::Error(CL_OUT_OF_RESOURCES, "clFinish"), task);
     EXPECT_EQ(lost.kind(), ErrorKind::internal);
     EXPECT_TRUE(contains(lost.what(), "launching on 'a device': clFinish gave CL_OUT_OF_RESOURCES"));

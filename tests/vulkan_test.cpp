@@ -154,7 +154,7 @@ TEST(VulkanTicks, count_through_a_wrap_and_ignore_invalid_bits)
 
 TEST(VulkanErrors, name_the_call_the_code_and_the_device)
 {
-    const vulkan::Task task{"launching", "a device", 1234, 999};
+    const vulkan::Doing task{"launching", "a device", 1234, 999};
     const Error lost = vulkan::to_error(vk::DeviceLostError("vk::Queue::submit"), task);
     EXPECT_EQ(lost.kind(), ErrorKind::internal);
     EXPECT_TRUE(contains(lost.what(), "launching on 'a device': vk::Queue::submit: ErrorDeviceLost")) << lost.what();
