@@ -5,6 +5,7 @@
 #include "core/hash.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -49,26 +50,29 @@ private:
     std::map<std::string, Faces> faces_;                       ///< of the batch at hand
 };
 
-Verdicts judge_all(const SearchRays& rays, const Faces& faces)
+Hit as_hit(std::uint32_t face, std::uint32_t tet)
+{
+    return {face, tet, 0, 0, 0, 0};
+}
+
+Verdicts judge_all(const SearchRays& rays, const Faces& faces, std::uint32_t rays_per_tet)
 {
     Verdicts verdicts;
     verdicts.rays = faces.size();
-    for (std::size_t ray = 0; ray < faces.size(); ++ray)
+    for (std::size_t ray = 0; ray < faces.size(); ++ray) {
         switch (judge(rays, ray, faces[ray])) {
         case SearchVerdict::right: ++verdicts.agreed; break;
         case SearchVerdict::tie: ++verdicts.ties; break;
         case SearchVerdict::wrong: ++verdicts.wrong; break;
         case SearchVerdict::lost: ++verdicts.lost; break;
         }
+        if (verdicts.clean() || verdicts.first_wrong) continue;
+        const std::uint32_t tet = link_tet(rays.link(ray));
+        const auto exact_face = static_cast<std::uint32_t>(std::countr_zero(rays.exits[ray]));
+        const auto number = static_cast<std::uint32_t>(ray % rays_per_tet);
+        verdicts.first_wrong = WrongRay{tet, number, 0, as_hit(faces[ray], tet), exact_face, 0, {}};
+    }
     return verdicts;
-}
-
-std::uint64_t count_different(const Faces& ours, const Faces& others)
-{
-    std::uint64_t different = 0;
-    for (std::size_t i = 0; i < ours.size(); ++i)
-        different += ours[i] != others[i];
-    return different;
 }
 
 /// The batches of a run.
@@ -137,7 +141,15 @@ private:
             return;
         }
         verdict.compared = true;
-        verdict.different = count_different(faces_, references_.of(row.key.kernel, rays_));
+        const Faces& reference = references_.of(row.key.kernel, rays_);
+        for (std::size_t ray = 0; ray < faces_.size(); ++ray) {
+            if (faces_[ray] == reference[ray]) continue;
+            const std::uint32_t tet = link_tet(rays_.link(ray));
+            const auto number = static_cast<std::uint32_t>(ray % run_->size.rays);
+            if (verdict.different++ == 0)
+                verdict.first_different =
+                    DifferingRay{tet, number, 0, as_hit(faces_[ray], tet), as_hit(reference[ray], tet)};
+        }
         verdict.inexact = verdict.different;
     }
 
@@ -145,7 +157,8 @@ private:
     const Verdicts& judged(std::uint64_t hash)
     {
         const auto found = judged_.find(hash);
-        return found != judged_.end() ? found->second : judged_.emplace(hash, judge_all(rays_, faces_)).first->second;
+        return found != judged_.end() ? found->second
+                                      : judged_.emplace(hash, judge_all(rays_, faces_, run_->size.rays)).first->second;
     }
 
     [[nodiscard]] std::uint32_t tets_of(std::size_t batch) const

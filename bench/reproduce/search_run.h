@@ -29,7 +29,9 @@ struct SearchRun : RecordedRows {
 
 /// Does every batch with every row: compares each face with openmp's and judges it by exact arithmetic, outside the
 /// timing; then times the batch, and appends it to the journal; batches that the journal has are taken from there.
-/// In images, a ray is a search, and what agrees is right. journal: may be null.
+/// In images, a ray is a search, what agrees is right, and the first wrong or different one names its tet as the view,
+/// its number among the tet's rays as x, and local faces; reference_face: the least of those that it exactly leaves by.
+/// journal: may be null.
 /// Throws Error{usage} where the journal is of other searches or rows.
 void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress);
 

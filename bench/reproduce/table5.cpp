@@ -123,9 +123,29 @@ std::vector<Claim> claims_of(const SearchRun& run)
             exact_claim(run)};
 }
 
+std::string face_text(std::uint32_t face)
+{
+    return face == NO_EXIT ? "no face" : fmt::format("face {}", face);
+}
+
+/// Which search to look at where a row's faces are not the exact ones, or not openmp's; empty where all are.
+std::string first_flaw(const RowRun& row)
+{
+    const Traced* result = traced(row);
+    if (result == nullptr) return {};
+    const std::string name = row_name(row.key);
+    if (const auto& ray = result->first_different)
+        return fmt::format("{} differs first on ray {} of tet {}: {}, where openmp finds {}.", name, ray->x, ray->view,
+                           face_text(ray->ours.face_id), face_text(ray->openmp.face_id));
+    if (const auto& ray = result->verdicts.first_wrong; ray && is_reference(row.key))
+        return fmt::format("{} errs first on ray {} of tet {}: {}, where the exact one is {}.", name, ray->x, ray->view,
+                           face_text(ray->ours.face_id), face_text(ray->reference_face));
+    return {};
+}
+
 std::vector<std::string> notes_of(const SearchRun& run)
 {
-    return {
+    std::vector<std::string> notes = {
         fmt::format("{} random tets, {} random rays through each, entering by a known face: the same on every device, "
                     "from a counter-based generator, on a grid of 2^-16, so that integers decide exactly by which face "
                     "a ray leaves. Every face that was found is compared with that, and with openmp's, outside the "
@@ -140,6 +160,9 @@ std::vector<std::string> notes_of(const SearchRun& run)
                     "of the device's copy bandwidth that this comes to. Fast devices measure their memory here.",
                     bytes_per_search),
         std::string(paper::rest_is_there)};
+    for (const RowRun& row : run.rows)
+        if (const std::string flaw = first_flaw(row); !flaw.empty()) notes.push_back(flaw);
+    return notes;
 }
 
 } // namespace
