@@ -26,6 +26,7 @@ using nlohmann::json;
 struct Reproduction {
     std::vector<SceneRun> runs;
     std::optional<SearchRun> searches;
+    RunProgress progress;
 
     [[nodiscard]] SceneRuns of_build(const std::string& build) const
     {
@@ -257,22 +258,22 @@ int rows_exit_code(const Reproduction& all)
     return code;
 }
 
+/// pictures: null where there is no file to lie beside.
 void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Journal* journal,
-               RunProgress& progress)
+               const ResultPictures* pictures)
 {
-    const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
-    run_views(run, options, journal, progress);
+    run_views(run, options, journal, all.progress);
     const bool is_ours = build.build == our_build;
     if (pictures != nullptr && is_ours) pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
     add_devices(all, run, options);
 }
 
-void run_all_searches(Reproduction& all, const Options& options, Journal* journal, RunProgress& progress)
+void run_all_searches(Reproduction& all, const Options& options, Journal* journal)
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
-    run_searches(run, options, journal, progress);
+    run_searches(run, options, journal, all.progress);
     for (RowRun& row : run.rows)
         row.session.reset();
     add_devices(all, run, options);
@@ -290,12 +291,13 @@ int reproduce_command(const Options& asked)
     const auto journal = open_journal(options, builds);
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
+    const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
     const bool with_searches = wants(options, PaperTarget::table5);
-    RunProgress progress;
-    progress.all = builds.size() * selected_views(options).size() + (with_searches ? batch_count(options.searches) : 0);
+    all.progress.all =
+        builds.size() * selected_views(options).size() + (with_searches ? batch_count(options.searches) : 0);
     for (const SceneBuild& build : builds)
-        run_scene(all, build, options, journal.get(), progress);
-    if (with_searches) run_all_searches(all, options, journal.get(), progress);
+        run_scene(all, build, options, journal.get(), pictures.get());
+    if (with_searches) run_all_searches(all, options, journal.get());
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (journal != nullptr) journal->finish();

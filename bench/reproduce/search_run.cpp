@@ -3,6 +3,7 @@
 #include "backends/openmp/backend.h"
 #include "bench/rows.h"
 #include "core/hash.h"
+#include "core/search_set.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "bench/reproduce/row_recorder.h"
-#include "core/search_set.h"
 
 #include <map>
 
