@@ -209,14 +209,14 @@ TEST_F(reproduce, table5_has_every_search_of_every_method_without_a_scene)
 TEST_F(reproduce, table5_goes_on_after_kill_9_to_the_same_result)
 {
     const std::string arguments =
-        "table5 --searches 200x512 --method maria,stp --layout tet80 --samples 3 --out r.json";
+        "table5 --searches 200x2048 --method maria,stp --layout tet80 --samples 3 --out r.json";
     const std::size_t batches = kill_in_the_middle(arguments, "r.json.journal");
     ASSERT_LT(batches, 20u);
     const std::string before = read_text(folder_ / "r.json.journal");
-    EXPECT_TRUE(contains(run("table5 --searches 200x520 --method maria,stp --layout tet80 --samples 3 --out r.json "
+    EXPECT_TRUE(contains(run("table5 --searches 200x2056 --method maria,stp --layout tet80 --samples 3 --out r.json "
                              "--resume")
                              .errors,
-                         "searches: [200,512] there, [200,520] here"));
+                         "searches: [200,2048] there, [200,2056] here"));
     ASSERT_EQ(run(arguments + " --resume").code, 0);
     const json resumed = without_yardstick(result("r.json")["tables"][0]);
     const std::string after = read_text(folder_ / "r.json.journal");
