@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <random>
 #include <regex>
@@ -295,4 +296,21 @@ TEST(line_chart, takes_one_point_empty_series_and_thousands)
     const std::string drawing = draw(chart).str();
     EXPECT_EQ(occurrences(drawing, "class=\"mark "), 2u);
     EXPECT_LT(drawing.size(), 60'000u) << "a line's points have no marks of their own";
+}
+
+TEST(line_chart, every_label_of_twenty_series_lies_within_the_drawing)
+{
+    LineChart chart{"a figure", "tets", "time, ms", {}};
+    for (int i = 0; i < 20; ++i)
+        chart.series.push_back({fmt::format("method {}", i), {{20, 5}, {10, 1}}});
+    const std::string drawing = draw(chart).str();
+    auto labels = attribute_of(drawing, "label", "y");
+    ASSERT_EQ(labels.size(), 20u);
+    std::sort(labels.begin(), labels.end());
+    for (std::size_t i = 1; i < labels.size(); ++i)
+        EXPECT_GE(labels[i] - labels[i - 1], 13) << "labels overlap";
+    std::smatch height;
+    ASSERT_TRUE(std::regex_search(drawing, height, std::regex("viewBox=\"0 0 [0-9.]+ ([0-9.]+)\"")));
+    EXPECT_GT(labels.front(), 13);
+    EXPECT_LT(labels.back(), std::stod(height[1]));
 }

@@ -28,8 +28,9 @@ protected:
     /// Starts it; its process.
     [[nodiscard]] pid_t start(const std::string& arguments) const
     {
-        std::istringstream words("tetrace reproduce " + arguments +
-                                 " --backend openmp --threads 1 --scene cubes --resolution 6");
+        const bool names_backends = arguments.find("--backend") != std::string::npos;
+        std::istringstream words("tetrace reproduce " + arguments + (names_backends ? "" : " --backend openmp") +
+                                 " --threads 1 --scene cubes --resolution 6");
         std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
         std::vector<char*> pointers;
         for (std::string& word : list)
@@ -146,7 +147,8 @@ TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
         run("figure6 --method maria --layout tet80 --size 64 --samples 3 --views 0-1281:60 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const json section = result("r.json");
-    const json figure = of_id(section["figures"], "figure6");
+    const json figure = of_id(section["figures"], "figure6-cubes-cpu");
+    EXPECT_EQ(figure["series"][0]["name"], "maria") << "the one layout and device go without saying";
     ASSERT_EQ(figure["series"].size(), 1u);
     EXPECT_EQ(figure["series"][0]["points"].size(), 22u);
     for (const json& point : figure["series"][0]["points"])
@@ -159,7 +161,25 @@ TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
     EXPECT_LT(row["fewest_tets"]["value"], row["most_tets"]["value"]);
     EXPECT_EQ(section["rows"][0]["times"]["samples_s"].size(), 3u);
     EXPECT_GT(section["rows"][0]["rates"]["mrays_per_s"], 0);
-    EXPECT_EQ(claim(figure, "time-is-proportional-to-tets-gpu")["verdict"], "not testable here");
+    EXPECT_EQ(claim(of_id(section["tables"], "figure6"), "time-is-proportional-to-tets-gpu")["verdict"],
+              "not testable here");
+}
+
+TEST_F(reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
+{
+    const Ended ended = run("figure6 --method maria,ms06 --layout tet80 --backend openmp,cuda-host --size 16 "
+                            "--samples 3 --views 0-3 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json figures = result("r.json")["figures"];
+    ASSERT_EQ(figures.size(), 2u);
+    for (const char* const id : {"figure6-cubes-cpu", "figure6-cubes-emulated"}) {
+        const json& figure = of_id(figures, id);
+        ASSERT_EQ(figure["series"].size(), 2u) << id;
+        EXPECT_EQ(figure["series"][0]["name"], "ms06");
+        EXPECT_EQ(figure["series"][1]["name"], "maria");
+    }
+    EXPECT_EQ(figures[0]["pictures"].size(), 4u);
+    EXPECT_EQ(figures[1]["pictures"].size(), 0u) << "they are the scene's";
 }
 
 TEST_F(reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
@@ -254,7 +274,8 @@ TEST_F(reproduce, goes_on_after_kill_9_to_the_same_result)
     EXPECT_EQ(lines("killed.json.journal"), 1u + 33 + 1) << "head, views, end";
     EXPECT_EQ(run(arguments + "killed.json --resume").code, ended.code) << "once more, from the journal alone";
     const json again = result("killed.json");
-    EXPECT_EQ(of_id(again["figures"], "figure6")["series"], of_id(resumed["figures"], "figure6")["series"]);
+    EXPECT_EQ(of_id(again["figures"], "figure6-cubes-cpu")["series"],
+              of_id(resumed["figures"], "figure6-cubes-cpu")["series"]);
 }
 
 TEST_F(reproduce, a_journal_of_other_options_is_refused)

@@ -13,7 +13,10 @@ namespace tetrace {
 
 namespace {
 
-constexpr double top = 24, bottom = 264, left = 62, axis_room = 40;
+constexpr double top = 24, least_bottom = 264, left = 62, axis_room = 40;
+
+/// Between the first and the last label and the plot's ends.
+constexpr double above_labels = 6, below_labels = 4;
 
 /// Points of a line are marked with their shape up to this number.
 constexpr std::size_t most_marked = 24;
@@ -35,11 +38,18 @@ struct Range {
 
 struct LineFrame {
     Axis x_axis, y_axis;
-    double right;
+    double right, bottom;
 
     [[nodiscard]] double x(double value) const { return x_axis.place(value, left, right); }
     [[nodiscard]] double y(double value) const { return y_axis.place(value, bottom, top); }
 };
+
+/// As low as a column of so many labels reaches.
+double bottom_of(std::size_t labels)
+{
+    const double column = side_label_pitch * static_cast<double>(std::max<std::size_t>(labels, 1) - 1);
+    return std::max(least_bottom, top + above_labels + column + below_labels);
+}
 
 LineFrame frame_of(const LineChart& chart)
 {
@@ -52,14 +62,15 @@ LineFrame frame_of(const LineChart& chart)
         }
         names = std::max(names, text_width(series.name, label_size));
     }
-    return {x.axis(4), y.axis(5), side_labels_left(names)};
+    return {x.axis(4), y.axis(5), side_labels_left(names), bottom_of(chart.series.size())};
 }
 
 Html grid(const LineChart& chart, const LineFrame& frame)
 {
-    return horizontal_ticks(frame.x_axis, left, frame.right, top, bottom) +
-           vertical_ticks(frame.y_axis, left, frame.right, top, bottom) + svg_text(0, 11, "small", chart.y_title) +
-           svg_text((left + frame.right) / 2, bottom + 32, "small middle", chart.x_title);
+    return horizontal_ticks(frame.x_axis, left, frame.right, top, frame.bottom) +
+           vertical_ticks(frame.y_axis, left, frame.right, top, frame.bottom) +
+           svg_text(0, 11, "small", chart.y_title) +
+           svg_text((left + frame.right) / 2, frame.bottom + 32, "small middle", chart.x_title);
 }
 
 bool ascends(const Series& series)
@@ -87,8 +98,8 @@ Html draw(const LineChart& chart)
     const LineFrame frame = frame_of(chart);
     std::vector<double> wanted;
     for (const Series& series : chart.series)
-        wanted.push_back(series.points.empty() ? bottom : frame.y(series.points.back().second));
-    const auto places = spread_apart(wanted, side_label_pitch, top + 6, bottom - 4);
+        wanted.push_back(series.points.empty() ? frame.bottom : frame.y(series.points.back().second));
+    const auto places = spread_apart(wanted, side_label_pitch, top + above_labels, frame.bottom - below_labels);
     Html content = grid(chart, frame);
     for (std::size_t i = 0; i < chart.series.size(); ++i) {
         const Series& series = chart.series[i];
@@ -98,7 +109,7 @@ Html draw(const LineChart& chart)
                      side_label(frame.x(series.points.back().first), wanted[i], frame.right, places[i], series.name) +
                          points_of(series, i, frame));
     }
-    return svg_drawing(bottom + axis_room, chart.label, content);
+    return svg_drawing(frame.bottom + axis_room, chart.label, content);
 }
 
 } // namespace tetrace

@@ -19,6 +19,7 @@ struct LineChart {
 };
 
 /// A series whose x ascend is drawn as a line, another as a cloud of its shape; its name stands beside its last point.
+/// The drawing grows with the number of series, so that every name has its place in it.
 /// A vertical axis of values that are not negative starts at zero, unless they fill less than half of it.
 /// Precondition: a series has a point.
 [[nodiscard]] Html draw(const LineChart& chart);

@@ -6,18 +6,18 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 
 namespace tetrace {
 
 namespace {
 
-/// Calls visit(run, row index) for each row with a rate.
+/// Calls visit(row index) for each of the run's rows with a rate.
 template <class Visit>
-void for_rated(const SceneRuns& runs, const Visit& visit)
+void for_rated(const SceneRun& run, const Visit& visit)
 {
-    for (const SceneRun* run : runs)
-        for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (!view_seconds(*run, i).empty()) visit(*run, i);
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+        if (!view_seconds(run, i).empty()) visit(i);
 }
 
 std::string source()
@@ -57,34 +57,92 @@ std::vector<Claim> claims_of(const RecordedRuns& runs)
     return claims;
 }
 
+/// The types of the devices that rated rows ran on, in the rows' order.
+std::vector<std::string> rated_types(const SceneRun& run)
+{
+    std::vector<std::string> types;
+    for_rated(run, [&](std::size_t i) {
+        const std::string& type = run.rows[i].device.type;
+        if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
+    });
+    return types;
+}
+
+std::vector<std::size_t> rated_rows(const SceneRun& run, const std::string& type)
+{
+    std::vector<std::size_t> rows;
+    for_rated(run, [&](std::size_t i) {
+        if (run.rows[i].device.type == type) rows.push_back(i);
+    });
+    return rows;
+}
+
+/// "maria tet96 opencl", without the layout where all rows have the same, and without the device likewise.
+std::vector<std::string> distinct_names(const SceneRun& run, const std::vector<std::size_t>& rows)
+{
+    std::set<std::string_view> layouts;
+    std::set<std::string> devices;
+    for (const std::size_t i : rows) {
+        layouts.insert(name_of(run.rows[i].key.kernel.layout));
+        devices.insert(device_label(run.rows[i].key));
+    }
+    std::vector<std::string> names;
+    for (const std::size_t i : rows) {
+        const RowKey& key = run.rows[i].key;
+        std::string name(name_of(key.kernel.method));
+        if (layouts.size() > 1) name.append(" ").append(name_of(key.kernel.layout));
+        if (devices.size() > 1) name.append(" ").append(device_label(key));
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+PaperFigure::Series series_of(const SceneRun& run, std::size_t i, const std::string& name)
+{
+    PaperFigure::Series series{name, {}};
+    const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
+    for (std::size_t view = 0; view < steps.size(); ++view)
+        series.points.emplace_back(steps[view], 1e3 * seconds[view]);
+    return series;
+}
+
+/// The scene's rows on the devices of one type: emulations of GPUs share no figure with GPUs, nor either with a CPU.
+PaperFigure figure_of(const SceneRun& run, const std::string& type)
+{
+    PaperFigure figure{
+        fmt::format("figure6-{}{}{}", run.build.scene, type.empty() ? "" : "-", type),
+        fmt::format("Time and tets traversed, a point a view: {}{}{}", run.build.scene, type.empty() ? "" : ", ", type),
+        source(),
+        {"tets traversed", "a ray"},
+        {"time of an image", "ms"},
+        {},
+        {},
+        {},
+        {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
+         "interleaved. Pictures: the views with the fewest and the most tets a ray, surface and "
+         "steps."}};
+    const auto rows = rated_rows(run, type);
+    const auto names = distinct_names(run, rows);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        figure.series.push_back(series_of(run, rows[i], names[i]));
+    return figure;
+}
+
 } // namespace
 
-PaperFigure figure6(const SceneRuns& runs)
+std::vector<PaperFigure> figure6(const SceneRuns& runs)
 {
-    PaperFigure figure{"figure6",
-                       "Time and tets traversed, a point a view",
-                       source(),
-                       {"tets traversed", "a ray"},
-                       {"time of an image", "ms"},
-                       {},
-                       claims_of({runs.begin(), runs.end()}),
-                       {},
-                       {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
-                        "interleaved. Pictures: the views with the fewest and the most tets a ray, surface and steps.",
-                        "Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
-                        "views. Emulations of GPUs are in no claim."}};
-    for_rated(runs, [&](const SceneRun& run, std::size_t i) {
-        PaperFigure::Series series{series_name(run.rows[i]), {}};
-        const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
-        for (std::size_t view = 0; view < steps.size(); ++view)
-            series.points.emplace_back(steps[view], 1e3 * seconds[view]);
-        figure.series.push_back(std::move(series));
-    });
+    std::vector<PaperFigure> figures;
     for (const SceneRun* run : runs) {
-        figure.pictures.insert(figure.pictures.end(), run->extreme_pictures.begin(), run->extreme_pictures.end());
-        figure.notes.insert(figure.notes.end(), run->picture_problems.begin(), run->picture_problems.end());
+        const std::size_t first = figures.size();
+        for (const std::string& type : rated_types(*run))
+            figures.push_back(figure_of(*run, type));
+        if (figures.size() == first) figures.push_back(figure_of(*run, {}));
+        figures[first].pictures = run->extreme_pictures;
+        figures[first].notes.insert(figures[first].notes.end(), run->picture_problems.begin(),
+                                    run->picture_problems.end());
     }
-    return figure;
+    return figures;
 }
 
 PaperTable figure6_table(const SceneRuns& runs)
@@ -107,17 +165,20 @@ PaperTable figure6_table(const SceneRuns& runs)
                       {"slope_ns", "slope", "ns a tet and ray"},
                       {"intercept_ms", "intercept", "ms"}},
                      {},
-                     {},
-                     {fmt::format("The paper: {} to {} tets a ray over its 1,282 views, of cameras that it does not "
+                     claims_of({runs.begin(), runs.end()}),
+                     {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
+                      "views. Emulations of GPUs are in no claim.",
+                      fmt::format("The paper: {} to {} tets a ray over its 1,282 views, of cameras that it does not "
                                   "give, and {} to {} Msteps/s on its CPU. {}",
                                   paper::least_tets_a_ray, paper::most_tets_a_ray, paper::least_cpu_msteps,
                                   paper::most_cpu_msteps, paper::rest_is_there)}};
-    for_rated(runs, [&](const SceneRun& run, std::size_t i) { table.rows.push_back(cells_of(run, i)); });
-    for (const SceneRun* run : runs)
+    for (const SceneRun* run : runs) {
+        for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (const RowRun& row = run->rows[i]; view_seconds(*run, i).empty())
                 table.notes.push_back(
                     fmt::format("{} has no rate: {}: {}.", series_name(row), name_of(status_of(row)), reason_of(row)));
+    }
     return table;
 }
 

@@ -8,11 +8,13 @@
 
 namespace tetrace {
 
-/// Figure 6: time and tets traversed, a point a view.
+/// Figure 6: time and tets traversed, a point a view. One figure a scene and type of device ("figure6-bunny-gpu"), the
+/// scene's pictures in its first; a scene without a rated row has one without points.
 /// runs: timed.
-[[nodiscard]] PaperFigure figure6(const SceneRuns& runs);
+[[nodiscard]] std::vector<PaperFigure> figure6(const SceneRuns& runs);
 
-/// The same as a table: range of tets and of times, correlation and line of each row.
+/// The same as a table: range of tets and of times, correlation and line of each row; and the claims, which are of all
+/// scenes and devices.
 [[nodiscard]] PaperTable figure6_table(const SceneRuns& runs);
 
 /// The views (indices) in which a row's rays leave the fewest and the most tets.

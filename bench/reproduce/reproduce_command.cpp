@@ -200,7 +200,8 @@ void make_tables(Reproduction& all, const Options& options)
     if (all.searches) all.tables.push_back(table5(*all.searches, all.devices));
     if (wants(options, PaperTarget::figure6)) {
         all.tables.push_back(figure6_table(ours));
-        all.figures.push_back(figure6(ours));
+        for (PaperFigure& figure : figure6(ours))
+            all.figures.push_back(std::move(figure));
     }
 }
 
