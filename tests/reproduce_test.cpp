@@ -121,8 +121,7 @@ TEST_F(reproduce, table4_of_a_sample_of_views)
         EXPECT_EQ(row["flawed"]["value"], 0);
         EXPECT_EQ(row["flawed"]["paper"], 0);
         EXPECT_FALSE(row["flawed"].contains("ratio")) << "nothing over nothing";
-        EXPECT_DOUBLE_EQ(row["flawed"]["high"].get<double>(), 3.0 / 13 * (1024 * 1024) / (24 * 24))
-            << "rule of three, in an image of the paper's size";
+        EXPECT_FALSE(row["flawed"].contains("high")) << "none in a sample bounds nothing";
     }
     EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
     EXPECT_EQ(claim(table, "maria-has-the-fewest")["verdict"], "not testable here") << "nothing to compare with";
@@ -131,14 +130,13 @@ TEST_F(reproduce, table4_of_a_sample_of_views)
     EXPECT_TRUE(contains(ended.out, "table4: Rays with a wrong result"));
 }
 
-TEST_F(reproduce, all_views_without_a_wrong_ray_make_the_claim_hold)
+TEST_F(reproduce, all_views_of_smaller_images_are_a_sample_still)
 {
     const Ended ended = run("table4 --method maria --layout tet80 --size 4 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const json table = result("r.json")["tables"][0];
     EXPECT_EQ(table["rows"][0]["views"]["value"], 1282);
-    EXPECT_FALSE(table["rows"][0]["flawed"].contains("high")) << "nothing was sampled";
-    EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "holds");
+    EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
 }
 
 TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)

@@ -21,7 +21,7 @@ std::string_view name_of(ClaimVerdict verdict)
 ClaimVerdict judge_none(const Estimate& count)
 {
     if (count.value > 0) return ClaimVerdict::does_not_hold;
-    return count.highest() < count_resolution ? ClaimVerdict::holds : ClaimVerdict::not_testable;
+    return count.exact ? ClaimVerdict::holds : ClaimVerdict::not_testable;
 }
 
 ClaimVerdict judge_some(const Estimate& count)
@@ -37,8 +37,8 @@ ClaimVerdict judge_some(const Estimate& count)
 ClaimVerdict judge_less(const Estimate& first, const std::vector<Estimate>& others)
 {
     const auto is_below = [](const Estimate& a, const Estimate& b) { return a.highest() < b.lowest(); };
-    if (std::any_of(others.begin(), others.end(), [&](const Estimate& other) { return is_below(other, first); }))
-        return ClaimVerdict::does_not_hold;
+    const auto refutes = [&](const Estimate& other) { return other.highest() <= first.lowest(); };
+    if (std::any_of(others.begin(), others.end(), refutes)) return ClaimVerdict::does_not_hold;
     const bool all = std::all_of(others.begin(), others.end(), [&](const Estimate& e) { return is_below(first, e); });
     return all && !others.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
 }
@@ -50,6 +50,21 @@ ClaimVerdict judge_above(const std::vector<Estimate>& ratios, double boundary)
     const bool all =
         std::all_of(ratios.begin(), ratios.end(), [&](const Estimate& r) { return r.lowest() > boundary; });
     return all && !ratios.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
+}
+
+ClaimVerdict judge_within(const std::vector<Estimate>& numbers, double reach)
+{
+    const auto is_inside = [&](const Estimate& e) { return e.lowest() >= -reach && e.highest() <= reach; };
+    const auto is_outside = [&](const Estimate& e) { return e.lowest() > reach || e.highest() < -reach; };
+    if (std::any_of(numbers.begin(), numbers.end(), is_outside)) return ClaimVerdict::does_not_hold;
+    const bool all = std::all_of(numbers.begin(), numbers.end(), is_inside);
+    return all && !numbers.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
+}
+
+ClaimVerdict judge_both(ClaimVerdict a, ClaimVerdict b)
+{
+    if (a == ClaimVerdict::does_not_hold || b == ClaimVerdict::does_not_hold) return ClaimVerdict::does_not_hold;
+    return a == b ? a : ClaimVerdict::not_testable;
 }
 
 ClaimVerdict judge_equal(double ours, double papers, double tolerance)

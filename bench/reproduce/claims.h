@@ -23,19 +23,20 @@ struct Claim {
 // The rules below turn intervals into verdicts; the words of a claim are its caller's. A rule never decides on what it
 // does not have: where an interval reaches over the boundary, or has no bound, the claim is not testable.
 
-/// How small a mean count is taken for none: the smallest that the paper tells of a method (Table 4).
-inline constexpr double count_resolution = 0.004;
-
-/// "There are none." One that was seen refutes it; none among all views proves it, none in a sample only where the
-/// upper bound is below count_resolution.
+/// "There are none." One that was seen refutes it; only a count of all proves it: a sample without any leaves room for
+/// those that were not looked at.
 [[nodiscard]] ClaimVerdict judge_none(const Estimate& count);
 /// "There are some": the opposite.
 [[nodiscard]] ClaimVerdict judge_some(const Estimate& count);
-/// "The first is less than each of the others", all estimated apart: their intervals must not meet. Without others,
-/// nothing can be said.
+/// "The first is less than each of the others", all estimated apart: their intervals must not meet; refuted by one
+/// that is nowhere above it. Without others, nothing can be said.
 [[nodiscard]] ClaimVerdict judge_less(const Estimate& first, const std::vector<Estimate>& others);
 /// "Every ratio is above the boundary": all intervals above it; refuted by one that is wholly below.
 [[nodiscard]] ClaimVerdict judge_above(const std::vector<Estimate>& ratios, double boundary);
+/// "Every number is 0, give or take the reach": all intervals within; refuted by one that is wholly outside.
+[[nodiscard]] ClaimVerdict judge_within(const std::vector<Estimate>& numbers, double reach);
+/// "Both hold": refuted where one is.
+[[nodiscard]] ClaimVerdict judge_both(ClaimVerdict a, ClaimVerdict b);
 /// "The number is the paper's, within the tolerance": for numbers without a spread. tolerance: relative, >= 0.
 [[nodiscard]] ClaimVerdict judge_equal(double ours, double papers, double tolerance);
 

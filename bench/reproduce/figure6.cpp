@@ -31,7 +31,7 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
     const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
     const auto [fewest, most] = std::minmax_element(steps.begin(), steps.end());
     const auto [shortest, longest] = std::minmax_element(seconds.begin(), seconds.end());
-    const auto r = correlation(steps, seconds);
+    const auto r = correlation(steps, seconds, run.sampling);
     const auto rays = static_cast<double>(run.scene->rays_per_view());
     const Line line = r ? fit_line(steps, seconds) : Line{};
     return {run.build.scene,

@@ -19,13 +19,19 @@ constexpr std::uint64_t seed = 0x7e77ace;
 constexpr double tail = (1 - reproduce_confidence) / 2;
 constexpr double normal_quantile = 1.959964; // of 1 - tail
 
+bool bounds_anything(std::size_t views, Sampling sampling)
+{
+    return views >= least_views && sampling != Sampling::chosen;
+}
+
 /// statistic: of the views with these indices.
-Estimate bootstrap(std::size_t views, const std::function<double(const std::vector<std::size_t>&)>& statistic)
+Estimate bootstrap(std::size_t views, Sampling sampling,
+                   const std::function<double(const std::vector<std::size_t>&)>& statistic)
 {
     std::vector<std::size_t> indices(views);
     std::iota(indices.begin(), indices.end(), std::size_t{0});
     Estimate estimate{statistic(indices), {}, {}, false};
-    if (views < 2) return estimate;
+    if (!bounds_anything(views, sampling)) return estimate;
     std::mt19937_64 random(seed);
     std::vector<double> values;
     for (int i = 0; i < resamples; ++i) {
@@ -76,34 +82,59 @@ Moments moments_of(const std::vector<double>& x, const std::vector<double>& y)
 
 } // namespace
 
-Estimate mean_count(const std::vector<double>& counts, std::size_t population, double unit)
+bool is_even(const std::vector<std::uint32_t>& views, std::size_t population)
 {
-    if (counts.empty() || counts.size() > population)
-        throw Error(ErrorKind::internal, "the mean of counts of no views, or of more than there are");
-    const auto views = static_cast<double>(counts.size());
-    const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
-    if (counts.size() == population) return {sum / views, {}, {}, true};
-    if (sum == 0) return {0, 0, 3 * unit / views, false};
-    return bootstrap(counts.size(), [&](const auto& indices) { return sum_of(counts, indices) / views; });
+    if (views.empty()) return false;
+    const double most = 2 * static_cast<double>(population) / static_cast<double>(views.size());
+    double before = -1;
+    for (const std::uint32_t view : views) {
+        if (view - before > most) return false;
+        before = view;
+    }
+    return static_cast<double>(population) - before <= most;
 }
 
-Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator)
+Estimate mean_count(const std::vector<double>& counts, Sampling sampling)
+{
+    if (counts.empty()) throw Error(ErrorKind::internal, "the mean of counts of no views");
+    const auto views = static_cast<double>(counts.size());
+    const double sum = std::accumulate(counts.begin(), counts.end(), 0.0);
+    if (sampling == Sampling::whole) return {sum / views, {}, {}, true};
+    if (sum == 0) return {0, 0, {}, false};
+    return bootstrap(counts.size(), sampling, [&](const auto& indices) { return sum_of(counts, indices) / views; });
+}
+
+Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator, Sampling sampling)
 {
     check_pairs("a ratio", numerator, denominator);
     if (std::any_of(denominator.begin(), denominator.end(), [](double value) { return !(value > 0); }))
         throw Error(ErrorKind::internal, "a ratio to what is not positive");
-    return bootstrap(numerator.size(),
+    return bootstrap(numerator.size(), sampling,
                      [&](const auto& indices) { return sum_of(numerator, indices) / sum_of(denominator, indices); });
 }
 
-std::optional<Estimate> correlation(const std::vector<double>& x, const std::vector<double>& y)
+std::optional<Estimate> correlation(const std::vector<double>& x, const std::vector<double>& y, Sampling sampling)
 {
     const Moments m = moments_of(x, y);
-    if (x.size() < 4 || !(m.xx > 0) || !(m.yy > 0)) return std::nullopt;
+    if (x.size() < least_views || !(m.xx > 0) || !(m.yy > 0)) return std::nullopt;
     const double r = std::clamp(m.xy / std::sqrt(m.xx * m.yy), -1.0, 1.0);
+    if (!bounds_anything(x.size(), sampling)) return Estimate{r, {}, {}, false};
     if (std::abs(r) == 1) return Estimate{r, r, r, false}; // its z is infinite
     const double reach = normal_quantile / std::sqrt(static_cast<double>(x.size()) - 3);
     return Estimate{r, std::tanh(std::atanh(r) - reach), std::tanh(std::atanh(r) + reach), false};
+}
+
+Estimate intercept_share(const std::vector<double>& x, const std::vector<double>& y, Sampling sampling)
+{
+    return bootstrap(x.size(), sampling, [&](const auto& indices) {
+        std::vector<double> xs, ys;
+        for (const std::size_t index : indices) {
+            xs.push_back(x[index]);
+            ys.push_back(y[index]);
+        }
+        const Moments m = moments_of(xs, ys);
+        return m.xx > 0 ? 1 - m.xy / m.xx * m.mean_x / m.mean_y : 1;
+    });
 }
 
 Line fit_line(const std::vector<double>& x, const std::vector<double>& y)

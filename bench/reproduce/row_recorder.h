@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/reproduce/image_record.h"
+#include "bench/reproduce/interval.h"
 #include "bench/reproduce/journal.h"
 #include "bench/stopwatch.h"
 
@@ -14,6 +15,7 @@ namespace tetrace {
 struct RecordedRows {
     std::vector<RowRun> rows;
     std::vector<std::vector<ImageRecord>> images; ///< row by row, part by part; fewer where a row failed
+    Sampling sampling = Sampling::even;           ///< how the parts were taken from all that there are
 };
 
 /// Whether the row came through all parts with an answer.

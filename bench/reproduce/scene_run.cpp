@@ -1,5 +1,6 @@
 #include "bench/reproduce/scene_run.h"
 
+#include "bench/reproduce/paper.h"
 #include "bench/row_json.h"
 #include "bench/rows.h"
 #include "core/hash.h"
@@ -88,6 +89,14 @@ void SceneRun::close()
     verifier.reset();
 }
 
+Sampling sampling_of(const SceneWork& scene, std::size_t population)
+{
+    const auto& views = scene.view_numbers();
+    if (!is_even(views, population)) return Sampling::chosen;
+    const bool is_whole = views.size() == population && scene.rays_per_view() >= paper::image_pixels;
+    return is_whole ? Sampling::whole : Sampling::even;
+}
+
 SceneRun open_scene_run(const SceneBuild& build, const Options& options)
 {
     SceneRun run;
@@ -95,6 +104,7 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
     const auto keys = select_rows(options, {build.label});
     try {
         run.scene = std::make_unique<SceneWork>(load_work(build.request, options, build.label));
+        run.sampling = sampling_of(*run.scene, view_count(options.camera_set));
         if (build.robustness) run.flat = std::make_unique<FlatTets>(*run.scene);
         run.verifier = std::make_unique<Verifier>(*run.scene, options);
         for (const RowKey& key : keys)

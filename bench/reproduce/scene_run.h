@@ -42,6 +42,9 @@ struct SceneRun : RecordedRows {
 /// Those of a run that a table is about.
 using SceneRuns = std::vector<const SceneRun*>;
 
+/// How the scene's views were taken from a camera set of `population` views, for images of the paper's size.
+[[nodiscard]] Sampling sampling_of(const SceneWork& scene, std::size_t population);
+
 /// Loads the scene and opens its rows; a scene that cannot be loaded ends its rows with the reason.
 [[nodiscard]] SceneRun open_scene_run(const SceneBuild& build, const Options& options);
 

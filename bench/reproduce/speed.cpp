@@ -79,23 +79,25 @@ struct Ratios {
         ratios.push_back(
             {fmt::format("{} / {}", above, below),
              fmt::format("{} {} {}", other.key.scene, name_of(other.key.kernel.layout), device_label(other.key)),
-             ratio_of_sums(view_seconds(run, a), view_seconds(run, b))});
+             ratio_of_sums(view_seconds(run, a), view_seconds(run, b), run.sampling)});
     }
 
     void decide(Claim& claim) const
     {
         claim.evidence = "Times of the same rays: " + text() + ".";
-        if (!missing.empty())
-            claim.evidence = missing;
-        else if (ratios.empty())
-            claim.evidence = "No row that it is about has a rate.";
-        else {
-            std::vector<Estimate> estimates;
-            for (const TimeRatio& ratio : ratios)
-                estimates.push_back(ratio.estimate);
-            claim.verdict = judge_above(estimates, 1);
-            withdraw_if_noisy(claim, noisy);
+        if (ratios.empty()) {
+            claim.evidence = missing.empty() ? "No row that it is about has a rate." : missing;
+            return;
         }
+        std::vector<Estimate> estimates;
+        for (const TimeRatio& ratio : ratios)
+            estimates.push_back(ratio.estimate);
+        claim.verdict = judge_above(estimates, 1);
+        if (!missing.empty()) { // what is there may refute the claim, and cannot show it
+            claim.evidence += ' ' + missing;
+            if (claim.verdict == ClaimVerdict::holds) claim.verdict = ClaimVerdict::not_testable;
+        }
+        withdraw_if_noisy(claim, noisy);
     }
 
 private:
@@ -112,15 +114,23 @@ private:
     }
 };
 
-/// Rows of maria that have a rate and are meant.
+/// Rows of the method that have a rate and are meant.
 template <class Visit>
-void for_marias(const RecordedRuns& runs, const IsMeant& is_meant, const Visit& visit)
+void for_rows_of(Method method, const RecordedRuns& runs, const IsMeant& is_meant, const Visit& visit)
 {
     for (const RecordedRows* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (run->rows[i].key.kernel.method == Method::maria && is_meant(run->rows[i]) &&
-                !view_seconds(*run, i).empty())
+            if (run->rows[i].key.kernel.method == method && is_meant(run->rows[i]) && !view_seconds(*run, i).empty())
                 visit(*run, run->rows[i]);
+}
+
+/// Rows that have a rate on a device of that type.
+template <class Visit>
+void for_rated_rows(const RecordedRuns& runs, const std::string& type, const Visit& visit)
+{
+    for (const RecordedRows* run : runs)
+        for (std::size_t i = 0; i < run->rows.size(); ++i)
+            if (run->rows[i].device.type == type && !view_seconds(*run, i).empty()) visit(*run, i);
 }
 
 IsMeant of_type(const std::string& type)
@@ -175,7 +185,7 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
         return claim;
     }
     Ratios ratios;
-    for_marias(runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
+    for_rows_of(Method::maria, runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
         for (const Method method : older_methods())
             ratios.add(run, row, name_of(method), "maria");
     });
@@ -186,8 +196,8 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
 Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 {
     Ratios ratios;
-    for_marias(runs, of_type("gpu"),
-               [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
+    for_rows_of(Method::plucker, runs, of_type("gpu"),
+                [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
     ratios.decide(claim);
     if (ratios.ratios.empty() && ratios.missing.empty()) claim.evidence = "No row of a GPU has a rate.";
     return claim;
@@ -206,21 +216,31 @@ Claim proportional_claim(const RecordedRuns& runs, const std::string& type)
                 fmt::format("time is proportional to the tets traversed, on a {}", type == "gpu" ? "GPU" : "CPU"),
                 {},
                 ""};
-    std::vector<Estimate> correlations;
-    bool noisy = false;
-    for (const RecordedRows* run : runs)
-        for (std::size_t i = 0; i < run->rows.size(); ++i) {
-            const auto seconds = view_seconds(*run, i);
-            if (run->rows[i].device.type != type || seconds.empty()) continue;
-            noisy = noisy || is_noisy(run->rows[i]);
-            correlations.push_back(correlation(view_steps(*run, i), seconds).value_or(Estimate{}));
-            claim.evidence += fmt::format("{}{}: r = {}", claim.evidence.empty() ? "" : "; ", series_name(run->rows[i]),
-                                          estimate_text(correlations.back()));
-        }
-    claim.verdict = judge_above(correlations, proportional_above);
-    claim.evidence += correlations.empty() ? fmt::format("No row of a {} has a rate.", type == "gpu" ? "GPU" : "CPU")
-                                           : fmt::format(". Above {} is taken for proportional.", proportional_above);
-    withdraw_if_noisy(claim, noisy);
+    std::vector<Estimate> correlations, intercepts;
+    bool noisy = false, is_short = false;
+    for_rated_rows(runs, type, [&](const RecordedRows& run, std::size_t i) {
+        const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
+        const auto r = correlation(steps, seconds, run.sampling);
+        is_short = is_short || !r;
+        if (!r) return;
+        noisy = noisy || is_noisy(run.rows[i]);
+        correlations.push_back(*r);
+        intercepts.push_back(intercept_share(steps, seconds, run.sampling));
+        claim.evidence +=
+            fmt::format("{}{}: r = {}, at 0 tets {} of the mean time", claim.evidence.empty() ? "" : "; ",
+                        series_name(run.rows[i]), estimate_text(correlations.back()), estimate_text(intercepts.back()));
+    });
+    if (is_short)
+        claim.evidence = fmt::format("It takes {} views that differ.", least_views);
+    else if (correlations.empty())
+        claim.evidence = fmt::format("No row of a {} has a rate.", type == "gpu" ? "GPU" : "CPU");
+    else {
+        claim.verdict =
+            judge_both(judge_above(correlations, proportional_above), judge_within(intercepts, proportional_intercept));
+        claim.evidence += fmt::format(". Proportional: r above {}, and at 0 tets at most {} of the mean time.",
+                                      proportional_above, proportional_intercept);
+        withdraw_if_noisy(claim, noisy);
+    }
     return claim;
 }
 

@@ -75,7 +75,7 @@ const std::vector<Column>& columns()
     return list;
 }
 
-std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i, std::size_t population)
+std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
     const std::string status(name_of(status_of(row)));
@@ -86,9 +86,7 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i, std::size_t 
         cells.back() = fmt::format("{}: {}", status, reason_of(row));
         return cells;
     }
-    const auto estimate = [&](const Count& count) {
-        return mean_count(counts_of(run, i, count), population, scale_of(run));
-    };
+    const auto estimate = [&](const Count& count) { return mean_count(counts_of(run, i, count), run.sampling); };
     const bool is_maria = row.key.kernel.method == Method::maria;
     cells.push_back(exact_cell(static_cast<double>(run.images[i].size())));
     cells.push_back(
@@ -107,12 +105,12 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i, std::size_t 
 /// The counts of a method over all its scenes, image by image.
 struct MethodCounts {
     std::vector<double> counts;
-    std::size_t population = 0;
-    double unit = 1;
+    std::size_t views = 0;               ///< of the camera set, once a scene
+    Sampling sampling = Sampling::whole; ///< the worst of the scenes'
     std::uint64_t rays = 0, flawed = 0;
     std::string scenes;
 
-    [[nodiscard]] Estimate mean() const { return mean_count(counts, population, unit); }
+    [[nodiscard]] Estimate mean() const { return mean_count(counts, sampling); }
 };
 
 MethodCounts method_counts(const std::vector<MethodRow>& rows, Method method, std::size_t population)
@@ -123,8 +121,8 @@ MethodCounts method_counts(const std::vector<MethodRow>& rows, Method method, st
         if (run.key.kernel.method != method) continue;
         const auto counts = counts_of(*row.run, row.row, flawed_rays);
         sum.counts.insert(sum.counts.end(), counts.begin(), counts.end());
-        sum.population += population;
-        sum.unit = scale_of(*row.run); // all scenes are traced at one size
+        sum.views += population;
+        sum.sampling = std::max(sum.sampling, row.run->sampling);
         sum.rays += traced(run)->verdicts.rays;
         sum.flawed += traced(run)->verdicts.wrong + traced(run)->verdicts.lost;
         sum.scenes += (sum.scenes.empty() ? "" : ", ") + row.run->build.scene;
@@ -134,9 +132,9 @@ MethodCounts method_counts(const std::vector<MethodRow>& rows, Method method, st
 
 std::string counts_evidence(const MethodCounts& counts, const Estimate& mean)
 {
-    return fmt::format("{} of {} rays in {} of {} images of {}; an image: {}.", with_commas(counts.flawed),
-                       with_commas(counts.rays), with_commas(counts.counts.size()), with_commas(counts.population),
-                       counts.scenes, estimate_text(mean));
+    return fmt::format("{} of {} rays in {} of {} images of {}; an image of the paper's size: {}.",
+                       with_commas(counts.flawed), with_commas(counts.rays), with_commas(counts.counts.size()),
+                       with_commas(counts.views), counts.scenes, estimate_text(mean));
 }
 
 Claim count_claim(const std::vector<MethodRow>& rows, Method method, std::size_t population, bool some)
@@ -152,9 +150,7 @@ Claim count_claim(const std::vector<MethodRow>& rows, Method method, std::size_t
     claim.verdict = some ? judge_some(mean) : judge_none(mean);
     claim.evidence = counts_evidence(counts, mean);
     if (claim.verdict == ClaimVerdict::not_testable)
-        claim.evidence += fmt::format(" The sample cannot tell this from {}, the least that the paper has of an older "
-                                      "method: that takes more than {} images of 1024x1024 without a wrong ray.",
-                                      count_resolution, static_cast<int>(3 / count_resolution));
+        claim.evidence += " None in a sample does not show that there is none: that takes all rays of all views.";
     return claim;
 }
 
@@ -173,10 +169,29 @@ Claim fewest_claim(const std::vector<MethodRow>& rows, std::size_t population)
     const auto maria = mean_of(Method::maria);
     for (const Method method : older_methods())
         if (const auto mean = mean_of(method)) others.push_back(*mean);
-    if (maria && !others.empty()) claim.verdict = judge_less(*maria, others);
-    claim.evidence +=
-        maria && !others.empty() ? " rays an image." : " (no row of an older method was verified beside).";
+    if (maria) claim.verdict = judge_less(*maria, others);
+    if (!claim.evidence.empty()) claim.evidence += " rays an image.";
+    if (!maria) claim.evidence += " No row of maria was verified.";
+    if (others.empty()) claim.evidence += " No row of an older method was verified.";
     return claim;
+}
+
+/// What the numbers of this kind of sample say of the whole set.
+std::string sampling_note(Sampling sampling, std::size_t population)
+{
+    switch (sampling) {
+    case Sampling::whole: return fmt::format("All rays of all {} views: the means are exact.", with_commas(population));
+    case Sampling::even:
+        return fmt::format("An interval is that of the mean over all rays of the camera set's {} views: percentile "
+                           "bootstrap over the views traced, {} at least. Where none of these rays was seen there is "
+                           "none: such rays come in crowds, and a view left out may have one.",
+                           with_commas(population), least_views);
+    case Sampling::chosen:
+        return fmt::format("The views traced are not spread evenly over the camera set's {}: they say nothing of the "
+                           "others, and the means have no interval.",
+                           with_commas(population));
+    }
+    return {};
 }
 
 std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
@@ -188,16 +203,15 @@ std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
         "Lost: no exit face was found, or, in a cycle, the walk took as many steps as it may.",
         "The oracle judges what openmp answers; each device's hits are compared with openmp's ray by ray, and images "
         "of one hash are judged once.",
-        fmt::format("An interval is that of the mean over the camera set's {} views: percentile bootstrap over the "
-                    "views traced; where none of these rays was seen, from 0 to 3 / views (rule of three). All views "
-                    "traced, there is none.",
-                    with_commas(population)),
         fmt::format("A tet is flat where its shortest altitude is below {} of its longest edge. Shares are of at most "
                     "{} rays an image, spread over it, and of the first {} steps of each, traced by openmp.",
                     flat_below, FlatTets::rays_looked_at, FlatTets::steps_looked_at),
         fmt::format("The paper: {} to {} rays an image for the older methods, {} for theirs. {}",
                     paper::least_wrong_of_older, paper::most_wrong_of_older, paper::wrong_of_maria,
                     paper::rest_is_there)};
+    const auto loaded = std::find_if(runs.begin(), runs.end(), [](const auto* run) { return run->scene != nullptr; });
+    if (loaded != runs.end())
+        notes.push_back(sampling_note((*loaded)->sampling, population)); // all have the same views
     for (const SceneRun* run : runs) {
         if (run->scene == nullptr || run->flat == nullptr) continue;
         notes.push_back(fmt::format(
@@ -245,7 +259,7 @@ PaperTable table4(const SceneRuns& runs, std::size_t population)
                      notes_of(runs, population)};
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            table.rows.push_back(cells_of(*run, i, population));
+            table.rows.push_back(cells_of(*run, i));
     const auto rows = method_rows(runs);
     table.claims.push_back(count_claim(rows, Method::maria, population, false));
     for (const Method method : older_methods())
