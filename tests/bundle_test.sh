@@ -34,7 +34,7 @@ runs_all_steps_without_this_systems_drivers)
         tail -n 20 "$folder"/out/*.log
         fail "run-all ended with $?"
     }
-    for file in devices.json check.json check.xml bench.json bench-8x4.json bench-8x8.json bench-fast.json; do
+    for file in devices.json check.json check.xml bench.json bench-8x4.json bench-8x8.json bench-fast.json reproduce.json; do
         [ -s "$folder/out/$file" ] || fail "no $file"
     done
     ls "$folder"/out/pictures-openmp/*.ppm || fail "no pictures"

@@ -28,7 +28,7 @@ case $claim in
 steps_that_end_well_give_0)
     tetrace_is 'echo "it ran: $*"'
     run_all 0 "$out" --quick
-    for step in devices check bench bench-8x4 bench-8x8 bench-fast render-openmp render-cuda; do
+    for step in devices check bench bench-8x4 bench-8x8 bench-fast render-openmp render-cuda reproduce; do
         summary_has "^$step +ok "
         grep -q 'it ran' "$out/$step.txt" || fail "what $step printed is not kept"
     done
