@@ -312,14 +312,13 @@ TEST_F(report_page, pictures_are_in_the_page_byte_for_byte)
     EXPECT_TRUE(contains(section_of(page_of({result}), "paper"), base64(white_pixel))) << "relative to the result";
 }
 
-TEST_F(report_page, what_is_no_picture_is_named)
+TEST_F(report_page, a_named_picture_that_is_missing_is_a_sentence_and_one_asked_for_an_error)
 {
-    write_text(folder_ / "a.png", "P6 1 1 255 xxx and more bytes than a head has");
-    EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_ / "a.png"}), "invalid_input: reading the picture"));
+    json result = reproduce_json();
+    result["tetrace"]["figures"][0]["pictures"] = {"none.png"};
+    const std::string paper = section_of(page_of({result}), "paper");
+    EXPECT_TRUE(contains(paper, "The picture &apos;none.png&apos;, which the result names, is not shown: there is no"));
     EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_ / "none.png"}), "missing: reading the picture"));
-    EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_.path()}), "invalid_input: "));
-    write_text(folder_ / "a.png", white_pixel.substr(0, 20));
-    EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_ / "a.png"}), "it is no PNG"));
 }
 
 TEST_F(report_page, values_that_cannot_be_drawn_are_named_with_their_key)

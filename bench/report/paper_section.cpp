@@ -134,7 +134,7 @@ Html pictures_of(const ResultValue& part, const std::filesystem::path& result)
     Html pictures;
     if (const auto names = part.find("pictures"))
         for (const ResultValue& name : names->items())
-            pictures += picture_figure(result.parent_path() / name.line());
+            pictures += named_picture(result.parent_path(), name.line());
     return pictures.empty() ? pictures : side_by_side(pictures);
 }
 

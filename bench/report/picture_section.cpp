@@ -11,7 +11,7 @@ Section picture_section(const ReportInput& input)
         pictures += picture_figure(path);
     section.content =
         pictures.empty()
-            ? paragraph("No picture was given: --picture takes PNG files, which 'tetrace render' writes (the "
+            ? paragraph("No picture was given: --picture takes PNG and PPM files, which 'tetrace render' writes (the "
                         "surface, and the steps of each ray), and 'tetrace check' where a row differs.")
             : side_by_side(pictures);
     return section;

@@ -1,13 +1,16 @@
 #include "bench/report/png.h"
 
 #include "bench/report/html_table.h"
+#include "bench/report/png_encoder.h"
 #include "core/error.h"
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace tetrace {
 
@@ -16,9 +19,15 @@ namespace {
 constexpr std::uintmax_t largest_file = std::uintmax_t{64} << 20;
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
 
-[[noreturn]] void reject(const std::filesystem::path& path, ErrorKind kind, const std::string& why)
+/// Why a file is no picture.
+struct Problem {
+    ErrorKind kind;
+    std::string why;
+};
+
+Problem not_valid(const std::string& why)
 {
-    throw Error(kind, fmt::format("reading the picture '{}': {}", path.string(), why));
+    return {ErrorKind::invalid_input, why};
 }
 
 /// Four bytes, the highest first.
@@ -30,37 +39,83 @@ std::uint32_t word_at(const std::string& bytes, std::size_t offset)
     return word;
 }
 
-} // namespace
+bool is_size(std::uint32_t width, std::uint32_t height)
+{
+    return width >= 1 && height >= 1 && width <= 65535 && height <= 65535;
+}
 
-Png read_png(const std::filesystem::path& path)
+Png converted(const std::string& ppm)
+{
+    std::istringstream head(ppm.substr(0, 64));
+    std::string kind;
+    std::uint32_t width = 0, height = 0, levels = 0;
+    head >> kind >> width >> height >> levels;
+    if (!head || kind != "P6" || levels != 255 || std::isspace(head.peek()) == 0)
+        throw not_valid("it is neither PNG nor PPM; 'tetrace render --out PICTURE.png' writes one");
+    if (!is_size(width, height)) throw not_valid(fmt::format("it says to be {} x {} pixels", width, height));
+    const std::string_view pixels = std::string_view(ppm).substr(static_cast<std::size_t>(head.tellg()) + 1);
+    if (pixels.size() != std::size_t{3} * width * height)
+        throw not_valid(fmt::format("it has not the bytes of {} x {} pixels", width, height));
+    return {png_bytes(width, height, pixels), width, height};
+}
+
+std::string file_bytes(const std::filesystem::path& path)
 {
     std::error_code problem;
-    if (!std::filesystem::exists(path, problem)) reject(path, ErrorKind::missing, "there is no such file");
-    if (!std::filesystem::is_regular_file(path, problem)) reject(path, ErrorKind::invalid_input, "it is no file");
-    if (std::filesystem::file_size(path, problem) > largest_file)
-        reject(path, ErrorKind::invalid_input, "it is larger than 64 MiB");
+    if (!std::filesystem::exists(path, problem)) throw Problem{ErrorKind::missing, "there is no such file"};
+    if (!std::filesystem::is_regular_file(path, problem)) throw not_valid("it is no file");
+    if (std::filesystem::file_size(path, problem) > largest_file) throw not_valid("it is larger than 64 MiB");
     std::ifstream file(path, std::ios::binary);
-    if (!file) reject(path, ErrorKind::invalid_input, std::strerror(errno));
-    Png png{{std::istreambuf_iterator<char>(file), {}}, 0, 0};
+    if (!file) throw not_valid(std::strerror(errno));
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Throws Problem.
+Png picture_of(const std::filesystem::path& path)
+{
+    Png png{file_bytes(path), 0, 0};
     if (png.bytes.size() < signature.size() + 8 || png.bytes.compare(0, signature.size(), signature) != 0)
-        reject(path, ErrorKind::invalid_input, "it is no PNG; 'tetrace render --out PICTURE.png' writes one");
+        return converted(png.bytes);
     png.width = word_at(png.bytes, signature.size());
     png.height = word_at(png.bytes, signature.size() + 4);
-    if (png.width == 0 || png.height == 0 || png.width > 65535 || png.height > 65535)
-        reject(path, ErrorKind::invalid_input, fmt::format("it says to be {} x {} pixels", png.width, png.height));
+    if (!is_size(png.width, png.height))
+        throw not_valid(fmt::format("it says to be {} x {} pixels", png.width, png.height));
     return png;
 }
 
-Html picture_figure(const std::filesystem::path& path)
+Html shown(const Png& png, const std::string& name)
 {
-    const Png png = read_png(path);
-    const std::string name = path.stem().string();
     return figure("",
                   element("img", {{"src", "data:image/png;base64," + base64(png.bytes)},
                                   {"alt", name},
                                   {"width", std::to_string(png.width)},
                                   {"height", std::to_string(png.height)}}),
                   name);
+}
+
+} // namespace
+
+Png read_picture(const std::filesystem::path& path)
+{
+    try {
+        return picture_of(path);
+    } catch (const Problem& problem) {
+        throw Error(problem.kind, fmt::format("reading the picture '{}': {}", path.string(), problem.why));
+    }
+}
+
+Html picture_figure(const std::filesystem::path& path)
+{
+    return shown(read_picture(path), path.stem().string());
+}
+
+Html named_picture(const std::filesystem::path& folder, const std::string& name)
+{
+    try {
+        return shown(picture_of(folder / name), std::filesystem::path(name).stem().string());
+    } catch (const Problem& problem) {
+        return note(fmt::format("The picture '{}', which the result names, is not shown: {}.", name, problem.why));
+    }
 }
 
 } // namespace tetrace
