@@ -5,6 +5,7 @@ namespace tetrace {
 
 int compare_command(const Options& options)
 {
+    if (options.out) check_not_an_input(*options.out, options.files);
     check_output(options);
     const ResultFile before = read_result(options.files.at(0));
     const ResultFile after = read_result(options.files.at(1));

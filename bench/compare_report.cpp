@@ -3,6 +3,7 @@
 #include "bench/bench_report.h"
 #include "bench/statistics.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -103,21 +104,40 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
     return sentences;
 }
 
+/// A value of the section `tetrace`; null where the result has none there.
+nlohmann::json recorded(const ResultFile& file, const char* pointer)
+{
+    const nlohmann::json::json_pointer place(pointer);
+    const nlohmann::json& section = file.json.at("tetrace");
+    return section.contains(place) ? section.at(place) : nlohmann::json();
+}
+
 /// What the two results do not share, besides their date: a ratio tells of all of it together.
 std::string differences_text(const ResultComparison& comparison)
 {
-    const ResultHead& a = comparison.before->head;
-    const ResultHead& b = comparison.after->head;
+    struct Fact {
+        const char *pointer, *name;
+    };
+    constexpr Fact facts[] = {{"/version", "the version"},
+                              {"/commit", "the commit"},
+                              {"/compiler", "the compiler"},
+                              {"/flags", "the compiler's flags"},
+                              {"/host/cpu", "the processor"},
+                              {"/host/system", "the system"},
+                              {"/host/threads", "the threads that the process may use"},
+                              {"/threads", "the threads that it used"}};
     std::vector<std::string> differences;
-    if (a.commit != b.commit) differences.emplace_back("the commit");
-    if (a.cpu != b.cpu) differences.emplace_back("the processor");
-    if (a.system != b.system) differences.emplace_back("the system");
+    for (const Fact& fact : facts)
+        if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))
+            differences.emplace_back(fact.name);
     for (const ComparedRow& row : comparison.rows)
         if (row.outcome == RowOutcome::compared && device_text(*row.before) != device_text(*row.after)) {
             differences.emplace_back("devices or their drivers");
             break;
         }
-    return differences.empty() ? "nothing that the results record." : fmt::format("{}.", fmt::join(differences, ", "));
+    return differences.empty() ? "nothing of version, commit, compiler, flags, processor, system, threads, devices and "
+                                 "drivers."
+                               : fmt::format("{}.", fmt::join(differences, ", "));
 }
 
 std::string head_text(const ResultComparison& comparison)
@@ -133,8 +153,7 @@ std::string notes_text(const ResultComparison& comparison)
 {
     std::string text;
     for (const ComparedRow& row : comparison.rows)
-        if (row.outcome != RowOutcome::compared)
-            text += fmt::format("{}: {}: {}\n", row.name(), row.verdict(), row.note());
+        if (!row.note().empty()) text += fmt::format("{}: {}: {}\n", row.name(), row.verdict(), row.note());
     return text.empty() ? text : text + "\n";
 }
 
@@ -144,6 +163,12 @@ std::size_t count_of(const ResultComparison& comparison, SpeedVerdict verdict)
     for (const ComparedRow& row : comparison.rows)
         count += row.change && row.change->verdict == verdict ? 1 : 0;
     return count;
+}
+
+std::size_t too_few_count(const ResultComparison& comparison)
+{
+    return static_cast<std::size_t>(std::count_if(comparison.rows.begin(), comparison.rows.end(),
+                                                  [](const ComparedRow& row) { return row.has_too_few_samples(); }));
 }
 
 std::string summary_text(const ResultComparison& comparison)
@@ -157,6 +182,8 @@ std::string summary_text(const ResultComparison& comparison)
             text += fmt::format("{}{} {}", separator, count, name_of(verdict));
             separator = ", ";
         }
+    if (const std::size_t count = too_few_count(comparison); count > 0)
+        text += fmt::format("; {} with too few samples for an interval", count);
     if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);
     return text + ".";
 }
@@ -186,7 +213,8 @@ std::string verdicts_text(double tolerance)
 {
     return fmt::format(
         "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
-        "1. UNSURE: it does, and reaches beyond the tolerance; more samples would tell.",
+        "1. UNSURE: it does, and reaches beyond the tolerance, or there are too few samples for an interval; more "
+        "would tell.",
         1 / (1 + tolerance), 1 + tolerance);
 }
 

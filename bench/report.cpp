@@ -57,6 +57,17 @@ void check_output(const Options& options)
     check_writable("--out", *options.out);
 }
 
+void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs)
+{
+    for (const std::filesystem::path& input : inputs) {
+        std::error_code not_there; // then they are not the same
+        if (std::filesystem::equivalent(out, input, not_there))
+            throw Error(ErrorKind::usage, fmt::format("--out: writing '{}' would replace the input '{}'; name another "
+                                                      "file",
+                                                      out.string(), input.string()));
+    }
+}
+
 void check_writable(const char* option, const std::filesystem::path& path)
 {
     const bool existed = std::filesystem::exists(path);

@@ -23,6 +23,10 @@ struct Report {
 /// Throws Error{usage} or Error{invalid_input} naming the file.
 void check_output(const Options& options);
 
+/// Fails before a result replaces one that it is made from. Throws Error{usage} naming the option and both files where
+/// `out` is one of the inputs, by whatever name.
+void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
+
 /// Leaves no file behind that was not there. Throws Error{invalid_input} naming the option, the file and the system's
 /// reason where it cannot be written.
 void check_writable(const char* option, const std::filesystem::path& path);

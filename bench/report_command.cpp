@@ -11,6 +11,8 @@ namespace tetrace {
 int report_command(const Options& options)
 {
     const std::filesystem::path out = options.out.value_or("report.html");
+    check_not_an_input(out, options.files);
+    check_not_an_input(out, options.report_pictures);
     const std::string page = report_page(read_report_input(options.files, options.report_pictures));
     write_text(out, page);
     say(fmt::format("{}: {}, from {} {}", out.string(), size_text(page.size()), options.files.size(),

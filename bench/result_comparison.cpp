@@ -135,6 +135,9 @@ std::string ComparedRow::verdict() const
 
 std::string ComparedRow::note() const
 {
+    if (has_too_few_samples())
+        return fmt::format("too few samples for an interval: {} in A and {} in B", before->samples_s.size(),
+                           after->samples_s.size());
     const std::string a = why_untimed("A", before), b = why_untimed("B", after);
     return a + (a.empty() || b.empty() ? "" : "; ") + b;
 }

@@ -28,7 +28,11 @@ struct ComparedRow {
     [[nodiscard]] const std::string& name() const { return (before != nullptr ? before : after)->name; }
     /// "SAME", "FASTER", "SLOWER" and "UNSURE" of compared rows; else "FAILED", "MISSING", "NEW" or "NOT TIMED".
     [[nodiscard]] std::string verdict() const;
-    /// Why the row is not compared, "B: skipped: no device", with B for after and A for before; empty of compared rows.
+    /// Compared by its medians alone: the samples allow no interval, so that its verdict is "UNSURE" however far the
+    /// medians lie apart.
+    [[nodiscard]] bool has_too_few_samples() const { return change && !change->interval; }
+    /// Why the row is not compared, "B: skipped: no device", with B for after and A for before; that a compared row has
+    /// too few samples; else empty.
     [[nodiscard]] std::string note() const;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -105,6 +106,52 @@ TEST_F(compare, tells_what_else_differs)
     EXPECT_TRUE(contains(unwrapped(ended), "the commit, devices or their drivers."));
     EXPECT_TRUE(contains(unwrapped(ended), "another driver in B"));
     EXPECT_TRUE(contains(unwrapped(ended), "(fedcba9)"));
+}
+
+TEST_F(compare, tells_of_threads_compiler_flags_and_version)
+{
+    const Ended ended = compare_with([](Json& section) {
+        section["version"] = "0.0.1";
+        section["compiler"] = "another";
+        section["flags"] = "-O0";
+        section["threads"] = section["threads"].get<int>() + 1;
+        section["host"].erase("threads");
+    });
+    EXPECT_TRUE(contains(unwrapped(ended),
+                         "Differ in the version, the compiler, the compiler's flags, the threads that "
+                         "the process may use, the threads that it used."))
+        << ended.out;
+}
+
+TEST_F(compare, says_so_where_samples_are_too_few_to_tell)
+{
+    const Ended ended = compare_with([](Json& section) {
+        section["rows"][1]["times"]["samples_s"] = {10.00, 10.01, 10.02};
+    });
+    EXPECT_EQ(ended.code, 0);
+    EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: too few samples for an interval: 7 in A and 3 in B"));
+    EXPECT_TRUE(contains(unwrapped(ended), "3 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
+}
+
+TEST_F(compare, never_replaces_what_it_compares)
+{
+    write("a.json", result());
+    write("b.json", result());
+    std::filesystem::create_symlink("b.json", folder_ / "link.json");
+    const std::string before = file("a.json"), after = file("b.json");
+    for (const char* const out : {"a.json", "./b.json", "link.json"}) {
+        const Ended ended = run(std::string("compare a.json b.json --out ") + out);
+        EXPECT_EQ(ended.code, 2) << out;
+        EXPECT_TRUE(contains(ended.errors, "would replace the input")) << ended.errors;
+    }
+    EXPECT_EQ(file("a.json"), before);
+    EXPECT_EQ(file("b.json"), after);
+    EXPECT_EQ(run("report a.json --out a.json").code, 2);
+    write_text(folder_ / "p.png", "a picture");
+    EXPECT_EQ(run("report a.json --picture p.png --out p.png").code, 2);
+    EXPECT_EQ(file("a.json"), before);
+    EXPECT_EQ(file("p.png"), "a picture");
+    EXPECT_EQ(run("compare a.json b.json --out c.json").code, 0);
 }
 
 TEST_F(compare, refuses_other_scenes_and_other_hits_naming_the_row)
