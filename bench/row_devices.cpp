@@ -45,6 +45,7 @@ void attempt(RowDevice& device, const char* what, const Work& work)
 void measure_device(RowDevice& device, const SessionOptions& options)
 {
     attempt(device, "yardstick", [&] {
+        if (device.yardstick) return;
         device.yardstick = yardstick_of(*device.backend, device.index, options);
         if (!device.yardstick && runs_on_host(device.device))
             device.yardstick = yardstick_of(openmp_backend(), 0, options);

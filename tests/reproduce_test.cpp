@@ -5,6 +5,7 @@
 #include <csignal>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -93,14 +94,6 @@ const json& of_id(const json& list, const std::string& id)
     for (const json& one : list)
         if (one.at("id") == id) return one;
     throw std::runtime_error("nothing of id " + id);
-}
-
-/// What is not of the devices' bandwidth, which every run measures again.
-json without_yardstick(json table)
-{
-    for (json& row : table.at("rows"))
-        row.erase("copy_percent");
-    return table;
 }
 
 } // namespace
@@ -221,7 +214,89 @@ TEST_F(reproduce, table5_has_every_search_of_every_method_without_a_scene)
     EXPECT_TRUE(contains(claim(table, "table5-maria-exact")["evidence"], "5,120 searches by 2 rows: 0 wrong"));
     EXPECT_TRUE(contains(claim(table, "table5-maria-fastest-cpu")["evidence"], "plane / maria"));
     EXPECT_TRUE(contains(claim(table, "table5-plucker-overtakes-stp-gpu")["evidence"], "No row of a GPU"));
-    EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1) << "head, batches, end";
+    EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
+}
+
+TEST_F(reproduce, table5_records_what_it_was_made_from)
+{
+    const Ended ended = run("table5 --searches 40x64 --method maria --layout tet80 --samples 3 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    EXPECT_EQ(section["samples_a_row"], 3);
+    EXPECT_EQ(section["searches"]["tets"], 40);
+    EXPECT_EQ(section["searches"]["rays_a_tet"], 64);
+    EXPECT_EQ(section["searches"]["batches"], 20);
+    ASSERT_EQ(section["searches"]["rows"].size(), 1u);
+    const json row = section["searches"]["rows"][0];
+    EXPECT_EQ(row["name"], "search/maria/tet80/random-tets/math:exact/api:openmp/threads:1");
+    EXPECT_EQ(row["status"], "ok");
+    EXPECT_EQ(row["host_threads"], 1);
+    EXPECT_EQ(row["times"]["clock"], "host steady clock");
+    EXPECT_EQ(row["times"]["samples_s"].size(), 3u);
+    EXPECT_EQ(row["batch_medians_s"].size(), 20u);
+    EXPECT_EQ(row["face_hash"].get<std::string>().size(), 16u);
+    EXPECT_EQ(row["verification"]["searches"], 40 * 64);
+    EXPECT_EQ(row["verification"]["wrong"], 0);
+    const json table = of_id(section["tables"], "table5");
+    EXPECT_EQ(row["msearches_per_s"], table["rows"][0]["msearches_per_s"]["value"]);
+}
+
+TEST_F(reproduce, samples_a_row_are_none_where_nothing_is_timed)
+{
+    ASSERT_EQ(run("table4 --method maria --layout tet80 --size 8 --views 0 --samples 7 --out r.json").code, 0);
+    EXPECT_EQ(result("r.json")["samples_a_row"], 0);
+    EXPECT_FALSE(result("r.json").contains("searches"));
+}
+
+TEST_F(reproduce, a_damaged_journal_is_refused)
+{
+    const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
+    ASSERT_EQ(run(arguments).code, 0);
+    const std::string journal = read_text(folder_ / "r.json.journal");
+    const auto resumed = [&](const std::function<void(json & entry, json & row)>& damage) {
+        std::istringstream whole(journal);
+        std::string damaged, line;
+        for (std::size_t number = 1; std::getline(whole, line); ++number) {
+            json entry = json::parse(line);
+            if (number == 2) damage(entry, entry["rows"].front());
+            damaged += entry.dump() + "\n";
+        }
+        write_text(folder_ / "r.json.journal", damaged);
+        const Ended ended = run(arguments + " --resume");
+        return std::to_string(ended.code) + " " + ended.errors;
+    };
+    const auto refused = [&](const std::string& why, const std::function<void(json & entry, json & row)>& damage) {
+        const std::string text = resumed(damage);
+        EXPECT_EQ(text.rfind("2 ", 0), 0u) << text;
+        EXPECT_TRUE(contains(text, "line 2 of the journal is damaged: ")) << text;
+        EXPECT_TRUE(contains(text, why)) << text;
+        EXPECT_TRUE(contains(text, "remove 'r.json.journal' to begin anew")) << text;
+    };
+    EXPECT_EQ(resumed([](json&, json&) {}), "0 ") << "as it was";
+    refused("'rows' not found", [](json& entry, json&) { entry = {{"batch", 0}}; });
+    refused("'verdict' not found", [](json&, json& row) { row.erase("verdict"); });
+    refused("type must be string", [](json&, json& row) { row["chained_hash"] = 5; });
+    refused("stoull", [](json&, json& row) { row["chained_hash"] = "none"; });
+    refused("no such status", [](json&, json& row) { row = {{"skipped", "so"}, {"status", 99}}; });
+    refused("has 9 rays, not 8", [](json&, json& row) { row["verdict"]["totals"][0] = 9; });
+    const std::string samples = "wants 3 samples, all above 0 s";
+    refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
+    refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
+    refused(samples, [](json&, json& row) { row["wall_samples_s"][1] = 0; });
+    refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
+}
+
+TEST_F(reproduce, a_damaged_yardstick_in_the_journal_is_refused)
+{
+    const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
+    ASSERT_EQ(run(arguments).code, 0);
+    std::string journal = read_text(folder_ / "r.json.journal");
+    const std::size_t place = journal.find("\"copy_bytes_per_s\":");
+    ASSERT_NE(place, std::string::npos);
+    write_text(folder_ / "r.json.journal", journal.insert(place + 19, 1, '-'));
+    const Ended ended = run(arguments + " --resume");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "a yardstick in the journal is damaged; remove 'r.json.journal'"));
 }
 
 TEST_F(reproduce, table5_goes_on_after_kill_9_to_the_same_result)
@@ -236,13 +311,16 @@ TEST_F(reproduce, table5_goes_on_after_kill_9_to_the_same_result)
                              .errors,
                          "searches: [200,2048] there, [200,2056] here"));
     ASSERT_EQ(run(arguments + " --resume").code, 0);
-    const json resumed = without_yardstick(result("r.json")["tables"][0]);
+    const json resumed = result("r.json");
+    EXPECT_GT(resumed["tables"][0]["rows"][0]["copy_percent"]["value"], 0);
     const std::string after = read_text(folder_ / "r.json.journal");
     const std::string kept = before.substr(0, before.rfind('\n') + 1);
     EXPECT_EQ(after.substr(0, kept.size()), kept) << "finished batches are not done again";
-    EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1) << "head, batches, end";
+    EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
     ASSERT_EQ(run(arguments + " --resume").code, 0) << "once more, from the journal alone";
-    EXPECT_EQ(without_yardstick(result("r.json")["tables"][0]), resumed);
+    const json again = result("r.json");
+    EXPECT_EQ(again["tables"], resumed["tables"]);
+    EXPECT_EQ(again["devices"], resumed["devices"]) << "their bandwidth is not measured again";
 }
 
 TEST_F(reproduce, goes_on_after_kill_9_to_the_same_result)
@@ -269,7 +347,7 @@ TEST_F(reproduce, goes_on_after_kill_9_to_the_same_result)
         std::getline(before, first), std::getline(after, second);
         EXPECT_EQ(first, second) << "line " << line;
     }
-    EXPECT_EQ(lines("killed.json.journal"), 1u + 33 + 1) << "head, views, end";
+    EXPECT_EQ(lines("killed.json.journal"), 1u + 33 + 1 + 1) << "head, views, yardstick, end";
     EXPECT_EQ(run(arguments + "killed.json --resume").code, ended.code) << "once more, from the journal alone";
     const json again = result("killed.json");
     EXPECT_EQ(of_id(again["figures"], "figure6-cubes-cpu")["series"],

@@ -113,7 +113,9 @@ class ResultSchema(unittest.TestCase):
             json.dump(cls.bench, file)
             file.flush()
             cls.compare = fresh(["compare", file.name, file.name])
-        cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "reproduce": reproduced(cls.bench)}
+        cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "reproduce": reproduced(cls.bench),
+                   "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--method", "maria",
+                                    "--layout", "tet80", "--backend", "openmp", "--threads", "1"])}
 
     def accepts(self, result, name):
         errors = [f"{'.'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in VALIDATOR.iter_errors(result)]
@@ -175,6 +177,10 @@ class ResultSchema(unittest.TestCase):
             ("reproduce", "tables", 0, "rows", 0, "lost", "value", "none"),
             ("reproduce", "figures", 0, "series", 0, "points", 0, [1, 2, 3]),
             ("reproduce", "figures", 0, "pictures", 0, "/tmp/picture.png"),
+            ("table5", "searches", "rows", 0, "msearches_per_s", 0),
+            ("table5", "searches", "rows", 0, "status", "wrong"),
+            ("table5", "searches", "rows", 0, "batch_medians_s", []),
+            ("table5", "searches", "rows", 0, "verification", "wrong", -1),
             ("compare", "comparison", "rows", 0, "verdict", "same"),
         ):
             self.refuses(put(*bad), str(bad))

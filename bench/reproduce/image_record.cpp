@@ -3,6 +3,8 @@
 #include "bench/row_json.h"
 #include "core/hash.h"
 
+#include <stdexcept>
+
 namespace tetrace {
 
 namespace {
@@ -119,6 +121,16 @@ ImageRecord record_from(const json& object)
             object.at("wall_samples_s")};
 }
 
+/// One of an enumeration's, from the first that can be to the last.
+template <class Enum>
+Enum choice_from(const json& number, Enum first, Enum last)
+{
+    const int value = number.get<int>();
+    if (value < static_cast<int>(first) || value > static_cast<int>(last))
+        throw std::out_of_range("no such status or kind of error");
+    return static_cast<Enum>(value);
+}
+
 } // namespace
 
 nlohmann::json outcome_json(const ImageOutcome& outcome)
@@ -132,8 +144,10 @@ nlohmann::json outcome_json(const ImageOutcome& outcome)
 
 ImageOutcome outcome_from_json(const nlohmann::json& json)
 {
-    if (json.contains("skipped")) return Skipped{static_cast<Status>(json.at("status").get<int>()), json["skipped"]};
-    if (json.contains("failed")) return Failed{static_cast<ErrorKind>(json.at("kind").get<int>()), json["failed"]};
+    if (json.contains("skipped"))
+        return Skipped{choice_from(json.at("status"), Status::unsupported, Status::skipped), json["skipped"]};
+    if (json.contains("failed"))
+        return Failed{choice_from(json.at("kind"), ErrorKind::usage, ErrorKind::wrong_result), json["failed"]};
     return record_from(json);
 }
 

@@ -29,7 +29,7 @@ using ImageOutcome = std::variant<ImageRecord, Skipped, Failed>;
 
 /// As the journal holds it; what comes back is equal but for Verdicts::flawed, the pixels, which are left out.
 [[nodiscard]] nlohmann::json outcome_json(const ImageOutcome& outcome);
-/// Throws nlohmann::json's exceptions for what outcome_json() did not write.
+/// Throws nlohmann::json's exceptions or std::logic_error for what outcome_json() did not write.
 [[nodiscard]] ImageOutcome outcome_from_json(const nlohmann::json& json);
 
 } // namespace tetrace

@@ -56,6 +56,11 @@ void Journal::append(const json& entry)
     write_line(entry);
 }
 
+void Journal::reject(const std::string& why) const
+{
+    throw Error(ErrorKind::usage, fmt::format("--resume: {}; remove '{}' to begin anew", why, path_.string()));
+}
+
 void Journal::finish()
 {
     if (!finished_) write_line(finished_line);

@@ -25,6 +25,8 @@ public:
     /// The entries of the run that this one goes on from, in the order in which they were appended.
     [[nodiscard]] const std::vector<nlohmann::json>& entries() const { return entries_; }
     void append(const nlohmann::json& entry);
+    /// Throws Error{usage} with why the entries cannot be gone on from, and what to do.
+    [[noreturn]] void reject(const std::string& why) const;
     /// The run is whole: a later one begins anew without asking, or with resume repeats its result.
     void finish();
 

@@ -8,9 +8,11 @@
 #include "bench/reproduce/paper_table.h"
 #include "bench/reproduce/pictures.h"
 #include "bench/reproduce/scene_run.h"
+#include "bench/reproduce/search_json.h"
 #include "bench/reproduce/table3.h"
 #include "bench/reproduce/table4.h"
 #include "bench/reproduce/table5.h"
+#include "bench/reproduce/yardsticks.h"
 #include "bench/row_json.h"
 
 #include <algorithm>
@@ -26,6 +28,7 @@ using nlohmann::json;
 struct Reproduction {
     std::vector<SceneRun> runs;
     std::optional<SearchRun> searches;
+    json search_records; ///< as results have them; null without searches
     RunProgress progress;
 
     [[nodiscard]] SceneRuns of_build(const std::string& build) const
@@ -114,11 +117,11 @@ std::vector<SceneBuild> scene_builds(const Options& options)
 }
 
 /// Each device once: all run on the same ones, but for scenes that could not be loaded.
-void add_devices(Reproduction& all, const RecordedRows& run, const Options& options)
+void add_devices(Reproduction& all, const RecordedRows& run, const Options& options, Yardsticks& yardsticks)
 {
     progress_line().show("measuring the devices themselves", -1);
     auto devices = devices_of(run.rows);
-    measure_devices(devices, session_options(options)); // at the first call
+    yardsticks.measure(devices, session_options(options)); // at the first call
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
 
@@ -186,6 +189,19 @@ std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<
     return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
 }
 
+/// What is kept beside the result; null where that has no file.
+struct Keeping {
+    Keeping(const Options& options, const std::vector<SceneBuild>& builds)
+        : journal(open_journal(options, builds)), yardsticks(journal.get()),
+          pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
+    {
+    }
+
+    std::unique_ptr<Journal> journal;
+    Yardsticks yardsticks;
+    std::unique_ptr<ResultPictures> pictures;
+};
+
 void make_tables(Reproduction& all, const Options& options)
 {
     const SceneRuns ours = all.of_build(our_build);
@@ -205,10 +221,19 @@ void make_tables(Reproduction& all, const Options& options)
     }
 }
 
+/// 0 where nothing was timed.
+unsigned samples_of(const Reproduction& all, const Options& options)
+{
+    const bool timed = all.searches.has_value() || std::any_of(all.runs.begin(), all.runs.end(),
+                                                               [](const SceneRun& run) { return run.build.timing; });
+    return timed ? options.samples : 0;
+}
+
 json reproduction_json(const Reproduction& all, const Options& options)
 {
     json section = result_head(options);
     section["threads"] = resolved_threads(options);
+    section["samples_a_row"] = samples_of(all, options);
     section["missing_scenes"] = all.missing_scenes;
     section["missing_devices"] = missing_devices(options);
     for (const char* key : {"scenes", "devices", "rows", "tables", "figures"})
@@ -217,6 +242,7 @@ json reproduction_json(const Reproduction& all, const Options& options)
         if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
         section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
     }
+    if (all.searches) section["searches"] = all.search_records;
     for (const RowDevice& device : all.devices)
         section["devices"].push_back(row_device_json(device));
     for (const PaperTable& table : all.tables)
@@ -259,25 +285,25 @@ int rows_exit_code(const Reproduction& all)
     return code;
 }
 
-/// pictures: null where there is no file to lie beside.
-void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Journal* journal,
-               const ResultPictures* pictures)
+void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping)
 {
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
-    run_views(run, options, journal, all.progress);
+    run_views(run, options, keeping.journal.get(), all.progress);
     const bool is_ours = build.build == our_build;
-    if (pictures != nullptr && is_ours) pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
+    if (keeping.pictures != nullptr && is_ours)
+        keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
-    add_devices(all, run, options);
+    add_devices(all, run, options, keeping.yardsticks);
 }
 
-void run_all_searches(Reproduction& all, const Options& options, Journal* journal)
+void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping)
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
-    run_searches(run, options, journal, all.progress);
+    run_searches(run, options, keeping.journal.get(), all.progress);
+    all.search_records = searches_json(run);
     for (RowRun& row : run.rows)
         row.session.reset();
-    add_devices(all, run, options);
+    add_devices(all, run, options, keeping.yardsticks);
 }
 
 } // namespace
@@ -289,19 +315,18 @@ int reproduce_command(const Options& asked)
     check_output(options);
     const auto builds = scene_builds(options);
     check_labels(builds);
-    const auto journal = open_journal(options, builds);
+    Keeping keeping(options, builds);
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
-    const auto pictures = options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr;
     const bool with_searches = wants(options, PaperTarget::table5);
     all.progress.all =
         builds.size() * selected_views(options).size() + (with_searches ? batch_count(options.searches) : 0);
     for (const SceneBuild& build : builds)
-        run_scene(all, build, options, journal.get(), pictures.get());
-    if (with_searches) run_all_searches(all, options, journal.get());
+        run_scene(all, build, options, keeping);
+    if (with_searches) run_all_searches(all, options, keeping);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
-    if (journal != nullptr) journal->finish();
+    if (keeping.journal != nullptr) keeping.journal->finish();
     return rows_exit_code(all);
 }
 

@@ -4,7 +4,9 @@
 #include "bench/rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <stdexcept>
 
 namespace tetrace {
 
@@ -55,10 +57,8 @@ void RunProgress::show(const std::string& stage) const
 
 void RowRecorder::run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress)
 {
-    std::size_t part = 0;
-    if (journal != nullptr)
-        for (const json& entry : journal->entries())
-            if (is_ours(entry)) restore(part++, entry);
+    journal_ = journal;
+    std::size_t part = journal == nullptr ? 0 : restore_parts();
     progress.done += part;
     for (; part < parts; ++part) {
         progress.show(stage);
@@ -71,11 +71,6 @@ void RowRecorder::run(std::size_t parts, const std::string& stage, Journal* jour
     for (std::size_t i = 0; i < run_->rows.size(); ++i)
         sum_up(run_->rows[i], run_->images[i]);
     progress_line().clear();
-}
-
-void RowRecorder::reject_journal(const std::string& why)
-{
-    throw Error(ErrorKind::usage, "--resume: " + why + "; remove the journal to begin anew");
 }
 
 /// The journal's entry of the part.
@@ -138,6 +133,26 @@ ImageOutcome RowRecorder::outcome(std::size_t i) const
     return records_[i];
 }
 
+/// Takes the parts that the journal has, and gives back how many.
+std::size_t RowRecorder::restore_parts()
+{
+    std::size_t part = 0, line = 1; // the head's
+    const auto reject = [&](const std::exception& error) {
+        reject_journal(fmt::format("line {} of the journal is damaged: {}", line, error.what()));
+    };
+    for (const json& entry : journal_->entries()) {
+        ++line;
+        try {
+            if (is_ours(entry)) restore(part++, entry);
+        } catch (const json::exception& error) {
+            reject(error);
+        } catch (const std::logic_error& error) {
+            reject(error);
+        }
+    }
+    return part;
+}
+
 void RowRecorder::restore(std::size_t part, const json& entry)
 {
     check_entry(part, entry);
@@ -146,20 +161,38 @@ void RowRecorder::restore(std::size_t part, const json& entry)
             reject_journal(
                 fmt::format("the journal has no answers of {}, which could not run then", row_name(row.key)));
     for (std::size_t i = 0; i < run_->rows.size(); ++i)
-        if (run_->rows[i].session != nullptr) restore(i, outcome_from_json(entry["rows"][row_name(run_->rows[i].key)]));
+        if (run_->rows[i].session != nullptr)
+            restore(i, part, outcome_from_json(entry["rows"][row_name(run_->rows[i].key)]));
 }
 
-void RowRecorder::restore(std::size_t i, ImageOutcome outcome)
+void RowRecorder::restore(std::size_t i, std::size_t part, ImageOutcome outcome)
 {
     RowRun& row = run_->rows[i];
     if (auto* record = std::get_if<ImageRecord>(&outcome)) {
         std::get<Traced>(row.outcome).add(record->verdict);
+        check_record(i, part, *record);
         run_->images[i].push_back(std::move(*record));
         return;
     }
     if (auto* skipped = std::get_if<Skipped>(&outcome)) row.outcome = *skipped;
     if (auto* failed = std::get_if<Failed>(&outcome)) row.outcome = *failed;
     row.session.reset();
+}
+
+/// Whether the row, its outcome already that of the part, can have come to it. Throws std::domain_error.
+void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecord& record) const
+{
+    const RowRun& row = run_->rows[i];
+    const TraceJob job = job_of(row, part);
+    const auto rays = std::uint64_t{job.width} * job.height;
+    if (record.verdict.totals.rays != rays)
+        throw std::domain_error(
+            fmt::format("{} has {} rays, not {}", row_name(row.key), record.verdict.totals.rays, rays));
+    const std::size_t samples = is_timed(row) ? samples_ : 0;
+    const auto is_time = [](double seconds) { return std::isfinite(seconds) && seconds > 0; };
+    for (const auto& times : {record.samples_s, record.wall_samples_s})
+        if (times.size() != samples || !std::all_of(times.begin(), times.end(), is_time))
+            throw std::domain_error(fmt::format("{} wants {} samples, all above 0 s", row_name(row.key), samples));
 }
 
 /// Once more, after everything else that the device was given; a part of the journal's, after a resume.

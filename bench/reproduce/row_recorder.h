@@ -42,11 +42,12 @@ public:
     RowRecorder& operator=(const RowRecorder&) = delete;
 
     /// stage: for the progress line. journal: may be null.
-    /// Throws Error{usage} where the journal's parts are others, or of other rows.
+    /// Throws Error{usage} where the journal's parts are others, or of other rows, or an entry is damaged.
     void run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress);
 
 protected:
-    [[noreturn]] static void reject_journal(const std::string& why);
+    /// Precondition: there is a journal.
+    [[noreturn]] void reject_journal(const std::string& why) const { journal_->reject(why); }
 
 private:
     /// What of a journal's entry names the part; the answers come beside it.
@@ -66,12 +67,15 @@ private:
     void time_rows(std::size_t part);
     void time_row(std::size_t i, std::size_t part, bool counts);
     [[nodiscard]] ImageOutcome outcome(std::size_t i) const;
+    [[nodiscard]] std::size_t restore_parts();
     void restore(std::size_t part, const nlohmann::json& entry);
-    void restore(std::size_t i, ImageOutcome outcome);
+    void restore(std::size_t i, std::size_t part, ImageOutcome outcome);
+    void check_record(std::size_t i, std::size_t part, const ImageRecord& record) const;
     void repeat_first_part();
 
     RecordedRows* run_;
     unsigned samples_;
+    Journal* journal_ = nullptr;
     std::vector<ImageRecord> records_; ///< of the part at hand, row by row
     std::vector<std::size_t> begun_;   ///< rows that the part began with
 };
