@@ -96,8 +96,8 @@ const VerbHelp verb_help[] = {
      "Makes the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
      "Tetrahedralization\" (GRAPP 2017), anew on every device at hand, its own numbers beside ours, with a verdict on "
      "each claim that is computed from intervals: 'holds', 'does not hold' or 'not testable here'.\n\n"
-     "table3: tets, faces, memory and rates of each scene, built as near to the paper's counts as known, and as the "
-     "options say.\n\n"
+     "table3: tets, faces, memory and rates of each scene, built as the options say, and banana, bunny and armadillo "
+     "also as near to the paper's counts as known.\n\n"
      "table4: rays with a wrong result per image, by method, scene and device, as the exact oracle of 'check' judges "
      "them, and where they are.\n\n"
      "table5: the exit search alone, without the walk around it: random tets, random rays that enter each by a known "
@@ -107,8 +107,8 @@ const VerbHelp verb_help[] = {
      "The views are those of the camera set 'flight'; --views takes a sample of them, and numbers then have 95 % "
      "intervals. Default scenes: banana, bunny and armadillo, as far as they can be had. With --out FILE, each "
      "finished view or batch of searches is kept in FILE.journal: a run that was stopped goes on with --resume, and "
-     "pictures lie beside "
-     "FILE. Exits with 1 where a row differs from openmp's.",
+     "pictures lie beside FILE. CSV has a row for each number, text, verdict and point of a figure; Markdown leaves "
+     "the points out. Exits with 1 where a row differs from openmp's.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},

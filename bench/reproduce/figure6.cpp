@@ -33,6 +33,9 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
     const auto [shortest, longest] = std::minmax_element(seconds.begin(), seconds.end());
     const auto r = correlation(steps, seconds, run.sampling);
     const auto rays = static_cast<double>(run.scene->rays_per_view());
+    const auto beside_ours = [&](double number) {
+        return paper::has_scene(run.build.scene) ? std::optional(number) : std::nullopt;
+    };
     const Line line = r ? fit_line(steps, seconds) : Line{};
     return {run.build.scene,
             std::string(name_of(row.key.kernel.method)),
@@ -40,8 +43,8 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
             device_label(row.key),
             row.device.type,
             exact_cell(static_cast<double>(steps.size())),
-            exact_cell(*fewest, paper::least_tets_a_ray),
-            exact_cell(*most, paper::most_tets_a_ray),
+            exact_cell(*fewest, beside_ours(paper::least_tets_a_ray)),
+            exact_cell(*most, beside_ours(paper::most_tets_a_ray)),
             exact_cell(1e3 * *shortest),
             exact_cell(1e3 * *longest),
             exact_cell(figures_of(row)->msteps_per_s.value_or(0)),

@@ -27,11 +27,17 @@ std::optional<SceneCounts> counts_of(std::string_view scene)
     return *found;
 }
 
-std::string_view nearest_switches(std::string_view scene)
+std::optional<std::string_view> nearest_switches(std::string_view scene)
 {
     const auto* const found =
         std::find_if(std::begin(builds), std::end(builds), [&](const NearestBuild& row) { return row.scene == scene; });
-    return found == std::end(builds) ? "pq8/4" : found->switches;
+    if (found == std::end(builds)) return std::nullopt;
+    return found->switches;
+}
+
+bool has_scene(std::string_view scene)
+{
+    return nearest_switches(scene).has_value();
 }
 
 } // namespace tetrace::paper

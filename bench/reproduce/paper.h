@@ -24,12 +24,16 @@ struct SceneCounts {
 /// The paper's counts of a scene; empty where they are not known here.
 [[nodiscard]] std::optional<SceneCounts> counts_of(std::string_view scene);
 
-/// TetGen's switches that come nearest to the paper's counts, found by trying (see results/README.md), in a domain that
-/// holds the cameras, its sides uncut.
+/// TetGen's switches for the paper's build of a scene of the paper's, in a domain that holds the cameras, its sides
+/// uncut: those that come nearest to the paper's counts of bunny, found by trying (see results/README.md); for
+/// armadillo, whose counts are not known here, the same. Empty for other scenes.
 struct NearestBuild {
     std::string_view scene, switches;
 };
-[[nodiscard]] std::string_view nearest_switches(std::string_view scene);
+[[nodiscard]] std::optional<std::string_view> nearest_switches(std::string_view scene);
+
+/// Whether the paper traces the scene: banana, bunny or armadillo.
+[[nodiscard]] bool has_scene(std::string_view scene);
 
 /// Table 4: rays with a wrong result per image of 1024 x 1024, averaged over 1,282 images.
 inline constexpr double least_wrong_of_older = 0.004, most_wrong_of_older = 457, wrong_of_maria = 0;

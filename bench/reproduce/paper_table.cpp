@@ -132,6 +132,26 @@ std::string notes_markdown(const std::vector<std::string>& notes)
     return text;
 }
 
+/// What a tidy row tells, behind its labels.
+struct Fact {
+    std::string quantity, unit = {};
+    Cell value = {}, low = {}, high = {}, paper = {}, ratio = {}, x = {};
+    std::string verdict = {}, text = {};
+};
+
+Cell text_or_none(const std::string& text)
+{
+    return text.empty() ? Cell() : Cell(text);
+}
+
+void add_fact(Table& tidy, std::vector<Cell> labels, const Fact& fact)
+{
+    labels.resize(1 + label_keys.size());
+    labels.insert(labels.end(), {fact.quantity, text_or_none(fact.unit), fact.value, fact.low, fact.high, fact.paper,
+                                 fact.ratio, fact.x, text_or_none(fact.verdict), text_or_none(fact.text)});
+    tidy.add(std::move(labels));
+}
+
 std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell>& row)
 {
     std::vector<Cell> labels = {table.id};
@@ -145,16 +165,53 @@ std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell
     return labels;
 }
 
-void add_tidy_rows(Table& tidy, const PaperTable& table, const std::vector<PaperCell>& row)
+bool is_label(const Column& column)
 {
-    for (std::size_t c = 0; c < row.size(); ++c)
-        if (const Quantity* number = quantity(row[c])) {
-            auto cells = labels_of(table, row);
-            cells.insert(cells.end(),
-                         {table.columns[c].key, table.columns[c].unit, number->ours.value, cell_of(number->ours.low),
-                          cell_of(number->ours.high), cell_of(number->paper), cell_of(number->ratio())});
-            tidy.add(std::move(cells));
-        }
+    return std::find(label_keys.begin(), label_keys.end(), column.key) != label_keys.end();
+}
+
+void add_row_facts(Table& tidy, const PaperTable& table, const std::vector<PaperCell>& row)
+{
+    for (std::size_t c = 0; c < row.size(); ++c) {
+        const Column& column = table.columns[c];
+        if (const Quantity* number = quantity(row[c]))
+            add_fact(tidy, labels_of(table, row),
+                     {column.key, column.unit, number->ours.value, cell_of(number->ours.low),
+                      cell_of(number->ours.high), cell_of(number->paper), cell_of(number->ratio())});
+        else if (const auto* text = std::get_if<std::string>(&row[c]); text != nullptr && !is_label(column))
+            add_fact(tidy, labels_of(table, row), {.quantity = column.key, .text = *text});
+    }
+}
+
+void add_points(Table& tidy, const PaperFigure& figure)
+{
+    for (const PaperFigure::Series& series : figure.series)
+        for (const auto& [x, y] : series.points)
+            add_fact(tidy, {figure.id},
+                     {.quantity = figure.y.title, .unit = figure.y.unit, .value = y, .x = x, .text = series.name});
+}
+
+/// What tables and figures have alike.
+template <class Part>
+void add_sentences(Table& tidy, const Part& part)
+{
+    for (const Claim& claim : part.claims)
+        add_fact(tidy, {part.id},
+                 {.quantity = claim.id, .verdict = std::string(name_of(claim.verdict)), .text = claim.evidence});
+    for (const std::string& note : part.notes)
+        add_fact(tidy, {part.id}, {.quantity = "note", .text = note});
+}
+
+/// The figure's notes, and where its points are: no text has them.
+std::vector<std::string> notes_of(const PaperFigure& figure)
+{
+    std::vector<std::string> notes = figure.notes;
+    std::size_t points = 0;
+    for (const PaperFigure::Series& series : figure.series)
+        points += series.points.size();
+    if (points > 0)
+        notes.push_back(fmt::format("The {} points are in the result's CSV and JSON.", with_commas(points)));
+    return notes;
 }
 
 std::string headline(const std::string& id, const std::string& title, const std::string& source)
@@ -239,17 +296,23 @@ Table with_paper_columns(const PaperTable& table)
     return result;
 }
 
-Table tidy_table(const std::vector<PaperTable>& tables)
+Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperFigure>& figures)
 {
     std::vector<Column> columns = {{"table", "table"}};
     for (const char* key : label_keys)
         columns.push_back({key, key});
-    for (const char* key : {"quantity", "unit", "value", "low", "high", "paper", "ratio"})
+    for (const char* key : {"quantity", "unit", "value", "low", "high", "paper", "ratio", "x", "verdict", "text"})
         columns.push_back({key, key});
     Table tidy(std::move(columns));
-    for (const PaperTable& table : tables)
+    for (const PaperTable& table : tables) {
         for (const auto& row : table.rows)
-            add_tidy_rows(tidy, table, row);
+            add_row_facts(tidy, table, row);
+        add_sentences(tidy, table);
+    }
+    for (const PaperFigure& figure : figures) {
+        add_points(tidy, figure);
+        add_sentences(tidy, figure);
+    }
     return tidy;
 }
 
@@ -267,8 +330,8 @@ std::string table_markdown(const PaperTable& table)
 
 std::string figure_text(const PaperFigure& figure)
 {
-    std::string text =
-        headline(figure.id, figure.title, figure.source) + "\n" + claims_text(figure.claims) + notes_text(figure.notes);
+    std::string text = headline(figure.id, figure.title, figure.source) + "\n" + claims_text(figure.claims) +
+                       notes_text(notes_of(figure));
     for (const std::string& picture : figure.pictures)
         text += "  picture: " + picture + "\n";
     return text + "\n";
@@ -277,7 +340,7 @@ std::string figure_text(const PaperFigure& figure)
 std::string figure_markdown(const PaperFigure& figure)
 {
     std::string text = "## " + headline(figure.id, figure.title, figure.source) + "\n" +
-                       claims_markdown(figure.claims) + notes_markdown(figure.notes);
+                       claims_markdown(figure.claims) + notes_markdown(notes_of(figure));
     for (const std::string& picture : figure.pictures)
         text += fmt::format("\n![{0}]({0})\n", picture);
     return text + "\n";

@@ -59,8 +59,10 @@ struct PaperFigure {
 /// and ratios.
 [[nodiscard]] Table with_paper_columns(const PaperTable& table);
 
-/// All numbers of all tables, one a row: which table and row they are of, value, interval, the paper's, the ratio.
-[[nodiscard]] Table tidy_table(const std::vector<PaperTable>& tables);
+/// All that tables and figures tell, one fact a row: which table and row it is of, and a number with its interval, the
+/// paper's and the ratio; a text, such as a status; a point (x beside the value); a claim, its verdict and evidence; or
+/// a note.
+[[nodiscard]] Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperFigure>& figures);
 
 /// Title, rows, claims and notes, for people.
 [[nodiscard]] std::string table_text(const PaperTable& table);

@@ -76,9 +76,10 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
     return options;
 }
 
-/// Whether TetGen makes the scene's tets, with the switches that it is given.
-bool has_switches(const std::string& name)
+/// Whether the paper has the scene, and TetGen makes its tets, with the switches that it is given.
+bool has_papers_build(const std::string& name)
 {
+    if (!paper::nearest_switches(scene_label(name))) return false;
     const CatalogueEntry* entry = find_in_catalogue(name);
     if (entry != nullptr) return entry->source != SceneSource::cubes;
     return std::filesystem::path(name).extension() != ".tet";
@@ -89,7 +90,7 @@ SceneBuild papers(SceneBuild build)
     BuildOptions& how = build.request.build;
     how.domain = DomainKind::wide;
     how.divisions = 1;
-    how.switches = paper::nearest_switches(build.scene);
+    how.switches = paper::nearest_switches(build.scene).value();
     build.build = papers_build;
     build.label += "-paper";
     build.robustness = false;
@@ -111,7 +112,7 @@ std::vector<SceneBuild> scene_builds(const Options& options)
                                  wants(options, PaperTarget::table4),
                                  table3 || wants(options, PaperTarget::figure6)};
         builds.push_back(ours);
-        if (table3 && has_switches(request.name)) builds.push_back(papers(ours));
+        if (table3 && has_papers_build(request.name)) builds.push_back(papers(ours));
     }
     return builds;
 }
@@ -264,7 +265,7 @@ std::string closing_text(const Reproduction& all, const Options& options)
 
 Report reproduction_report(const Reproduction& all, const Options& options)
 {
-    Report report{{}, tidy_table(all.tables), reproduction_json(all, options), {}};
+    Report report{{}, tidy_table(all.tables, all.figures), reproduction_json(all, options), {}};
     for (const PaperTable& table : all.tables) {
         report.text += table_text(table);
         report.markdown += table_markdown(table);

@@ -73,6 +73,14 @@ Claim counts_claim(const SceneRun& run)
     return claim;
 }
 
+std::string unknown_counts_note(const std::string& scene)
+{
+    const auto switches = paper::nearest_switches(scene);
+    return fmt::format("{}, paper's build: the paper's counts are not known to this program; switches {}{}.", scene,
+                       switches ? fmt::format("-{}", *switches) : "none",
+                       switches == paper::nearest_switches("bunny") ? ", as for bunny" : "");
+}
+
 std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRun& row)
 {
     const auto figures = figures_of(row);
@@ -116,8 +124,9 @@ PaperTable table3(const SceneRuns& runs)
                       {"build_s", "built in", "s", 1}},
                      {},
                      {},
-                     {"Build: paper's, a domain of 3 radii that holds the cameras, uncut, and the switches that come "
-                      "nearest to the paper's counts; ours, as asked for by --domain, --divisions and --switches. A "
+                     {"Build: paper's, of the paper's scenes alone, a domain of 3 radii that holds the cameras, uncut, "
+                      "and the switches that come nearest to the paper's counts, where those are known; ours, as asked "
+                      "for by --domain, --divisions and --switches. A "
                       "face counts once, the domain's boundary as neither.",
                       std::string(paper::rest_is_there)}};
     for (const SceneRun* run : runs) {
@@ -126,7 +135,9 @@ PaperTable table3(const SceneRuns& runs)
         else
             table.notes.push_back(fmt::format("{}, {} build, could not be had: {}", run->build.scene, run->build.build,
                                               run->rows.empty() ? "" : reason_of(run->rows.front())));
-        if (run->build.build == papers_build) table.claims.push_back(counts_claim(*run));
+        if (run->build.build != papers_build) continue;
+        table.claims.push_back(counts_claim(*run));
+        if (!paper::counts_of(run->build.scene)) table.notes.push_back(unknown_counts_note(run->build.scene));
     }
     return table;
 }
