@@ -305,7 +305,8 @@ std::vector<OptionRow> report_options()
 {
     return {
         {"Pictures", "--picture", "FILE",
-         "Put this picture into the page, a PNG or PPM file as 'tetrace render' writes it. May be repeated; several with "
+         "Put this picture into the page, a PNG or PPM file as 'tetrace render' writes it. May be repeated; several "
+         "with "
          "commas between. Default: none but those that a figure of a result names.",
          bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
     };

@@ -145,6 +145,14 @@ TEST(short_number, has_three_digits_and_loses_none_before_the_point)
         {-22.97, "-23.0"}, {303000, "303,000"}, {1e-9, "1e-09"}, {1e18, "1e+18"}};
     for (const auto& [value, text] : cases)
         EXPECT_EQ(short_number(value), text);
+    EXPECT_EQ(fixed_number(9, 0), "9");
+    EXPECT_EQ(fixed_number(0, 1), "0.0");
+    EXPECT_EQ(fixed_number(1282, 0), "1,282");
+    EXPECT_EQ(fixed_number(-4.25, 1), "-4.2");
+    EXPECT_EQ(fixed_number(0.1, 1), "0.1");
+    EXPECT_EQ(fixed_number(0.04, 1), "0.0400") << "not 0.0";
+    EXPECT_EQ(fixed_number(0.3, 0), "0.300");
+    EXPECT_EQ(fixed_number(1e20, 0), "1e+20");
     EXPECT_EQ(short_percent(0.081), "8.1 %");
     EXPECT_EQ(short_percent(0.0999), "10 %");
     EXPECT_EQ(short_percent(1.35), "135 %");

@@ -302,6 +302,18 @@ TEST_F(report_page, the_papers_values_stand_beside_ours_with_the_verdicts)
     EXPECT_TRUE(contains(page_of({reproduce_json()}), "2 claims of the paper: 1 hold, 1 do not hold"));
 }
 
+TEST_F(report_page, numbers_have_the_decimals_of_their_column)
+{
+    json result = reproduce_json();
+    json& table = result["tetrace"]["tables"][0];
+    table["columns"][1]["decimals"] = 0;
+    table["rows"][0]["rate"] = {{"value", 9}, {"paper", 1282}, {"ratio", 9.0 / 1282}};
+    const std::string paper = section_of(page_of({result}), "paper");
+    EXPECT_TRUE(contains(paper, ">9<small class=\"paper\">paper 1,282, × 0.00702</small>")) << paper;
+    table["columns"][1]["decimals"] = 16;
+    EXPECT_TRUE(contains(error_of_page(result), "columns[1].decimals: is no number of decimals"));
+}
+
 TEST_F(report_page, pictures_are_in_the_page_byte_for_byte)
 {
     write_text(folder_ / "bunny-0-normals.png", white_pixel);

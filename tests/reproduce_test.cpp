@@ -35,6 +35,8 @@ TEST_F(reproduce, table4_of_a_sample_of_views)
         EXPECT_FALSE(row["flawed"].contains("ratio")) << "nothing over nothing";
         EXPECT_FALSE(row["flawed"].contains("high")) << "none in a sample bounds nothing";
     }
+    for (const json& column : table["columns"])
+        EXPECT_EQ(column.value("decimals", -1) == 0, column["key"] == "views") << column;
     EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
     EXPECT_EQ(claim(table, "maria-has-the-fewest")["verdict"], "not testable here") << "nothing to compare with";
     EXPECT_EQ(section["rows"][0]["verification"]["rays"], 13 * 24 * 24);

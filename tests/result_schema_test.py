@@ -27,7 +27,7 @@ TABLE = {
     "id": "table4",
     "title": "Robustness",
     "source": "Maria et al. 2017, Table 4",
-    "columns": [{"key": "method", "title": "method"}, {"key": "lost", "title": "lost", "unit": "rays"}],
+    "columns": [{"key": "method", "title": "method"}, {"key": "lost", "title": "lost", "unit": "rays", "decimals": 1}],
     "rows": [{"method": "maria", "lost": {"value": 0, "low": 0, "high": 0.1, "paper": 1, "ratio": 0, "text": "none"}},
              {"method": "plane", "lost": 3}],
     "claims": [CLAIM],

@@ -140,6 +140,13 @@ std::string short_number(double value)
     return with_decimals(value, std::max(0, 2 - magnitude));
 }
 
+std::string fixed_number(double value, int decimals)
+{
+    const double size = std::abs(value), last_place = std::pow(10.0, -decimals);
+    const bool is_plain = value == 0 || (size >= last_place * (1 - 1e-9) && size < largest_plain);
+    return is_plain ? with_decimals(value, decimals) : short_number(value);
+}
+
 std::string short_percent(double share)
 {
     return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 ? 1 : 0);

@@ -53,6 +53,10 @@ private:
 /// 23.0, 1,234. Very small and very large ones with an exponent.
 [[nodiscard]] std::string short_number(double value);
 
+/// A number with so many decimals (not negative), and commas between thousands; with three significant digits where it
+/// is smaller than the last of them, so that only 0 is shown as 0, and from 1e15 on.
+[[nodiscard]] std::string fixed_number(double value, int decimals);
+
 /// A share as percentage: 8.1 %, 14 %.
 [[nodiscard]] std::string short_percent(double share);
 

@@ -4,6 +4,7 @@
 #include "bench/report/sections.h"
 
 #include <fmt/format.h>
+#include <optional>
 
 namespace tetrace {
 
@@ -21,28 +22,44 @@ std::string title_with_source(const ResultValue& part)
     return part.at("title").text() + (source.empty() ? "" : " · " + source);
 }
 
+/// With the column's decimals where the result tells them.
+using Decimals = std::optional<int>;
+
+std::string number_text(const ResultValue& value, Decimals decimals)
+{
+    return decimals ? fixed_number(value.number(), *decimals) : short_number(value.number());
+}
+
 /// A measured value with what the paper has in its place.
-Html value_with_paper(const ResultValue& cell)
+Html value_with_paper(const ResultValue& cell, Decimals decimals)
 {
     Html content = cell.find("text") ? text(cell.at("text").text()) : Html();
-    if (const auto value = cell.find("value"); value && content.empty()) content = text(short_number(value->number()));
+    if (const auto value = cell.find("value"); value && content.empty()) content = text(number_text(*value, decimals));
     const auto low = cell.find("low"), high = cell.find("high");
     if (low && high)
         content += text_element("small", "",
-                                fmt::format("{} to {}", short_number(low->number()), short_number(high->number())));
+                                fmt::format("{} to {}", number_text(*low, decimals), number_text(*high, decimals)));
     if (const auto paper = cell.find("paper")) {
         const auto ratio = cell.find("ratio");
         content += text_element("small", "paper",
-                                fmt::format("paper {}{}", short_number(paper->number()),
+                                fmt::format("paper {}{}", number_text(*paper, decimals),
                                             ratio ? ", × " + short_number(ratio->number()) : ""));
     }
     return content;
 }
 
-Html cell_html(const ResultValue& cell)
+Html cell_html(const ResultValue& cell, Decimals decimals)
 {
-    if (cell.json().is_object()) return value_with_paper(cell);
-    return text(cell.json().is_string() ? cell.text() : short_number(cell.number()));
+    if (cell.json().is_object()) return value_with_paper(cell, decimals);
+    return text(cell.json().is_string() ? cell.text() : number_text(cell, decimals));
+}
+
+Decimals decimals_of(const ResultValue& column)
+{
+    const auto decimals = column.find("decimals");
+    if (!decimals) return std::nullopt;
+    if (decimals->count() > 15) decimals->reject("is no number of decimals: 0 to 15 are");
+    return static_cast<int>(decimals->count());
 }
 
 /// Whether all that the column holds are numbers.
@@ -58,16 +75,18 @@ Html table_of(const ResultValue& part)
     const ResultValue rows = part.at("rows");
     std::vector<HtmlColumn> columns;
     std::vector<std::string> keys;
+    std::vector<Decimals> decimals;
     for (const ResultValue& column : part.at("columns").items()) {
         keys.push_back(column.at("key").text());
+        decimals.push_back(decimals_of(column));
         columns.push_back({column.at("title").text(), text_at(column, "unit"), is_number_column(rows, keys.back())});
     }
     HtmlTable table(columns);
     for (const ResultValue& row : rows.items()) {
         std::vector<Html> cells;
-        for (const std::string& key : keys) {
-            const auto cell = row.find(key);
-            cells.push_back(cell ? cell_html(*cell) : Html());
+        for (std::size_t c = 0; c < keys.size(); ++c) {
+            const auto cell = row.find(keys[c]);
+            cells.push_back(cell ? cell_html(*cell, decimals[c]) : Html());
         }
         table.add(std::move(cells));
     }

@@ -36,6 +36,19 @@ json quantity_json(const Quantity& number)
     return object;
 }
 
+json columns_json(const PaperTable& table)
+{
+    json columns = json::array();
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const Column& column = table.columns[c];
+        columns.push_back({{"key", column.key}, {"title", column.title}});
+        if (!column.unit.empty()) columns.back()["unit"] = column.unit;
+        const auto is_number = [&](const auto& row) { return quantity(row[c]) != nullptr; };
+        if (std::any_of(table.rows.begin(), table.rows.end(), is_number)) columns.back()["decimals"] = column.decimals;
+    }
+    return columns;
+}
+
 json rows_json(const PaperTable& table)
 {
     json rows = json::array();
@@ -234,13 +247,8 @@ PaperCell exact_cell(double value, std::optional<double> paper)
 
 nlohmann::json table_json(const PaperTable& table)
 {
-    json columns = json::array();
-    for (const Column& column : table.columns) {
-        columns.push_back({{"key", column.key}, {"title", column.title}});
-        if (!column.unit.empty()) columns.back()["unit"] = column.unit;
-    }
     return {{"id", table.id},           {"title", table.title},
-            {"source", table.source},   {"columns", std::move(columns)},
+            {"source", table.source},   {"columns", columns_json(table)},
             {"rows", rows_json(table)}, {"claims", claims_json(table.claims)},
             {"notes", table.notes}};
 }
