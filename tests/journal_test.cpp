@@ -83,6 +83,22 @@ TEST_F(journal, of_a_finished_run_begins_anew_or_repeats_the_run)
     EXPECT_EQ(resumed(head_).size(), 0u);
 }
 
+TEST_F(journal, of_a_finished_run_takes_more_and_ends_again)
+{
+    {
+        Journal whole(path_, head_, false);
+        whole.append({{"view", 1}});
+        whole.finish();
+    }
+    {
+        Journal more(path_, head_, true);
+        more.append({{"view", 2}});
+        more.finish();
+    }
+    EXPECT_EQ(resumed(head_), (std::vector<json>{{{"view", 1}}, {{"view", 2}}}));
+    EXPECT_TRUE(Journal(path_, head_, false).entries().empty()) << "it has ended: a new one begins unasked";
+}
+
 TEST_F(journal, with_a_damaged_line_is_refused_by_its_number)
 {
     Journal(path_, head_, false).append({{"view", 1}});

@@ -46,6 +46,8 @@ TEST_F(resume, a_damaged_journal_is_refused)
     refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
     refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
     refused(samples, [](json&, json& row) { row["wall_samples_s"][1] = 0; });
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "of no view of these scenes"));
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "of no view of these scenes"));
     refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
 }
 

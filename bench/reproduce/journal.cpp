@@ -2,11 +2,13 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <sys/file.h>
 #include <unistd.h>
@@ -53,6 +55,7 @@ Journal::~Journal()
 
 void Journal::append(const json& entry)
 {
+    finished_ = false; // what a whole run lacked, a repeated one may have: a device that could not be measured
     write_line(entry);
 }
 
@@ -111,7 +114,8 @@ bool Journal::read(const json& head, bool resume)
                                 "its program, or remove the file to begin anew",
                                 path_.string(), differences(parsed.front().value(head_key, json::object()), head)));
     if (::ftruncate(file_, static_cast<off_t>(text.size())) != 0) fail("cutting off the last line of");
-    entries_.assign(parsed.begin() + 1, parsed.end() - (finished_ ? 1 : 0));
+    std::copy_if(parsed.begin() + 1, parsed.end(), std::back_inserter(entries_),
+                 [](const json& line) { return line != finished_line; });
     return true;
 }
 

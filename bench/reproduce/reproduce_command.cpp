@@ -190,12 +190,26 @@ std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<
     return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
 }
 
+/// Throws Error{usage} where the journal has a line of something else than these.
+void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds)
+{
+    const auto is_of_build = [&](const json& entry) {
+        return std::any_of(builds.begin(), builds.end(), [&](const SceneBuild& build) {
+            return entry.contains("scene") && entry["scene"] == build.label;
+        });
+    };
+    for (const json& entry : journal.entries())
+        if (!entry.contains("batch") && !entry.contains("yardstick") && !is_of_build(entry))
+            journal.reject("the journal has a line that is of no view of these scenes, no batch and no yardstick");
+}
+
 /// What is kept beside the result; null where that has no file.
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
         : journal(open_journal(options, builds)), yardsticks(journal.get()),
           pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
     {
+        if (journal != nullptr) check_entries(*journal, builds);
     }
 
     std::unique_ptr<Journal> journal;
