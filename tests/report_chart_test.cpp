@@ -146,7 +146,7 @@ TEST(short_number, has_three_digits_and_loses_none_before_the_point)
     for (const auto& [value, text] : cases)
         EXPECT_EQ(short_number(value), text);
     EXPECT_EQ(fixed_number(9, 0), "9");
-    EXPECT_EQ(fixed_number(0, 1), "0.0");
+    EXPECT_EQ(fixed_number(0, 1), "0");
     EXPECT_EQ(fixed_number(1282, 0), "1,282");
     EXPECT_EQ(fixed_number(-4.25, 1), "-4.2");
     EXPECT_EQ(fixed_number(0.1, 1), "0.1");

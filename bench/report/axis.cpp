@@ -143,7 +143,7 @@ std::string short_number(double value)
 std::string fixed_number(double value, int decimals)
 {
     const double size = std::abs(value), last_place = std::pow(10.0, -decimals);
-    const bool is_plain = value == 0 || (size >= last_place * (1 - 1e-9) && size < largest_plain);
+    const bool is_plain = size >= last_place * (1 - 1e-9) && size < largest_plain;
     return is_plain ? with_decimals(value, decimals) : short_number(value);
 }
 

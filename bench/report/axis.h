@@ -54,7 +54,7 @@ private:
 [[nodiscard]] std::string short_number(double value);
 
 /// A number with so many decimals (not negative), and commas between thousands; with three significant digits where it
-/// is smaller than the last of them, so that only 0 is shown as 0, and from 1e15 on.
+/// is smaller than the last of them, and from 1e15 on; 0 is 0: no other number is shown so.
 [[nodiscard]] std::string fixed_number(double value, int decimals);
 
 /// A share as percentage: 8.1 %, 14 %.
