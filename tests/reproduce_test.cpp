@@ -93,6 +93,7 @@ TEST_F(reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
     }
     EXPECT_EQ(figures[0]["pictures"].size(), 4u);
     EXPECT_EQ(figures[1]["pictures"].size(), 0u) << "they are the scene's";
+    EXPECT_EQ(figures[0]["notes"].size(), figures[1]["notes"].size() + 1) << "which tells of them";
 }
 
 TEST_F(reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)

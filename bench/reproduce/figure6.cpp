@@ -122,13 +122,20 @@ PaperFigure figure_of(const SceneRun& run, const std::string& type)
         {},
         {},
         {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
-         "interleaved. Pictures: the views with the fewest and the most tets a ray, surface and "
-         "steps."}};
+         "interleaved."}};
     const auto rows = rated_rows(run, type);
     const auto names = distinct_names(run, rows);
     for (std::size_t i = 0; i < rows.size(); ++i)
         figure.series.push_back(series_of(run, rows[i], names[i]));
     return figure;
+}
+
+void add_pictures(PaperFigure& figure, const SceneRun& run)
+{
+    figure.pictures = run.extreme_pictures;
+    if (!figure.pictures.empty())
+        figure.notes.emplace_back("Pictures: the views with the fewest and the most tets a ray, surface and steps.");
+    figure.notes.insert(figure.notes.end(), run.picture_problems.begin(), run.picture_problems.end());
 }
 
 } // namespace
@@ -141,9 +148,7 @@ std::vector<PaperFigure> figure6(const SceneRuns& runs)
         for (const std::string& type : rated_types(*run))
             figures.push_back(figure_of(*run, type));
         if (figures.size() == first) figures.push_back(figure_of(*run, {}));
-        figures[first].pictures = run->extreme_pictures;
-        figures[first].notes.insert(figures[first].notes.end(), run->picture_problems.begin(),
-                                    run->picture_problems.end());
+        add_pictures(figures[first], *run);
     }
     return figures;
 }
