@@ -1,3 +1,4 @@
+#include "bench/reproduce/search_json.h"
 #include "bench/reproduce/table5.h"
 
 #include "backends/openmp/backend.h"
@@ -187,6 +188,30 @@ TEST(search_run, a_device_with_one_other_face_a_batch_is_wrong_and_has_no_rate)
     EXPECT_TRUE(number_cell(table, 0, "msearches_per_s").has_value());
     EXPECT_TRUE(contains(table.claims[2].evidence, "by 1 row:")) << "the wrong row says nothing of the method";
     EXPECT_TRUE(contains(table.notes.back(), "api:other differs first on ray 17 of tet 0: face "));
+}
+
+TEST(search_run, the_record_of_a_wrong_row_names_its_first_search_and_has_no_rate)
+{
+    DamagedBackend other("other", [](Faces faces, std::size_t) {
+        if (faces.size() > 64) faces[64 + 17] = NO_EXIT; // ray 17 of the batch's second tet
+    });
+    const auto rows = searches_json(run_on({&openmp_backend(), &other}))["rows"];
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0]["batch_medians_s"].size(), 23u);
+    const auto& row = rows[1];
+    EXPECT_EQ(row["status"], "wrong");
+    EXPECT_FALSE(row.contains("msearches_per_s"));
+    EXPECT_FALSE(row.contains("batch_medians_s"));
+    EXPECT_NE(row["face_hash"], rows[0]["face_hash"]);
+    const auto& verification = row["verification"];
+    EXPECT_EQ(verification["lost"], 22) << "the last batch has one tet";
+    EXPECT_EQ(verification["different_from_openmp"], 22);
+    const auto& first = verification["first_different"];
+    EXPECT_EQ(first["tet"], 1);
+    EXPECT_EQ(first["ray"], 17);
+    EXPECT_LT(first["openmp_face"], 4);
+    EXPECT_FALSE(first.contains("face")) << "it found none";
+    EXPECT_LT(verification["first_wrong"]["exact_face"], 4);
 }
 
 TEST(search_run, a_device_is_compared_where_openmp_has_no_row)
