@@ -179,7 +179,7 @@ TEST_F(CudaFailures, of_memory_make_a_row_unsupported_with_both_numbers)
 TEST_F(CudaFailures, of_an_images_memory_leave_the_session_alive)
 {
     const auto session = backend->open(0, {}, rays.data(), {});
-    EXPECT_TRUE(contains(error_with("alloc", [&] { session->launch(job); }), "bytes for the image's hits"));
+    EXPECT_TRUE(contains(error_with("alloc", [&] { session->launch(job); }), "bytes for the output"));
     EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
 }
 
