@@ -86,7 +86,7 @@ TEST_F(reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
     const json figures = result("r.json")["figures"];
     ASSERT_EQ(figures.size(), 2u);
     for (const char* const id : {"figure6-cubes-cpu", "figure6-cubes-emulated"}) {
-        const json& figure = of_id(figures, id);
+        const json figure = of_id(figures, id);
         ASSERT_EQ(figure["series"].size(), 2u) << id;
         EXPECT_EQ(figure["series"][0]["name"], "ms06");
         EXPECT_EQ(figure["series"][1]["name"], "maria");
