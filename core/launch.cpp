@@ -50,7 +50,8 @@ void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes)
 {
     if (max_buffer_bytes == 0 || rows.size_bytes() <= max_buffer_bytes) return;
     throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(rows.size_bytes()) +
-                                            " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes));
+                                            " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
+                                            "; search fewer at once");
 }
 
 void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words)
