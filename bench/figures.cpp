@@ -46,6 +46,8 @@ double bytes_per_step(const KernelId& kernel)
     switch (kernel.layout) {
     case Layout::tet80: return vertices * 12 + 8;
     case Layout::tet96: return vertices * 16 + 16;
+    case Layout::bvh2:
+    case Layout::cwbvh:
     case Layout::embree: return 0;
     }
     throw Error(ErrorKind::internal, "bytes_per_step: no such layout");

@@ -12,6 +12,9 @@ std::vector<KernelId> make_kernels()
             for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria})
                 for (const Layout layout : {Layout::tet80, Layout::tet96})
                     kernels.push_back({Structure::cdt, method, layout, math, schedule});
+    for (const MathMode math : {MathMode::exact, MathMode::fast})
+        for (const Layout layout : {Layout::bvh2, Layout::cwbvh})
+            kernels.push_back({Structure::bvh, Method::single, layout, math});
     for (const Method method : {Method::single, Method::packet16})
         kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
     return kernels;
@@ -40,6 +43,12 @@ const std::vector<KernelId>& search_kernels()
 {
     static const std::vector<KernelId> kernels = make_search_kernels();
     return kernels;
+}
+
+KernelId with_given_rays(KernelId kernel)
+{
+    kernel.task = Task::rays;
+    return kernel;
 }
 
 bool claims_robustness(Method value)
@@ -71,6 +80,8 @@ std::string_view name_of(Layout value)
     switch (value) {
     case Layout::tet80: return "tet80";
     case Layout::tet96: return "tet96";
+    case Layout::bvh2: return "bvh2";
+    case Layout::cwbvh: return "cwbvh";
     case Layout::embree: return "embree";
     }
     return "?";
@@ -81,9 +92,26 @@ std::string_view name_of(MathMode value)
     return value == MathMode::exact ? "exact" : "fast";
 }
 
-std::string_view name_of(RayKind)
+std::string_view name_of(RayKind value)
 {
-    return "primary";
+    switch (value) {
+    case RayKind::primary: return "primary";
+    case RayKind::shadow: return "shadow";
+    case RayKind::ao: return "ao";
+    case RayKind::diffuse: return "diffuse";
+    case RayKind::random: return "random";
+    }
+    return "?";
+}
+
+std::string_view name_of(RayOrder value)
+{
+    switch (value) {
+    case RayOrder::tiles: return "tiles";
+    case RayOrder::morton: return "morton";
+    case RayOrder::shuffled: return "shuffled";
+    }
+    return "?";
 }
 
 std::string_view name_of(Schedule value)
@@ -93,7 +121,12 @@ std::string_view name_of(Schedule value)
 
 std::string_view name_of(Task value)
 {
-    return value == Task::trace ? "trace" : "search";
+    switch (value) {
+    case Task::trace: return "trace";
+    case Task::rays: return "rays";
+    case Task::search: return "search";
+    }
+    return "?";
 }
 
 std::string_view name_of(TetOrder value)

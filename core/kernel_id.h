@@ -9,17 +9,22 @@
 namespace tetrace {
 
 enum class Structure { cdt, bvh };
-/// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or one of Embree's entry points.
+/// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or by how
+/// many rays at once a BVH is asked.
 enum class Method { plane, plucker, stp, ms06, maria, single, packet16 };
-/// A packed form of the mesh; `embree` is what Embree builds for itself.
-enum class Layout { tet80, tet96, embree };
+/// A packed form of the mesh: tets, a BVH of our own, or what Embree builds for itself.
+enum class Layout { tet80, tet96, bvh2, cwbvh, embree };
 enum class MathMode { exact, fast };
-enum class RayKind { primary };
+/// What rays are for (core/ray_set.h); all but primary ones are given to a session.
+enum class RayKind { primary, shadow, ao, diffuse, random };
+/// The order of rays that are given: as their pixels lie in tiles, along a space-filling curve, at random.
+enum class RayOrder { tiles, morton, shuffled };
 /// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
 /// (Aila, Laine, Karras 2012).
 enum class Schedule { tiles, persistent };
-/// What a kernel does with a ray: walks from tet to tet until it hits, or searches for the exit face of one tet alone.
-enum class Task { trace, search };
+/// What a kernel does: traces the primary rays of an image, traces rays that it is given, or searches for the exit face
+/// of one tet alone for each ray that it is given.
+enum class Task { trace, rays, search };
 /// The order of the tets in memory.
 enum class TetOrder { hilbert, input };
 
@@ -38,6 +43,8 @@ struct KernelId {
 /// Every kernel of task trace that some backend can run, schedule tiles and exact mode first, the methods in the order
 /// of the enum; the one list that options and rows come from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
+/// The same kernel for rays that it is given.
+[[nodiscard]] KernelId with_given_rays(KernelId kernel);
 /// Those of task search: the methods of the cdt with schedule tiles, in the same order.
 [[nodiscard]] const std::vector<KernelId>& search_kernels();
 
@@ -50,11 +57,13 @@ struct KernelId {
 [[nodiscard]] std::string_view name_of(Layout value);
 [[nodiscard]] std::string_view name_of(MathMode value);
 [[nodiscard]] std::string_view name_of(RayKind value);
+[[nodiscard]] std::string_view name_of(RayOrder value);
 [[nodiscard]] std::string_view name_of(Schedule value);
 [[nodiscard]] std::string_view name_of(Task value);
 [[nodiscard]] std::string_view name_of(TetOrder value);
 
-/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" of task search.
+/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" of task search; of task rays as of
+/// trace.
 [[nodiscard]] std::string name_of(const KernelId& kernel);
 
 } // namespace tetrace

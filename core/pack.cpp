@@ -114,7 +114,7 @@ void pack_domain(PackedScene& packed, const Scene& scene)
 
 std::size_t PackedScene::bytes() const
 {
-    return (tets.size() + triangles.size()) * sizeof(Row) +
+    return (tets.size() + triangles.size() + nodes.size() + leaf_triangles.size()) * sizeof(Row) +
            (lines.size() + entry_ranges.size() + entry_links.size()) * sizeof(std::uint32_t);
 }
 

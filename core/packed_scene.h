@@ -17,7 +17,7 @@ struct Row {
 };
 static_assert(sizeof(Row) == 16, "rows are uvec4 / uint4 on a device");
 
-/// A scene in the form that crosses to a device. Array names are those of kernels/scene_arrays.h.
+/// A scene in the form that crosses to a device: the tets of a CDT, or a BVH; the arrays of the other are empty.
 struct PackedScene {
     Layout layout = Layout::tet80;
     TetOrder order = TetOrder::hilbert;
@@ -29,6 +29,9 @@ struct PackedScene {
     std::vector<std::uint32_t> lines;        ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
     std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
     std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
+
+    std::vector<Row> nodes;          ///< of a BVH: BVH2_NODE_ROWS or CWBVH_NODE_ROWS a node, the root first
+    std::vector<Row> leaf_triangles; ///< LEAF_TRIANGLE_ROWS a reference of a leaf to a triangle
 
     std::vector<std::uint32_t> packed_of_mesh; ///< stays on the host: position of each tet of the scene in `tets`
 

@@ -11,9 +11,14 @@
 // A launch's output: guard words, six words a hit row after row, guard words; all of it is POISON before.
 #define HIT_WORDS 6u
 #define GUARD_WORDS 64u
-// A ray that is given: its rows stand a whole list of rays apart, all first rows before all second ones.
+// A ray that is given: its rows stand a whole list of rays apart, all first rows before all second ones. Task search:
 //   {direction, link of its entry face}  {origin, 0}  {moment, 0}
 #define RAY_ROWS 3u
+// Task rays, with the link of the face that the ray starts on or enters by, NO_LINK where it comes from outside the
+// domain (BVHs have no use for it), and the ray parameter of its end:
+//   {direction, link}  {origin, end}
+#define GIVEN_RAY_ROWS 2u
+#define NO_END 3.0e38f // of a ray that goes on for ever
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.
 #define TILE_WIDTH 8u
 
@@ -51,5 +56,28 @@
 #define TET96_ROWS 6u
 // triangles: v0, v1 - v0, v2 - v0 of each input triangle, a row of 16 bytes each (w is 0).
 #define TRIANGLE_ROWS 3u
+
+// leaf triangles of a BVH: {v0, input triangle}, {v1, 0}, {v2, 0}, as the mesh has them.
+#define LEAF_TRIANGLE_ROWS 3u
+// Boxes of BVHs are that much larger on every side than what is in them: the triangle test decides on rounded
+// projections (SPEC.md, BVHs).
+#define BOX_MARGIN 7.62939453125e-6f // 2^-17
+// bvh2: both children's boxes and the children.
+//   {a.low.x, a.high.x, a.low.y, a.high.y} {b.low.x, b.high.x, b.low.y, b.high.y}
+//   {a.low.z, a.high.z, b.low.z, b.high.z} {a, b, 0, 0}
+// A child is a node, or BVH2_LEAF | first << 4 | count for so many leaf triangles from `first` on; an empty leaf has
+// its sibling's box.
+#define BVH2_NODE_ROWS 4u
+#define BVH2_LEAF 0x80000000u
+#define BVH2_STACK 32u // children that wait on a ray's stack at most: packing refuses deeper trees
+// cwbvh: eight children, boxes as bytes on a grid of the node's own.
+//   {origin.xyz, exponents of the grid in bytes 0 to 2, bits of the inner children in byte 3}
+//   {first inner child, first leaf triangle, meta 0..3, meta 4..7}
+//   {low.x 0..3, low.x 4..7, low.y 0..3, low.y 4..7} {low.z 0..3, low.z 4..7, high.x 0..3, high.x 4..7}
+//   {high.y 0..3, high.y 4..7, high.z 0..3, high.z 4..7}
+// meta: 0 of an empty slot; 0x20 | 24 + slot of an inner child; count in unary << 5 | offset of a leaf's triangles.
+#define CWBVH_NODE_ROWS 5u
+#define CWBVH_LEAF_TRIANGLES 3u
+#define CWBVH_STACK 16u // pairs of words that wait on a ray's stack at most
 
 #endif
