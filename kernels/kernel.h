@@ -5,6 +5,8 @@
 
 #include "kernels/ray.h"
 
+#include "kernels/hit.h"
+
 #include "kernels/faces.h"
 
 #include KERNEL_LAYOUT_HEADER

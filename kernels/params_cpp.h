@@ -13,5 +13,6 @@ inline Vec3 to_vec3(tetrace::Float3 a)
             job.width,
             job.height,
             job.start_tet,
-            job.max_steps};
+            job.max_steps,
+            0u};
 }

@@ -9,6 +9,7 @@ STRUCT(TraceParams)
     uint height;
     uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
     uint max_steps;
+    uint any_hit; // != 0: the first hit found will do, whichever it is
 };
 
 STRUCT(Ray)

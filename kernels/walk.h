@@ -1,52 +1,16 @@
 // The walk from tet to tet, and the hit at its end. A method brings exit_face() and start_face(), which return a face
 // of the tet, or NO_EXIT.
 
-// t, u, v on the input triangle (Moeller and Trumbore 1997). A ray within rounding of the triangle's plane gets the
-// centroid.
-KERNEL_FN Hit make_hit(SceneView scene, Ray ray, uint triangle, uint tet, uint steps)
+// The hit on an input triangle, loaded.
+KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint steps)
 {
     uint4 r0 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle);
     uint4 r1 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 1u);
     uint4 r2 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 2u);
+    Vec3 v0 = VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z));
     Vec3 edge_1 = VEC3(as_real(r1.x), as_real(r1.y), as_real(r1.z));
     Vec3 edge_2 = VEC3(as_real(r2.x), as_real(r2.y), as_real(r2.z));
-    Vec3 offset = sub3(ray.origin, VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z)));
-    Vec3 p = cross3(ray.direction, edge_2);
-    Vec3 q = cross3(offset, edge_1);
-    real determinant = dot3(edge_1, p);
-
-    Hit hit;
-    hit.face_id = triangle;
-    hit.tet = tet;
-    hit.steps = steps;
-    if (determinant == real(0.0f)) {
-        Vec3 diagonal = sub3(edge_2, sub3(VEC3(real(0.0f), real(0.0f), real(0.0f)), edge_1));
-        PRECISE real along = dot3(diagonal, ray.direction) / real(3.0f) - dot3(offset, ray.direction);
-        PRECISE real t = along / dot3(ray.direction, ray.direction);
-        hit.t = t;
-        hit.u = real(0.333333343f);
-        hit.v = real(0.333333343f);
-        return hit;
-    }
-    PRECISE real t = dot3(edge_2, q) / determinant;
-    PRECISE real u = dot3(offset, p) / determinant;
-    PRECISE real v = dot3(ray.direction, q) / determinant;
-    hit.t = t;
-    hit.u = u;
-    hit.v = v;
-    return hit;
-}
-
-KERNEL_FN Hit make_no_hit(uint face_id, uint tet, uint steps)
-{
-    Hit hit;
-    hit.face_id = face_id;
-    hit.tet = tet;
-    hit.t = real(0.0f);
-    hit.u = real(0.0f);
-    hit.v = real(0.0f);
-    hit.steps = steps;
-    return hit;
+    return make_hit(ray, triangle, v0, edge_1, edge_2, tet, steps);
 }
 
 // The link of a face, or NO_LINK where there is none to leave by. Such a walk reads face 0 instead: a load that all
@@ -82,7 +46,7 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     }
     if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
     uint hit_triangle = face_triangle(scene, tet, face);
-    if (hit_triangle != FREE_FACE) return make_hit(scene, ray, hit_triangle, tet, steps);
+    if (hit_triangle != FREE_FACE) return hit_on(scene, ray, hit_triangle, tet, steps);
     bool left = face_link(scene, tet, face) == NO_LINK;
     return make_no_hit(left ? NO_HIT : LOST, tet, steps);
 }

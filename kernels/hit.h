@@ -1,0 +1,44 @@
+// A ray's answer, for all structures alike.
+
+// t, u, v on the input triangle with corners v0, v0 + edge_1, v0 + edge_2 (Moeller and Trumbore 1997). A ray within
+// rounding of the triangle's plane gets the centroid.
+KERNEL_FN Hit make_hit(Ray ray, uint triangle, Vec3 v0, Vec3 edge_1, Vec3 edge_2, uint tet, uint steps)
+{
+    Vec3 offset = sub3(ray.origin, v0);
+    Vec3 p = cross3(ray.direction, edge_2);
+    Vec3 q = cross3(offset, edge_1);
+    real determinant = dot3(edge_1, p);
+
+    Hit hit;
+    hit.face_id = triangle;
+    hit.tet = tet;
+    hit.steps = steps;
+    if (determinant == real(0.0f)) {
+        Vec3 diagonal = sub3(edge_2, sub3(VEC3(real(0.0f), real(0.0f), real(0.0f)), edge_1));
+        PRECISE real along = dot3(diagonal, ray.direction) / real(3.0f) - dot3(offset, ray.direction);
+        PRECISE real t = along / dot3(ray.direction, ray.direction);
+        hit.t = t;
+        hit.u = real(0.333333343f);
+        hit.v = real(0.333333343f);
+        return hit;
+    }
+    PRECISE real t = dot3(edge_2, q) / determinant;
+    PRECISE real u = dot3(offset, p) / determinant;
+    PRECISE real v = dot3(ray.direction, q) / determinant;
+    hit.t = t;
+    hit.u = u;
+    hit.v = v;
+    return hit;
+}
+
+KERNEL_FN Hit make_no_hit(uint face_id, uint tet, uint steps)
+{
+    Hit hit;
+    hit.face_id = face_id;
+    hit.tet = tet;
+    hit.t = real(0.0f);
+    hit.u = real(0.0f);
+    hit.v = real(0.0f);
+    hit.steps = steps;
+    return hit;
+}
