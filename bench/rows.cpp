@@ -27,13 +27,13 @@ bool wanted_method(const Options& options, const KernelId& kernel)
 
 bool wanted_math(const Options& options, const KernelId& kernel)
 {
-    if (kernel.structure != Structure::cdt) return true;
+    if (kernel.layout == Layout::embree) return true;
     return options.math.empty() ? kernel.math == MathMode::exact : wanted(options.math, kernel.math);
 }
 
 bool wanted_schedule(const Options& options, const KernelId& kernel)
 {
-    if (kernel.structure != Structure::cdt) return true;
+    if (kernel.layout == Layout::embree) return true;
     return options.schedules.empty() ? kernel.schedule == Schedule::tiles : wanted(options.schedules, kernel.schedule);
 }
 
@@ -201,8 +201,10 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
 
 std::string kernel_title(const RowKey& key)
 {
-    if (key.kernel.structure == Structure::bvh) return fmt::format("bvh {}", name_of(key.kernel.method));
-    return fmt::format("cdt {} {}{}{}{}", name_of(key.kernel.method), name_of(key.kernel.layout),
+    if (key.kernel.layout == Layout::embree) return fmt::format("bvh {}", name_of(key.kernel.method));
+    const std::string method =
+        key.kernel.structure == Structure::cdt ? std::string(name_of(key.kernel.method)).append(" ") : "";
+    return fmt::format("{} {}{}{}{}{}", name_of(key.kernel.structure), method, name_of(key.kernel.layout),
                        key.kernel.math == MathMode::exact ? "" : " fast",
                        key.order == TetOrder::hilbert ? "" : " input order",
                        key.kernel.schedule == Schedule::tiles ? "" : " persistent");

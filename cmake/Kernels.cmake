@@ -1,8 +1,32 @@
 # Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
 
-# kernels/<method>.h x kernels/<layout>.h: every backend compiles each pair in both math modes.
-set(TETRACE_METHODS plane plucker stp ms06 maria)
-set(TETRACE_LAYOUTS tet80 tet96)
+# The kernels that every backend compiles in both math modes, as structure/method/layout: kernels/structure_<structure>.h
+# with kernels/<method>.h and kernels/<layout>.h. Structure bvh has no methods of its own.
+set(TETRACE_KERNELS "")
+foreach(method plane plucker stp ms06 maria)
+  foreach(layout tet80 tet96)
+    list(APPEND TETRACE_KERNELS cdt/${method}/${layout})
+  endforeach()
+endforeach()
+
+# tetrace_kernel_parts(<kernel>): sets structure, method, layout, name, as embedded_name() has it without its math mode,
+# tasks, those of core/kernel_id.h that the kernel's text has, and definitions, what C++ needs to include it.
+macro(tetrace_kernel_parts kernel)
+  string(REPLACE "/" ";" parts ${kernel})
+  list(GET parts 0 structure)
+  list(GET parts 1 method)
+  list(GET parts 2 layout)
+  set(name ${method}_${layout})
+  set(tasks trace)
+  if(structure STREQUAL cdt)
+    list(APPEND tasks search)
+  endif()
+  if(structure STREQUAL bvh OR method STREQUAL maria)
+    list(APPEND tasks rays)
+  endif()
+  set(definitions KERNEL_STRUCTURE_HEADER="kernels/structure_${structure}.h" KERNEL_ARRAYS_HEADER="kernels/${structure}_arrays.h"
+    KERNEL_METHOD_HEADER="kernels/${method}.h" KERNEL_LAYOUT_HEADER="kernels/${layout}.h")
+endmacro()
 
 # How kernels are compiled as host C++ in each math mode.
 set(TETRACE_HOST_FLAGS_exact -ffp-contract=off)
@@ -18,13 +42,13 @@ find_program(TETRACE_GZIP gzip REQUIRED DOC "Packs the kernels that the program 
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
 
-# tetrace_flatten(<output> <entry> [<method> <layout>]): a text in which every #include "..." of the entry file is
-# replaced by what it names (once more wherever it stands: there are no guards but one). KERNEL_METHOD_HEADER and
-# KERNEL_LAYOUT_HEADER are kernels/<method>.h and kernels/<layout>.h.
+# tetrace_flatten(<output> <entry> [<kernel>]): a text in which every #include "..." of the entry file is replaced by what
+# it names (once more wherever it stands: there are no guards but one), and every #include KERNEL_..._HEADER by the
+# kernel's.
 function(tetrace_flatten output entry)
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR}
-            -DMETHOD=${ARGV2} -DLAYOUT=${ARGV3} -P ${tetrace_kernels_scripts}/flatten.cmake
+    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR} -DKERNEL=${ARGV2}
+            -P ${tetrace_kernels_scripts}/flatten.cmake
     DEPENDS ${entry} ${TETRACE_KERNEL_HEADERS} ${tetrace_kernels_scripts}/flatten.cmake
     COMMENT "Flattening ${output}" VERBATIM)
 endfunction()

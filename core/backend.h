@@ -34,7 +34,7 @@ struct Device {
     std::string reason; ///< why not, where not usable
 };
 
-/// What a session works on; the caller keeps it alive. `packed` is null for kernels of structure bvh.
+/// What a session works on; the caller keeps it alive. `packed` is null for kernels of layout embree.
 struct SceneData {
     const TriangleMesh* mesh = nullptr;
     const PackedScene* packed = nullptr;
@@ -47,13 +47,18 @@ struct SessionOptions {
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
 };
 
-/// One image's worth of primary rays. Sessions of task search read its size alone: see search_job().
+/// One image's worth of primary rays, or the rays that a session was given: see given_job(), search_job().
 struct TraceJob {
-    View view;
+    View view; ///< of primary rays
     std::uint32_t width = 0, height = 0;
     std::uint32_t start_tet = NO_TET; ///< tet that holds view.origin, in packed order; NO_TET: rays enter from outside
     std::uint32_t max_steps = 0;      ///< a walk that long is LOST
+    bool any_hit = false;             ///< whether there is a hit is asked: whichever is found first will do
 };
+
+/// The job that traces so many rays, all that a session of task rays was given: a column of tiles.
+/// rays: a multiple of TILE_WIDTH.
+[[nodiscard]] TraceJob given_job(std::size_t rays, std::uint32_t max_steps, bool any_hit);
 
 /// The job that searches the exits of so many rays, all that a session was given: a column of tiles.
 /// rays: a multiple of TILE_WIDTH.
@@ -77,8 +82,8 @@ struct Yardstick {
 class Session {
 public:
     virtual ~Session() = default;
-    /// Task search: gives the device the rays of the launches that follow, in place of those before. rows: RAY_ROWS a
-    /// ray (kernels/layout.h), for a multiple of TILE_WIDTH rays, each entering a tet of the scene. Before any launch.
+    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before. rows: as
+    /// many a ray as rows_per_ray() says (kernels/layout.h), for a multiple of TILE_WIDTH rays. Before any launch.
     /// Throws Error{unsupported} with both numbers where they exceed the largest buffer.
     virtual void set_rays(std::span<const Row> rows);
     /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so

@@ -12,9 +12,10 @@ std::vector<KernelId> make_kernels()
             for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria})
                 for (const Layout layout : {Layout::tet80, Layout::tet96})
                     kernels.push_back({Structure::cdt, method, layout, math, schedule});
-    for (const MathMode math : {MathMode::exact, MathMode::fast})
-        for (const Layout layout : {Layout::bvh2, Layout::cwbvh})
-            kernels.push_back({Structure::bvh, Method::single, layout, math});
+    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
+        for (const MathMode math : {MathMode::exact, MathMode::fast})
+            for (const Layout layout : {Layout::bvh2, Layout::cwbvh})
+                kernels.push_back({Structure::bvh, Method::single, layout, math, schedule});
     for (const Method method : {Method::single, Method::packet16})
         kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
     return kernels;
@@ -45,10 +46,25 @@ const std::vector<KernelId>& search_kernels()
     return kernels;
 }
 
+bool has_task(const KernelId& kernel)
+{
+    switch (kernel.task) {
+    case Task::trace: return true;
+    case Task::rays: return kernel.structure == Structure::bvh || kernel.method == Method::maria;
+    case Task::search: return kernel.structure == Structure::cdt;
+    }
+    return false;
+}
+
 KernelId with_given_rays(KernelId kernel)
 {
     kernel.task = Task::rays;
     return kernel;
+}
+
+Structure structure_of(Layout layout)
+{
+    return layout == Layout::tet80 || layout == Layout::tet96 ? Structure::cdt : Structure::bvh;
 }
 
 bool claims_robustness(Method value)

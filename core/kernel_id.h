@@ -43,10 +43,16 @@ struct KernelId {
 /// Every kernel of task trace that some backend can run, schedule tiles and exact mode first, the methods in the order
 /// of the enum; the one list that options and rows come from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
+/// Whether the kernel's text does its task: exits are searched in a CDT alone, and rays are given to BVHs and to maria,
+/// the paper's own method, not to those that it is compared with.
+[[nodiscard]] bool has_task(const KernelId& kernel);
 /// The same kernel for rays that it is given.
 [[nodiscard]] KernelId with_given_rays(KernelId kernel);
 /// Those of task search: the methods of the cdt with schedule tiles, in the same order.
 [[nodiscard]] const std::vector<KernelId>& search_kernels();
+
+/// The structure that a layout packs.
+[[nodiscard]] Structure structure_of(Layout layout);
 
 /// Whether the method is published as one that loses and mistakes no ray: wrong and lost rays then fail a run. Those of
 /// the other methods are their nature: counted, told beside the rate, and no failure.

@@ -17,9 +17,9 @@ constexpr double largest_growth = 4;
 
 LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height, unsigned part_log2)
 {
-    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width,
-            job.height,      job.start_tet,   job.max_steps,   divisions,       0,
-            tile_height,     part_log2};
+    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width, job.height,
+            job.start_tet,   job.max_steps,   job.any_hit,     divisions,       0,         tile_height,
+            part_log2};
 }
 
 std::uint32_t tile_count(const LaunchParams& image)
@@ -30,6 +30,11 @@ std::uint32_t tile_count(const LaunchParams& image)
 std::size_t words_per_ray(Task task)
 {
     return task == Task::search ? 1 : HIT_WORDS;
+}
+
+std::size_t rows_per_ray(Task task)
+{
+    return task == Task::search ? RAY_ROWS : task == Task::rays ? GIVEN_RAY_ROWS : 0;
 }
 
 std::size_t output_words(const TraceJob& job, Task task)
@@ -51,7 +56,7 @@ void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes)
     if (max_buffer_bytes == 0 || rows.size_bytes() <= max_buffer_bytes) return;
     throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(rows.size_bytes()) +
                                             " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
-                                            "; search fewer at once");
+                                            "; give fewer at once");
 }
 
 void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words)

@@ -10,10 +10,10 @@ namespace tetrace {
 /// What a device gets with each launch: LaunchParams of kernels/launch.h, word for word.
 struct LaunchParams {
     Float3 origin, corner, step_x, step_y;
-    std::uint32_t width, height, start_tet, max_steps;
+    std::uint32_t width, height, start_tet, max_steps, any_hit;
     std::uint32_t divisions, first_tile, tile_height, part_log2;
 };
-static_assert(sizeof(LaunchParams) == 80, "every backend reads LaunchParams; see kernels/launch.h");
+static_assert(sizeof(LaunchParams) == 84, "every backend reads LaunchParams; see kernels/launch.h");
 
 /// The params of a job's first launch.
 [[nodiscard]] LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height,
@@ -24,6 +24,9 @@ static_assert(sizeof(LaunchParams) == 80, "every backend reads LaunchParams; see
 
 /// Words that a kernel writes a ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
+
+/// Rows that a ray is given by; 0 of task trace.
+[[nodiscard]] std::size_t rows_per_ray(Task task);
 
 /// Words of an image's output, guards included.
 [[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);

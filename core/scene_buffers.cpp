@@ -23,11 +23,32 @@ SceneBuffer buffer_of(const char* name, const std::vector<Element>& array)
 
 } // namespace
 
-std::array<SceneBuffer, SCENE_ARRAYS> scene_buffers(const PackedScene& scene)
+std::span<const SceneArray> scene_arrays(Structure structure)
 {
-    std::array<SceneBuffer, SCENE_ARRAYS> buffers{};
-#define SCENE_ARRAY(element, name, member, binding) buffers[binding] = buffer_of(#member, scene.member);
-#include "kernels/scene_arrays.h"
+    using uint = std::uint32_t;
+    using uint4 = Row;
+#define SCENE_ARRAY(element, name, member, binding) {#name, binding, sizeof(element)},
+    static constexpr SceneArray cdt[] = {
+#include "kernels/cdt_arrays.h"
+    };
+    static constexpr SceneArray bvh[] = {
+#include "kernels/bvh_arrays.h"
+    };
+#undef SCENE_ARRAY
+    return structure == Structure::cdt ? std::span(cdt) : std::span<const SceneArray>(bvh);
+}
+
+std::vector<SceneBuffer> scene_buffers(const PackedScene& scene)
+{
+    std::vector<SceneBuffer> buffers;
+#define SCENE_ARRAY(element, name, member, binding)                                                                    \
+    buffers.resize(std::max<std::size_t>(buffers.size(), binding + 1));                                                \
+    buffers[binding] = buffer_of(#member, scene.member);
+    if (structure_of(scene.layout) == Structure::cdt) {
+#include "kernels/cdt_arrays.h"
+    } else {
+#include "kernels/bvh_arrays.h"
+    }
 #undef SCENE_ARRAY
     return buffers;
 }
@@ -44,7 +65,8 @@ TetParts tet_parts(const PackedScene& scene, std::uint64_t max_buffer_bytes)
 {
     if (max_buffer_bytes == 0) return {};
     const auto buffers = scene_buffers(scene);
-    for (std::size_t binding = 1; binding < buffers.size(); binding++)
+    const bool can_be_cut = structure_of(scene.layout) == Structure::cdt; // the tets, binding 0
+    for (std::size_t binding = can_be_cut ? 1 : 0; binding < buffers.size(); binding++)
         if (buffers[binding].bytes.size() > max_buffer_bytes)
             reject(buffers[binding].name, buffers[binding].bytes.size(), max_buffer_bytes, "");
     const std::uint64_t bytes = buffers[0].bytes.size();

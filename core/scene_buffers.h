@@ -2,20 +2,29 @@
 
 #include "core/packed_scene.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace tetrace {
+
+/// An array as a structure's kernels read it. One that they read both as words and as rows has two entries.
+struct SceneArray {
+    const char* name;
+    std::uint32_t binding;
+    std::uint32_t element_bytes; ///< 4 or 16
+};
+/// In the order of kernels/<structure>_arrays.h.
+[[nodiscard]] std::span<const SceneArray> scene_arrays(Structure structure);
 
 /// An array of a packed scene as the bytes that a device is given.
 struct SceneBuffer {
     const char* name;
     std::span<const std::byte> bytes;
 };
-/// All arrays by their binding (kernels/scene_arrays.h).
-[[nodiscard]] std::array<SceneBuffer, SCENE_ARRAYS> scene_buffers(const PackedScene& scene);
+/// All arrays of the scene's structure by their binding; at most SCENE_ARRAYS.
+[[nodiscard]] std::vector<SceneBuffer> scene_buffers(const PackedScene& scene);
 
 /// How the array of tets is cut where it exceeds a device's largest buffer: parts of 2^log2_bytes, the last one
 /// shorter.
@@ -25,7 +34,8 @@ struct TetParts {
     [[nodiscard]] std::span<const std::byte> part(std::span<const std::byte> tets, unsigned index) const;
 };
 /// max_buffer_bytes: of the device; 0 is no limit. One part where the array fits.
-/// Throws Error{unsupported} naming the array and both numbers where another array exceeds it, or MAX_TET_PARTS do.
+/// Throws Error{unsupported} naming the array and both numbers where another array exceeds it, any of a BVH, or
+/// MAX_TET_PARTS do.
 [[nodiscard]] TetParts tet_parts(const PackedScene& scene, std::uint64_t max_buffer_bytes);
 
 } // namespace tetrace

@@ -18,17 +18,30 @@ void check_guard(std::span<const std::uint32_t> guard, const char* where)
                 std::string("the kernel wrote ") + where + " its output: the guard words there are overwritten");
 }
 
-} // namespace
-
-TraceJob search_job(std::size_t rays)
+TraceJob column_of(std::size_t rays)
 {
     if (rays % TILE_WIDTH != 0)
         throw Error(ErrorKind::internal,
-                    "a search of " + std::to_string(rays) + " rays, no multiple of " + std::to_string(TILE_WIDTH));
+                    "a job of " + std::to_string(rays) + " rays, no multiple of " + std::to_string(TILE_WIDTH));
     TraceJob job;
     job.width = TILE_WIDTH;
     job.height = static_cast<std::uint32_t>(rays / TILE_WIDTH);
     return job;
+}
+
+} // namespace
+
+TraceJob given_job(std::size_t rays, std::uint32_t max_steps, bool any_hit)
+{
+    TraceJob job = column_of(rays);
+    job.max_steps = max_steps;
+    job.any_hit = any_hit;
+    return job;
+}
+
+TraceJob search_job(std::size_t rays)
+{
+    return column_of(rays);
 }
 
 void Session::set_rays(std::span<const Row>)

@@ -4,7 +4,6 @@
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})
-#define FETCH(scene, array, index) __ldg((scene).array + (index)) // a scene is never written: the read-only path
 
 typedef unsigned int uint;
 typedef float real;
@@ -25,12 +24,3 @@ KERNEL_FN real to_real(uint value)
 {
     return __uint2float_rn(value);
 }
-
-// A scene's arrays, in one address space: never in parts. backends/cuda/session.cpp has the host's twin.
-STRUCT(SceneView)
-{
-#define SCENE_ARRAY(element, name, member, binding) const element* __restrict__ name;
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
-    uint divisions;
-};

@@ -1,5 +1,5 @@
 // The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
-// Macros from outside: MATH_FAST where the compiler may contract; TETS_IN_PARTS where the tets come in several buffers.
+// Macro from outside: MATH_FAST where the compiler may contract.
 #include "kernels/layout.h"
 
 #define KERNEL_FN

@@ -31,6 +31,16 @@ KERNEL_FN Hit make_hit(Ray ray, uint triangle, Vec3 v0, Vec3 edge_1, Vec3 edge_2
     return hit;
 }
 
+// Whether a ray ends before it meets the plane of a triangle, by products alone. One that lies in the plane does not.
+KERNEL_FN bool is_beyond(Ray ray, Vec3 v0, Vec3 edge_1, Vec3 edge_2, real end)
+{
+    if (end >= real(NO_END)) return false;
+    real determinant = dot3(edge_1, cross3(ray.direction, edge_2));
+    real along = dot3(edge_2, cross3(sub3(ray.origin, v0), edge_1));
+    PRECISE real limit = end * determinant;
+    return determinant > real(0.0f) ? along > limit : along < limit && determinant < real(0.0f);
+}
+
 KERNEL_FN Hit make_no_hit(uint face_id, uint tet, uint steps)
 {
     Hit hit;

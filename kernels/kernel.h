@@ -1,24 +1,12 @@
-// A whole kernel, after a dialect header and its SceneView: which layout and method is said by KERNEL_LAYOUT_HEADER and
-// KERNEL_METHOD_HEADER. The order matters: kernel headers include nothing themselves, because not every language that
-// reads them can.
+// A whole kernel, after a dialect header and its SceneView. KERNEL_STRUCTURE_HEADER says which structure, cdt.h or
+// bvh.h, and that one which of KERNEL_LAYOUT_HEADER and KERNEL_METHOD_HEADER it needs. The order matters: kernel headers
+// include nothing themselves but by these names, because not every language that reads them can.
 #include "kernels/vector.h"
 
 #include "kernels/ray.h"
 
 #include "kernels/hit.h"
 
-#include "kernels/faces.h"
-
-#include KERNEL_LAYOUT_HEADER
-
-#include "kernels/start.h"
-
-#include KERNEL_METHOD_HEADER
-
-#include "kernels/entry.h"
-
-#include "kernels/walk.h"
-
 #include "kernels/launch.h"
 
-#include "kernels/search.h"
+#include KERNEL_STRUCTURE_HEADER

@@ -36,3 +36,15 @@ KERNEL_FN uint output_word(LaunchParams launch, Pixel pixel)
 {
     return GUARD_WORDS + HIT_WORDS * (pixel.y * launch.trace.width + pixel.x);
 }
+
+// Number of an item's ray where rays are given: the image is one tile wide.
+KERNEL_FN uint ray_index(Pixel pixel)
+{
+    return pixel.y * TILE_WIDTH + pixel.x;
+}
+
+// How many rays there are: row r of ray i is number r * ray_count() + i.
+KERNEL_FN uint ray_count(LaunchParams launch)
+{
+    return launch.trace.height * TILE_WIDTH;
+}

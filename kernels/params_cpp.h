@@ -14,5 +14,5 @@ inline Vec3 to_vec3(tetrace::Float3 a)
             job.height,
             job.start_tet,
             job.max_steps,
-            0u};
+            job.any_hit ? 1u : 0u};
 }

@@ -9,7 +9,7 @@ STRUCT(TraceParams)
     uint height;
     uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
     uint max_steps;
-    uint any_hit; // != 0: the first hit found will do, whichever it is
+    uint any_hit; // != 0: whether there is a hit is asked, and the first one found will do
 };
 
 STRUCT(Ray)
@@ -52,4 +52,11 @@ KERNEL_FN Ray primary_ray(TraceParams params, uint x, uint y)
     PRECISE real dy = params.corner.y + params.step_x.y * px + params.step_y.y * py;
     PRECISE real dz = params.corner.z + params.step_x.z * px + params.step_y.z * py;
     return make_ray(params.origin, VEC3(without_dust(dx), without_dust(dy), without_dust(dz)));
+}
+
+// A ray that is given, by its rows (layout.h).
+KERNEL_FN Ray given_ray(uint4 direction, uint4 origin)
+{
+    return make_ray(VEC3(as_real(origin.x), as_real(origin.y), as_real(origin.z)),
+                    VEC3(as_real(direction.x), as_real(direction.y), as_real(direction.z)));
 }

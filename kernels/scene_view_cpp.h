@@ -3,7 +3,7 @@ struct SceneView {
 #define SCENE_ARRAY(element, name, member, binding)                                                                    \
     const element* name;                                                                                               \
     std::size_t name##_size;
-#include "kernels/scene_arrays.h"
+#include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
     uint divisions;
 };
@@ -20,7 +20,7 @@ inline SceneView view_of(const tetrace::PackedScene& packed)
 {
     SceneView view{};
 #define SCENE_ARRAY(element, name, member, binding) bind_array(packed.member, view.name, view.name##_size);
-#include "kernels/scene_arrays.h"
+#include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
     view.divisions = packed.divisions;
     return view;

@@ -5,7 +5,7 @@
     {                                                                                                                  \
         element name[];                                                                                                \
     };
-#include "kernels/scene_arrays.h"
+#include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
 
 STRUCT(SceneView)

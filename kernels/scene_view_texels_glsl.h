@@ -9,9 +9,10 @@
     {                                                                                                                  \
         return element(texelFetch(name, int(index)));                                                                  \
     }
-#include "kernels/scene_arrays.h"
+#include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
 #define FETCH(scene, array, index) fetch_##array(index)
+#define ROWS_COST_AS_WORDS // a texel is a texel
 
 STRUCT(SceneView)
 {

@@ -1,4 +1,7 @@
 // Layout tet80 (the paper, section 4.1): a tet holds its vertices as 12 floats, then {link, triangle} per face.
+#ifdef ROWS_COST_AS_WORDS
+#include "kernels/tet80_rows.h"
+#else
 #define TET80_WORDS (4u * TET80_ROWS)
 
 KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
@@ -17,3 +20,4 @@ KERNEL_FN uint face_triangle(SceneView scene, uint tet, uint face)
 {
     return FETCH(scene, tet_words, TET80_WORDS * tet + 13u + 2u * face);
 }
+#endif

@@ -6,14 +6,5 @@ KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
     return VEC3(as_real(row.x), as_real(row.y), as_real(row.z));
 }
 
-KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
-{
-    uint4 row = FETCH(scene, tet_rows, TET96_ROWS * tet + 4u + (face >> 1u));
-    return (face & 1u) == 0u ? row.x : row.z;
-}
-
-KERNEL_FN uint face_triangle(SceneView scene, uint tet, uint face)
-{
-    uint4 row = FETCH(scene, tet_rows, TET96_ROWS * tet + 4u + (face >> 1u));
-    return (face & 1u) == 0u ? row.y : row.w;
-}
+#define FACE_ROW(tet, face) (TET96_ROWS * (tet) + 4u + ((face) >> 1u))
+#include "kernels/face_rows.h"

@@ -1,8 +1,8 @@
 // The walk from tet to tet, and the hit at its end. A method brings exit_face() and start_face(), which return a face
 // of the tet, or NO_EXIT.
 
-// The hit on an input triangle, loaded.
-KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint steps)
+// The hit on an input triangle; none where the ray ends before it.
+KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint steps, real end)
 {
     uint4 r0 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle);
     uint4 r1 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 1u);
@@ -10,6 +10,7 @@ KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint ste
     Vec3 v0 = VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z));
     Vec3 edge_1 = VEC3(as_real(r1.x), as_real(r1.y), as_real(r1.z));
     Vec3 edge_2 = VEC3(as_real(r2.x), as_real(r2.y), as_real(r2.z));
+    if (is_beyond(ray, v0, edge_1, edge_2, end)) return make_no_hit(NO_HIT, tet, steps);
     return make_hit(ray, triangle, v0, edge_1, edge_2, tet, steps);
 }
 
@@ -21,7 +22,45 @@ KERNEL_FN uint link_beyond(SceneView scene, uint tet, uint face)
     return face == NO_EXIT ? NO_LINK : link;
 }
 
+// Whether the ray has ended before it enters the tet that the link names: all three vertices of the face lie beyond
+// its end along its direction. Rounding decides little: hits beyond the end are none anyway.
+KERNEL_FN bool ends_before(SceneView scene, uint link, Ray ray, real end)
+{
+    PRECISE real reach = end * dot3(ray.direction, ray.direction);
+    uint tet = link >> 2u;
+    uint face = link & 3u;
+    if (dot3(sub3(vertex(scene, tet, corner(face, 0u)), ray.origin), ray.direction) <= reach) return false;
+    if (dot3(sub3(vertex(scene, tet, corner(face, 1u)), ray.origin), ray.direction) <= reach) return false;
+    return dot3(sub3(vertex(scene, tet, corner(face, 2u)), ray.origin), ray.direction) > reach;
+}
+
+// From a tet and the face by which the ray leaves it to the ray's hit. end: ray parameter that a hit has at most;
+// NO_END of a ray without one.
 // Only the loop's own variables live on after it; everything else is loaded again (some compilers lose the rest).
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, real end)
+{
+    bool is_endless = end >= real(NO_END);
+    uint tet = first_tet;
+    uint face = first_face;
+    uint link = link_beyond(scene, tet, face);
+    uint triangle = face_triangle(scene, tet, face & 3u);
+    uint steps = 1u;
+    while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
+           (is_endless || !ends_before(scene, link, ray, end))) {
+        tet = link >> 2u;
+        face = exit_face(scene, tet, link & 3u, ray);
+        link = link_beyond(scene, tet, face);
+        triangle = face_triangle(scene, tet, face & 3u);
+        steps++;
+    }
+    if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
+    uint hit_triangle = face_triangle(scene, tet, face);
+    if (hit_triangle != FREE_FACE) return hit_on(scene, ray, hit_triangle, tet, steps, end);
+    bool left = face_link(scene, tet, face) == NO_LINK;
+    bool ended = !is_endless && steps < params.max_steps;
+    return make_no_hit(left || ended ? NO_HIT : LOST, tet, steps);
+}
+
 KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
     uint tet = params.start_tet;
@@ -34,19 +73,17 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     } else {
         face = start_face(scene, tet, ray);
     }
-    uint link = link_beyond(scene, tet, face);
-    uint triangle = face_triangle(scene, tet, face & 3u);
-    uint steps = 1u;
-    while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps) {
-        tet = link >> 2u;
-        face = exit_face(scene, tet, link & 3u, ray);
-        link = link_beyond(scene, tet, face);
-        triangle = face_triangle(scene, tet, face & 3u);
-        steps++;
-    }
-    if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
-    uint hit_triangle = face_triangle(scene, tet, face);
-    if (hit_triangle != FREE_FACE) return hit_on(scene, ray, hit_triangle, tet, steps);
-    bool left = face_link(scene, tet, face) == NO_LINK;
-    return make_no_hit(left ? NO_HIT : LOST, tet, steps);
+    return walk(scene, params, ray, tet, face, real(NO_END));
+}
+
+// A ray that is given starts on the face that its link names, on the side of that tet: a method never leaves by the face
+// that it entered by, so that the surface a ray starts on is not hit again.
+KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
+{
+    Ray ray = given_ray(direction, origin);
+    uint link = direction.w;
+    if (link == NO_LINK) link = entry_link(scene, ray);
+    if (link == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint face = exit_face(scene, link >> 2u, link & 3u, ray);
+    return walk(scene, params, ray, link >> 2u, face, as_real(origin.w));
 }

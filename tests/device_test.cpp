@@ -329,7 +329,7 @@ TEST_P(Devices, refuse_rays_that_exceed_a_buffer)
         const auto session = backend.open(device, kernel, {nullptr, &tets}, {.max_buffer_bytes = 50'000});
         const std::string problem = error_of([&] { session->set_rays(rays.rows); });
         EXPECT_TRUE(problem.starts_with("unsupported: ")) << problem;
-        EXPECT_TRUE(contains(problem, "98304") && contains(problem, "50000; search fewer")) << problem;
+        EXPECT_TRUE(contains(problem, "98304") && contains(problem, "50000; give fewer")) << problem;
     }
 }
 

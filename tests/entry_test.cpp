@@ -15,6 +15,8 @@
 
 namespace {
 
+#define KERNEL_STRUCTURE_HEADER "kernels/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/cdt_arrays.h"
 #define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
 #define KERNEL_METHOD_HEADER "kernels/maria.h"
 #include "kernels/kernel_cpp.h"
@@ -166,7 +168,8 @@ TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
     tetrace::PackedScene packed = box().packed;
     for (std::size_t row = 0; row < 3; row++)
         packed.triangles[row].z = 0; // the first triangle, flattened into z = 0
-    const Hit hit = hit_on(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7);
+    const Hit hit =
+        hit_on(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7, NO_END);
     EXPECT_NEAR(hit.t, 2, 1e-6);
     EXPECT_FLOAT_EQ(hit.u, 1.0f / 3);
     EXPECT_FLOAT_EQ(hit.v, 1.0f / 3);

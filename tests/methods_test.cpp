@@ -21,6 +21,8 @@ using tetrace::Float3;
 
 #define KERNEL_REAL tetrace::test::Counted
 #define KERNEL_REAL_HAS_NO_BITS
+#define KERNEL_STRUCTURE_HEADER "kernels/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/cdt_arrays.h"
 #define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
 
 #define KERNEL_METHOD_HEADER "kernels/plane.h"

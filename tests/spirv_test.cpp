@@ -1,7 +1,7 @@
 // The SPIR-V that devices get: nothing in exact modules may be contracted, and data lies where the host puts it.
 #include "backends/vulkan/kernels.h"
 #include "core/launch.h"
-#include "core/packed_scene.h"
+#include "core/scene_buffers.h"
 #include "tests/spirv/module.h"
 #include "tests/spirv/twins.h"
 
@@ -35,22 +35,24 @@ std::vector<EmbeddedKernel> modules()
     return found;
 }
 
-bool is_search(std::string_view name)
+bool takes_rays(std::string_view name)
 {
-    return name.find("_search") != std::string_view::npos;
+    return name.find("_trace") == std::string_view::npos;
 }
 
-/// What a kernel's storage buffers must be: kernels/scene_arrays.h and kernels/layout.h.
-std::map<std::string, Array> expected_arrays(bool in_parts, bool searches)
+Structure structure_of_module(std::string_view name)
 {
-    using uint = std::uint32_t;
-    using uint4 = Row;
+    return name.starts_with(name_of(Method::single)) ? Structure::bvh : Structure::cdt;
+}
+
+/// What a kernel's storage buffers must be: kernels/<structure>_arrays.h and kernels/layout.h.
+std::map<std::string, Array> expected_arrays(std::string_view module, bool in_parts)
+{
     std::map<std::string, Array> arrays;
-#define SCENE_ARRAY(element, name, member, binding) arrays[#name] = {binding, sizeof(element), false};
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
+    for (const SceneArray& array : scene_arrays(structure_of_module(module)))
+        arrays[array.name] = {array.binding, array.element_bytes, false};
     arrays["output_words"] = {OUTPUT_BINDING, 4, true};
-    if (searches) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
+    if (takes_rays(module)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
     for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++) {
         arrays["tet_words_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 4, false};
         arrays["tet_rows_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
@@ -59,16 +61,12 @@ std::map<std::string, Array> expected_arrays(bool in_parts, bool searches)
 }
 
 /// What a kernel's texel buffers must be: words at their array's binding, rows FIRST_ROWS_BINDING behind it.
-std::map<std::string, std::uint32_t> expected_texels(bool searches)
+std::map<std::string, std::uint32_t> expected_texels(std::string_view module)
 {
-    using uint = std::uint32_t;
-    using uint4 = Row;
     std::map<std::string, std::uint32_t> bindings;
-#define SCENE_ARRAY(element, name, member, binding)                                                                    \
-    bindings[#name] = binding + (sizeof(element) == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
-    if (searches) bindings["rays"] = FIRST_ROWS_BINDING + RAYS_BINDING;
+    for (const SceneArray& array : scene_arrays(structure_of_module(module)))
+        bindings[array.name] = array.binding + (array.element_bytes == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
+    if (takes_rays(module)) bindings["rays"] = FIRST_ROWS_BINDING + RAYS_BINDING;
     return bindings;
 }
 
@@ -93,6 +91,7 @@ std::vector<Member> expected_push_constants()
     add("trace.height", offsetof(LaunchParams, height));
     add("trace.start_tet", offsetof(LaunchParams, start_tet));
     add("trace.max_steps", offsetof(LaunchParams, max_steps));
+    add("trace.any_hit", offsetof(LaunchParams, any_hit));
     add("divisions", offsetof(LaunchParams, divisions));
     add("first_tile", offsetof(LaunchParams, first_tile));
     add("tile_height", offsetof(LaunchParams, tile_height));
@@ -113,14 +112,14 @@ TEST(Spirv, no_operation_of_an_exact_module_may_be_contracted)
     for (const EmbeddedKernel& kernel : modules()) {
         if (!is_exact(kernel.name)) continue;
         const Module module(kernel.bytes);
-        EXPECT_GE(module.rounding_operations(), is_probe(kernel.name)    ? 5u
-                                                : is_search(kernel.name) ? 15u
-                                                                         : 30u)
+        EXPECT_GE(module.rounding_operations(), is_probe(kernel.name)                             ? 5u
+                                                : kernel.name.find("_search") != kernel.name.npos ? 15u
+                                                                                                  : 30u)
             << kernel.name;
         EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
         checked++;
     }
-    EXPECT_GE(checked, 11u); // two layouts, each whole, in parts, in texels and two of task search; the probe
+    EXPECT_GE(checked, 23u); // maria on two layouts, seven variants each; two BVHs, four each; the probe
 }
 
 TEST(Spirv, the_same_source_without_precise_would_be_found)
@@ -139,11 +138,10 @@ TEST(Spirv, storage_buffers_are_those_of_scene_arrays_and_layout)
         if (is_probe(kernel.name)) continue;
         const Module module(kernel.bytes);
         if (kernel.name.ends_with("_texels")) {
-            EXPECT_EQ(module.texels(), expected_texels(is_search(kernel.name))) << kernel.name;
+            EXPECT_EQ(module.texels(), expected_texels(kernel.name)) << kernel.name;
             EXPECT_EQ(module.arrays(), (std::map<std::string, Array>{{"output_words", {OUTPUT_BINDING, 4, true}}}));
         } else {
-            EXPECT_EQ(module.arrays(), expected_arrays(kernel.name.ends_with("_parts"), is_search(kernel.name)))
-                << kernel.name;
+            EXPECT_EQ(module.arrays(), expected_arrays(kernel.name, kernel.name.ends_with("_parts"))) << kernel.name;
             EXPECT_TRUE(module.texels().empty());
         }
     }
@@ -163,8 +161,8 @@ TEST(Spirv, vectors_of_three_and_rows_read_as_words_would_be_found)
     EXPECT_NE(twin().push_constants(), expected_push_constants());
     ASSERT_FALSE(twin().push_constants().empty());
     EXPECT_EQ(twin().push_constants().front().type, "vector");
-    EXPECT_NE(twin().arrays().at("triangles"), expected_arrays(false, false).at("triangles"));
-    EXPECT_EQ(twin().arrays().at("output_words"), expected_arrays(false, false).at("output_words"));
+    EXPECT_NE(twin().arrays().at("triangles"), expected_arrays("maria_tet80_exact_trace", false).at("triangles"));
+    EXPECT_EQ(twin().arrays().at("output_words"), expected_arrays("maria_tet80_exact_trace", false).at("output_words"));
 }
 
 TEST(Spirv, damaged_modules_are_refused)

@@ -11,6 +11,13 @@ namespace {
 
 constexpr unsigned probe_block_threads = 64;
 
+/// Whether a kernel's text, where there is one, has an entry for its task and schedule (kernel.cu).
+bool has_entry(const KernelId& kernel)
+{
+    if (kernel.task == Task::trace) return true;
+    return kernel.schedule == Schedule::tiles && has_task(kernel);
+}
+
 ProgramId probe_program(MathMode math)
 {
     return {"probe", math};
@@ -52,9 +59,7 @@ const DriverBackend::Found& DriverBackend::require(std::size_t device) const
 
 bool DriverBackend::has_kernel(const KernelId& kernel) const
 {
-    const bool has_entry = kernel.task == Task::trace || kernel.schedule == Schedule::tiles;
-    return kernel.structure == Structure::cdt && has_entry &&
-           find_kernel(embedded_sources(), program_of(kernel).source) != nullptr;
+    return has_entry(kernel) && find_kernel(embedded_sources(), program_of(kernel).source) != nullptr;
 }
 
 std::string DriverBackend::why_not(std::size_t device, const KernelId& kernel) const

@@ -1,27 +1,33 @@
-// The entry points of one kernel, flattened with its method and layout (cmake/Kernels.cmake) and compiled once per math
+// The entry points of one kernel, flattened (cmake/Kernels.cmake) and compiled once per math
 // mode, by nvcc, by NVRTC, and as host C++ (backends/cuda_host/kernel.cpp). KERNEL_NAME is method_layout_math: a driver
 // finds an entry by its name.
 #include "kernels/layout.h"
 
 #include "kernels/dialect_cuda.h"
 
+#include "kernels/scene_view_cuda.h"
+
 #include "kernels/kernel.h"
 
 #define JOINED(prefix, name) prefix##name
 #define ENTRY(prefix, name) JOINED(prefix, name)
 
-KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint item, uint* output)
+KERNEL_FN void write_hit(Hit hit, uint word, uint* output)
 {
-    Pixel pixel = pixel_of(launch, tile, item);
-    if (!is_in_image(launch, pixel)) return;
-    Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
-    uint word = output_word(launch, pixel);
     output[word] = hit.face_id;
     output[word + 1u] = hit.tet;
     output[word + 2u] = as_bits(hit.t);
     output[word + 3u] = as_bits(hit.u);
     output[word + 4u] = as_bits(hit.v);
     output[word + 5u] = hit.steps;
+}
+
+KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint item, uint* output)
+{
+    Pixel pixel = pixel_of(launch, tile, item);
+    if (!is_in_image(launch, pixel)) return;
+    Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+    write_hit(hit, output_word(launch, pixel), output);
 }
 
 // A ray a thread, a tile a block.
@@ -50,6 +56,20 @@ extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene
     }
 }
 
+#ifdef TAKES_RAYS
+// A given ray a thread, a tile a block.
+extern "C" __global__ void ENTRY(rays_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                           const uint4* __restrict__ rays)
+{
+    Pixel pixel = pixel_of(launch, launch.first_tile + blockIdx.x, threadIdx.x);
+    if (!is_in_image(launch, pixel)) return;
+    uint ray = ray_index(pixel);
+    Hit hit = trace_given(scene, launch.trace, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
+    write_hit(hit, output_word(launch, pixel), output);
+}
+#endif
+
+#ifdef SEARCHES_EXITS
 // An exit search a thread, a tile a block.
 extern "C" __global__ void ENTRY(search_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                              const uint4* __restrict__ rays)
@@ -61,3 +81,4 @@ extern "C" __global__ void ENTRY(search_tiles_, KERNEL_NAME)(SceneView scene, La
     output[GUARD_WORDS + ray] =
         search_exit(scene, __ldg(rays + ray), __ldg(rays + count + ray), __ldg(rays + 2u * count + ray));
 }
+#endif

@@ -36,7 +36,7 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
     : device_(driver, device),
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
       task_(kernel.task), schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))),
-      stopwatch_(device_.context), tile_height_(tile_height), threads_(options.threads),
+      divisions_(scene.divisions), stopwatch_(device_.context), tile_height_(tile_height), threads_(options.threads),
       max_buffer_bytes_(options.max_buffer_bytes), launches_(tile_height), bytes_(scene.bytes())
 {
     require_arrays_fit(scene, max_buffer_bytes_);
@@ -67,15 +67,13 @@ void CudaSession::make_current()
 void CudaSession::upload(const PackedScene& scene)
 {
     const auto start = std::chrono::steady_clock::now();
-    const auto buffers = scene_buffers(scene);
-    for (std::size_t i = 0; i < buffers.size(); i++)
-        arrays_[i] = Memory(device_.context, buffers[i].bytes, buffers[i].name, device_.stream.get());
+    for (const SceneBuffer& buffer : scene_buffers(scene))
+        arrays_.emplace_back(device_.context, buffer.bytes, buffer.name, device_.stream.get());
     device_.synchronize();
     setup_.upload_s = seconds_since(start);
-#define SCENE_ARRAY(element, name, member, binding) scene_.name = arrays_[binding].address();
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
-    scene_.divisions = scene.divisions;
+    for (const SceneArray& array : scene_arrays(structure_of(scene.layout)))
+        scene_.push_back(arrays_[array.binding].address());
+    scene_.push_back(divisions_); // in the low half of the last eight bytes, as a little-endian host has it
 }
 
 void CudaSession::set_rays(std::span<const Row> rows)
@@ -105,7 +103,7 @@ void CudaSession::launch(const TraceJob& job)
     poison_output(output_words(job, task_));
     launched_tiles_ = 0;
     launches_.start(
-        launch_params(job, scene_.divisions, tile_height_, TetParts{}.log2_bytes),
+        launch_params(job, divisions_, tile_height_, TetParts{}.log2_bytes),
         [this](const LaunchParams& params, std::uint32_t tiles) {
             finish_launch(); // of the one before: there is but one stopwatch
             schedule_ == Schedule::persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
@@ -118,7 +116,7 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
 {
     LaunchParams launch = params;
     Address output = output_.address(), rays = rays_.address();
-    void* parameters[] = {&scene_, &launch, &output, &rays}; // the last one is of task search alone
+    void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
     stopwatch_.start(device_.stream.get());
     device_.launch(kernel_, tiles, TILE_WIDTH * tile_height_, parameters);
     stopwatch_.stop(device_.stream.get());
@@ -128,7 +126,7 @@ void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t ti
 {
     LaunchParams launch = params;
     Address output = output_.address(), counter = counter_.address();
-    void* parameters[] = {&scene_, &launch, &output, &counter, &tiles};
+    void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles};
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
     device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");

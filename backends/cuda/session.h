@@ -3,7 +3,7 @@
 #include "backends/cuda/device.h"
 #include "core/launch.h"
 
-#include <array>
+#include <vector>
 
 namespace tetrace::cuda {
 
@@ -22,14 +22,6 @@ public:
     [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
 
 private:
-    /// What the kernels get: SceneView of kernels/dialect_cuda.h, word for word.
-    struct SceneView {
-#define SCENE_ARRAY(element, name, member, binding) Address name;
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
-        std::uint32_t divisions;
-    };
-
     void read_output(std::span<std::uint32_t> words) override;
     void make_current();
     void upload(const PackedScene& scene);
@@ -44,8 +36,9 @@ private:
     Task task_;
     Schedule schedule_;
     FunctionHandle kernel_;
-    std::array<Memory, SCENE_ARRAYS> arrays_;
-    SceneView scene_{};
+    std::vector<Memory> arrays_; ///< by binding
+    std::vector<Address> scene_; ///< what the kernels get: SceneView of kernels/scene_view_cuda.h, word for word
+    std::uint32_t divisions_;
     Memory output_, counter_, rays_;
     Stopwatch stopwatch_;
     unsigned tile_height_, threads_;

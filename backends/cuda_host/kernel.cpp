@@ -1,5 +1,5 @@
-// backends/cuda/kernel.cu as host C++: compiled once per method, layout and math mode (CMakeLists.txt), which arrive as
-// KERNEL_METHOD_HEADER, KERNEL_LAYOUT_HEADER and KERNEL_NAME.
+// backends/cuda/kernel.cu as host C++: compiled once per kernel and math mode (CMakeLists.txt), which arrive as
+// KERNEL_STRUCTURE_HEADER and its like, and KERNEL_NAME.
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
 #include "core/launch.h"
@@ -23,9 +23,18 @@ void ENTRY(run_trace_persistent_, KERNEL_NAME)(void** arguments)
     call(ENTRY(trace_persistent_, KERNEL_NAME), arguments);
 }
 
+#ifdef TAKES_RAYS
+void ENTRY(run_rays_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(rays_tiles_, KERNEL_NAME), arguments);
+}
+#endif
+
+#ifdef SEARCHES_EXITS
 void ENTRY(run_search_tiles_, KERNEL_NAME)(void** arguments)
 {
     call(ENTRY(search_tiles_, KERNEL_NAME), arguments);
 }
+#endif
 
 } // namespace tetrace::cuda_host

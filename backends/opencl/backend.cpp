@@ -19,8 +19,7 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::cdt &&
-               (kernel.task == Task::trace || kernel.schedule == Schedule::tiles) &&
+        return (kernel.task == Task::trace || kernel.schedule == Schedule::tiles) && has_task(kernel) &&
                find_kernel(opencl::embedded_kernels(), opencl::source_name(kernel)) != nullptr;
     }
 

@@ -1,11 +1,13 @@
-// A layout and method as an OpenCL program (CMakeLists.txt): a thin entry round the shared kernel. Build options
-// (program.cpp): GROUP_ITEMS, the items of a work group, which has a tile at a time; PERSISTENT for that schedule;
-// SEARCH for that task; MATH_FAST; TETS_IN_PARTS.
+// A kernel as an OpenCL program (CMakeLists.txt): a thin entry round the shared text. Build options (session.cpp):
+// GROUP_ITEMS, the items of a work group, which has a tile at a time; PERSISTENT for that schedule; RAYS and SEARCH for
+// those tasks; MATH_FAST; TETS_IN_PARTS.
 #include "kernels/dialect_opencl.h"
+
+#include "kernels/scene_view_opencl.h"
 
 #include "kernels/kernel.h"
 
-// rays: of task search.
+// rays: that are given.
 KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __global uint* output,
                         __global const uint4* rays)
 {
@@ -16,7 +18,12 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
     uint count = ray_count(launch);
     output[GUARD_WORDS + ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2u * count + ray]);
 #else
+#ifdef RAYS
+    uint ray = ray_index(pixel);
+    Hit hit = trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
+#else
     Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+#endif
     __global uint* words = output + output_word(launch, pixel);
     words[0] = hit.face_id;
     words[1] = hit.tet;
@@ -33,7 +40,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
     const LaunchParams launch, const uint end_tile, __global uint* restrict output, __global uint* restrict counter,
     __global const uint4* restrict rays
 #define SCENE_ARRAY(element, name, member, binding) , __global const element* restrict name
-#include "kernels/scene_arrays.h"
+#include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
 #ifdef TETS_IN_PARTS
 #define PART_ARGUMENT(number) , __global const uint4* restrict part_##number
@@ -44,7 +51,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
     SceneView scene;
     scene.divisions = launch.divisions;
 #define SCENE_ARRAY(element, name, member, binding) scene.name = name;
-#include "kernels/scene_arrays.h"
+#include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
 #ifdef TETS_IN_PARTS
     scene.part_log2 = launch.part_log2;

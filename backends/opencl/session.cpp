@@ -62,9 +62,9 @@ void OpenclSession::upload(const PackedScene& scene)
     const auto start = std::chrono::steady_clock::now();
     run("uploading the scene", 0, [&] {
         const auto buffers = scene_buffers(scene);
-        for (std::size_t binding = 0; binding < buffers.size(); binding++)
-            arrays_[binding] = make_uploaded(context_->handle(), queue_,
-                                             binding == 0 ? parts_.part(buffers[0].bytes, 0) : buffers[binding].bytes);
+        for (const SceneBuffer& buffer : buffers)
+            arrays_.push_back(make_uploaded(context_->handle(), queue_,
+                                            arrays_.empty() ? parts_.part(buffer.bytes, 0) : buffer.bytes));
         for (unsigned part = 1; part < parts_.count; part++)
             more_parts_[part] = make_uploaded(context_->handle(), queue_, parts_.part(buffers[0].bytes, part));
         queue_.finish();
@@ -81,6 +81,7 @@ void OpenclSession::compile(const ProgramCache& cache)
     const auto start = std::chrono::steady_clock::now();
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height_);
     if (kernel_id_.schedule == Schedule::persistent) defines += " -DPERSISTENT";
+    if (kernel_id_.task == Task::rays) defines += " -DRAYS";
     if (kernel_id_.task == Task::search) defines += " -DSEARCH";
     if (parts_.count > 1) defines += " -DTETS_IN_PARTS";
     const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache);
@@ -102,9 +103,8 @@ void OpenclSession::compile(const ProgramCache& cache)
 void OpenclSession::set_arguments()
 {
     cl_uint argument = first_array_argument;
-#define SCENE_ARRAY(element, name, member, binding) kernel_.setArg(argument++, arrays_[binding]);
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
+    for (const SceneArray& array : scene_arrays(kernel_id_.structure))
+        kernel_.setArg(argument++, arrays_[array.binding]);
     for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; part++)
         kernel_.setArg(argument++, part < parts_.count ? more_parts_[part] : arrays_[0]);
     kernel_.setArg(counter_argument, counter_);

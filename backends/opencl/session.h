@@ -55,7 +55,7 @@ private:
     Launches launches_;
     cl::CommandQueue queue_;
     cl::Kernel kernel_;
-    std::array<cl::Buffer, SCENE_ARRAYS> arrays_;
+    std::vector<cl::Buffer> arrays_;                   ///< by binding
     std::array<cl::Buffer, MAX_TET_PARTS> more_parts_; ///< from 1 on; 0 is arrays_[0]
     cl::Buffer output_, counter_, rays_;
     std::size_t output_words_ = 0;

@@ -13,13 +13,14 @@
 namespace tetrace {
 namespace {
 
-const openmp::CompiledKernel* find_kernel(KernelId id)
+openmp::RunFunction* find_function(const KernelId& id)
 {
-    id.task = Task::trace; // what is compiled does both
+    KernelId compiled = id;
+    compiled.task = Task::trace;
     const auto& kernels = openmp::compiled_kernels();
     const auto found =
-        std::find_if(kernels.begin(), kernels.end(), [&](const auto& kernel) { return kernel.id == id; });
-    return found == kernels.end() ? nullptr : &*found;
+        std::find_if(kernels.begin(), kernels.end(), [&](const auto& kernel) { return kernel.id == compiled; });
+    return found == kernels.end() ? nullptr : found->function(id.task);
 }
 
 Device openmp_device()
@@ -38,7 +39,7 @@ public:
 
     [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
 
-    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return find_kernel(kernel) != nullptr; }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return find_function(kernel) != nullptr; }
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
     {
@@ -52,7 +53,7 @@ public:
                                                 const SessionOptions& options) override
     {
         const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
-        return std::make_unique<openmp::OpenmpSession>(*find_kernel(kernel), kernel.task, packed, threads_of(options),
+        return std::make_unique<openmp::OpenmpSession>(find_function(kernel), kernel.task, packed, threads_of(options),
                                                        tile_height_for(devices_[0], options));
     }
 

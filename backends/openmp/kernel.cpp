@@ -1,6 +1,7 @@
-// One kernel: compiled once per method, layout and math mode (CMakeLists.txt), which arrive as
-// KERNEL_METHOD_HEADER, KERNEL_LAYOUT_HEADER, TRACE_SYMBOL and SEARCH_SYMBOL.
+// One kernel: compiled once per kernel and math mode (CMakeLists.txt), which arrive as KERNEL_STRUCTURE_HEADER and its
+// like, and KERNEL_NAME.
 #include "backends/openmp/kernels.h"
+#include "core/host_session.h"
 #include "core/launch.h"
 
 #include <bit>
@@ -15,31 +16,14 @@ namespace {
 
 static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
 
-void trace_tile(const SceneView& scene, const LaunchParams& launch, uint tile, tetrace::Hit* hits)
-{
-    for (uint item = 0; item < TILE_WIDTH * launch.tile_height; item++) {
-        const Pixel pixel = pixel_of(launch, tile, item);
-        if (!is_in_image(launch, pixel)) continue;
-        const Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
-        hits[std::size_t{pixel.y} * launch.trace.width + pixel.x] = std::bit_cast<tetrace::Hit>(hit);
-    }
-}
-
-void search_tile(const SceneView& scene, const tetrace::Row* rays, const LaunchParams& launch, uint tile, uint* faces)
-{
-    const std::size_t count = ray_count(launch);
-    for (uint item = 0; item < TILE_WIDTH * launch.tile_height; item++) {
-        const Pixel pixel = pixel_of(launch, tile, item);
-        if (!is_in_image(launch, pixel)) continue;
-        const uint ray = ray_index(pixel);
-        faces[ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2 * count + ray]);
-    }
-}
-
-// Calls work with each tile of an image, on that many threads.
+// Calls work with the scene, the launch and each pixel of an image, tile after tile, on that many threads.
 template <class Work>
-void for_tiles(const tetrace::LaunchParams& image, unsigned threads, const Work& work)
+void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job, unsigned threads,
+                unsigned tile_height, const Work& work)
 {
+    const SceneView scene = view_of(packed);
+    const tetrace::LaunchParams image = launch_params(job, packed.divisions, tile_height, 0);
+    const auto launch = std::bit_cast<LaunchParams>(image);
     const uint tiles = tetrace::tile_count(image);
 #pragma omp parallel num_threads(static_cast <int>(threads))
     {
@@ -48,30 +32,56 @@ void for_tiles(const tetrace::LaunchParams& image, unsigned threads, const Work&
         std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
 #pragma omp for schedule(dynamic, 4)
         for (uint tile = 0; tile < tiles; tile++)
-            work(tile);
+            for (uint item = 0; item < TILE_WIDTH * launch.tile_height; item++)
+                if (const Pixel pixel = pixel_of(launch, tile, item); is_in_image(launch, pixel))
+                    work(scene, launch, pixel);
         std::fesetenv(&environment);
     }
 }
 
 } // namespace
 
+#define JOINED(prefix, name) prefix##name
+#define FUNCTION(prefix, name) JOINED(prefix, name)
+
 namespace tetrace::openmp {
 
-void TRACE_SYMBOL(const PackedScene& packed, const TraceJob& job, Hit* hits, unsigned threads, unsigned tile_height)
+void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row>, const TraceJob& job,
+                                   std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
 {
-    const SceneView scene = view_of(packed);
-    const LaunchParams params = launch_params(job, packed.divisions, tile_height, 0);
-    const auto launch = std::bit_cast<::LaunchParams>(params);
-    for_tiles(params, threads, [&](uint tile) { trace_tile(scene, launch, tile, hits); });
+    tetrace::Hit* const hits = as_hits(output).data();
+    for_pixels(packed, job, threads, tile_height,
+               [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+                   const ::Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+                   hits[std::size_t{pixel.y} * launch.trace.width + pixel.x] = std::bit_cast<tetrace::Hit>(hit);
+               });
 }
 
-void SEARCH_SYMBOL(const PackedScene& packed, const Row* rays, const TraceJob& job, std::uint32_t* faces,
-                   unsigned threads, unsigned tile_height)
+#ifdef TAKES_RAYS
+void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row> rays, const TraceJob& job,
+                                  std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
 {
-    const SceneView scene = view_of(packed);
-    const LaunchParams params = launch_params(job, packed.divisions, tile_height, 0);
-    const auto launch = std::bit_cast<::LaunchParams>(params);
-    for_tiles(params, threads, [&](uint tile) { search_tile(scene, rays, launch, tile, faces); });
+    tetrace::Hit* const hits = as_hits(output).data();
+    for_pixels(packed, job, threads, tile_height,
+               [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+                   const uint ray = ray_index(pixel);
+                   const ::Hit hit = trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
+                   hits[ray] = std::bit_cast<tetrace::Hit>(hit);
+               });
 }
+#endif
+
+#ifdef SEARCHES_EXITS
+void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row> rays, const TraceJob& job,
+                                    std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
+{
+    for_pixels(packed, job, threads, tile_height,
+               [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+                   const uint ray = ray_index(pixel);
+                   const std::size_t count = ray_count(launch);
+                   output[ray] = search_exit(scene, rays[ray], rays[count + ray], rays[2 * count + ray]);
+               });
+}
+#endif
 
 } // namespace tetrace::openmp

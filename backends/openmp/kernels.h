@@ -4,19 +4,22 @@
 
 namespace tetrace::openmp {
 
-/// Traces all pixels of a job, tile after tile, into hits (row after row) on that many threads.
-using TraceFunction = void (*)(const PackedScene& scene, const TraceJob& job, Hit* hits, unsigned threads,
-                               unsigned tile_height);
+/// Does all rays of a job, tile after tile, on so many threads. rays: the rows of those that are given, empty for task
+/// trace. output: words_per_ray() a ray, row after row.
+using RunFunction = void(const PackedScene& scene, std::span<const Row> rays, const TraceJob& job,
+                         std::span<std::uint32_t> output, unsigned threads, unsigned tile_height);
 
-/// Searches the exits of a job's rays, whose rows are given, into faces, on that many threads.
-using SearchFunction = void (*)(const PackedScene& scene, const Row* rays, const TraceJob& job, std::uint32_t* faces,
-                                unsigned threads, unsigned tile_height);
-
-/// One compiled kernel, as both tasks; CMake compiles kernel.cpp once for each.
+/// One compiled kernel by task, null where it has none; CMake compiles kernel.cpp once for each.
 struct CompiledKernel {
-    KernelId id; ///< of task trace
-    TraceFunction trace;
-    SearchFunction search;
+    KernelId id; ///< of task trace and schedule tiles
+    RunFunction* trace;
+    RunFunction* rays;
+    RunFunction* search;
+
+    [[nodiscard]] RunFunction* function(Task task) const
+    {
+        return task == Task::trace ? trace : task == Task::rays ? rays : search;
+    }
 };
 [[nodiscard]] const std::vector<CompiledKernel>& compiled_kernels();
 

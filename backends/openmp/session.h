@@ -8,8 +8,7 @@ namespace tetrace::openmp {
 /// Runs one compiled kernel on the packed scene where it lies: nothing is compiled, nothing but given rays copied.
 class OpenmpSession : public HostSession {
 public:
-    OpenmpSession(const CompiledKernel& kernel, Task task, const PackedScene& scene, unsigned threads,
-                  unsigned tile_height);
+    OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height);
     void set_rays(std::span<const Row> rows) override { rays_.assign(rows.begin(), rows.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
@@ -17,8 +16,7 @@ public:
 private:
     void run(const TraceJob& job, std::span<std::uint32_t> output) override;
 
-    const CompiledKernel& kernel_;
-    bool searches_;
+    RunFunction* run_;
     const PackedScene& scene_;
     std::vector<Row> rays_;
     unsigned threads_, tile_height_;

@@ -19,8 +19,8 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::cdt && kernel.schedule == Schedule::tiles &&
-               find_kernel(vulkan::embedded_kernels(), embedded_name(kernel)) != nullptr;
+        return kernel.schedule == Schedule::tiles &&
+               find_kernel(vulkan::embedded_kernels(), vulkan::shader_name(kernel)) != nullptr;
     }
 
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override

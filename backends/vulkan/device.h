@@ -31,7 +31,7 @@ struct Limits {
 /// Storage buffers that a kernel is given: the scene's arrays, the output, and further parts of the tets.
 [[nodiscard]] constexpr std::uint32_t storage_buffers_needed(bool in_parts)
 {
-    return in_parts ? MAX_TET_PARTS + SCENE_ARRAYS : 2 + SCENE_ARRAYS; // the output, and the rays of task search
+    return in_parts ? MAX_TET_PARTS + SCENE_ARRAYS : 2 + SCENE_ARRAYS; // the output, and rays that are given
 }
 
 /// A physical device of instance(). handle is null where facts speak of there being none.

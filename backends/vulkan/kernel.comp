@@ -1,6 +1,6 @@
 #version 450
-// A layout and method as a compute shader (CMakeLists.txt): a thin entry round the shared kernel. A work group is a
-// tile. SEARCH: for that task.
+// A kernel as a compute shader (CMakeLists.txt): a thin entry round the shared text. A work group is a tile. TRACE, RAYS or
+// SEARCH: for that task.
 #include "kernels/dialect_glsl.h"
 
 #ifdef SCENE_IN_TEXELS
@@ -21,7 +21,7 @@ layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
     uint output_words[];
 };
 
-#ifdef SEARCH
+#ifndef TRACE
 #ifdef SCENE_IN_TEXELS
 layout(set = 0, binding = FIRST_ROWS_BINDING + RAYS_BINDING) uniform usamplerBuffer rays;
 #define RAY_ROW(index) texelFetch(rays, int(index))
@@ -45,7 +45,12 @@ void main()
     output_words[GUARD_WORDS + ray] =
         search_exit(scene, RAY_ROW(ray), RAY_ROW(count + ray), RAY_ROW(2u * count + ray));
 #else
+#ifdef RAYS
+    uint ray = ray_index(pixel);
+    Hit hit = trace_given(scene, launch.trace, RAY_ROW(ray), RAY_ROW(ray_count(launch) + ray));
+#else
     Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+#endif
     uint word = output_word(launch, pixel);
     output_words[word] = hit.face_id;
     output_words[word + 1u] = hit.tet;

@@ -20,18 +20,14 @@ void require_storage_buffers(const FoundDevice& found, const TetParts& parts)
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-/// Every array as texels, the tets as words and as rows: kernels/scene_view_texels_glsl.h.
-std::vector<TexelBinding> texel_bindings()
+/// Every array as texels, those of rows apart from those of words: kernels/scene_view_texels_glsl.h.
+std::vector<TexelBinding> texel_bindings(Structure structure)
 {
-    using uint = std::uint32_t;
-    using uint4 = Row;
     std::vector<TexelBinding> texels;
-#define SCENE_ARRAY(element, name, member, number)                                                                     \
-    texels.push_back(sizeof(element) == sizeof(Row)                                                                    \
-                         ? TexelBinding{FIRST_ROWS_BINDING + number, vk::Format::eR32G32B32A32Uint}                    \
-                         : TexelBinding{number, vk::Format::eR32Uint});
-#include "kernels/scene_arrays.h"
-#undef SCENE_ARRAY
+    for (const SceneArray& array : scene_arrays(structure))
+        texels.push_back(array.element_bytes == sizeof(Row)
+                             ? TexelBinding{FIRST_ROWS_BINDING + array.binding, vk::Format::eR32G32B32A32Uint}
+                             : TexelBinding{array.binding, vk::Format::eR32Uint});
     return texels;
 }
 
@@ -49,9 +45,10 @@ constexpr TexelBinding rays_as_texels{FIRST_ROWS_BINDING + RAYS_BINDING, vk::For
 
 void require_variant(const KernelId& kernel, const TetParts& parts)
 {
-    if (kernel.task == Task::search && parts.count > 1)
-        throw Error(ErrorKind::unsupported,
-                    "vulkan searches exits of tets in one buffer, and these are in " + std::to_string(parts.count));
+    if (kernel.task != Task::trace && parts.count > 1)
+        throw Error(ErrorKind::unsupported, "vulkan gives rays to kernels that read the tets from one buffer, and "
+                                            "these are in " +
+                                                std::to_string(parts.count));
 }
 
 } // namespace
@@ -60,8 +57,8 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
                              const SessionOptions& options)
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_for(found.facts, options)),
-      task_(kernel.task), in_texels_(is_in_texels(found, scene, parts_)), divisions_(scene.divisions),
-      launches_(tile_height_, found.limits.groups)
+      structure_(kernel.structure), task_(kernel.task), in_texels_(is_in_texels(found, scene, parts_)),
+      divisions_(scene.divisions), launches_(tile_height_, found.limits.groups)
 {
     require_storage_buffers(found, parts_);
     require_variant(kernel, parts_);
@@ -102,17 +99,17 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
 
 void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
 {
-    const bool searches = kernel.task == Task::search;
+    const bool takes_rays = kernel.task != Task::trace;
     const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
-    ProgramId id{.name = embedded_name(kernel) + (searches ? "_search" : "") + variant,
+    ProgramId id{.name = shader_name(kernel) + variant,
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_};
-    if (in_texels_) id.texels = texel_bindings();
-    for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
+    if (in_texels_) id.texels = texel_bindings(structure_);
+    for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
         id.bindings.push_back(binding);
-    if (searches && in_texels_) id.texels.push_back(rays_as_texels);
-    if (searches && !in_texels_) id.bindings.push_back(RAYS_BINDING);
+    if (takes_rays && in_texels_) id.texels.push_back(rays_as_texels);
+    if (takes_rays && !in_texels_) id.bindings.push_back(RAYS_BINDING);
     for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
     program_.emplace(context_, id, ProgramCache(options.program_cache));
@@ -122,9 +119,9 @@ void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& o
 
 void VulkanSession::bind_scene()
 {
-    for (const TexelBinding& texels : in_texels_ ? texel_bindings() : std::vector<TexelBinding>{})
+    for (const TexelBinding& texels : in_texels_ ? texel_bindings(structure_) : std::vector<TexelBinding>{})
         program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_ROWS_BINDING]);
-    for (std::uint32_t binding = 0; !in_texels_ && binding < SCENE_ARRAYS; binding++)
+    for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
         program_->bind(context_, binding, arrays_[binding]);
     for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++) // those beyond the last are never read
         program_->bind(context_, SECOND_PART_BINDING - 1 + part,

@@ -45,6 +45,7 @@ private:
     TetParts parts_;
     std::uint64_t max_buffer_bytes_;
     unsigned tile_height_;
+    Structure structure_;
     Task task_;
     bool in_texels_; ///< the scene's arrays are read as texels
     std::uint32_t divisions_;
