@@ -42,6 +42,9 @@ PackedScene pack_bvh(const TriangleMesh& mesh, const Bvh& bvh, Layout layout)
         throw Error(ErrorKind::internal, "packing a BVH as " + std::string(name_of(layout)) + ": no layout of BVHs");
     if (bvh.references.size() > most_references(layout))
         refuse_to_pack(layout, bvh.references.size(), "references of leaves to triangles", most_references(layout));
+    for (const auto& node : bvh.nodes)
+        if (node.count > most_leaf_references)
+            refuse_to_pack(layout, node.count, "triangles in a leaf", most_leaf_references);
     PackedScene packed = layout == Layout::bvh2 ? pack_bvh2(mesh, bvh) : pack_cwbvh(mesh, bvh);
     packed.layout = layout;
     return packed;

@@ -7,6 +7,9 @@
 
 namespace tetrace {
 
+/// Of one leaf of a binary BVH that is packed: bvh2 has four bits for them.
+inline constexpr std::uint32_t most_leaf_references = 15;
+
 /// The most references of leaves to triangles that a layout's words can number.
 [[nodiscard]] std::uint32_t most_references(Layout layout);
 

@@ -7,9 +7,7 @@
 namespace tetrace {
 namespace {
 
-constexpr std::uint32_t most_in_bvh2_leaf = 15;
-
-std::uint32_t bits(float x)
+std::uint32_t float_bits(float x)
 {
     return std::bit_cast<std::uint32_t>(x);
 }
@@ -48,8 +46,6 @@ private:
 
     std::uint32_t add_leaf(const BvhNode& leaf)
     {
-        if (leaf.count > most_in_bvh2_leaf)
-            refuse_to_pack(Layout::bvh2, leaf.count, "triangles in a leaf", most_in_bvh2_leaf);
         const auto triangles = std::span(bvh_.references).subspan(leaf.first, leaf.count);
         return BVH2_LEAF | add_leaf_triangles(packed_, mesh_, triangles) << 4 | leaf.count;
     }
@@ -66,9 +62,9 @@ private:
     std::uint32_t add_rows(const Box& a, const Box& b)
     {
         const auto node = static_cast<std::uint32_t>(packed_.nodes.size() / BVH2_NODE_ROWS);
-        packed_.nodes.push_back({bits(a.low.x), bits(a.high.x), bits(a.low.y), bits(a.high.y)});
-        packed_.nodes.push_back({bits(b.low.x), bits(b.high.x), bits(b.low.y), bits(b.high.y)});
-        packed_.nodes.push_back({bits(a.low.z), bits(a.high.z), bits(b.low.z), bits(b.high.z)});
+        packed_.nodes.push_back({float_bits(a.low.x), float_bits(a.high.x), float_bits(a.low.y), float_bits(a.high.y)});
+        packed_.nodes.push_back({float_bits(b.low.x), float_bits(b.high.x), float_bits(b.low.y), float_bits(b.high.y)});
+        packed_.nodes.push_back({float_bits(a.low.z), float_bits(a.high.z), float_bits(b.low.z), float_bits(b.high.z)});
         packed_.nodes.emplace_back();
         return node;
     }
