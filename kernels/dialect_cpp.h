@@ -32,3 +32,22 @@ KERNEL_FN real to_real(uint value)
 {
     return real(static_cast<float>(value));
 }
+
+// Of numbers: never NaN.
+KERNEL_FN real minimum(real a, real b)
+{
+    return a < b ? a : b;
+}
+KERNEL_FN real maximum(real a, real b)
+{
+    return a > b ? a : b;
+}
+// Index of the highest bit that is set. value: not 0.
+KERNEL_FN uint highest_bit(uint value)
+{
+    return 31u - static_cast<uint>(std::countl_zero(value));
+}
+KERNEL_FN uint bit_count(uint value)
+{
+    return static_cast<uint>(std::popcount(value));
+}

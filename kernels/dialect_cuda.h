@@ -24,3 +24,19 @@ KERNEL_FN real to_real(uint value)
 {
     return __uint2float_rn(value);
 }
+KERNEL_FN real minimum(real a, real b)
+{
+    return fminf(a, b);
+}
+KERNEL_FN real maximum(real a, real b)
+{
+    return fmaxf(a, b);
+}
+KERNEL_FN uint highest_bit(uint value)
+{
+    return 31u - static_cast<uint>(__clz(static_cast<int>(value)));
+}
+KERNEL_FN uint bit_count(uint value)
+{
+    return static_cast<uint>(__popc(value));
+}

@@ -29,3 +29,19 @@ KERNEL_FN real square_root(real value)
 {
     return sqrt(value);
 }
+KERNEL_FN real minimum(real a, real b)
+{
+    return min(a, b);
+}
+KERNEL_FN real maximum(real a, real b)
+{
+    return max(a, b);
+}
+KERNEL_FN uint highest_bit(uint value)
+{
+    return uint(findMSB(value));
+}
+KERNEL_FN uint bit_count(uint value)
+{
+    return uint(bitCount(value));
+}

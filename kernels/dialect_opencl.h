@@ -30,3 +30,19 @@ KERNEL_FN real square_root(real value)
 {
     return sqrt(value);
 }
+KERNEL_FN real minimum(real a, real b)
+{
+    return fmin(a, b);
+}
+KERNEL_FN real maximum(real a, real b)
+{
+    return fmax(a, b);
+}
+KERNEL_FN uint highest_bit(uint value)
+{
+    return 31u - clz(value);
+}
+KERNEL_FN uint bit_count(uint value)
+{
+    return popcount(value);
+}

@@ -60,6 +60,16 @@ inline float __uint2float_rn(std::uint32_t value)
     return static_cast<float>(value);
 }
 
+inline int __clz(int value)
+{
+    return std::countl_zero(static_cast<std::uint32_t>(value));
+}
+
+inline int __popc(std::uint32_t value)
+{
+    return std::popcount(value);
+}
+
 inline std::uint32_t atomicAdd(std::uint32_t* word, std::uint32_t added)
 {
     return std::atomic_ref(*word).fetch_add(added, std::memory_order_relaxed);

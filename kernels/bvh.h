@@ -1,0 +1,201 @@
+// What the BVHs share: a ray as their tests take it, boxes, and the triangle test (SPEC.md, BVHs).
+
+// For a build that counts what a ray fetches; it is never a timed one.
+#ifndef COUNT_NODE
+#define COUNT_NODE()
+#define COUNT_TRIANGLE()
+#endif
+
+// Depth is the distance from the ray's origin along the axis of the direction's largest component, in the direction's
+// sense: t times the magnitude of that component.
+STRUCT(RayFrame)
+{
+    Vec3 inverse;  // what depth a unit of each axis is
+    Vec3 offset;   // origin * inverse
+    Vec3 origin;   // turned: z is the axis of depth
+    Vec3 shear;    // the direction, turned, times 2^20: no product of two sheared coordinates is denormal
+    real to_depth; // from turned z to depth times 2^40
+    uint axis;     // of depth
+};
+
+// The nearest hit so far.
+STRUCT(Nearest)
+{
+    real depth;
+    uint triangle; // of the input, or NO_HIT: depth is the ray's end then
+    uint at;       // one of the leaf triangles that refer to it
+};
+
+// No box is entered there.
+#define NEVER real(3.0e38f)
+// Rounding may change a depth in a box test by less; only that relates the bounds of different axes.
+#define BOX_SLACK real(1.000003814697265625f) // 1 + 2^-18
+// A hit is nearer than a ray's origin where its depth is not at least 2^-100.
+#define LEAST_DEPTH real(8.67361737988403547e-19f) // 2^-60, in depth times 2^40
+
+KERNEL_FN uint deepest_axis(Vec3 direction)
+{
+    real x = magnitude(direction.x);
+    real y = magnitude(direction.y);
+    real z = magnitude(direction.z);
+    uint of_xy = y > x ? 1u : 0u;
+    return z > maximum(x, y) ? 2u : of_xy;
+}
+
+// The axes in cyclic order, so that `axis` is the last.
+KERNEL_FN Vec3 turned(Vec3 a, uint axis)
+{
+    real x = axis == 0u ? a.y : axis == 1u ? a.z : a.x;
+    real y = axis == 0u ? a.z : axis == 1u ? a.x : a.y;
+    real z = axis == 0u ? a.x : axis == 1u ? a.y : a.z;
+    return VEC3(x, y, z);
+}
+
+// A ray that does not move along an axis gets a large finite quotient (Aila and Laine 2009).
+KERNEL_FN real depth_per_unit(real deepest, real direction)
+{
+    PRECISE real quotient = deepest / (direction == real(0.0f) ? real(8.27180612553027675e-25f) : direction); // 2^-80
+    return quotient;
+}
+
+KERNEL_FN RayFrame frame_of(Ray ray)
+{
+    RayFrame frame;
+    frame.axis = deepest_axis(ray.direction);
+    frame.origin = turned(ray.origin, frame.axis);
+    Vec3 direction = turned(ray.direction, frame.axis);
+    PRECISE real shear_x = direction.x * real(1048576.0f);
+    PRECISE real shear_y = direction.y * real(1048576.0f);
+    PRECISE real shear_z = direction.z * real(1048576.0f);
+    frame.shear = VEC3(shear_x, shear_y, shear_z);
+    frame.to_depth = direction.z < real(0.0f) ? real(-1099511627776.0f) : real(1099511627776.0f);
+    real deepest = magnitude(direction.z);
+    frame.inverse = VEC3(depth_per_unit(deepest, ray.direction.x), depth_per_unit(deepest, ray.direction.y),
+                         depth_per_unit(deepest, ray.direction.z));
+    PRECISE real offset_x = ray.origin.x * frame.inverse.x;
+    PRECISE real offset_y = ray.origin.y * frame.inverse.y;
+    PRECISE real offset_z = ray.origin.z * frame.inverse.z;
+    frame.offset = VEC3(offset_x, offset_y, offset_z);
+    return frame;
+}
+
+// end: ray parameter. What exceeds 2^64 is no end, what is below 2^-60 is the origin.
+KERNEL_FN Nearest nothing_before(Ray ray, RayFrame frame, real end)
+{
+    Nearest nearest;
+    real bounded = end < real(8.67361737988403547e-19f) ? real(0.0f) : minimum(end, real(18446744073709551616.0f));
+    PRECISE real depth = bounded * magnitude(component(ray.direction, frame.axis));
+    nearest.depth = depth;
+    nearest.triangle = NO_HIT;
+    nearest.at = 0u;
+    return nearest;
+}
+
+// Seen along the ray: the ray is the origin.
+STRUCT(Sheared)
+{
+    real x;
+    real y;
+    real z; // turned, not sheared
+};
+
+// A vertex, whichever triangle asks.
+KERNEL_FN Sheared sheared(RayFrame frame, uint4 row)
+{
+    Vec3 a = sub3(turned(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), frame.axis), frame.origin);
+    PRECISE real x = a.x * frame.shear.z - a.z * frame.shear.x;
+    PRECISE real y = a.y * frame.shear.z - a.z * frame.shear.y;
+    Sheared result;
+    result.x = x;
+    result.y = y;
+    result.z = a.z;
+    return result;
+}
+
+// Side of the ray at the edge from a to b: right or zero, since rounding is monotone.
+KERNEL_FN real rough_side(Sheared a, Sheared b)
+{
+    PRECISE real side = a.x * b.y - a.y * b.x;
+    return side;
+}
+
+// What a product lost by rounding, exactly (Dekker 1971; Veltkamp's split: 12 bits and 12).
+KERNEL_FN real lost_by(real a, real b, real product)
+{
+    PRECISE real a_large = a * real(4097.0f);
+    PRECISE real a_high = a_large - (a_large - a);
+    PRECISE real a_low = a - a_high;
+    PRECISE real b_large = b * real(4097.0f);
+    PRECISE real b_high = b_large - (b_large - b);
+    PRECISE real b_low = b - b_high;
+    PRECISE real lost = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    return lost;
+}
+
+// The same side to some units in the last place, where rough_side() has cancelled too.
+KERNEL_FN real fine_side(Sheared a, Sheared b)
+{
+    PRECISE real plus = a.x * b.y;
+    PRECISE real minus = a.y * b.x;
+    PRECISE real side = (plus - minus) + (lost_by(a.x, b.y, plus) - lost_by(a.y, b.x, minus));
+    return side;
+}
+
+// Quotients that are compared must be the same bits everywhere, which division is not. a: normal, 2^-126 to 2^124.
+KERNEL_FN real reciprocal(real a)
+{
+    real guess = as_real(0x7EF311C3u - as_bits(a));
+    PRECISE real first = guess * (real(2.0f) - a * guess);
+    PRECISE real second = first * (real(2.0f) - a * first);
+    PRECISE real third = second * (real(2.0f) - a * second);
+    return third;
+}
+
+KERNEL_FN bool has_two_signs(real a, real b, real c)
+{
+    return minimum(minimum(a, b), c) < real(0.0f) && maximum(maximum(a, b), c) > real(0.0f);
+}
+
+// Tests leaf triangle `at`; of equally near ones the first of the input wins, whatever the order of the tests.
+// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; here without a division.
+KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
+{
+    COUNT_TRIANGLE();
+    uint4 row = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at);
+    Sheared a = sheared(frame, row);
+    Sheared b = sheared(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 1u));
+    Sheared c = sheared(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 2u));
+    if (has_two_signs(rough_side(b, c), rough_side(c, a), rough_side(a, b))) return nearest;
+
+    real u = fine_side(b, c);
+    real v = fine_side(c, a);
+    real w = fine_side(a, b);
+    PRECISE real determinant = u + v + w;
+    if (has_two_signs(u, v, w) || determinant == real(0.0f)) return nearest;
+    PRECISE real a_depth = a.z * frame.to_depth;
+    PRECISE real b_depth = b.z * frame.to_depth;
+    PRECISE real c_depth = c.z * frame.to_depth;
+    PRECISE real weighted = u * a_depth + v * b_depth + w * c_depth;
+    PRECISE real inverse = reciprocal(magnitude(determinant));
+    PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
+    PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
+    bool nearer = depth < nearest.depth || (depth == nearest.depth && row.w < nearest.triangle);
+    if (scaled < LEAST_DEPTH || !nearer) return nearest;
+    Nearest found;
+    found.depth = depth;
+    found.triangle = row.w;
+    found.at = at;
+    return found;
+}
+
+KERNEL_FN Hit hit_of(SceneView scene, Ray ray, Nearest nearest)
+{
+    if (nearest.triangle == NO_HIT) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint4 r0 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * nearest.at);
+    uint4 r1 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * nearest.at + 1u);
+    uint4 r2 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * nearest.at + 2u);
+    Vec3 v0 = VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z));
+    Vec3 v1 = VEC3(as_real(r1.x), as_real(r1.y), as_real(r1.z));
+    Vec3 v2 = VEC3(as_real(r2.x), as_real(r2.y), as_real(r2.z));
+    return make_hit(ray, nearest.triangle, v0, sub3(v1, v0), sub3(v2, v0), NO_TET, 0u);
+}

@@ -1,0 +1,61 @@
+// Layout bvh2: a binary tree whose nodes hold their children's boxes; near child first.
+// Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, and its addendum with
+// Karras, 2012: the node and the loop, first through nodes, then through a leaf's triangles.
+
+// On the bottom of the stack: a leaf, where there is nothing left.
+#define BVH2_END 0xFFFFFFFFu
+
+// Depth at which the ray enters a box, 0 inside, or NEVER.
+KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, uint y_low, uint y_high, uint z_low,
+                         uint z_high)
+{
+    PRECISE real x0 = as_real(x_low) * frame.inverse.x - frame.offset.x;
+    PRECISE real x1 = as_real(x_high) * frame.inverse.x - frame.offset.x;
+    PRECISE real y0 = as_real(y_low) * frame.inverse.y - frame.offset.y;
+    PRECISE real y1 = as_real(y_high) * frame.inverse.y - frame.offset.y;
+    PRECISE real z0 = as_real(z_low) * frame.inverse.z - frame.offset.z;
+    PRECISE real z1 = as_real(z_high) * frame.inverse.z - frame.offset.z;
+    real near = maximum(maximum(minimum(x0, x1), minimum(y0, y1)), maximum(minimum(z0, z1), real(0.0f)));
+    real far = minimum(minimum(maximum(x0, x1), maximum(y0, y1)), minimum(maximum(z0, z1), limit));
+    return near <= far * BOX_SLACK ? near : NEVER;
+}
+
+KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
+{
+    RayFrame frame = frame_of(ray);
+    Nearest nearest = nothing_before(ray, frame, end);
+    uint stack[BVH2_STACK + 2u]; // with the end, and a word that is written but not kept
+    stack[0] = BVH2_END;
+    uint waiting = 1u;
+    uint child = 0u;
+    while (child != BVH2_END) {
+        while ((child & BVH2_LEAF) == 0u) {
+            COUNT_NODE();
+            uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_ROWS * child);
+            uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 1u);
+            uint4 z = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 2u);
+            uint4 children = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 3u);
+            real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
+            real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
+            bool b_first = b < a;
+            child = b_first ? children.y : children.x;
+            stack[waiting] = b_first ? children.x : children.y;
+            waiting += maximum(a, b) < NEVER ? 1u : 0u;
+            if (minimum(a, b) == NEVER) {
+                waiting--;
+                child = stack[waiting];
+            }
+        }
+        if (child != BVH2_END) {
+            uint at = (child & ~BVH2_LEAF) >> 4u;
+            uint behind = at + (child & 15u);
+            while (at < behind) {
+                nearest = nearer_triangle(scene, frame, nearest, at);
+                at++;
+            }
+            waiting--;
+            child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : stack[waiting];
+        }
+    }
+    return hit_of(scene, ray, nearest);
+}

@@ -1,0 +1,118 @@
+// Layout cwbvh: a tree of eight children a node, whose boxes are bytes on a grid of the node's own.
+// Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017;
+// without its exchange of work between lanes.
+
+// A node's hits: in bits 24 to 31 inner children, the highest first to be visited; below them leaf triangles.
+#define CWBVH_INNER_HITS 0xFF000000u
+
+// Depth of the node's grid: plane q of an axis lies at q * step + start.
+STRUCT(GridFrame)
+{
+    Vec3 step;
+    Vec3 start;
+};
+
+KERNEL_FN GridFrame grid_frame(RayFrame frame, uint4 row)
+{
+    GridFrame grid;
+    PRECISE real step_x = as_real((row.w & 0xFFu) << 23u) * frame.inverse.x;
+    PRECISE real step_y = as_real((row.w >> 8u & 0xFFu) << 23u) * frame.inverse.y;
+    PRECISE real step_z = as_real((row.w >> 16u & 0xFFu) << 23u) * frame.inverse.z;
+    PRECISE real start_x = as_real(row.x) * frame.inverse.x - frame.offset.x;
+    PRECISE real start_y = as_real(row.y) * frame.inverse.y - frame.offset.y;
+    PRECISE real start_z = as_real(row.z) * frame.inverse.z - frame.offset.z;
+    grid.step = VEC3(step_x, step_y, step_z);
+    grid.start = VEC3(start_x, start_y, start_z);
+    return grid;
+}
+
+KERNEL_FN real plane_depth(real step, real start, uint planes, uint shift)
+{
+    PRECISE real depth = to_real(planes >> shift & 0xFFu) * step + start;
+    return depth;
+}
+
+// Hits of four children, whose planes are bytes of the words. turn: the ray's octant, inverted: a child's slot differs
+// from it in the axes along which its siblings come later.
+KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, uint near_x, uint near_y, uint near_z,
+                            uint far_x, uint far_y, uint far_z)
+{
+    uint hits = 0u;
+    for (uint shift = 0u; shift < 32u; shift += 8u) {
+        real near = maximum(maximum(plane_depth(grid.step.x, grid.start.x, near_x, shift),
+                                    plane_depth(grid.step.y, grid.start.y, near_y, shift)),
+                            maximum(plane_depth(grid.step.z, grid.start.z, near_z, shift), real(0.0f)));
+        real far = minimum(minimum(plane_depth(grid.step.x, grid.start.x, far_x, shift),
+                                   plane_depth(grid.step.y, grid.start.y, far_y, shift)),
+                           minimum(plane_depth(grid.step.z, grid.start.z, far_z, shift), limit));
+        uint child = meta >> shift & 0xFFu;
+        uint bit = (child & 31u) ^ ((child & 24u) == 24u ? turn : 0u);
+        hits |= near <= far * BOX_SLACK ? child >> 5u << bit : 0u;
+    }
+    return hits;
+}
+
+KERNEL_FN uint hits_of_node(RayFrame frame, real limit, uint turn, uint4 r0, uint4 r1, uint4 r2, uint4 r3, uint4 r4)
+{
+    GridFrame grid = grid_frame(frame, r0);
+    bool down_x = frame.inverse.x < real(0.0f);
+    bool down_y = frame.inverse.y < real(0.0f);
+    bool down_z = frame.inverse.z < real(0.0f);
+    uint first = hits_of_four(grid, limit, turn, r1.z, down_x ? r3.z : r2.x, down_y ? r4.x : r2.z, down_z ? r4.z : r3.x,
+                              down_x ? r2.x : r3.z, down_y ? r2.z : r4.x, down_z ? r3.x : r4.z);
+    uint last = hits_of_four(grid, limit, turn, r1.w, down_x ? r3.w : r2.y, down_y ? r4.y : r2.w, down_z ? r4.w : r3.y,
+                             down_x ? r2.y : r3.w, down_y ? r2.w : r4.y, down_z ? r3.y : r4.w);
+    return first | last;
+}
+
+// The octant that the ray comes from, with the bits of x, y, z in 2, 1, 0.
+KERNEL_FN uint turn_of(RayFrame frame)
+{
+    return (frame.inverse.x < real(0.0f) ? 0u : 4u) | (frame.inverse.y < real(0.0f) ? 0u : 2u) |
+           (frame.inverse.z < real(0.0f) ? 0u : 1u);
+}
+
+KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
+{
+    RayFrame frame = frame_of(ray);
+    Nearest nearest = nothing_before(ray, frame, end);
+    uint turn = turn_of(frame);
+    uint stack_base[CWBVH_STACK];
+    uint stack_hits[CWBVH_STACK];
+    uint waiting = 0u;
+    uint base = 0u;
+    uint hits = 0x80000000u; // the root; bits 0 to 7 say which of a group's slots are inner children
+    while (hits > 0x00FFFFFFu) {
+        uint bit = highest_bit(hits);
+        hits ^= 1u << bit;
+        uint slot = (bit & 7u) ^ turn;
+        uint node = base + bit_count(hits & ((1u << slot) - 1u));
+        if (hits > 0x00FFFFFFu) {
+            stack_base[waiting] = base;
+            stack_hits[waiting] = hits;
+            waiting++;
+        }
+        COUNT_NODE();
+        uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node);
+        uint4 r1 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 1u);
+        uint4 r2 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 2u);
+        uint4 r3 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 3u);
+        uint4 r4 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 4u);
+        uint node_hits = hits_of_node(frame, nearest.depth, turn, r0, r1, r2, r3, r4);
+        uint triangles = node_hits & ~CWBVH_INNER_HITS;
+        while (triangles != 0u) {
+            uint triangle = highest_bit(triangles);
+            triangles ^= 1u << triangle;
+            nearest = nearer_triangle(scene, frame, nearest, r1.y + triangle);
+        }
+        base = r1.x;
+        hits = (node_hits & CWBVH_INNER_HITS) | r0.w >> 24u;
+        if (hits <= 0x00FFFFFFu && waiting != 0u) {
+            waiting--;
+            base = stack_base[waiting];
+            hits = stack_hits[waiting];
+        }
+        if (params.any_hit != 0u && nearest.triangle != NO_HIT) hits = 0u;
+    }
+    return hit_of(scene, ray, nearest);
+}
