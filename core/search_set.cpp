@@ -2,9 +2,9 @@
 
 #include "core/error.h"
 #include "core/exact.h"
+#include "core/face_corners.h"
+#include "core/random_words.h"
 #include "core/tet_mesh.h"
-
-#include <Random123/philox.h>
 
 #include <array>
 #include <bit>
@@ -52,15 +52,11 @@ Float3 cross(Float3 a, Float3 b)
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-using Words = std::array<std::uint32_t, 4>;
+constexpr std::uint32_t search_stream = 0;
 
-/// Four random words, a function of their place alone (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3",
-/// SC 2011).
-Words random_words(std::uint32_t tet, std::uint32_t ray, std::uint32_t attempt, std::uint32_t dimension)
+RandomWords random_words(std::uint32_t tet, std::uint32_t ray, std::uint32_t attempt, std::uint32_t dimension)
 {
-    static r123::Philox4x32 generator;
-    const auto words = generator({{tet, ray, attempt, dimension}}, {{0, 0}});
-    return {words[0], words[1], words[2], words[3]};
+    return tetrace::random_words({tet, ray, attempt, dimension}, search_stream);
 }
 
 using Corners = std::array<Int3, 4>;
@@ -76,7 +72,7 @@ Corners tet_of(std::uint32_t number)
     for (std::uint32_t attempt = 0;; attempt++) {
         Corners corners;
         for (std::uint32_t i = 0; i < 4; i++) {
-            const Words words = random_words(number, no_ray, attempt, i);
+            const RandomWords words = random_words(number, no_ray, attempt, i);
             corners[i] = {random_coordinate(words[0]), random_coordinate(words[1]), random_coordinate(words[2])};
         }
         const std::int64_t determinant =
@@ -85,9 +81,6 @@ Corners tet_of(std::uint32_t number)
         if (std::abs(determinant) >= least_determinant) return corners;
     }
 }
-
-/// Corners of a face as kernels/faces.h has them.
-constexpr std::array<std::array<std::uint32_t, 3>, 4> face_corners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 /// A point of a face by 16-bit coordinates along two of its edges, rounded to a unit.
 Int3 point_of(const Corners& corners, std::uint32_t face, std::uint32_t word)
@@ -138,7 +131,7 @@ struct StabbingRay {
 StabbingRay ray_of(const Corners& corners, std::uint32_t tet, std::uint32_t number)
 {
     for (std::uint32_t attempt = 0;; attempt++) {
-        const Words words = random_words(tet, number, attempt, 0);
+        const RandomWords words = random_words(tet, number, attempt, 0);
         const std::uint32_t entry = words[2] & 3u;
         const std::uint32_t other = (entry + 1 + (words[2] >> 2 & 0xFFFF) % 3) & 3u;
         const std::int64_t sixteenths = 4 + (words[3] >> 16) % 61; // 1/4 to 4
