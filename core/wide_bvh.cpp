@@ -3,10 +3,6 @@
 namespace tetrace {
 namespace {
 
-// What a step costs beside another: eight boxes of a node against one triangle. Choices; they move few nodes.
-constexpr double wide_node_cost = 1.0;
-constexpr double wide_triangle_cost = 0.3;
-
 /// The best ways to have a subtree as at most 1, 2, ... 7 children of a wide node, and as a node of its own.
 struct SubtreePlan {
     std::array<double, wide_children> cost = {}; ///< as at most i children; [0] is not used

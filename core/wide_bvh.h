@@ -6,6 +6,10 @@ namespace tetrace {
 
 inline constexpr std::uint32_t wide_children = 8;
 inline constexpr std::uint32_t wide_leaf_triangles = 3;
+/// What the surface area heuristic takes a node's eight boxes and a leaf's triangle to cost, beside each other: a
+/// choice.
+inline constexpr double wide_node_cost = 1.0;
+inline constexpr double wide_triangle_cost = 0.3;
 
 /// A child of a wide node: a leaf where it has references, else a node.
 struct WideChild {

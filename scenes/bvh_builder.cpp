@@ -185,8 +185,9 @@ BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads)
 {
     check_mesh(mesh);
     const auto start = std::chrono::steady_clock::now();
-    std::fenv_t environment; // Embree and TBB may leave the thread flushing denormals
+    std::fenv_t environment; // Embree's bins assert rounding to nearest, and it may leave the thread flushing denormals
     std::fegetenv(&environment);
+    std::fesetenv(FE_DFL_ENV);
     auto bvh = build_with_embree(mesh, threads);
     std::fesetenv(&environment);
 

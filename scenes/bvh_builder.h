@@ -18,7 +18,8 @@ struct BuiltBvh {
 };
 
 /// Builds a binary BVH by the surface area heuristic with spatial splits, with Embree; leaves have 1 to 4 triangles,
-/// and at most BVH2_STACK inner nodes stand above a leaf. The same mesh gives the same tree with any number of threads.
+/// and at most BVH2_STACK inner nodes stand above a leaf. The tree does not
+/// depend on the number of threads.
 /// mesh: in domain units. threads: of Embree; 0: all.
 /// Throws Error{invalid_input} of a mesh without triangles, with a corner that there is not, that is not finite or
 /// beyond largest_bvh_coordinate; Error{unsupported} where Embree runs out of memory.
