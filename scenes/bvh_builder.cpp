@@ -159,7 +159,7 @@ std::optional<Bvh> build_with_embree(const TriangleMesh& mesh, unsigned threads)
     return collector.take();
 }
 
-void check_mesh(const TriangleMesh& mesh)
+void check_bvh_input(const TriangleMesh& mesh)
 {
     const auto refuse = [](const std::string& reason) {
         throw Error(ErrorKind::invalid_input, "building a BVH: " + reason);
@@ -183,7 +183,7 @@ void check_mesh(const TriangleMesh& mesh)
 
 BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads)
 {
-    check_mesh(mesh);
+    check_bvh_input(mesh);
     const auto start = std::chrono::steady_clock::now();
     std::fenv_t environment; // Embree's bins assert rounding to nearest, and it may leave the thread flushing denormals
     std::fegetenv(&environment);
