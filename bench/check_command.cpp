@@ -151,13 +151,13 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options)
 }
 
 /// Embree's own rows are judged only where somebody asks for them: its fast mode makes no claim that can be broken.
-Options with_default_structure(Options options)
+Options with_default_layouts(Options options)
 {
     const auto& required = options.required;
     const bool asked = !options.structures.empty() || !options.methods.empty() || !options.layouts.empty() ||
                        !options.backends.empty() || !options.filter.empty() ||
                        std::find(required.begin(), required.end(), "embree") != required.end();
-    if (!asked) options.structures = {Structure::cdt};
+    if (!asked) options.layouts = {Layout::tet80, Layout::tet96, Layout::bvh2, Layout::cwbvh};
     return options;
 }
 
@@ -201,7 +201,7 @@ void require_answers(const std::vector<RowRun>& rows)
 
 int check_command(const Options& asked)
 {
-    const Options options = with_default_structure(asked);
+    const Options options = with_default_layouts(asked);
     if (!options.list) require_devices(options.required); // first: it knows better why nothing would be selected
     const auto keys = selected_rows(options, [](const std::string&) { return true; });
     if (options.list) {

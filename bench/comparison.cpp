@@ -46,7 +46,7 @@ std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& r
     const auto hardware = hardware_of(rows);
     std::vector<std::optional<Comparison>> result(rows.size());
     for (std::size_t i = 0; i < rows.size(); i++) {
-        if (rows[i].key.kernel.structure != Structure::cdt || !figures_of(rows[i])) continue;
+        if (!is_portable(rows[i].key.kernel) || !figures_of(rows[i])) continue;
         const RowRun* reference = find_reference(rows, hardware, i);
         if (reference == nullptr || reference == &rows[i]) continue;
         result[i] = Comparison{reference, ratio_of_medians(reference->samples_s, rows[i].samples_s)};

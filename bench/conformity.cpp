@@ -19,7 +19,7 @@ Conformity compared_conformity(const RowRun& row, const Traced& result)
 Conformity own_conformity(const RowRun& row)
 {
     const KernelId& kernel = row.key.kernel;
-    const bool is_reference = kernel.structure == Structure::cdt && kernel.math == MathMode::exact;
+    const bool is_reference = is_portable(kernel) && kernel.math == MathMode::exact;
     if (is_reference && row.self_test && !row.self_test->is_exact()) return Conformity::not_exact;
     return is_reference ? Conformity::reference : Conformity::uncompared;
 }

@@ -12,7 +12,7 @@ enum class Conformity {
     reference,   ///< openmp's own, in exact mode
     bit_exact,   ///< every bit of every hit is openmp's
     within_ulps, ///< but for t, u and v, within what the device's self-test allows
-    uncompared,  ///< there is nothing to compare with: math mode fast, and structure bvh
+    uncompared,  ///< there is nothing to compare with: math mode fast, and Embree
     not_exact,   ///< openmp's answers here, but the self-test shows that the device computes otherwise
     wrong,
     unsupported,

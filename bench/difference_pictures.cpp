@@ -1,6 +1,7 @@
 #include "bench/difference_pictures.h"
 
 #include "bench/picture_name.h"
+#include "bench/row_tracing.h"
 #include "bench/shading.h"
 
 #include <algorithm>
@@ -20,9 +21,18 @@ std::string file_name(const SeenImage& image)
     return name;
 }
 
+/// Hits of rays that are given, each at the pixel that its ray was made for; misses elsewhere.
+std::vector<Hit> at_pixels(const SeenImage& image, std::span<const Hit> hits)
+{
+    std::vector<Hit> pixels(image.row.scene->rays_per_view(), Hit{NO_HIT, NO_TET, 0, 0, 0, 0});
+    for (std::size_t ray = 0; ray < hits.size(); ++ray)
+        pixels[pixel_of_ray(image.row, image.view, ray)] = hits[ray];
+    return pixels;
+}
+
 } // namespace
 
-Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> reference, std::uint32_t allowed_ulps,
+Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed,
                         const SceneWork& scene, std::size_t view)
 {
     constexpr float darkened = 0.3f;
@@ -30,7 +40,7 @@ Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> referenc
     Pixmap picture =
         shade_hits(reference, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
     for (std::size_t i = 0; i < hits.size(); ++i)
-        picture.pixels[i] = is_same_hit(hits[i], reference[i], allowed_ulps) ? picture.pixels[i] * darkened : mark;
+        picture.pixels[i] = is_same_hit(hits[i], reference[i], allowed) ? picture.pixels[i] * darkened : mark;
     return picture;
 }
 
@@ -48,10 +58,11 @@ DifferencePictures::DifferencePictures(std::filesystem::path folder)
 void DifferencePictures::see(const SeenImage& image)
 {
     if (image.reference.empty()) return;
-    const std::uint32_t allowed = allowed_ulps(image.row);
+    const Allowance allowed = allowance_of(image.row);
     if (compare_hits(image.hits, image.reference, allowed).count == 0) return;
     const auto path = folder_ / (file_name(image) + ending_);
-    writer_.write(path, draw_differences(image.hits, image.reference, allowed, *image.row.scene, image.view));
+    const auto hits = at_pixels(image, image.hits), reference = at_pixels(image, image.reference);
+    writer_.write(path, draw_differences(hits, reference, allowed, *image.row.scene, image.view));
     files_.push_back(path);
 }
 

@@ -10,8 +10,8 @@ namespace tetrace {
 
 /// openmp's picture of a view, darkened, with the pixels marked in which the hits are another answer.
 /// hits, reference: row after row, of the scene's size. Throws Error{internal} as shade_hits() does.
-[[nodiscard]] Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> reference,
-                                      std::uint32_t allowed_ulps, const SceneWork& scene, std::size_t view);
+[[nodiscard]] Pixmap draw_differences(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed,
+                                      const SceneWork& scene, std::size_t view);
 
 /// Writes such a picture of each image that differs into a folder: PNG, or PPM without the images module.
 class DifferencePictures {

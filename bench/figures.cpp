@@ -81,7 +81,8 @@ std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRu
     if (!runs_on_host(row.device)) return std::nullopt;
     const auto figures = figures_of(row);
     for (const RowRun& other : rows)
-        if (other.key.scene == row.key.scene && other.key.kernel.method == Method::single)
+        if (other.key.scene == row.key.scene && other.key.rays == row.key.rays && !is_portable(other.key.kernel) &&
+            other.key.kernel.method == Method::single)
             if (const auto single = figures_of(other); figures && single)
                 return figures->mrays_per_s / single->mrays_per_s;
     return std::nullopt;

@@ -24,6 +24,12 @@ struct RayTotals {
 };
 [[nodiscard]] RayTotals count_rays(std::span<const Hit> hits);
 
+/// How far two answers may be apart that are one.
+struct Allowance {
+    std::uint32_t ulps = 0;    ///< of t, u and v, in units in the last place; 0: the same bits
+    bool any_triangle = false; ///< any hit answers: whether there is one counts, not which
+};
+
 /// Rays on which two backends disagree.
 struct Differences {
     std::uint64_t count = 0;          ///< further apart than allowed
@@ -32,12 +38,11 @@ struct Differences {
     std::uint64_t largest_ulps = 0;   ///< of t, u and v where allowed
 };
 
-/// Whether two hits may be one answer: face, tet and steps in every bit; t, u and v within so many units in the last
-/// place, and in every bit where that is 0 (see SelfTest::allowed_ulps).
-[[nodiscard]] bool is_same_hit(const Hit& a, const Hit& b, std::uint32_t allowed_ulps);
+/// Whether two hits may be one answer: face, tet and steps in every bit, t, u and v as near as is allowed (see
+/// SelfTest::allowed_ulps); or whether both or neither is a hit, where that is all that is asked.
+[[nodiscard]] bool is_same_hit(const Hit& a, const Hit& b, Allowance allowed);
 
 /// Compares a device's hits with openmp's. Throws Error{internal} where their numbers differ.
-[[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference,
-                                       std::uint32_t allowed_ulps);
+[[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed);
 
 } // namespace tetrace

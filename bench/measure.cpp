@@ -2,6 +2,7 @@
 
 #include "bench/progress.h"
 #include "bench/reporters.h"
+#include "bench/row_tracing.h"
 #include "bench/stopwatch.h"
 #include "core/hash.h"
 
@@ -40,21 +41,24 @@ struct Pass {
     double kernel_s = 0, wall_s = 0, download_s = 0;
 };
 
-/// hits: where to read each view's back to; none are read where it is empty.
-Pass trace_views(RowRun& row, std::span<Hit> hits, const std::function<void(double)>& tell_progress)
+/// hits: where to read each view's back to, if at all.
+Pass trace_views(RowRun& row, std::vector<Hit>* hits, const std::function<void(double)>& tell_progress)
 {
     const std::size_t views = row.scene->views().size();
     Pass pass;
     for (std::size_t view = 0; view < views; ++view) {
         // Between the clocks: a sample may take minutes, and what is drawn costs no row anything.
         tell_progress(static_cast<double>(view) / static_cast<double>(views));
-        const TraceJob job = row.scene->job(view, row.packed ? &row.packed->scene : nullptr);
+        const std::size_t rays = ray_count(row, view);
+        if (rays == 0) continue; // rays that are given, and none is
+        const TraceJob job = prepare_view(row, view);
         const Stopwatch watch;
         row.session->launch(job);
         pass.kernel_s += row.session->wait();
         pass.wall_s += watch.seconds();
-        if (hits.empty()) continue;
-        row.session->read_back(hits);
+        if (hits == nullptr) continue;
+        hits->resize(rays);
+        row.session->read_back(*hits);
         pass.download_s += row.session->download_s();
     }
     return pass;
@@ -67,8 +71,8 @@ double warm_up(RowRun& row)
 {
     double wall_s = 0;
     guarded(row, [&] {
-        std::vector<Hit> hits(row.scene->rays_per_view());
-        const Pass pass = trace_views(row, hits, [](double done) { progress_line().show("warming up", done); });
+        std::vector<Hit> hits;
+        const Pass pass = trace_views(row, &hits, [](double done) { progress_line().show("warming up", done); });
         std::get<Traced>(row.outcome).download_s = pass.download_s;
         wall_s = pass.wall_s;
     });
@@ -86,7 +90,7 @@ double warm_up_rows(std::vector<RowRun>& rows)
 
 double take_sample(RowRun& row, const Sweep& sweep)
 {
-    const Pass pass = trace_views(row, {}, [&](double done) {
+    const Pass pass = trace_views(row, nullptr, [&](double done) {
         progress_line().show("measuring, rows interleaved", (sweep.done + done) / sweep.all);
     });
     row.wall_samples_s.push_back(pass.wall_s);
@@ -158,10 +162,19 @@ private:
     std::unique_ptr<std::ostringstream> text_;
 };
 
+/// Precondition: a view of the row has rays.
+std::size_t last_view_with_rays(const RowRun& row)
+{
+    std::size_t view = row.scene->views().size() - 1;
+    while (ray_count(row, view) == 0)
+        --view;
+    return view;
+}
+
 /// A device that answers differently under repetition must not keep its rate.
 void check_last_view(RowRun& row)
 {
-    std::vector<Hit> hits(row.scene->rays_per_view(), Hit{POISON, POISON, 0, 0, 0, 0});
+    std::vector<Hit> hits(ray_count(row, last_view_with_rays(row)), Hit{POISON, POISON, 0, 0, 0, 0});
     row.session->read_back(hits);
     if (hash_of(hits) != traced(row)->last_view_hash)
         throw Error(ErrorKind::internal, "the hits of the last view changed between verifying and measuring");

@@ -177,19 +177,22 @@ std::vector<OptionRow> row_options()
 {
     const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::input};
     const std::vector<Schedule> schedules = {Schedule::tiles, Schedule::persistent};
+    const std::vector<RayKind> kinds = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse,
+                                        RayKind::random};
+    const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt or bvh. Default: both; of 'check', cdt, unless "
-         "--method, --layout, --backend, --filter or '--require embree' is given.",
+         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves Embree's own rows out unless "
+         "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: plane, plucker, stp, ms06 or maria (exit-face searches of the cdt), single or "
-         "packet16 (Embree's entry points), or 'all'. Default: maria, and Embree's of the structures kept; of "
-         "'reproduce', all of the cdt.",
+         "packet16 (how many rays at once a BVH is asked), or 'all'. Default: maria, and those of the BVHs where "
+         "these are kept; of 'reproduce', all of the cdt.",
          reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this packed form: tet80, tet96, or embree, what Embree builds for itself. Default: all "
-         "of the structures kept.",
+         "Keep the rows of this packed form: tet80 or tet96 of the cdt; bvh2 or cwbvh of our BVHs; embree, what Embree "
+         "builds for itself. Default: all of the structures kept.",
          reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "
@@ -201,11 +204,18 @@ std::vector<OptionRow> row_options()
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, in whatever case, for "
          "example 'gpu', 'llvmpipe' or 'vulkan:1', the second one of vulkan. Default: all.",
          reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
-        {"Rows", "--rays", "KIND", "Keep the rows of this kind of rays: primary. Default: primary.", measuring, true,
-         append("--rays", &Options::rays, std::vector<RayKind>{RayKind::primary})},
+        {"Rows", "--rays", "KIND",
+         "Trace rays of this kind: 'primary', the image's own, made by the kernels; and, made on the host from the "
+         "primary hits, 'shadow', towards a light; 'ao', short ones round the normal (of both, any hit answers); "
+         "'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
+         measuring, true, append("--rays", &Options::rays, kinds)},
+        {"Rows", "--ray-order", "ORDER",
+         "Order in which rays of other kinds than primary are given: 'tiles', as their pixels lie; 'morton', sorted by "
+         "origin and direction; 'shuffled'. Each is a row of its own. Default: tiles.",
+         measuring, true, append("--ray-order", &Options::ray_orders, ray_orders)},
         {"Rows", "--math", "MODE",
-         "'exact': no contraction, the same bits everywhere; 'fast': what the compiler likes. Rows of structure cdt "
-         "only: Embree has one build. Default: exact.",
+         "'exact': no contraction, the same bits everywhere; 'fast': what the compiler likes. Embree has "
+         "one build, and rows of it whatever the mode. Default: exact.",
          tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
         {"Rows", "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve, or 'input', as TetGen wrote them. Rows "
@@ -213,7 +223,7 @@ std::vector<OptionRow> row_options()
          tracing, true, append("--order", &Options::orders, orders)},
         {"Rows", "--schedule", "NAME",
          "How rays come to work items: 'tiles', one each, or 'persistent', items that stay and fetch rays until none "
-         "is left. Rows of structure cdt only, on the backends that have such kernels. Default: tiles.",
+         "is left, on the backends that have such kernels; Embree has a schedule of its own. Default: tiles.",
          tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.",

@@ -54,6 +54,7 @@ struct Options {
     std::vector<Layout> layouts;
     std::vector<std::string> backends;
     std::vector<RayKind> rays;
+    std::vector<RayOrder> ray_orders; ///< of rays that are given
     std::vector<MathMode> math;
     std::vector<TetOrder> orders;
     std::vector<Schedule> schedules;

@@ -42,8 +42,7 @@ void open_session(RowRun& row, const SceneData& data, const Options& options)
 void open_on_scene(RowRun& row, const Options& options)
 {
     if (!find_device(row, all_backends())) return;
-    if (row.key.kernel.structure == Structure::cdt)
-        row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
+    if (is_portable(row.key.kernel)) row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
     open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr}, options);
 }
 
@@ -185,7 +184,7 @@ bool fails(const RowRun& row, bool flawed_passes)
 {
     const Status status = status_of(row);
     if (status != Status::flawed) return status == Status::wrong;
-    return claims_robustness(row.key.kernel.method) && (traced(row)->verdicts.lost > 0 || !flawed_passes);
+    return claims_robustness(row.key.kernel) && (traced(row)->verdicts.lost > 0 || !flawed_passes);
 }
 
 int exit_code(const std::vector<RowRun>& rows, bool flawed_passes)

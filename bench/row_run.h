@@ -76,8 +76,9 @@ struct RowRun {
     Backend* backend = nullptr;
     Device device;
     std::optional<SelfTest> self_test; ///< of the device in the row's math mode; empty where it runs no kernel of ours
-    const Packed* packed = nullptr;    ///< null for structure bvh
+    const Packed* packed = nullptr;    ///< null for layout embree
     std::unique_ptr<Session> session;
+    std::optional<std::size_t> view_of_rays; ///< whose rays the session has been given; see prepare_view()
     Outcome outcome = Traced{};
     std::vector<double> samples_s;      ///< device seconds for all selected views, one a repetition
     std::vector<double> wall_samples_s; ///< the same on the host's clock, from launch to the end of wait

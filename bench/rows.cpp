@@ -111,8 +111,7 @@ void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, con
 }
 
 std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene,
-                                  const std::vector<Backend*>& backends,
-                                  const std::vector<KernelId>& kernels = all_kernels())
+                                  const std::vector<Backend*>& backends, const std::vector<KernelId>& kernels)
 {
     std::vector<RowKey> rows;
     for (const KernelId& kernel : kernels)
@@ -120,6 +119,25 @@ std::vector<RowKey> rows_of_scene(const Options& options, const std::string& sce
             if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()) &&
                 backend->has_kernel(kernel))
                 add_rows(rows, options, {scene, {}, kernel}, *backend);
+    return rows;
+}
+
+/// Rows of primary rays, and of those that are given in each order that is wanted, kind after kind.
+std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& scene,
+                                  const std::vector<Backend*>& backends)
+{
+    static const std::vector<KernelId> given_kernels = kernels_of(Task::rays);
+    std::vector<RowKey> rows;
+    for (const RayKind kind : options.rays.empty() ? std::vector{RayKind::primary} : options.rays) {
+        const bool is_given = kind != RayKind::primary;
+        const auto orders = is_given && !options.ray_orders.empty() ? options.ray_orders : std::vector{RayOrder::tiles};
+        for (const RayOrder order : orders)
+            for (RowKey key : rows_of_scene(options, scene, backends, is_given ? given_kernels : all_kernels())) {
+                key.rays = kind;
+                key.ray_order = order;
+                rows.push_back(std::move(key));
+            }
+    }
     return rows;
 }
 
@@ -175,10 +193,12 @@ std::string row_name(const RowKey& key)
 {
     const std::string rays =
         key.kernel.task == Task::search ? std::string() : std::string("/").append(name_of(key.rays));
-    return fmt::format("{}/{}{}/math:{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
+    const std::string order =
+        key.ray_order == RayOrder::tiles ? std::string() : std::string("/rays:").append(name_of(key.ray_order));
+    return fmt::format("{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
                        key.order == TetOrder::hilbert ? "" : "/order:input",
-                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", numbered_backend(key),
-                       key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
+                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", order,
+                       numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
 }
 
 std::string device_label(const RowKey& key)
@@ -201,13 +221,18 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
 
 std::string kernel_title(const RowKey& key)
 {
-    if (key.kernel.layout == Layout::embree) return fmt::format("bvh {}", name_of(key.kernel.method));
-    const std::string method =
-        key.kernel.structure == Structure::cdt ? std::string(name_of(key.kernel.method)).append(" ") : "";
-    return fmt::format("{} {}{}{}{}{}", name_of(key.kernel.structure), method, name_of(key.kernel.layout),
-                       key.kernel.math == MathMode::exact ? "" : " fast",
-                       key.order == TetOrder::hilbert ? "" : " input order",
-                       key.kernel.schedule == Schedule::tiles ? "" : " persistent");
+    const KernelId& kernel = key.kernel;
+    std::string title(name_of(kernel.structure));
+    if (kernel.structure == Structure::cdt || !is_portable(kernel)) title.append(" ").append(name_of(kernel.method));
+    if (is_portable(kernel)) {
+        title.append(" ").append(name_of(kernel.layout));
+        if (kernel.math == MathMode::fast) title += " fast";
+    }
+    if (key.order != TetOrder::hilbert) title += " input order";
+    if (kernel.schedule == Schedule::persistent) title += " persistent";
+    if (key.rays != RayKind::primary) title.append(", ").append(name_of(key.rays));
+    if (key.ray_order != RayOrder::tiles) title.append(" ").append(name_of(key.ray_order));
+    return title;
 }
 
 std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
@@ -215,7 +240,7 @@ std::vector<RowKey> select_rows(const Options& options, const std::vector<std::s
 {
     std::vector<RowKey> unfiltered, rows;
     for (const std::string& scene : scene_labels)
-        for (const RowKey& key : rows_of_scene(options, scene, backends))
+        for (const RowKey& key : rows_of_kinds(options, scene, backends))
             unfiltered.push_back(key);
     for (const RowKey& key : unfiltered)
         if (filter_keeps(options.filter, row_name(key))) rows.push_back(key);
@@ -226,7 +251,7 @@ std::vector<RowKey> select_rows(const Options& options, const std::vector<std::s
 std::vector<RowKey> select_search_rows(const Options& options, const std::vector<Backend*>& backends)
 {
     std::vector<RowKey> rows;
-    for (RowKey key : rows_of_scene(options, search_scene, backends, search_kernels())) {
+    for (RowKey key : rows_of_scene(options, search_scene, backends, kernels_of(Task::search))) {
         if (key.backend == reference_backend) {
             key.threads = 1;
             rows.push_back(key);

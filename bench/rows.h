@@ -17,26 +17,28 @@ struct RowKey {
     TetOrder order = TetOrder::hilbert;
     std::size_t device = 0; ///< index in the backend's devices()
     unsigned threads = 0;   ///< host threads, where not those of the whole run
+    RayOrder ray_order = RayOrder::tiles;
 
     friend bool operator==(const RowKey&, const RowKey&) = default;
 };
 
 /// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; no device's name and no
 /// counts in it. Rows of another order than hilbert have "order:input" before the api, rows of another schedule than
-/// tiles "schedule:persistent"; rows of a backend's later devices have their index behind it, "api:opencl:1". Rows of
-/// task search have no rays: theirs are given.
+/// tiles "schedule:persistent", rows whose given rays come in another order than that of tiles "rays:morton"; rows of a
+/// backend's later devices have their index behind it, "api:opencl:1". Rows of task search have no rays: theirs are
+/// given.
 [[nodiscard]] std::string row_name(const RowKey& key);
 
 /// Name without the scene, for tables headed by it: "cdt maria tet80".
 [[nodiscard]] std::string kernel_title(const RowKey& key);
 
 /// The rows that the options select, scene after scene, rows of one scene in the order of kernels, backends and
-/// devices. Math mode, order and schedule select among rows of structure cdt only; without those options, exact,
-/// hilbert and tiles, and without methods only maria of the cdt's. A backend has rows of its usable devices; one that
-/// has none, of its first where --backend or
-/// --require names it. A kernel that a backend has and a device cannot run is a row all the same: it will end as
-/// unsupported.
-/// Throws Error{usage} where nothing is selected: it names the options, and what there would be without them.
+/// devices. Math mode and schedule do not select among Embree's rows, order among those of the cdt only; without those
+/// options, exact, tiles and hilbert, and without methods only maria of the cdt's. Kinds of rays but primary have rows
+/// of the kernels that take rays. A backend has rows of its usable devices; one that has none, of its first where
+/// --backend or --require names it. A kernel that a backend has and a device cannot run is a row all the same: it will
+/// end as unsupported. Throws Error{usage} where nothing is selected: it names the options, and what there would be
+/// without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 

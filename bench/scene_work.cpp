@@ -3,6 +3,7 @@
 #include "bench/progress.h"
 #include "bench/stopwatch.h"
 #include "core/locate.h"
+#include "core/pack_bvh.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ constexpr std::uint32_t largest_step_cap = 60'000;
 
 SceneWork::SceneWork(LoadedScene loaded, const Options& options)
     : loaded_(std::move(loaded)), counts_(count_faces(loaded_.scene.tets)), width_(options.width),
-      height_(options.height), view_numbers_(selected_views(options))
+      height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
 {
     const auto cameras = make_cameras(options.camera_set, bounding_sphere(loaded_.scene.mesh));
     const Stopwatch watch;
@@ -37,9 +38,25 @@ const Packed& SceneWork::packed(Layout layout, TetOrder order)
 {
     const std::pair key{layout, order};
     if (const auto found = packed_.find(key); found != packed_.end()) return found->second;
+    const bool is_bvh = structure_of(layout) == Structure::bvh;
+    const BuiltBvh* const built = is_bvh ? &bvh() : nullptr;
     const Stopwatch watch;
-    PackedScene scene = pack(loaded_.scene, layout, order);
-    return packed_.emplace(key, Packed{std::move(scene), watch.seconds()}).first->second;
+    Packed made;
+    made.scene = is_bvh ? pack_bvh(loaded_.scene.mesh, built->bvh, layout) : pack(loaded_.scene, layout, order);
+    made.pack_s = watch.seconds();
+    if (is_bvh) made.bvh_build_s = built->build_s;
+    return packed_.emplace(key, std::move(made)).first->second;
+}
+
+const BuiltBvh& SceneWork::bvh()
+{
+    if (!bvh_) bvh_ = build_bvh(loaded_.scene.mesh, threads_);
+    return *bvh_;
+}
+
+std::uint32_t SceneWork::max_steps() const
+{
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(counts_.tets + 1, largest_step_cap));
 }
 
 TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
@@ -48,8 +65,9 @@ TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
     job.view = views_.at(index);
     job.width = width_;
     job.height = height_;
-    if (packed != nullptr && start_tets_[index] != NO_TET) job.start_tet = packed->packed_of_mesh[start_tets_[index]];
-    job.max_steps = static_cast<std::uint32_t>(std::min<std::uint64_t>(counts_.tets + 1, largest_step_cap));
+    if (packed != nullptr && start_tets_[index] != NO_TET && structure_of(packed->layout) == Structure::cdt)
+        job.start_tet = packed->packed_of_mesh[start_tets_[index]];
+    job.max_steps = max_steps();
     return job;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include "bench/options.h"
+#include "bench/ray_store.h"
 #include "core/backend.h"
+#include "scenes/bvh_builder.h"
 #include "scenes/load.h"
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,6 +17,7 @@ namespace tetrace {
 struct Packed {
     PackedScene scene;
     double pack_s = 0;
+    std::optional<double> bvh_build_s; ///< of a BVH, which is built for all its layouts once
 };
 
 /// A loaded scene with all that its rows share: packed forms, views, start tets.
@@ -33,10 +37,25 @@ public:
     /// Seconds that locating the origins of all views took.
     [[nodiscard]] double locate_s() const { return locate_s_; }
 
-    /// Packs at the first call; later calls return the same. Throws Error{unsupported} as pack() does.
+    /// Packs at the first call; later calls return the same. Throws Error{unsupported} as pack() and pack_bvh() do.
     [[nodiscard]] const Packed& packed(Layout layout, TetOrder order);
 
-    /// The job of the view at `index` of views(). packed: null for kernels of structure bvh.
+    /// The BVH of the scene's mesh, built at the first call.
+    [[nodiscard]] const BuiltBvh& bvh();
+
+    /// The rays that rows of other kinds than primary are given.
+    [[nodiscard]] RayStore& given_rays() { return given_rays_; }
+
+    /// The tet of the scene that holds a view's origin, NO_TET where it lies outside the domain.
+    [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
+
+    /// A walk that long is lost.
+    [[nodiscard]] std::uint32_t max_steps() const;
+
+    /// Host threads that all work uses.
+    [[nodiscard]] unsigned threads() const { return threads_; }
+
+    /// The job of the view at `index` of views(). packed: null for kernels of layout embree.
     [[nodiscard]] TraceJob job(std::size_t index, const PackedScene* packed) const;
 
 private:
@@ -47,7 +66,10 @@ private:
     std::vector<View> views_;
     std::vector<std::uint32_t> start_tets_; ///< as the tet mesh numbers them
     double locate_s_ = 0;
+    unsigned threads_;
+    std::optional<BuiltBvh> bvh_;
     std::map<std::pair<Layout, TetOrder>, Packed> packed_;
+    RayStore given_rays_;
 };
 
 /// Loads a scene, says its messages, and makes it ready. label: what rows call it; empty: its scene_label().

@@ -1,12 +1,14 @@
 #include "bench/verify.h"
 
 #include "bench/progress.h"
+#include "bench/row_tracing.h"
 #include "bench/stopwatch.h"
 #include "core/hash.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
+#include <tuple>
 
 namespace tetrace {
 
@@ -14,8 +16,7 @@ namespace {
 
 bool needs_reference(const RowKey& key)
 {
-    return key.kernel.structure == Structure::cdt && key.kernel.math == MathMode::exact &&
-           key.backend != reference_backend;
+    return is_portable(key.kernel) && key.kernel.math == MathMode::exact && key.backend != reference_backend;
 }
 
 void poison(std::vector<Hit>& hits)
@@ -35,11 +36,9 @@ public:
         RowRun& row = reference.row;
         if (row.session == nullptr)
             throw Error(ErrorKind::internal, "openmp, which the row is compared with, failed: " + reason_of(row));
-        reference.hits.resize(scene_->rays_per_view());
+        reference.hits.resize(ray_count(row, view));
         poison(reference.hits);
-        row.session->launch(scene_->job(view, &row.packed->scene));
-        static_cast<void>(row.session->wait());
-        row.session->read_back(reference.hits);
+        static_cast<void>(trace_view(row, view, reference.hits));
         reference.view = view;
         return reference.hits;
     }
@@ -74,98 +73,101 @@ private:
 class Verifier::Parts {
 public:
     Parts(SceneWork& scene, const Options& options)
-        : scene_(&scene), oracle_(scene.loaded().scene.mesh, resolved_threads(options)), references_(scene, options),
-          hits(scene.rays_per_view())
+        : scene_(&scene), oracle_(scene.loaded().scene.mesh, resolved_threads(options)), references_(scene, options)
     {
     }
 
     ImageVerdict verify(RowRun& row, std::size_t view)
     {
         ImageVerdict image;
-        trace_timed(row, image, view);
-        image.totals = checked_totals(view);
-        image.hit_hash = hash_of(hits);
         reference = {};
+        hits.resize(ray_count(row, view));
+        image.hit_hash = hash_of(hits);
+        if (hits.empty()) return image; // rays that are given, and none is
+        trace_timed(row, image, view);
+        image.totals = checked_totals(row, view);
+        image.hit_hash = hash_of(hits);
         if (needs_reference(row.key)) compare(row, image, view);
-        image.verdicts = judge(view, image.hit_hash);
+        image.verdicts = judge(row.key, view, image.hit_hash);
         return image;
     }
 
     std::uint64_t trace(RowRun& row, std::size_t view)
     {
+        hits.resize(ray_count(row, view));
         poison(hits);
-        static_cast<void>(trace_kernel(row, view));
-        row.session->read_back(hits);
+        if (!hits.empty()) static_cast<void>(trace_view(row, view, hits));
         return hash_of(hits);
     }
 
 private:
-    /// Device seconds.
-    double trace_kernel(RowRun& row, std::size_t view)
-    {
-        row.session->launch(scene_->job(view, row.packed ? &row.packed->scene : nullptr));
-        return row.session->wait();
-    }
-
     void trace_timed(RowRun& row, ImageVerdict& image, std::size_t view)
     {
         poison(hits);
+        const TraceJob job = prepare_view(row, view);
         const Stopwatch watch;
-        image.kernel_s = trace_kernel(row, view);
+        row.session->launch(job);
+        image.kernel_s = row.session->wait();
         image.wall_s = watch.seconds();
         const Stopwatch download;
         row.session->read_back(hits);
         image.download_s = download.seconds();
     }
 
-    [[nodiscard]] RayTotals checked_totals(std::size_t view) const
+    [[nodiscard]] RayTotals checked_totals(const RowRun& row, std::size_t view) const
     {
         const RayTotals totals = count_rays(hits);
         if (totals.unwritten > 0) {
             const auto first = static_cast<std::size_t>(
                 std::find_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }) -
                 hits.begin());
+            const std::uint32_t pixel = pixel_of_ray(row, view, first);
             throw Error(ErrorKind::wrong_result,
                         fmt::format("{} of {} rays were never written, the first at view {}, pixel ({}, {})",
                                     totals.unwritten, totals.rays, scene_->view_numbers()[view],
-                                    first % scene_->width(), first / scene_->width()));
+                                    pixel % scene_->width(), pixel / scene_->width()));
         }
         return totals;
     }
 
     /// The oracle's verdict on hits. Hits of one hash are the same bytes but with a probability of 2^-64 a pair: what
-    /// was judged once in a view holds for all rows.
-    Verdicts judge(std::size_t view, std::uint64_t hash)
+    /// was judged once in a view holds for all rows that trace the same rays from the same points.
+    Verdicts judge(const RowKey& key, std::size_t view, std::uint64_t hash)
     {
         if (judged_view_ != view) judged_.clear();
         judged_view_ = view;
-        if (const auto found = judged_.find(hash); found != judged_.end()) return found->second;
-        return judged_
-            .emplace(hash, oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(),
-                                         scene_->height(), hits))
-            .first->second;
+        const auto rays = std::tuple(key.rays, key.ray_order, key.kernel.structure, hash);
+        if (const auto found = judged_.find(rays); found != judged_.end()) return found->second;
+        return judged_.emplace(rays, judge_anew(key, view)).first->second;
+    }
+
+    Verdicts judge_anew(const RowKey& key, std::size_t view)
+    {
+        if (key.kernel.task == Task::rays) throw Error(ErrorKind::internal, "given rays are not judged yet");
+        return oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(), scene_->height(),
+                             hits);
     }
 
     void compare(const RowRun& row, ImageVerdict& image, std::size_t view)
     {
         reference = references_.hits(row.key, view);
-        const Differences differences = compare_hits(hits, reference, allowed_ulps(row));
+        const Differences differences = compare_hits(hits, reference, allowance_of(row));
         image.compared = true;
         image.different = differences.count;
         image.inexact = differences.inexact;
         image.largest_ulps = differences.largest_ulps;
         if (!differences.first) return;
         const std::size_t ray = *differences.first;
-        image.first_different =
-            DifferingRay{scene_->view_numbers()[view], static_cast<std::uint32_t>(ray % scene_->width()),
-                         static_cast<std::uint32_t>(ray / scene_->width()), hits[ray], reference[ray]};
+        const std::uint32_t pixel = pixel_of_ray(row, view, ray);
+        image.first_different = DifferingRay{scene_->view_numbers()[view], pixel % scene_->width(),
+                                             pixel / scene_->width(), hits[ray], reference[ray]};
     }
 
     SceneWork* scene_;
     Oracle oracle_;
     References references_;
     std::size_t judged_view_ = 0;
-    std::map<std::uint64_t, Verdicts> judged_; ///< of judged_view_, by the hash of its hits
+    std::map<std::tuple<RayKind, RayOrder, Structure, std::uint64_t>, Verdicts> judged_; ///< of judged_view_, by hits
 
 public:
     std::vector<Hit> hits;
@@ -203,7 +205,7 @@ void verify_view(Verifier& verifier, RowRun& row, std::size_t view)
     const ImageVerdict image = verifier.verify(row, view);
     Traced& result = std::get<Traced>(row.outcome);
     result.add(image);
-    result.last_view_hash = image.hit_hash;
+    if (image.totals.rays > 0) result.last_view_hash = image.hit_hash;
     if (view == 0) result.first_view_hash = image.hit_hash;
     result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
 }
@@ -211,6 +213,9 @@ void verify_view(Verifier& verifier, RowRun& row, std::size_t view)
 /// A device that answers differently under repetition is caught here, after everything else that it was given.
 void verify_again(Verifier& verifier, RowRun& row)
 {
+    if (traced(row)->totals.rays == 0)
+        throw Error(ErrorKind::unsupported,
+                    fmt::format("no primary ray hits, so that there is no ray of kind {}", name_of(row.key.rays)));
     if (verifier.trace(row, 0) != traced(row)->first_view_hash)
         throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
                                                          row.scene->view_numbers().front()));
@@ -218,9 +223,12 @@ void verify_again(Verifier& verifier, RowRun& row)
 
 } // namespace
 
-std::uint32_t allowed_ulps(const RowRun& row)
+Allowance allowance_of(const RowRun& row)
 {
-    return row.self_test ? row.self_test->allowed_ulps() : 0;
+    const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
+    const bool any_hit = row.key.rays == RayKind::shadow || row.key.rays == RayKind::ao;
+    // Boxes are culled by quotients: where these differ, another of several triangles may be found first.
+    return {ulps, ulps > 0 && any_hit && row.key.kernel.structure == Structure::bvh};
 }
 
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,

@@ -18,8 +18,8 @@ struct SeenImage {
 /// Told after each image.
 using ImageSeen = std::function<void(const SeenImage&)>;
 
-/// Units in the last place by which t, u and v of the row may differ from openmp's: what its device's self-test allows.
-[[nodiscard]] std::uint32_t allowed_ulps(const RowRun& row);
+/// How far the row's answers may be from openmp's: what its device's self-test allows.
+[[nodiscard]] Allowance allowance_of(const RowRun& row);
 
 /// One scene's verification, image by image, for whoever goes through them in an order of its own.
 class Verifier {
@@ -43,7 +43,7 @@ private:
 };
 
 /// Traces every view of a scene once with each of its rows, and judges each ray in two questions: does the device
-/// return what openmp returns (kernels of structure cdt, exact mode), and is the method right (the oracle)? Then the
+/// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then the
 /// first view once more: its hits must be the same. Rows that cannot be traced end with their reason.
 /// rows: all of one scene, opened.
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,

@@ -8,6 +8,7 @@ foreach(method plane plucker stp ms06 maria)
     list(APPEND TETRACE_KERNELS cdt/${method}/${layout})
   endforeach()
 endforeach()
+list(APPEND TETRACE_KERNELS bvh/single/bvh2 bvh/single/cwbvh)
 
 # tetrace_kernel_parts(<kernel>): sets structure, method, layout, name, as embedded_name() has it without its math mode,
 # tasks, those of core/kernel_id.h that the kernel's text has, and definitions, what C++ needs to include it.

@@ -21,17 +21,6 @@ std::vector<KernelId> make_kernels()
     return kernels;
 }
 
-std::vector<KernelId> make_search_kernels()
-{
-    std::vector<KernelId> kernels;
-    for (KernelId kernel : all_kernels()) {
-        if (kernel.structure != Structure::cdt || kernel.schedule != Schedule::tiles) continue;
-        kernel.task = Task::search;
-        kernels.push_back(kernel);
-    }
-    return kernels;
-}
-
 } // namespace
 
 const std::vector<KernelId>& all_kernels()
@@ -40,9 +29,13 @@ const std::vector<KernelId>& all_kernels()
     return kernels;
 }
 
-const std::vector<KernelId>& search_kernels()
+std::vector<KernelId> kernels_of(Task task)
 {
-    static const std::vector<KernelId> kernels = make_search_kernels();
+    std::vector<KernelId> kernels;
+    for (KernelId kernel : all_kernels()) {
+        kernel.task = task;
+        if (has_task(kernel) && (task == Task::trace || kernel.schedule == Schedule::tiles)) kernels.push_back(kernel);
+    }
     return kernels;
 }
 
@@ -56,20 +49,19 @@ bool has_task(const KernelId& kernel)
     return false;
 }
 
-KernelId with_given_rays(KernelId kernel)
-{
-    kernel.task = Task::rays;
-    return kernel;
-}
-
 Structure structure_of(Layout layout)
 {
     return layout == Layout::tet80 || layout == Layout::tet96 ? Structure::cdt : Structure::bvh;
 }
 
-bool claims_robustness(Method value)
+bool is_portable(const KernelId& kernel)
 {
-    return value == Method::maria;
+    return kernel.layout != Layout::embree;
+}
+
+bool claims_robustness(const KernelId& kernel)
+{
+    return kernel.method == Method::maria || (kernel.structure == Structure::bvh && is_portable(kernel));
 }
 
 std::string_view name_of(Structure value)

@@ -43,20 +43,23 @@ struct KernelId {
 /// Every kernel of task trace that some backend can run, schedule tiles and exact mode first, the methods in the order
 /// of the enum; the one list that options and rows come from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
+
 /// Whether the kernel's text does its task: exits are searched in a CDT alone, and rays are given to BVHs and to maria,
 /// the paper's own method, not to those that it is compared with.
 [[nodiscard]] bool has_task(const KernelId& kernel);
-/// The same kernel for rays that it is given.
-[[nodiscard]] KernelId with_given_rays(KernelId kernel);
-/// Those of task search: the methods of the cdt with schedule tiles, in the same order.
-[[nodiscard]] const std::vector<KernelId>& search_kernels();
+
+/// The kernels that do a task, in the same order; tasks that are given rays have schedule tiles alone.
+[[nodiscard]] std::vector<KernelId> kernels_of(Task task);
 
 /// The structure that a layout packs.
 [[nodiscard]] Structure structure_of(Layout layout);
+/// Whether the kernel is one of kernels/, the same source on every backend; Embree's own are not.
+[[nodiscard]] bool is_portable(const KernelId& kernel);
 
-/// Whether the method is published as one that loses and mistakes no ray: wrong and lost rays then fail a run. Those of
-/// the other methods are their nature: counted, told beside the rate, and no failure.
-[[nodiscard]] bool claims_robustness(Method value);
+/// Whether the kernel is one that should lose and mistake no ray: maria as published, and our BVHs by their watertight
+/// triangle test. Wrong and lost rays then fail a run. Those of the others are their nature: counted, told beside the
+/// rate, and no failure.
+[[nodiscard]] bool claims_robustness(const KernelId& kernel);
 
 [[nodiscard]] std::string_view name_of(Structure value);
 [[nodiscard]] std::string_view name_of(Method value);

@@ -1,5 +1,5 @@
 // The packed data that crosses to a device, stated once, for every language: constants and the hit record.
-// Plain C: no include, no type that a shading language lacks. Array names and bindings: scene_arrays.h.
+// Plain C: no include, no type that a shading language lacks. Array names and bindings: cdt_arrays.h and bvh_arrays.h.
 #ifndef TETRACE_KERNELS_LAYOUT_H
 #define TETRACE_KERNELS_LAYOUT_H
 
@@ -40,7 +40,7 @@
 #define FREE_FACE 0xFFFFFFFFu // a face that belongs to no input triangle
 #define NO_EXIT 4u            // instead of a face: the method found none to leave the tet by
 
-// Bindings: scene_arrays.h has 0 to 4; then the output, the counter of persistent threads, and the parts of the array
+// Bindings: those of the arrays are 0 to 4; then the output, the counter of persistent threads, and the parts of the array
 // of tets beyond its first, where one buffer cannot hold it.
 #define SCENE_ARRAYS 5u
 #define OUTPUT_BINDING 5u

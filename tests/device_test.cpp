@@ -292,7 +292,7 @@ TEST_P(Devices, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)
 TEST_P(Devices, find_openmps_exits_for_each_method_and_layout)
 {
     const auto first = search_rays(0, 30, 512), second = search_rays(30, 9, 200); // of another number
-    for (const KernelId& kernel : search_kernels()) {
+    for (const KernelId& kernel : kernels_of(Task::search)) {
         // The layouts are one piece of text for all methods: one method shows it, and compiling each takes a second.
         if (kernel.math != MathMode::exact || (kernel.layout == Layout::tet96 && kernel.method != Method::maria))
             continue;

@@ -195,7 +195,9 @@ TEST(exit_codes, a_method_that_does_not_claim_robustness_fails_only_where_a_devi
             EXPECT_FALSE(fails(row_with(judged(3, 1, 0), method), passes)) << name_of(method);
             EXPECT_TRUE(fails(row_with(judged(3, 1, 1), method), passes)) << name_of(method);
         }
-    EXPECT_TRUE(claims_robustness(Method::maria));
+    EXPECT_TRUE(claims_robustness({}));
+    EXPECT_TRUE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::cwbvh}));
+    EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::embree}));
 }
 
 TEST(exit_codes, an_error_gives_that_of_its_kind_unless_something_is_wrong)

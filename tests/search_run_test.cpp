@@ -274,7 +274,7 @@ TEST(search_run, the_fastest_is_told_from_the_rows_on_one_thread)
         run.rows.push_back(timed_row(method, threads, seconds));
         run.images.push_back(timed_batches(seconds));
     };
-    for (const KernelId& kernel : search_kernels())
+    for (const KernelId& kernel : kernels_of(Task::search))
         if (kernel.layout == Layout::tet80 && kernel.math == MathMode::exact)
             for (const unsigned threads : {0u, 1u}) // rows of one thread are not the first
                 add(kernel.method, threads, (kernel.method == Method::maria) == (threads == 1) ? 0.1 : 0.2);

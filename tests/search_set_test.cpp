@@ -170,7 +170,7 @@ TEST(SearchSet, a_face_within_rounding_is_a_tie_and_any_other_is_wrong)
 TEST(SearchSet, openmp_finds_the_exits_with_every_method)
 {
     const SearchRays rays = search_rays(0, 200, 512);
-    for (const KernelId& kernel : search_kernels()) {
+    for (const KernelId& kernel : kernels_of(Task::search)) {
         if (!openmp_backend().why_not(0, kernel).empty()) continue;
         const PackedScene tets = search_tets(200, kernel.layout);
         const auto session = openmp_backend().open(0, kernel, {nullptr, &tets}, {.threads = 2});
@@ -188,12 +188,12 @@ TEST(SearchSet, openmp_finds_the_exits_with_every_method)
 
 TEST(SearchSet, kernels_are_those_of_the_cdt_with_a_ray_an_item)
 {
-    for (const KernelId& kernel : search_kernels()) {
+    for (const KernelId& kernel : kernels_of(Task::search)) {
         EXPECT_EQ(kernel.structure, Structure::cdt);
         EXPECT_EQ(kernel.schedule, Schedule::tiles);
     }
-    EXPECT_EQ(search_kernels().size(), 20u);
-    EXPECT_EQ(name_of(search_kernels().back()), "search/maria/tet96");
+    EXPECT_EQ(kernels_of(Task::search).size(), 20u);
+    EXPECT_EQ(name_of(kernels_of(Task::search).back()), "search/maria/tet96");
 }
 
 } // namespace tetrace

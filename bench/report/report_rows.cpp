@@ -75,9 +75,10 @@ std::string unusual_parts(const std::string& name)
 std::string kernel_of(const ResultValue& row)
 {
     const std::string structure = row.at("structure").line(), method = row.at("method").line();
-    if (structure == "bvh") return structure + " " + method;
+    const std::string layout = row.at("layout").line();
+    if (layout == "embree") return structure + " " + method;
     const std::string math = row.at("math").line();
-    return fmt::format("{} {} {}{}{}", structure, method, row.at("layout").line(), math == "exact" ? "" : " " + math,
+    return fmt::format("{} {}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout, math == "exact" ? "" : " " + math,
                        unusual_parts(row.at("name").line()));
 }
 
