@@ -1,6 +1,7 @@
 #include "bench/oracle.h"
 
 #include "backends/embree/session.h"
+#include "bench/hit_point.h"
 #include "bench/settle.h"
 #include "core/exact.h"
 
@@ -29,22 +30,6 @@ ExactRay exact_ray(const View& view, std::uint32_t x, std::uint32_t y)
     return {{ray.origin.x, ray.origin.y, ray.origin.z}, {ray.direction.x, ray.direction.y, ray.direction.z}};
 }
 
-// Whether t, u and v name one point: origin + t direction, and the barycentric point of the triangle. Both come from
-// quotients by the same determinant, so their error grows with |e1| |e2| |direction| / determinant (kernels/SPEC.md).
-bool names_one_point(const TriangleMesh& mesh, const ExactRay& ray, const Hit& hit, double bound)
-{
-    const auto& [a, b, c] = mesh.triangles[hit.face_id];
-    const Double3 v0 = to_double(mesh.vertices[a]);
-    const Double3 e1 = to_double(mesh.vertices[b]) - v0;
-    const Double3 e2 = to_double(mesh.vertices[c]) - v0;
-    const Double3 direction = to_double(ray.direction);
-    const double t = static_cast<double>(hit.t);
-    const Double3 on_triangle = v0 + e1 * static_cast<double>(hit.u) + e2 * static_cast<double>(hit.v);
-    const double apart = length(to_double(ray.origin) + direction * t - on_triangle);
-    const double condition = length(e1) * length(e2) * length(direction) / std::abs(dot(e1, cross(direction, e2)));
-    return apart <= bound * (1 + 2 * condition); // false for nan
-}
-
 } // namespace
 
 void Verdicts::add(const Verdicts& other)
@@ -53,6 +38,7 @@ void Verdicts::add(const Verdicts& other)
     agreed += other.agreed;
     ties += other.ties;
     settled += other.settled;
+    offset += other.offset;
     wrong += other.wrong;
     lost += other.lost;
     largest_tie_distance = std::max(largest_tie_distance, other.largest_tie_distance);

@@ -22,12 +22,13 @@ struct WrongRay {
     std::string reason;
 };
 
-/// How the rays of an image were judged; every ray is in exactly one of agreed, ties, settled, wrong, lost.
+/// How the rays of an image were judged; each is in exactly one of agreed, ties, settled, offset, wrong, lost.
 struct Verdicts {
     std::uint64_t rays = 0;
     std::uint64_t agreed = 0;  ///< same triangle as Embree in robust mode, or both miss
     std::uint64_t ties = 0;    ///< another triangle, and the ray passes within tie_bound() of an edge that explains it
     std::uint64_t settled = 0; ///< another triangle, and exact arithmetic says ours is the nearest of the candidates
+    std::uint64_t offset = 0;  ///< of given rays: right only for the offset origin that a BVH starts from
     std::uint64_t wrong = 0;
     std::uint64_t lost = 0;
     double largest_tie_distance = 0;     ///< in domain units, over all ties

@@ -1,7 +1,7 @@
 #include "bench/settle.h"
 
+#include "bench/hit_point.h"
 #include "core/exact.h"
-#include "core/hit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,10 +66,38 @@ std::array<Float3, 3> Settler::corners(std::uint32_t triangle) const
     return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
 }
 
-bool Settler::meets(const ExactRay& ray, std::uint32_t triangle) const
+bool Settler::meets(const ExactRay& ray, const RayPart& part, std::uint32_t triangle) const
+{
+    if (triangle == part.start) return false;
+    const auto [a, b, c] = corners(triangle);
+    const ExactCrossing crossing = cross_exactly(ray.origin, ray.direction, a, b, c);
+    return crossing.met && (part.end >= NO_END || crossing.t <= static_cast<double>(part.end));
+}
+
+// How far a triangle that the part does not meet is from it: from the ray's line, or beyond its start or its end;
+// `never` beyond what is allowed.
+double Settler::excess(const ExactRay& ray, const RayPart& part, std::uint32_t triangle, double bound) const
 {
     const auto [a, b, c] = corners(triangle);
-    return cross_exactly(ray.origin, ray.direction, a, b, c).met;
+    const auto& side = cross_exactly(ray.origin, ray.direction, a, b, c).edge_side;
+    const auto [least, most] = std::minmax({side[0], side[1], side[2]});
+    const bool line_meets = least >= 0 || most <= 0;
+    if (line_meets && !part.is_whole()) return distance_to_limits(ray, part, triangle, bound);
+    const double distance = distance_to_outline(ray, triangle);
+    return distance <= bound ? distance : never;
+}
+
+// How far the ray's crossing of a triangle's plane is from its start or its end; `never` beyond what each allows.
+double Settler::distance_to_limits(const ExactRay& ray, const RayPart& part, std::uint32_t triangle, double bound) const
+{
+    if (part.is_whole()) return never;
+    const auto [a, b, c] = corners(triangle);
+    const double speed = length(to_double(ray.direction));
+    const double t = cross_exactly(ray.origin, ray.direction, a, b, c).t;
+    const double from_start = std::abs(t) * speed;
+    if (part.start != NO_HIT && from_start <= bound) return from_start;
+    const double from_end = std::abs(t - static_cast<double>(part.end)) * speed;
+    return part.end < NO_END && from_end <= bound * hit_condition(mesh_, ray, triangle) ? from_end : never;
 }
 
 bool Settler::is_before(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const
@@ -136,20 +164,29 @@ double Settler::escape_distance(const ExactRay& ray, std::uint32_t triangle, std
 
 Settlement Settler::settle(const ExactRay& ray, std::uint32_t ours, std::uint32_t reference, double bound) const
 {
+    return settle(ray, RayPart{}, ours, reference, bound);
+}
+
+Settlement Settler::settle(const ExactRay& ray, const RayPart& part, std::uint32_t ours, std::uint32_t reference,
+                           double bound) const
+{
     using Kind = Settlement::Kind;
+    if (ours != NO_HIT && ours == part.start) return {Kind::wrong, 0, "it is the triangle that the ray starts on"};
     double distance = 0;
-    const bool met = ours != NO_HIT && meets(ray, ours);
+    const bool met = ours != NO_HIT && meets(ray, part, ours);
     if (ours != NO_HIT && !met) {
-        distance = distance_to_outline(ray, ours);
-        if (distance > bound)
+        distance = excess(ray, part, ours, bound);
+        if (distance == never)
             return {Kind::wrong, distance, "the exact ray passes its triangle by more than the bound"};
     }
     bool is_nearest = true;
     for (const auto candidate : candidates(ours, reference)) {
-        if (candidate == ours || !meets(ray, candidate) || !is_before(ray, candidate, ours)) continue;
+        if (part.any_hit && ours != NO_HIT) break;
+        if (candidate == ours || !meets(ray, part, candidate) || !is_before(ray, candidate, ours)) continue;
         is_nearest = false;
-        const double escape = escape_distance(ray, candidate, ours, bound);
-        if (escape > bound) return {Kind::wrong, distance, "it passed through a triangle that the exact ray meets"};
+        const double escape =
+            std::min(escape_distance(ray, candidate, ours, bound), distance_to_limits(ray, part, candidate, bound));
+        if (escape == never) return {Kind::wrong, distance, "it passed through a triangle that the exact ray meets"};
         distance = std::max(distance, escape);
     }
     if (is_nearest && (met || ours == NO_HIT)) return {Kind::ours, 0, "exact arithmetic agrees"};

@@ -59,7 +59,14 @@ json verdicts_json(const Verdicts& v)
 Verdicts verdicts_from(const json& object)
 {
     const json& c = object.at("counts");
-    Verdicts verdicts{c.at(0), c.at(1), c.at(2), c.at(3), c.at(4), c.at(5), object.at("largest_tie_distance"), {}, {}};
+    Verdicts verdicts;
+    verdicts.rays = c.at(0);
+    verdicts.agreed = c.at(1);
+    verdicts.ties = c.at(2);
+    verdicts.settled = c.at(3);
+    verdicts.wrong = c.at(4);
+    verdicts.lost = c.at(5);
+    verdicts.largest_tie_distance = object.at("largest_tie_distance");
     if (object.contains("first_wrong")) verdicts.first_wrong = wrong_ray_from(object["first_wrong"]);
     return verdicts;
 }
