@@ -10,12 +10,12 @@
 // sense: t times the magnitude of that component.
 STRUCT(RayFrame)
 {
-    Vec3 inverse;  // what depth a unit of each axis is
-    Vec3 offset;   // origin * inverse
-    Vec3 origin;   // turned: z is the axis of depth
-    Vec3 shear;    // the direction, turned, times 2^20: no product of two sheared coordinates is denormal
-    real to_depth; // from turned z to depth times 2^40
-    uint axis;     // of depth
+    Vec3 origin;
+    Vec3 inverse; // what depth a unit of each axis is
+    Vec3 offset;  // origin * inverse
+    Vec3 across;  // seen along the ray, x and y of a point times 2^20 are its products with these: no product of two
+    Vec3 upwards; // such coordinates is denormal
+    Vec3 along;   // and its depth times 2^40 is that with this
 };
 
 // The nearest hit so far.
@@ -42,12 +42,12 @@ KERNEL_FN uint deepest_axis(Vec3 direction)
     return z > maximum(x, y) ? 2u : of_xy;
 }
 
-// The axes in cyclic order, so that `axis` is the last.
-KERNEL_FN Vec3 turned(Vec3 a, uint axis)
+// The axes in cyclic order, so that the third becomes `axis`.
+KERNEL_FN Vec3 turned_to(Vec3 a, uint axis)
 {
-    real x = axis == 0u ? a.y : axis == 1u ? a.z : a.x;
-    real y = axis == 0u ? a.z : axis == 1u ? a.x : a.y;
-    real z = axis == 0u ? a.x : axis == 1u ? a.y : a.z;
+    real x = axis == 0u ? a.z : axis == 1u ? a.y : a.x;
+    real y = axis == 0u ? a.x : axis == 1u ? a.z : a.y;
+    real z = axis == 0u ? a.y : axis == 1u ? a.x : a.z;
     return VEC3(x, y, z);
 }
 
@@ -60,18 +60,23 @@ KERNEL_FN real depth_per_unit(real deepest, real direction)
 
 KERNEL_FN RayFrame frame_of(Ray ray)
 {
+    uint axis = deepest_axis(ray.direction);
+    uint axis_x = axis == 2u ? 0u : axis + 1u;
+    uint axis_y = axis == 0u ? 2u : axis - 1u;
+    real deepest = component(ray.direction, axis);
+    real zero = real(0.0f);
+    PRECISE real x = component(ray.direction, axis_x) * real(-1048576.0f);
+    PRECISE real y = component(ray.direction, axis_y) * real(-1048576.0f);
+    PRECISE real z = deepest * real(1048576.0f);
+    real along = deepest < zero ? real(-1099511627776.0f) : real(1099511627776.0f);
     RayFrame frame;
-    frame.axis = deepest_axis(ray.direction);
-    frame.origin = turned(ray.origin, frame.axis);
-    Vec3 direction = turned(ray.direction, frame.axis);
-    PRECISE real shear_x = direction.x * real(1048576.0f);
-    PRECISE real shear_y = direction.y * real(1048576.0f);
-    PRECISE real shear_z = direction.z * real(1048576.0f);
-    frame.shear = VEC3(shear_x, shear_y, shear_z);
-    frame.to_depth = direction.z < real(0.0f) ? real(-1099511627776.0f) : real(1099511627776.0f);
-    real deepest = magnitude(direction.z);
-    frame.inverse = VEC3(depth_per_unit(deepest, ray.direction.x), depth_per_unit(deepest, ray.direction.y),
-                         depth_per_unit(deepest, ray.direction.z));
+    frame.origin = ray.origin;
+    frame.across = turned_to(VEC3(z, zero, x), axis);
+    frame.upwards = turned_to(VEC3(zero, z, y), axis);
+    frame.along = turned_to(VEC3(zero, zero, along), axis);
+    frame.inverse =
+        VEC3(depth_per_unit(magnitude(deepest), ray.direction.x), depth_per_unit(magnitude(deepest), ray.direction.y),
+             depth_per_unit(magnitude(deepest), ray.direction.z));
     PRECISE real offset_x = ray.origin.x * frame.inverse.x;
     PRECISE real offset_y = ray.origin.y * frame.inverse.y;
     PRECISE real offset_z = ray.origin.z * frame.inverse.z;
@@ -80,11 +85,11 @@ KERNEL_FN RayFrame frame_of(Ray ray)
 }
 
 // end: ray parameter. What exceeds 2^64 is no end, what is below 2^-60 is the origin.
-KERNEL_FN Nearest nothing_before(Ray ray, RayFrame frame, real end)
+KERNEL_FN Nearest nothing_before(Ray ray, real end)
 {
     Nearest nearest;
     real bounded = end < real(8.67361737988403547e-19f) ? real(0.0f) : minimum(end, real(18446744073709551616.0f));
-    PRECISE real depth = bounded * magnitude(component(ray.direction, frame.axis));
+    PRECISE real depth = bounded * magnitude(component(ray.direction, deepest_axis(ray.direction)));
     nearest.depth = depth;
     nearest.triangle = NO_HIT;
     nearest.at = 0u;
@@ -96,19 +101,19 @@ STRUCT(Sheared)
 {
     real x;
     real y;
-    real z; // turned, not sheared
 };
 
-// A vertex, whichever triangle asks.
-KERNEL_FN Sheared sheared(RayFrame frame, uint4 row)
+KERNEL_FN Vec3 seen_from(Vec3 origin, uint4 row)
 {
-    Vec3 a = sub3(turned(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), frame.axis), frame.origin);
-    PRECISE real x = a.x * frame.shear.z - a.z * frame.shear.x;
-    PRECISE real y = a.y * frame.shear.z - a.z * frame.shear.y;
+    return sub3(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), origin);
+}
+
+// A vertex, whichever triangle asks; of three products one is zero.
+KERNEL_FN Sheared sheared(RayFrame frame, Vec3 seen)
+{
     Sheared result;
-    result.x = x;
-    result.y = y;
-    result.z = a.z;
+    result.x = dot3(seen, frame.across);
+    result.y = dot3(seen, frame.upwards);
     return result;
 }
 
@@ -162,9 +167,12 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
 {
     COUNT_TRIANGLE();
     uint4 row = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at);
-    Sheared a = sheared(frame, row);
-    Sheared b = sheared(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 1u));
-    Sheared c = sheared(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 2u));
+    Vec3 v0 = seen_from(frame.origin, row);
+    Vec3 v1 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 1u));
+    Vec3 v2 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 2u));
+    Sheared a = sheared(frame, v0);
+    Sheared b = sheared(frame, v1);
+    Sheared c = sheared(frame, v2);
     if (has_two_signs(rough_side(b, c), rough_side(c, a), rough_side(a, b))) return nearest;
 
     real u = fine_side(b, c);
@@ -172,10 +180,7 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
     real w = fine_side(a, b);
     PRECISE real determinant = u + v + w;
     if (has_two_signs(u, v, w) || determinant == real(0.0f)) return nearest;
-    PRECISE real a_depth = a.z * frame.to_depth;
-    PRECISE real b_depth = b.z * frame.to_depth;
-    PRECISE real c_depth = c.z * frame.to_depth;
-    PRECISE real weighted = u * a_depth + v * b_depth + w * c_depth;
+    PRECISE real weighted = u * dot3(v0, frame.along) + v * dot3(v1, frame.along) + w * dot3(v2, frame.along);
     PRECISE real inverse = reciprocal(magnitude(determinant));
     PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
     PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40

@@ -23,9 +23,11 @@ KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, ui
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
-    Nearest nearest = nothing_before(ray, frame, end);
-    uint stack[BVH2_STACK + 2u]; // with the end, and a word that is written but not kept
+    Nearest nearest = nothing_before(ray, end);
+    uint stack[BVH2_STACK + 2u];  // with the end, and a word that is written but not kept
+    real depths[BVH2_STACK + 2u]; // of what waits
     stack[0] = BVH2_END;
+    depths[0] = real(0.0f);
     uint waiting = 1u;
     uint child = 0u;
     while (child != BVH2_END) {
@@ -40,6 +42,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
             bool b_first = b < a;
             child = b_first ? children.y : children.x;
             stack[waiting] = b_first ? children.x : children.y;
+            depths[waiting] = maximum(a, b);
             waiting += maximum(a, b) < NEVER ? 1u : 0u;
             if (minimum(a, b) == NEVER) {
                 waiting--;
@@ -54,6 +57,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
                 at++;
             }
             waiting--;
+            while (depths[waiting] > nearest.depth * BOX_SLACK)
+                waiting--;
             child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : stack[waiting];
         }
     }

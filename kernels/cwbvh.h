@@ -75,7 +75,7 @@ KERNEL_FN uint turn_of(RayFrame frame)
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
-    Nearest nearest = nothing_before(ray, frame, end);
+    Nearest nearest = nothing_before(ray, end);
     uint turn = turn_of(frame);
     uint stack_base[CWBVH_STACK];
     uint stack_hits[CWBVH_STACK];

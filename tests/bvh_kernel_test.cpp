@@ -108,7 +108,7 @@ Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
 {
     const SceneView view = view_of(packed);
     const RayFrame frame = frame_of(ray);
-    Nearest nearest = nothing_before(ray, frame, end);
+    Nearest nearest = nothing_before(ray, end);
     for (std::size_t at = packed.leaf_triangles.size() / LEAF_TRIANGLE_ROWS; at-- > 0;)
         nearest = nearer_triangle(view, frame, nearest, static_cast<uint>(at));
     return hit_of(view, ray, nearest);
@@ -380,8 +380,8 @@ TEST(BvhKernel, the_side_of_an_edge_is_right_or_zero)
     for (int i = 0; i < 100000; i++) {
         const Float3 a = random.point(-1, 1);
         const float scale = 1 + 0x1p-23f * static_cast<float>(random.below(8));
-        const Sheared from{a.x, a.y, 0};
-        const Sheared to{a.x * scale, a.y * scale * (random.below(2) == 0 ? 1 : 1 + 0x1p-23f), 0};
+        const Sheared from{a.x, a.y};
+        const Sheared to{a.x * scale, a.y * scale * (random.below(2) == 0 ? 1 : 1 + 0x1p-23f)};
         const double plus = double{from.x} * to.y; // exact
         const double minus = double{from.y} * to.x;
         const float side = fine_side(from, to);
