@@ -48,7 +48,7 @@ struct GivenScene {
     [[nodiscard]] std::vector<Hit> answers(const RaySet& set) const
     {
         std::vector<Hit> answers(set.rays.size());
-        const auto session = openmp_backend().open(0, with_given_rays({}), {&scene.mesh, &packed}, {.threads = 2});
+        const auto session = openmp_backend().open(0, {.task = Task::rays}, {&scene.mesh, &packed}, {.threads = 2});
         session->set_rays(given_rows(set, packed));
         session->launch(given_job(set.rays.size(), packed.tet_count + 1, set.any_hit));
         (void)session->wait();
