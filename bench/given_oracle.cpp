@@ -140,6 +140,14 @@ void GivenOracle::Parts::judge_ray(Verdicts& verdicts, const RaySet& set, std::s
                                             ours,     judged.theirs.face,    judged.theirs.t,
                                             reason};
     };
+    if (ours.face_id == SOME_HIT) {
+        const bool is_hit = judged.theirs.face != NO_HIT;
+        const bool offset_is_hit = origins == Origins::offset && !is_hit &&
+                                   embree_nearest(accelerator, exact_ray_of(ray, origins), judged.part).face != NO_HIT;
+        if (!is_hit && !offset_is_hit) return blame(verdicts.wrong, "it says that something is hit, and nothing is");
+        (is_hit ? verdicts.agreed : verdicts.offset)++;
+        return;
+    }
     if (ours.face_id == LOST) return blame(verdicts.lost, "the walk found no exit face, or reached its cap of steps");
     if (const char* flaw = flaw_of(judged, origins)) return blame(verdicts.wrong, flaw);
     if (ours.face_id == judged.theirs.face) {

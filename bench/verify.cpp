@@ -1,5 +1,6 @@
 #include "bench/verify.h"
 
+#include "bench/given_oracle.h"
 #include "bench/progress.h"
 #include "bench/row_tracing.h"
 #include "bench/stopwatch.h"
@@ -73,7 +74,8 @@ private:
 class Verifier::Parts {
 public:
     Parts(SceneWork& scene, const Options& options)
-        : scene_(&scene), oracle_(scene.loaded().scene.mesh, resolved_threads(options)), references_(scene, options)
+        : scene_(&scene), threads_(resolved_threads(options)), oracle_(scene.loaded().scene.mesh, threads_),
+          references_(scene, options)
     {
     }
 
@@ -143,7 +145,9 @@ private:
 
     Verdicts judge_anew(const RowKey& key, std::size_t view)
     {
-        if (key.kernel.task == Task::rays) throw Error(ErrorKind::internal, "given rays are not judged yet");
+        if (key.kernel.task == Task::rays)
+            return given_oracle().judge(scene_->given_rays().set(*scene_, key.rays, key.ray_order, view), hits,
+                                        key.kernel.structure == Structure::bvh ? Origins::offset : Origins::own);
         return oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(), scene_->height(),
                              hits);
     }
@@ -163,8 +167,17 @@ private:
                                              pixel / scene_->width(), hits[ray], reference[ray]};
     }
 
+    /// Made where a row needs it: it has a BVH of its own.
+    GivenOracle& given_oracle()
+    {
+        if (!given_oracle_) given_oracle_.emplace(scene_->loaded().scene.mesh, threads_);
+        return *given_oracle_;
+    }
+
     SceneWork* scene_;
+    unsigned threads_;
     Oracle oracle_;
+    std::optional<GivenOracle> given_oracle_;
     References references_;
     std::size_t judged_view_ = 0;
     std::map<std::tuple<RayKind, RayOrder, Structure, std::uint64_t>, Verdicts> judged_; ///< of judged_view_, by hits

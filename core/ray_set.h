@@ -11,6 +11,9 @@
 
 namespace tetrace {
 
+/// Hit::face_id of an answer that tells only that there is a hit, where any will do: Embree's.
+inline constexpr std::uint32_t SOME_HIT = 0xFFFFFFFCu;
+
 /// A ray that is given to a device, instead of made there from a pixel.
 struct GivenRay {
     Float3 origin;          ///< coordinates on the 2^-40 grid

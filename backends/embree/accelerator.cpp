@@ -75,31 +75,36 @@ Accelerator::~Accelerator()
     rtcReleaseDevice(device_);
 }
 
-#if TETRACE_EMBREE_MAJOR >= 4
 namespace {
-RTCIntersectArguments arguments_for(Coherence coherence)
+
+// One query, as both major versions have it: how rays are expected to lie, then the call.
+#if TETRACE_EMBREE_MAJOR >= 4
+template <class Arguments>
+Arguments with_coherence(Arguments arguments, Coherence coherence)
 {
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
     arguments.flags = coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     return arguments;
 }
-} // namespace
-
-void Accelerator::intersect(RTCRayHit& ray, Coherence coherence) const
+RTCIntersectArguments intersect_arguments(Coherence coherence)
 {
-    RTCIntersectArguments arguments = arguments_for(coherence);
-    rtcIntersect1(scene_, &ray, &arguments);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    return with_coherence(arguments, coherence);
 }
-
-void Accelerator::intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const
+RTCOccludedArguments occluded_arguments(Coherence coherence)
 {
-    RTCIntersectArguments arguments = arguments_for(coherence);
-    rtcIntersect16(valid, scene_, &rays, &arguments);
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    return with_coherence(arguments, coherence);
 }
+#define ASK(function, arguments, coherence, scene, rays)                                                               \
+    auto asked = arguments(coherence);                                                                                 \
+    function(scene, rays, &asked)
+#define ASK16(function, arguments, coherence, valid, scene, rays)                                                      \
+    auto asked = arguments(coherence);                                                                                 \
+    function(valid, scene, rays, &asked)
 #else
-namespace {
-RTCIntersectContext context_for(Coherence coherence)
+RTCIntersectContext intersect_arguments(Coherence coherence)
 {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -107,20 +112,36 @@ RTCIntersectContext context_for(Coherence coherence)
         coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
+constexpr auto occluded_arguments = intersect_arguments;
+#define ASK(function, arguments, coherence, scene, rays)                                                               \
+    auto asked = arguments(coherence);                                                                                 \
+    function(scene, &asked, rays)
+#define ASK16(function, arguments, coherence, valid, scene, rays)                                                      \
+    auto asked = arguments(coherence);                                                                                 \
+    function(valid, scene, &asked, rays)
+#endif
+
 } // namespace
 
 void Accelerator::intersect(RTCRayHit& ray, Coherence coherence) const
 {
-    RTCIntersectContext context = context_for(coherence);
-    rtcIntersect1(scene_, &context, &ray);
+    ASK(rtcIntersect1, intersect_arguments, coherence, scene_, &ray);
 }
 
 void Accelerator::intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const
 {
-    RTCIntersectContext context = context_for(coherence);
-    rtcIntersect16(valid, scene_, &context, &rays);
+    ASK16(rtcIntersect16, intersect_arguments, coherence, valid, scene_, &rays);
 }
-#endif
+
+void Accelerator::occluded(RTCRay& ray, Coherence coherence) const
+{
+    ASK(rtcOccluded1, occluded_arguments, coherence, scene_, &ray);
+}
+
+void Accelerator::occluded16(const int* valid, RTCRay16& rays, Coherence coherence) const
+{
+    ASK16(rtcOccluded16, occluded_arguments, coherence, valid, scene_, &rays);
+}
 
 const char* version_text()
 {

@@ -32,6 +32,9 @@ public:
 
     void intersect(RTCRayHit& ray, Coherence coherence) const;
     void intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const;
+    /// Whether anything is hit: a ray's tfar becomes -inf then.
+    void occluded(RTCRay& ray, Coherence coherence) const;
+    void occluded16(const int* valid, RTCRay16& rays, Coherence coherence) const;
 
 private:
     static bool count_bytes(void* accelerator, ssize_t bytes, bool post);

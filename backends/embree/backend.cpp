@@ -27,7 +27,7 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree && kernel.task == Task::trace;
+        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree && has_task(kernel);
     }
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
@@ -41,7 +41,7 @@ public:
         if (const auto reason = why_not(0, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
         const unsigned threads = options.threads != 0 ? options.threads : devices_.front().threads;
         return std::make_unique<embree::EmbreeSession>(
-            kernel.method, std::make_shared<embree::Accelerator>(*scene.mesh, false, threads), threads);
+            kernel.method, kernel.task, std::make_shared<embree::Accelerator>(*scene.mesh, false, threads), threads);
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Row>) override { return {}; }

@@ -1,5 +1,7 @@
 #include "backends/embree/session.h"
 
+#include "backends/embree/given_rays.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -102,14 +104,17 @@ void trace_image(const Accelerator& accelerator, Method method, const TraceJob& 
         trace_tile(accelerator, method, params, tile % tiles_x * tile_size, tile / tiles_x * tile_size, hits.data());
 }
 
-EmbreeSession::EmbreeSession(Method method, std::shared_ptr<const Accelerator> accelerator, unsigned threads)
-    : HostSession(Task::trace), method_(method), accelerator_(std::move(accelerator)), threads_(threads)
+EmbreeSession::EmbreeSession(Method method, Task task, std::shared_ptr<const Accelerator> accelerator, unsigned threads)
+    : HostSession(task), method_(method), task_(task), accelerator_(std::move(accelerator)), threads_(threads)
 {
 }
 
 void EmbreeSession::run(const TraceJob& job, std::span<std::uint32_t> output)
 {
-    trace_image(*accelerator_, method_, job, as_hits(output), threads_);
+    if (task_ == Task::rays)
+        trace_given(*accelerator_, method_, job, rays_, as_hits(output), threads_);
+    else
+        trace_image(*accelerator_, method_, job, as_hits(output), threads_);
 }
 
 } // namespace tetrace::embree

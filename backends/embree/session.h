@@ -4,13 +4,15 @@
 #include "core/host_session.h"
 
 #include <memory>
+#include <vector>
 
 namespace tetrace::embree {
 
-/// Primary rays through Embree, in the same tiles and from the same bits as the walk's.
+/// Rays through Embree: primary ones in the same tiles and from the same bits as the walk's, or those that are given.
 class EmbreeSession : public HostSession {
 public:
-    EmbreeSession(Method method, std::shared_ptr<const Accelerator> accelerator, unsigned threads);
+    EmbreeSession(Method method, Task task, std::shared_ptr<const Accelerator> accelerator, unsigned threads);
+    void set_rays(std::span<const Row> rows) override { rays_.assign(rows.begin(), rows.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {accelerator_->build_s(), 0.0, false}; }
     [[nodiscard]] std::uint64_t bytes() const override { return accelerator_->bytes(); }
 
@@ -18,6 +20,8 @@ private:
     void run(const TraceJob& job, std::span<std::uint32_t> output) override;
 
     Method method_;
+    Task task_;
+    std::vector<Row> rays_;
     std::shared_ptr<const Accelerator> accelerator_;
     unsigned threads_;
 };
