@@ -33,6 +33,14 @@ STRUCT(Nearest)
 // A hit is nearer than a ray's origin where its depth is not at least 2^-100.
 #define LEAST_DEPTH real(8.67361737988403547e-19f) // 2^-60, in depth times 2^40
 
+// A function, because glslang does not come to an end with a precise local that depends on a struct which its loop
+// replaces as a whole.
+KERNEL_FN real with_slack(real depth)
+{
+    PRECISE real result = depth * BOX_SLACK;
+    return result;
+}
+
 KERNEL_FN uint deepest_axis(Vec3 direction)
 {
     real x = magnitude(direction.x);

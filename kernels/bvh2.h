@@ -17,7 +17,7 @@ KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, ui
     PRECISE real z1 = as_real(z_high) * frame.inverse.z - frame.offset.z;
     real near = maximum(maximum(minimum(x0, x1), minimum(y0, y1)), maximum(minimum(z0, z1), real(0.0f)));
     real far = minimum(minimum(maximum(x0, x1), maximum(y0, y1)), minimum(maximum(z0, z1), limit));
-    return near <= far * BOX_SLACK ? near : NEVER;
+    return near <= with_slack(far) ? near : NEVER;
 }
 
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
@@ -57,7 +57,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
                 at++;
             }
             waiting--;
-            while (depths[waiting] > nearest.depth * BOX_SLACK)
+            while (depths[waiting] > with_slack(nearest.depth))
                 waiting--;
             child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : stack[waiting];
         }

@@ -47,7 +47,7 @@ KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, ui
                            minimum(plane_depth(grid.step.z, grid.start.z, far_z, shift), limit));
         uint child = meta >> shift & 0xFFu;
         uint bit = (child & 31u) ^ ((child & 24u) == 24u ? turn : 0u);
-        hits |= near <= far * BOX_SLACK ? child >> 5u << bit : 0u;
+        hits |= near <= with_slack(far) ? child >> 5u << bit : 0u;
     }
     return hits;
 }
