@@ -202,11 +202,17 @@ RaySet make_rays(RayKind kind, const RaySource& source)
 
 Float3 light_of(const Domain& domain, Float3 camera)
 {
-    const Double3 low = to_double(domain.low()), high = to_double(domain.high());
-    const Double3 centre = (low + high) * 0.5;
-    const Double3 corner{static_cast<double>(camera.x) < centre.x ? low.x : high.x, high.y,
-                         static_cast<double>(camera.z) < centre.z ? low.z : high.z};
-    return snap_to_grid(to_float(corner + (centre - corner) * 0x1p-7));
+    const Float3 low = domain.low(), high = domain.high();
+    const Double3 centre = (to_double(low) + to_double(high)) * 0.5;
+    const Double3 away = to_double(camera) - centre;
+    const double offset[3] = {away.x, away.y, away.z};
+    int least = 0;
+    for (int axis = 1; axis < 3; axis++)
+        if (std::abs(offset[axis]) < std::abs(offset[least])) least = axis;
+    Float3 corner;
+    for (int axis = 0; axis < 3; axis++)
+        corner[axis] = (offset[axis] < 0) == (axis == least) ? high[axis] : low[axis];
+    return snap_to_grid(to_float(to_double(corner) + (centre - to_double(corner)) * 0x1p-7));
 }
 
 double ao_reach(const TriangleMesh& mesh)

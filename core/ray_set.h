@@ -65,8 +65,10 @@ struct RaySource {
 /// Throws Error{internal} where hits are not of this image or scene.
 [[nodiscard]] RaySet make_rays(RayKind kind, const RaySource& source);
 
-/// The point light of a view: the upper corner of the domain on the camera's side, moved by 1/128 of the way to the
-/// domain's centre. Inside the domain, and in a tight one outside the mesh's bounding box.
+/// The point light of a view, near a corner of the domain: on the camera's side along the two axes on which it is
+/// farthest from the domain's centre, on the other side along the third, so that most of what is seen is lit, and not
+/// from the camera's own direction. 1/128 of the way from the corner to the centre: inside the domain, and in a tight
+/// one outside the mesh's bounding box.
 [[nodiscard]] Float3 light_of(const Domain& domain, Float3 camera);
 
 /// How far rays of kind ao reach: a quarter of the radius of the mesh's bounding sphere.

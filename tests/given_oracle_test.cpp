@@ -2,7 +2,9 @@
 
 #include "bench/settle.h"
 #include "core/exact.h"
+#include "core/pack_bvh.h"
 #include "core/ray_order.h"
+#include "scenes/bvh_builder.h"
 #include "tests/given_scene.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +43,44 @@ TEST(GivenOracle, agrees_with_the_walk_on_every_kind_from_outside_and_inside)
         expect_clean(GivenScene(96), kind);
     for (const RayKind kind : all_kinds)
         expect_clean(inside_camera(), kind);
+}
+
+std::vector<Hit> bvh_answers(const TriangleMesh& mesh, const PackedScene& bvh, const RaySet& set)
+{
+    const KernelId kernel{
+        .structure = Structure::bvh, .method = Method::single, .layout = bvh.layout, .task = Task::rays};
+    const auto session = openmp_backend().open(0, kernel, {&mesh, &bvh}, {.threads = 2});
+    session->set_rays(given_rows_offset(set, mesh));
+    session->launch(given_job(set.rays.size(), 1, set.any_hit));
+    (void)session->wait();
+    std::vector<Hit> answers(set.rays.size());
+    session->read_back(answers);
+    return answers;
+}
+
+TEST(GivenOracle, agrees_with_bvhs_but_where_their_offset_explains_it)
+{
+    const TriangleMesh& mesh = inside_camera().scene.mesh;
+    const Bvh bvh = build_bvh(mesh).bvh;
+    GivenOracle oracle(mesh, 2);
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const PackedScene packed = pack_bvh(mesh, bvh, layout);
+        for (const RayKind kind : all_kinds) {
+            const RaySet set = make_rays(kind, inside_camera().source());
+            const Verdicts verdicts = oracle.judge(set, bvh_answers(mesh, packed, set), Origins::offset);
+            EXPECT_TRUE(verdicts.clean()) << name_of(layout) << ", " << name_of(kind);
+            EXPECT_LE(verdicts.offset, verdicts.rays / 100);
+            EXPECT_EQ(verdicts.agreed + verdicts.ties + verdicts.settled + verdicts.offset, verdicts.rays);
+        }
+    }
+}
+
+TEST(GivenOracle, answers_for_offset_origins_are_wrong_where_origins_are_the_set_s_own)
+{
+    const TriangleMesh& mesh = inside_camera().scene.mesh;
+    const PackedScene packed = pack_bvh(mesh, build_bvh(mesh).bvh, Layout::bvh2);
+    const RaySet set = make_rays(RayKind::diffuse, inside_camera().source());
+    EXPECT_GT(GivenOracle(mesh, 2).judge(set, bvh_answers(mesh, packed, set), Origins::own).wrong, 0u);
 }
 
 struct Answered {

@@ -82,7 +82,7 @@ TEST(RaySet, every_kind_is_the_same_bits_on_every_machine)
     std::vector<std::string> hashes;
     for (const RayKind kind : all_kinds)
         hashes.push_back(hash_text(ray_hash(make_rays(kind, outside().source()))));
-    EXPECT_EQ(hashes, (std::vector<std::string>{"049a3440624ae9b2", "c99fe21776902018", "12cee3a80c92854d",
+    EXPECT_EQ(hashes, (std::vector<std::string>{"049a3440624ae9b2", "3a2683ebccada2a8", "12cee3a80c92854d",
                                                 "79e23b065dff5797", "ff7894c3c50abaad"}));
 }
 
@@ -181,6 +181,20 @@ TEST(RaySet, shadow_rays_end_at_the_light)
     for (const GivenRay& ray : set.rays) {
         const Double3 end = to_double(ray.origin) + to_double(ray.direction) * static_cast<double>(ray.end);
         ASSERT_LE(length(end - light), 0x1p-20 * 2) << "the dropped components, and roundings of 2^-24";
+    }
+}
+
+TEST(RaySet, the_light_is_in_the_domain_and_35_to_70_degrees_from_the_camera)
+{
+    const Domain& domain = outside().scene.domain;
+    for (std::uint32_t i = 0; i < 200; i++) {
+        const Double3 camera = random_direction({3, 0, i, 0}); // far away: 100 domain units
+        const Float3 light = light_of(domain, to_float(camera * 100));
+        EXPECT_TRUE(domain.contains(light));
+        const Double3 centre = (to_double(domain.low()) + to_double(domain.high())) * 0.5;
+        const double cosine = dot(camera, normalized(to_double(light) - centre));
+        EXPECT_GT(cosine, 1 / 3.0 - 0.02);            // the camera on a diagonal
+        EXPECT_LT(cosine, std::sqrt(2 / 3.0) + 0.02); // on the middle of an edge
     }
 }
 
