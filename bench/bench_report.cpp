@@ -48,6 +48,21 @@ std::string steps_sentence(const std::string& scene, const std::vector<RowRun>& 
     return {};
 }
 
+/// What a ray visits in each BVH, kind after kind.
+std::string visits_sentences(const std::string& scene, const std::vector<RowRun>& rows)
+{
+    std::string text;
+    for (const RowRun* row : rows_of(scene, rows)) {
+        const Traced* result = traced(*row);
+        if (result == nullptr || result->visits.rays == 0) continue;
+        const auto rays = static_cast<double>(result->visits.rays);
+        text += fmt::format("{}{}: {:.1f} nodes and {:.1f} triangles a ray", text.empty() ? "" : "; ",
+                            kernel_title(row->key), static_cast<double>(result->visits.nodes) / rays,
+                            static_cast<double>(result->visits.triangles) / rays);
+    }
+    return text.empty() ? text : wrapped(text, 110, 0);
+}
+
 const char* const rate_columns =
     "x openmp (x cuda and so on): rate over that of the same kernel with openmp, on a GPU with cuda, on the same "
     "hardware; medians, with their 95 % interval. x single: rate over that of Embree's single rays. of copy: what a "
@@ -149,6 +164,8 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
                                    "agree, {} ties",
                                    with_commas(sum.rays), with_commas(sum.agreed), with_commas(sum.ties));
     if (sum.ties > 0) text += fmt::format(" (at most {:.1e} from an edge)", sum.largest_tie_distance);
+    if (sum.offset > 0)
+        text += fmt::format(", {} right for the offset origins that BVHs start from", with_commas(sum.offset));
     return text + fmt::format(", {} settled for us, {} wrong, {} lost.", with_commas(sum.settled),
                               with_commas(sum.wrong), with_commas(sum.lost));
 }
@@ -169,7 +186,8 @@ Report bench_report(const BenchResult& result, const Options& options)
     Report report{{}, flat_table(result), bench_json(result, options)};
     for (const auto& scene : result.run.scenes)
         report.text += scene_headline(*scene, result.run.rows) + steps_sentence(scene->label(), result.run.rows) +
-                       "\n" + rate_table(scene->label(), result).text(2) + "\n";
+                       visits_sentences(scene->label(), result.run.rows) + "\n" +
+                       rate_table(scene->label(), result).text(2) + "\n";
     if (result.measurement.wall_s > 0)
         report.text += "where the time goes\n\n" + time_table(result).text(2) + "\ndevices\n\n" +
                        device_table(result.devices).text(2) + "\n";

@@ -26,6 +26,7 @@ Table check_table(const std::vector<RowRun>& rows)
                  {"ties", "ties"},
                  {"largest_tie_distance", "largest", {}, 12},
                  {"settled", "settled"},
+                 {"offset", "offset"},
                  {"wrong", "wrong"},
                  {"lost", "lost"},
                  {"conformity", "conformity"},
@@ -42,8 +43,8 @@ Table check_table(const std::vector<RowRun>& rows)
         const std::string reason = reason_of(row);
         table.add({row_name(row.key), count(&Verdicts::rays), count(&Verdicts::agreed), count(&Verdicts::ties),
                    result && result->verdicts.ties > 0 ? Cell(result->verdicts.largest_tie_distance) : Cell(),
-                   count(&Verdicts::settled), count(&Verdicts::wrong), count(&Verdicts::lost), conformity_text(row),
-                   result && result->compared ? Cell(result->different) : Cell(),
+                   count(&Verdicts::settled), count(&Verdicts::offset), count(&Verdicts::wrong), count(&Verdicts::lost),
+                   conformity_text(row), result && result->compared ? Cell(result->different) : Cell(),
                    result && result->compared ? Cell(result->largest_ulps) : Cell(),
                    result ? Cell(hash_text(result->hit_hash)) : Cell(), std::string(name_of(status_of(row))),
                    reason.empty() ? Cell() : Cell(reason)});

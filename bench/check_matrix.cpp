@@ -101,6 +101,7 @@ std::string answers_text(const std::string& scene, const std::vector<RowRun>& al
                  {"ties", "ties"},
                  {"largest", "largest"},
                  {"settled", "settled"},
+                 {"offset", "offset"},
                  {"wrong", "wrong"},
                  {"lost", "lost"},
                  {"devices", "from"}});
@@ -110,7 +111,7 @@ std::string answers_text(const std::string& scene, const std::vector<RowRun>& al
         const Verdicts& verdicts = result.verdicts;
         table.add({answer.kernel, hash_text(result.hit_hash), verdicts.rays, verdicts.agreed, verdicts.ties,
                    verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
-                   verdicts.settled, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
+                   verdicts.settled, verdicts.offset, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
     }
     return table.rows().empty() ? "" : table.text(2);
 }

@@ -2,6 +2,7 @@
 
 #include "bench/device_json.h"
 #include "bench/figures.h"
+#include "bench/row_tracing.h"
 #include "bench/self_test_json.h"
 #include "core/hash.h"
 
@@ -26,8 +27,18 @@ json key_json(const RowKey& key)
             {"layout", name_of(key.kernel.layout)},
             {"backend", key.backend},
             {"rays", name_of(key.rays)},
+            {"ray_order", name_of(key.ray_order)},
             {"math", name_of(key.kernel.math)},
             {"order", name_of(key.order)}};
+}
+
+json visits_json(const Visits& visits)
+{
+    const auto rays = static_cast<double>(visits.rays);
+    return {{"nodes", visits.nodes},
+            {"triangles", visits.triangles},
+            {"mean_nodes", static_cast<double>(visits.nodes) / rays},
+            {"mean_triangles", static_cast<double>(visits.triangles) / rays}};
 }
 
 json counts_json(const RayTotals& totals)
@@ -55,13 +66,10 @@ json wrong_ray_json(const WrongRay& ray)
 json verification_json(const Traced& result)
 {
     const Verdicts& verdicts = result.verdicts;
-    json object = {{"rays", verdicts.rays},
-                   {"agreed", verdicts.agreed},
-                   {"ties", verdicts.ties},
-                   {"settled", verdicts.settled},
-                   {"wrong", verdicts.wrong},
-                   {"lost", verdicts.lost},
-                   {"compared_with_openmp", result.compared}};
+    json object = {{"rays", verdicts.rays},     {"agreed", verdicts.agreed},
+                   {"ties", verdicts.ties},     {"settled", verdicts.settled},
+                   {"offset", verdicts.offset}, {"wrong", verdicts.wrong},
+                   {"lost", verdicts.lost},     {"compared_with_openmp", result.compared}};
     if (verdicts.ties > 0) object["largest_tie_distance"] = verdicts.largest_tie_distance;
     if (result.compared) {
         object["different_from_openmp"] = result.different;
@@ -165,7 +173,9 @@ nlohmann::json row_json(const RowRun& row)
     const Traced* result = traced(row);
     if (result == nullptr) return object;
     if (row.session != nullptr) object["bytes"] = row.session->bytes();
+    if (row.key.kernel.task == Task::rays) object["ray_hash"] = hash_text(hash_of_rays(row));
     object["counts"] = counts_json(result->totals);
+    if (result->visits.rays > 0) object["visits"] = visits_json(result->visits);
     object["verification"] = verification_json(*result);
     object["hit_hash"] = hash_text(result->hit_hash);
     object["times"] = times_json(row, *result);

@@ -60,9 +60,17 @@ std::string traced_reason(const Traced& traced)
 
 } // namespace
 
+void Visits::add(const Visits& other)
+{
+    rays += other.rays;
+    nodes += other.nodes;
+    triangles += other.triangles;
+}
+
 void Traced::add(const ImageVerdict& image)
 {
     totals.add(image.totals);
+    visits.add(image.visits);
     verdicts.add(image.verdicts);
     compared = compared || image.compared;
     different += image.different;

@@ -27,9 +27,19 @@ struct DifferingRay {
     Hit ours{}, openmp{};
 };
 
+/// Nodes and triangles of a BVH that rays visit.
+struct Visits {
+    std::uint64_t rays = 0; ///< that were counted
+    std::uint64_t nodes = 0;
+    std::uint64_t triangles = 0; ///< tests, of one triangle in two leaves two
+
+    void add(const Visits& other);
+};
+
 /// What the verification of one image found out.
 struct ImageVerdict {
     RayTotals totals;
+    Visits visits;
     Verdicts verdicts;
     bool compared = false; ///< as in Traced, like all down to first_different
     std::uint64_t different = 0;
@@ -43,6 +53,7 @@ struct ImageVerdict {
 /// What the untimed pass over all selected views found out.
 struct Traced {
     RayTotals totals;
+    Visits visits; ///< see count_visits()
     Verdicts verdicts;
     bool compared = false;          ///< with openmp; openmp's own rows and Embree's have nothing to compare with
     std::uint64_t different = 0;    ///< rays that differ from openmp's by more than the device's self-test allows

@@ -1,6 +1,7 @@
 #include "bench/row_tracing.h"
 
 #include "bench/ray_store.h"
+#include "core/hash.h"
 
 namespace tetrace {
 
@@ -11,6 +12,15 @@ std::size_t ray_count(const RowRun& row, std::size_t view)
     return scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view).rays.size();
 }
 
+std::uint64_t hash_of_rays(const RowRun& row)
+{
+    SceneWork& scene = *row.scene;
+    std::vector<std::uint64_t> hashes;
+    for (std::size_t view = 0; view < scene.views().size(); ++view)
+        hashes.push_back(ray_hash(scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view)));
+    return hash_of(hashes);
+}
+
 std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray)
 {
     SceneWork& scene = *row.scene;
@@ -18,19 +28,25 @@ std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray)
     return scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view).rays[ray].pixel;
 }
 
-TraceJob prepare_view(RowRun& row, std::size_t view)
+TraceJob job_of(const RowRun& row, std::size_t view)
 {
     SceneWork& scene = *row.scene;
-    const PackedScene* const packed = row.packed != nullptr ? &row.packed->scene : nullptr;
-    if (row.key.kernel.task == Task::trace) return scene.job(view, packed);
-    RayStore& store = scene.given_rays();
-    if (row.view_of_rays != view) {
+    if (row.key.kernel.task == Task::trace)
+        return scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr);
+    const RaySet& set = scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view);
+    return given_job(set.rays.size(), scene.max_steps(), set.any_hit);
+}
+
+TraceJob prepare_view(RowRun& row, std::size_t view)
+{
+    if (row.key.kernel.task == Task::rays && row.view_of_rays != view) {
+        SceneWork& scene = *row.scene;
         row.view_of_rays.reset();
-        row.session->set_rays(store.rows(scene, row.key, packed, view));
+        row.session->set_rays(
+            scene.given_rays().rows(scene, row.key, row.packed != nullptr ? &row.packed->scene : nullptr, view));
         row.view_of_rays = view;
     }
-    const RaySet& set = store.set(scene, row.key.rays, row.key.ray_order, view);
-    return given_job(set.rays.size(), scene.max_steps(), set.any_hit);
+    return job_of(row, view);
 }
 
 double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits)

@@ -11,10 +11,16 @@ namespace tetrace {
 /// which are none where no primary ray of the view hits.
 [[nodiscard]] std::size_t ray_count(const RowRun& row, std::size_t view);
 
+/// Of the rays that a row is given, view after view.
+[[nodiscard]] std::uint64_t hash_of_rays(const RowRun& row);
+
 /// The pixel (y * width + x) that a ray of a view was made for.
 [[nodiscard]] std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray);
 
-/// The job of a view, for the row's open session; gives it the view's rays first, where it has others.
+/// The job of a view.
+[[nodiscard]] TraceJob job_of(const RowRun& row, std::size_t view);
+
+/// The same, for the row's open session; gives it the view's rays first, where it has others.
 /// Throws what Session::set_rays() throws.
 [[nodiscard]] TraceJob prepare_view(RowRun& row, std::size_t view);
 

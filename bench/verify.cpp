@@ -4,6 +4,7 @@
 #include "bench/progress.h"
 #include "bench/row_tracing.h"
 #include "bench/stopwatch.h"
+#include "bench/visits.h"
 #include "core/hash.h"
 
 #include <algorithm>
@@ -88,6 +89,7 @@ public:
         if (hits.empty()) return image; // rays that are given, and none is
         trace_timed(row, image, view);
         image.totals = checked_totals(row, view);
+        image.visits = count_visits(row, view, hits, threads_);
         image.hit_hash = hash_of(hits);
         if (needs_reference(row.key)) compare(row, image, view);
         image.verdicts = judge(row.key, view, image.hit_hash);

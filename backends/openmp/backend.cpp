@@ -13,16 +13,6 @@
 namespace tetrace {
 namespace {
 
-openmp::RunFunction* find_function(const KernelId& id)
-{
-    KernelId compiled = id;
-    compiled.task = Task::trace;
-    const auto& kernels = openmp::compiled_kernels();
-    const auto found =
-        std::find_if(kernels.begin(), kernels.end(), [&](const auto& kernel) { return kernel.id == compiled; });
-    return found == kernels.end() ? nullptr : found->function(id.task);
-}
-
 Device openmp_device()
 {
     Device device = host_device();
@@ -39,7 +29,11 @@ public:
 
     [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
 
-    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return find_function(kernel) != nullptr; }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
+    {
+        return kernel.schedule == Schedule::tiles &&
+               openmp::find_function(openmp::compiled_kernels(), kernel) != nullptr;
+    }
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
     {
@@ -53,7 +47,8 @@ public:
                                                 const SessionOptions& options) override
     {
         const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
-        return std::make_unique<openmp::OpenmpSession>(find_function(kernel), kernel.task, packed, threads_of(options),
+        return std::make_unique<openmp::OpenmpSession>(openmp::find_function(openmp::compiled_kernels(), kernel),
+                                                       kernel.task, packed, threads_of(options),
                                                        tile_height_for(devices_[0], options));
     }
 

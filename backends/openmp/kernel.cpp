@@ -1,5 +1,5 @@
 // One kernel: compiled once per kernel and math mode (CMakeLists.txt), which arrive as KERNEL_STRUCTURE_HEADER and its
-// like, and KERNEL_NAME.
+// like, and KERNEL_NAME; of a BVH once more with COUNTS_VISITS, for the build that counts and is never timed.
 #include "backends/openmp/kernels.h"
 #include "core/host_session.h"
 #include "core/launch.h"
@@ -12,9 +12,29 @@
 #include <cstdint>
 
 namespace {
+#ifdef COUNTS_VISITS
+thread_local std::uint32_t nodes_visited, triangles_visited;
+#define COUNT_NODE() (nodes_visited++)
+#define COUNT_TRIANGLE() (triangles_visited++)
+#endif
 #include "kernels/kernel_cpp.h"
 
 static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
+
+// What trace_one() returns, as the host has it; where visits are counted, with those in place of tet and steps.
+template <class Trace>
+tetrace::Hit answer(const Trace& trace_one)
+{
+#ifdef COUNTS_VISITS
+    nodes_visited = triangles_visited = 0;
+    auto hit = std::bit_cast<tetrace::Hit>(trace_one());
+    hit.tet = nodes_visited;
+    hit.steps = triangles_visited;
+    return hit;
+#else
+    return std::bit_cast<tetrace::Hit>(trace_one());
+#endif
+}
 
 // Calls work with the scene, the launch and each pixel of an image, tile after tile, on that many threads.
 template <class Work>
@@ -52,8 +72,8 @@ void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Ro
     tetrace::Hit* const hits = as_hits(output).data();
     for_pixels(packed, job, threads, tile_height,
                [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
-                   const ::Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
-                   hits[std::size_t{pixel.y} * launch.trace.width + pixel.x] = std::bit_cast<tetrace::Hit>(hit);
+                   hits[std::size_t{pixel.y} * launch.trace.width + pixel.x] =
+                       answer([&] { return trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y)); });
                });
 }
 
@@ -62,12 +82,12 @@ void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row
                                   std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
 {
     tetrace::Hit* const hits = as_hits(output).data();
-    for_pixels(packed, job, threads, tile_height,
-               [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
-                   const uint ray = ray_index(pixel);
-                   const ::Hit hit = trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
-                   hits[ray] = std::bit_cast<tetrace::Hit>(hit);
-               });
+    for_pixels(
+        packed, job, threads, tile_height, [&](const SceneView& scene, const ::LaunchParams& launch, Pixel pixel) {
+            const uint ray = ray_index(pixel);
+            hits[ray] =
+                answer([&] { return trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]); });
+        });
 }
 #endif
 

@@ -23,4 +23,11 @@ struct CompiledKernel {
 };
 [[nodiscard]] const std::vector<CompiledKernel>& compiled_kernels();
 
+/// The BVHs' kernels in exact mode, compiled to count what a ray visits: a hit's `tet` is the number of nodes that were
+/// fetched for it, its `steps` that of the triangles tested; all else is as compiled_kernels() have it. Never timed.
+[[nodiscard]] const std::vector<CompiledKernel>& counting_kernels();
+
+/// The function of a kernel in such a list; null where it has none. The schedule is no matter.
+[[nodiscard]] RunFunction* find_function(const std::vector<CompiledKernel>& kernels, KernelId id);
+
 } // namespace tetrace::openmp

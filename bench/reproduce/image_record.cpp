@@ -50,7 +50,7 @@ WrongRay wrong_ray_from(const json& object)
 
 json verdicts_json(const Verdicts& v)
 {
-    json object = {{"counts", {v.rays, v.agreed, v.ties, v.settled, v.wrong, v.lost}},
+    json object = {{"counts", {v.rays, v.agreed, v.ties, v.settled, v.wrong, v.lost, v.offset}},
                    {"largest_tie_distance", v.largest_tie_distance}};
     if (v.first_wrong) object["first_wrong"] = wrong_ray_json(*v.first_wrong);
     return object;
@@ -66,6 +66,7 @@ Verdicts verdicts_from(const json& object)
     verdicts.settled = c.at(3);
     verdicts.wrong = c.at(4);
     verdicts.lost = c.at(5);
+    verdicts.offset = c.at(6);
     verdicts.largest_tie_distance = object.at("largest_tie_distance");
     if (object.contains("first_wrong")) verdicts.first_wrong = wrong_ray_from(object["first_wrong"]);
     return verdicts;
@@ -83,6 +84,8 @@ json verdict_json(const ImageVerdict& verdict)
                    {"verdicts", verdicts_json(verdict.verdicts)},
                    {"hit_hash", hash_text(verdict.hit_hash)},
                    {"seconds", {verdict.kernel_s, verdict.wall_s, verdict.download_s}}};
+    if (verdict.visits.rays > 0)
+        object["visits"] = {verdict.visits.rays, verdict.visits.nodes, verdict.visits.triangles};
     if (verdict.compared) object["compared"] = {verdict.different, verdict.inexact, verdict.largest_ulps};
     if (verdict.first_different) object["first_different"] = differing_ray_json(*verdict.first_different);
     return object;
@@ -94,6 +97,10 @@ ImageVerdict verdict_from(const json& object)
     verdict.totals = totals_from(object.at("totals"));
     verdict.verdicts = verdicts_from(object.at("verdicts"));
     verdict.hit_hash = hash_from(object.at("hit_hash"));
+    if (object.contains("visits")) {
+        const json& visits = object["visits"];
+        verdict.visits = {visits.at(0), visits.at(1), visits.at(2)};
+    }
     const json& seconds = object.at("seconds");
     verdict.kernel_s = seconds.at(0), verdict.wall_s = seconds.at(1), verdict.download_s = seconds.at(2);
     verdict.compared = object.contains("compared");
