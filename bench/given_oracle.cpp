@@ -76,6 +76,7 @@ struct GivenOracle::Parts {
     void trace_reference(const RaySet& set);
     void judge_ray(Verdicts& verdicts, const RaySet& set, std::size_t number, const Hit& ours, Origins origins) const;
     [[nodiscard]] Settlement settle(const Judged& judged, Origins origins) const;
+    [[nodiscard]] std::uint32_t some_face(const Judged& judged, Origins origins) const;
     [[nodiscard]] const char* flaw_of(const Judged& judged, Origins origins) const;
     [[nodiscard]] ExactRay exact_ray_of(const GivenRay& ray, Origins origins) const
     {
@@ -126,12 +127,33 @@ Settlement GivenOracle::Parts::settle(const Judged& judged, Origins origins) con
     return settler.settle(ray, judged.part, judged.ours.face_id, theirs.face, tie_bound(ray.origin));
 }
 
+// The triangle that an answer may mean which tells only that there is one: met by the ray, or by it moved by the bound
+// in one of four directions, or a little behind its end. Exact arithmetic then says whether it will do.
+std::uint32_t GivenOracle::Parts::some_face(const Judged& judged, Origins origins) const
+{
+    if (judged.theirs.face != NO_HIT) return judged.theirs.face;
+    const ExactRay ray = exact_ray_of(judged.ray, origins);
+    const Double3 along = to_double(ray.direction);
+    const double bound = tie_bound(ray.origin);
+    RayPart longer = judged.part;
+    longer.end += static_cast<float>(16 * bound / length(along));
+    const Double3 a =
+        normalized(cross(along, std::abs(along.x) > std::abs(along.y) ? Double3{0, 1, 0} : Double3{1, 0, 0}));
+    const Double3 b = normalized(cross(along, a));
+    for (const Double3 shift : {Double3{}, a * bound, a * -bound, b * bound, b * -bound}) {
+        const ExactRay moved{to_float(to_double(ray.origin) + shift), ray.direction};
+        const std::uint32_t face = embree_nearest(accelerator, moved, longer).face;
+        if (face != NO_HIT) return face;
+    }
+    return NO_HIT;
+}
+
 void GivenOracle::Parts::judge_ray(Verdicts& verdicts, const RaySet& set, std::size_t number, const Hit& ours,
                                    Origins origins) const
 {
     using Kind = Settlement::Kind;
     const GivenRay& ray = set.rays[number];
-    const Judged judged{ray, {ray.triangle, ray.end, set.any_hit}, ours, reference[number]};
+    Judged judged{ray, {ray.triangle, ray.end, set.any_hit}, ours, reference[number]};
     const auto blame = [&](std::uint64_t& count, const char* reason) {
         count++;
         verdicts.flawed.push_back(ray.pixel);
@@ -140,17 +162,14 @@ void GivenOracle::Parts::judge_ray(Verdicts& verdicts, const RaySet& set, std::s
                                             ours,     judged.theirs.face,    judged.theirs.t,
                                             reason};
     };
-    if (ours.face_id == SOME_HIT) {
-        const bool is_hit = judged.theirs.face != NO_HIT;
-        const bool offset_is_hit = origins == Origins::offset && !is_hit &&
-                                   embree_nearest(accelerator, exact_ray_of(ray, origins), judged.part).face != NO_HIT;
-        if (!is_hit && !offset_is_hit) return blame(verdicts.wrong, "it says that something is hit, and nothing is");
-        (is_hit ? verdicts.agreed : verdicts.offset)++;
-        return;
-    }
     if (ours.face_id == LOST) return blame(verdicts.lost, "the walk found no exit face, or reached its cap of steps");
-    if (const char* flaw = flaw_of(judged, origins)) return blame(verdicts.wrong, flaw);
-    if (ours.face_id == judged.theirs.face) {
+    if (ours.face_id == SOME_HIT && set.any_hit) {
+        judged.ours.face_id = some_face(judged, origins);
+        if (judged.ours.face_id == NO_HIT)
+            return blame(verdicts.wrong, "it says that something is hit, and nothing is near");
+    } else if (const char* flaw = flaw_of(judged, origins))
+        return blame(verdicts.wrong, flaw);
+    if (judged.ours.face_id == judged.theirs.face) {
         verdicts.agreed++;
         return;
     }

@@ -231,6 +231,32 @@ TEST(GivenOracle, any_hit_will_do_where_that_is_asked)
     EXPECT_EQ(judged(0.25F, NO_HIT, 0, Origins::own, 1, true).wrong, 1u);
 }
 
+TEST(GivenOracle, an_answer_that_names_no_triangle_will_do_where_any_hit_does)
+{
+    EXPECT_EQ(judged(0.25F, SOME_HIT, 0, Origins::own, 1, true).agreed, 1u);
+    EXPECT_EQ(judged(0.25F, SOME_HIT, 0, Origins::own, 1, false).wrong, 1u) << "the nearest is asked for";
+    EXPECT_EQ(judged(0.25F, SOME_HIT, 0, Origins::own, 0.125F, true).wrong, 1u);
+    EXPECT_EQ(judged(0.25F, SOME_HIT, 0, Origins::own, 0.25F - 0x1p-20F, true).ties, 1u);
+    EXPECT_EQ(judged(0.25F, SOME_HIT, 0, Origins::own, 0.25F - 0x1p-17F, true).wrong, 1u);
+    EXPECT_EQ(judged(0.25F, SOME_HIT, 0, Origins::offset, 0.25F - 0x1p-17F, true).offset, 1u)
+        << "the end is offset by 2^-16 too";
+}
+
+TEST(GivenOracle, a_hit_beside_a_triangle_s_edge_is_a_tie_within_the_bound)
+{
+    const TriangleMesh mesh = sheets(0.25F);
+    const auto beside = [&](float x) {
+        RaySet set = straight_up(1, true);
+        set.rays.front().origin.x = x;
+        set.rays.front().triangle = FREE_FACE;
+        set.rays.front().origin.z = 0.125F;
+        return GivenOracle(mesh, 1).judge(set, std::vector{Hit{SOME_HIT, NO_TET, 0, 0, 0, 0}}, Origins::own);
+    };
+    EXPECT_EQ(beside(0x1p-21F).agreed, 1u);
+    EXPECT_EQ(beside(-0x1p-21F).ties, 1u);
+    EXPECT_EQ(beside(-0x1p-18F).wrong, 1u);
+}
+
 TEST(GivenOracle, a_triangle_within_the_bound_of_the_start_is_a_tie)
 {
     EXPECT_EQ(judged(0x1p-21F, far_sheet, 0.5F, Origins::own).ties, 1u);
