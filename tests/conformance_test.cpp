@@ -19,10 +19,10 @@ namespace {
 using nlohmann::json;
 
 /// Small: interpreters of kernels are among the devices.
-Options small_run(const std::string& backend)
+Options small_run(const std::string& backend, const std::string& rays, const std::string& structures)
 {
-    return parse_options({"check", "--backend", backend, "--structure", "cdt", "--method", "all", "--schedule",
-                          "tiles,persistent", "--size", "32x24", "--views", "0,2"});
+    return parse_options({"check", "--backend", backend, "--structure", structures, "--method", "all", "--schedule",
+                          "tiles,persistent", "--rays", rays, "--size", "32x24", "--views", "0,2"});
 }
 
 LoadedScene small_cubes()
@@ -59,10 +59,11 @@ std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& sc
     return rows;
 }
 
-/// "cdt/maria/tet80", with "/persistent" behind it.
+/// "cdt/maria/tet80", with "/persistent" or the kind of rays that it is given behind it.
 std::string expected_name(const RowKey& key)
 {
-    return name_of(key.kernel) + (key.kernel.schedule == Schedule::tiles ? "" : "/persistent");
+    std::string name = name_of(key.kernel) + (key.kernel.schedule == Schedule::tiles ? "" : "/persistent");
+    return key.rays == RayKind::primary ? name : name.append("/").append(name_of(key.rays));
 }
 
 /// What a device shows here, in the form of tests/expected/.
@@ -122,7 +123,7 @@ protected:
     /// Returns the text of the file to write where there is none.
     static std::string check_device(Backend& backend, std::size_t device)
     {
-        const Options options = small_run(backend.name());
+        const Options options = small_run(backend.name(), "primary,shadow,diffuse,random", "cdt,bvh");
         SceneWork scene(small_cubes(), options);
         const json found = status_of_device(verified_rows(rows_on(backend, device, options), scene, options));
         const std::string name = backend.devices()[device].implementation + ".json";
@@ -155,7 +156,7 @@ TEST_P(conformance, of_each_device_is_what_is_expected_of_its_implementation)
 TEST_P(conformance, of_lost_rays_is_that_of_all_others)
 {
     Backend& backend = backend_named(GetParam());
-    const Options options = small_run(backend.name());
+    const Options options = small_run(backend.name(), "primary", "cdt");
     SceneWork scene(damaged_cubes(), options);
     std::size_t compared = 0;
     for (std::size_t device = 0; device < backend.devices().size(); device++) {

@@ -197,3 +197,28 @@ TEST(rows, google_benchmarks_filter_negates_with_a_minus)
     EXPECT_FALSE(benchmark_filter_keeps("-maria", "cdt/maria/api:openmp"));
     EXPECT_THROW(static_cast<void>(benchmark_filter_keeps("(", "x")), Error);
 }
+
+TEST(rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays)
+{
+    OldHost old;
+    const auto rows = select_rows(parse_options({"bench", "--method", "all", "--layout", "tet80", "--rays",
+                                                 "primary,ao,diffuse", "--ray-order", "tiles,shuffled"}),
+                                  {"s"}, {&old});
+    ASSERT_EQ(rows.size(), 5u + 4u) << "five methods trace primary rays, maria alone is given others";
+    EXPECT_EQ(row_name(rows[5]), "cdt/maria/tet80/s/ao/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[6]), "cdt/maria/tet80/s/ao/math:exact/rays:shuffled/api:old");
+    EXPECT_EQ(kernel_title(rows[6]), "cdt maria tet80, ao shuffled");
+    EXPECT_EQ(rows[6].kernel.task, Task::rays);
+    EXPECT_EQ(rows[0].kernel.task, Task::trace);
+}
+
+TEST(rows, bvhs_of_ours_have_math_modes_and_schedules_and_embrees_do_not)
+{
+    const auto bvhs = names({"bench", "--structure", "bvh", "--math", "exact,fast"}, {"s"});
+    EXPECT_EQ(bvhs, (std::vector<std::string>{"bvh/single/bvh2/s/primary/math:exact/api:openmp",
+                                              "bvh/single/cwbvh/s/primary/math:exact/api:openmp",
+                                              "bvh/single/bvh2/s/primary/math:fast/api:openmp",
+                                              "bvh/single/cwbvh/s/primary/math:fast/api:openmp",
+                                              "bvh/single/embree/s/primary/math:fast/api:embree",
+                                              "bvh/packet16/embree/s/primary/math:fast/api:embree"}));
+}

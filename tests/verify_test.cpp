@@ -2,7 +2,9 @@
 
 #include "bench/conformity.h"
 #include "bench/difference_pictures.h"
+#include "bench/ray_store.h"
 #include "scenes/procedural.h"
+#include "tests/temporary_folder.h"
 
 #include <cmath>
 #include <cstring>
@@ -21,6 +23,7 @@ public:
     DamagedSession(std::unique_ptr<Session> inner, Damage damage) : inner_(std::move(inner)), damage_(std::move(damage))
     {
     }
+    void set_rays(std::span<const Row> rows) override { inner_->set_rays(rows); }
     void launch(const TraceJob& job) override { inner_->launch(job); }
     [[nodiscard]] double wait() override { return inner_->wait(); }
     void read_output(std::span<std::uint32_t> words) override
@@ -51,6 +54,28 @@ protected:
         EXPECT_NE(row.session, nullptr) << reason_of(row);
         row.key.backend = backend;
         row.session = std::make_unique<DamagedSession>(std::move(row.session), damage);
+        verify_rows({&row}, scene_, options_);
+        return row;
+    }
+
+    /// A row of openmp's on rays that are given, whose answers are damaged, called `backend`.
+    RowRun damaged_row(RayKind kind, Layout layout, const Damage& damage, const std::string& backend)
+    {
+        RowKey key{"cubes", "openmp", {}, kind, TetOrder::hilbert};
+        key.kernel.task = Task::rays;
+        key.kernel.layout = layout;
+        key.kernel.structure = structure_of(layout);
+        if (key.kernel.structure == Structure::bvh) key.kernel.method = Method::single;
+        RowRun row = open_row(key, scene_, options_);
+        EXPECT_NE(row.session, nullptr) << reason_of(row);
+        row.key.backend = backend;
+        row.session = std::make_unique<DamagedSession>(std::move(row.session), damage);
+        return row;
+    }
+
+    RowRun verified_given(RayKind kind, Layout layout, const Damage& damage, const std::string& backend = "other")
+    {
+        RowRun row = damaged_row(kind, layout, damage, backend);
         verify_rows({&row}, scene_, options_);
         return row;
     }
@@ -221,11 +246,11 @@ TEST_F(verify, images_are_shown_with_openmps_hits_beside_them)
     std::size_t seen = 0;
     verify_rows({&row}, scene_, options_, [&](const SeenImage& image) {
         seen++;
-        EXPECT_EQ(compare_hits(image.hits, image.reference, 0).inexact, 0u);
-        const Pixmap picture = draw_differences(image.hits, image.reference, 0, scene_, image.view);
+        EXPECT_EQ(compare_hits(image.hits, image.reference, {}).inexact, 0u);
+        const Pixmap picture = draw_differences(image.hits, image.reference, {}, scene_, image.view);
         std::vector<Hit> changed(image.hits.begin(), image.hits.end());
         changed[7].steps += 1;
-        const Pixmap marked = draw_differences(changed, image.reference, 0, scene_, image.view);
+        const Pixmap marked = draw_differences(changed, image.reference, {}, scene_, image.view);
         std::size_t different = 0;
         for (std::size_t i = 0; i < marked.pixels.size(); i++)
             different += marked.pixels[i] == picture.pixels[i] ? 0u : 1u;
@@ -246,4 +271,74 @@ TEST_F(verify, what_a_device_throws_ends_as_the_rows_outcome)
     EXPECT_THROW(
         static_cast<void>(verified("openmp", [](std::span<Hit>) { throw Error(ErrorKind::interrupted, "^C"); })),
         Error);
+}
+
+TEST_F(verify, given_rays_are_judged_and_compared_where_they_are_given)
+{
+    for (const RayKind kind : {RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random})
+        for (const Layout layout : {Layout::tet80, Layout::bvh2}) {
+            const RowRun row = verified_given(kind, layout, [](std::span<Hit>) {});
+            ASSERT_NE(traced(row), nullptr) << row_name(row.key) << ": " << reason_of(row);
+            EXPECT_EQ(status_of(row), Status::ok) << row_name(row.key) << ": " << reason_of(row);
+            EXPECT_TRUE(traced(row)->compared);
+            EXPECT_GT(traced(row)->totals.rays, 100u) << row_name(row.key);
+            EXPECT_EQ(traced(row)->verdicts.rays, traced(row)->totals.rays);
+        }
+}
+
+TEST_F(verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
+{
+    const RowRun row =
+        verified_given(RayKind::diffuse, Layout::tet80, [](std::span<Hit> hits) { hits[17].steps += 1; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    ASSERT_TRUE(traced(row)->first_different.has_value());
+    const std::uint32_t pixel = scene_.given_rays().set(scene_, RayKind::diffuse, RayOrder::tiles, 0).rays[17].pixel;
+    EXPECT_EQ(traced(row)->first_different->x, pixel % 40);
+    EXPECT_EQ(traced(row)->first_different->y, pixel / 40);
+}
+
+TEST_F(verify, a_given_ray_with_a_wrong_face_is_flawed)
+{
+    for (const RayKind kind : {RayKind::shadow, RayKind::diffuse}) {
+        const RowRun row = verified_given(
+            kind, Layout::tet80,
+            [](std::span<Hit> hits) {
+                damage_first_hit(hits, [](Hit& hit) { hit = {NO_HIT, hit.tet, 0, 0, 0, hit.steps}; });
+            },
+            "openmp");
+        EXPECT_EQ(status_of(row), Status::flawed) << name_of(kind);
+        EXPECT_GE(traced(row)->verdicts.wrong, 1u) << name_of(kind);
+    }
+}
+
+TEST_F(verify, visits_are_counted_on_openmps_bvhs_alone)
+{
+    const RowRun counted = verified_given(
+        RayKind::diffuse, Layout::cwbvh, [](std::span<Hit>) {}, "openmp");
+    EXPECT_EQ(traced(counted)->visits.rays, traced(counted)->totals.rays);
+    EXPECT_GE(traced(counted)->visits.nodes, traced(counted)->visits.rays) << "each ray enters the root";
+    EXPECT_GE(traced(counted)->visits.triangles, traced(counted)->totals.hits);
+    const RowRun of_tets = verified_given(
+        RayKind::diffuse, Layout::tet80, [](std::span<Hit>) {}, "openmp");
+    EXPECT_EQ(traced(of_tets)->visits.rays, 0u);
+}
+
+TEST_F(verify, a_counting_build_that_answers_otherwise_is_an_error)
+{
+    const RowRun row = verified_given(
+        RayKind::diffuse, Layout::bvh2,
+        [](std::span<Hit> hits) { damage_first_hit(hits, [](Hit& hit) { hit.u += 0.25f; }); }, "openmp");
+    EXPECT_EQ(status_of(row), Status::error) << reason_of(row);
+    EXPECT_NE(reason_of(row).find("visits"), std::string::npos) << reason_of(row);
+}
+
+TEST_F(verify, pictures_of_given_rays_show_them_at_their_pixels)
+{
+    const test::TemporaryFolder folder;
+    DifferencePictures pictures(folder.path());
+    RowRun row = damaged_row(
+        RayKind::diffuse, Layout::tet80, [](std::span<Hit> hits) { hits[3].steps += 1; }, "other");
+    verify_rows({&row}, scene_, options_, [&](const SeenImage& image) { pictures.see(image); });
+    ASSERT_EQ(pictures.files().size(), 2u) << "one a view";
+    EXPECT_GT(std::filesystem::file_size(pictures.files().front()), 100u);
 }
