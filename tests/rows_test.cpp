@@ -120,11 +120,13 @@ TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
     EXPECT_EQ(row_name(rows[2]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
-TEST(rows, the_default_is_maria_on_both_layouts_beside_embree)
+TEST(rows, the_default_is_maria_on_both_layouts_beside_bvhs_and_embree)
 {
     EXPECT_EQ(names({"bench"}, {"bunny"}),
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
                                         "cdt/maria/tet96/bunny/primary/math:exact/api:openmp",
+                                        "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
+                                        "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",
                                         "bvh/packet16/embree/bunny/primary/math:fast/api:embree"}));
 }
@@ -168,7 +170,7 @@ TEST(rows, values_given_twice_give_a_row_once)
 TEST(rows, the_filter_is_a_search_in_names)
 {
     EXPECT_EQ(names({"bench", "--filter", "tet80|packet"}, {"a"}).size(), 2u);
-    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 2u);
+    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 4u);
 }
 
 TEST(rows, an_empty_selection_is_an_error_that_says_so)
@@ -178,7 +180,7 @@ TEST(rows, an_empty_selection_is_an_error_that_says_so)
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("matches none of the 4 rows"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("matches none of the 6 rows"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("cdt/maria/tet96/a"), std::string::npos) << error.what();
     }
     try {

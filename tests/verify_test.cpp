@@ -334,7 +334,7 @@ TEST_F(verify, a_counting_build_that_answers_otherwise_is_an_error)
 
 TEST_F(verify, pictures_of_given_rays_show_them_at_their_pixels)
 {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     DifferencePictures pictures(folder.path());
     RowRun row = damaged_row(
         RayKind::diffuse, Layout::tet80, [](std::span<Hit> hits) { hits[3].steps += 1; }, "other");
