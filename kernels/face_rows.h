@@ -1,5 +1,5 @@
-// Faces of a tet that is read by rows, two {link, triangle} a row. The layout, which includes this, brings FACE_ROW(tet,
-// face), the number of a face's row.
+// Faces of a tet that is read by rows, two {link, triangle} a row. The layout, which includes this, brings
+// FACE_ROW(tet, face), the number of a face's row.
 KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
 {
     uint4 row = FETCH(scene, tet_rows, FACE_ROW(tet, face));

@@ -40,8 +40,8 @@
 #define FREE_FACE 0xFFFFFFFFu // a face that belongs to no input triangle
 #define NO_EXIT 4u            // instead of a face: the method found none to leave the tet by
 
-// Bindings: those of the arrays are 0 to 4; then the output, the counter of persistent threads, and the parts of the array
-// of tets beyond its first, where one buffer cannot hold it.
+// Bindings: those of the arrays are 0 to 4; then the output, the counter of persistent threads, and the parts of the
+// array of tets beyond its first, where one buffer cannot hold it.
 #define SCENE_ARRAYS 5u
 #define OUTPUT_BINDING 5u
 #define COUNTER_BINDING 6u

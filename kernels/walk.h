@@ -76,8 +76,8 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     return walk(scene, params, ray, tet, face, real(NO_END));
 }
 
-// A ray that is given starts on the face that its link names, on the side of that tet: a method never leaves by the face
-// that it entered by, so that the surface a ray starts on is not hit again.
+// A ray that is given starts on the face that its link names, on the side of that tet: a method never leaves by the
+// face that it entered by, so that the surface a ray starts on is not hit again.
 KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
 {
     Ray ray = given_ray(direction, origin);

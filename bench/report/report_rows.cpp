@@ -78,8 +78,8 @@ std::string kernel_of(const ResultValue& row)
     const std::string layout = row.at("layout").line();
     if (layout == "embree") return structure + " " + method;
     const std::string math = row.at("math").line();
-    return fmt::format("{} {}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout, math == "exact" ? "" : " " + math,
-                       unusual_parts(row.at("name").line()));
+    return fmt::format("{} {}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,
+                       math == "exact" ? "" : " " + math, unusual_parts(row.at("name").line()));
 }
 
 std::string api_of(const ResultValue& row)
