@@ -103,6 +103,12 @@ const VerbHelp verb_help[] = {
      "table5: the exit search alone, without the walk around it: random tets, random rays that enter each by a known "
      "face, on one thread of the CPU and on every device. Every face that is found is compared with exact arithmetic. "
      "It needs no scene; --searches takes fewer. A row takes about 80 MB for its rays.\n\n"
+     "table6: the CDT against BVHs: maria beside bvh2, which is the paper's kind of BVH, and cwbvh on every device, "
+     "and "
+     "beside Embree on the host. Frames a second, build time and memory; the ratio of their times, paired view by "
+     "view; "
+     "and after how many rays a slower build is paid. Of --method and --layout, what is a BVH's selects among the BVHs "
+     "alone, and what is the CDT's among its own.\n\n"
      "figure6: time and tets traversed, a point a view, their correlation, and pictures of the two extreme views.\n\n"
      "The views are those of the camera set 'flight'; --views takes a sample of them, and numbers then have 95 % "
      "intervals. Default scenes: banana, bunny and armadillo, as far as they can be had. With --out FILE, each "
@@ -110,6 +116,7 @@ const VerbHelp verb_help[] = {
      "pictures lie beside FILE. CSV has a row for each number, text, verdict and point of a figure; Markdown leaves "
      "the points out. Exits with 1 where a row differs from openmp's.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
+     "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::compare, "compare two results of bench, row by row",

@@ -12,12 +12,12 @@ namespace tetrace {
 
 namespace {
 
-/// Calls visit(row index) for each of the run's rows with a rate.
+/// Calls visit(row index) for each of the cdt's rows with a rate.
 template <class Visit>
 void for_rated(const SceneRun& run, const Visit& visit)
 {
     for (std::size_t i = 0; i < run.rows.size(); ++i)
-        if (!view_seconds(run, i).empty()) visit(i);
+        if (is_cdt(run.rows[i]) && !view_seconds(run, i).empty()) visit(i);
 }
 
 std::string source()
@@ -183,7 +183,7 @@ PaperTable figure6_table(const SceneRuns& runs)
     for (const SceneRun* run : runs) {
         for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (const RowRun& row = run->rows[i]; view_seconds(*run, i).empty())
+            if (const RowRun& row = run->rows[i]; is_cdt(row) && view_seconds(*run, i).empty())
                 table.notes.push_back(
                     fmt::format("{} has no rate: {}: {}.", series_name(row), name_of(status_of(row)), reason_of(row)));
     }

@@ -24,6 +24,21 @@ bool bounds_anything(std::size_t views, Sampling sampling)
     return views >= least_views && sampling != Sampling::chosen;
 }
 
+/// How many of n numbers are left out on each side of their median's interval: the most that a fair coin, thrown n
+/// times, gives heads at most in no more than the tail of all cases.
+std::size_t left_out_of_median(std::size_t n)
+{
+    const auto count = static_cast<double>(n);
+    double probability = 0;
+    for (std::size_t heads = 0; heads < n; ++heads) {
+        const auto k = static_cast<double>(heads);
+        probability +=
+            std::exp(std::lgamma(count + 1) - std::lgamma(k + 1) - std::lgamma(count - k + 1) - count * std::log(2.0));
+        if (probability > tail) return std::max<std::size_t>(heads, 1) - 1;
+    }
+    return 0;
+}
+
 /// statistic: of the views with these indices.
 Estimate bootstrap(std::size_t views, Sampling sampling,
                    const std::function<double(const std::vector<std::size_t>&)>& statistic)
@@ -102,6 +117,19 @@ Estimate mean_count(const std::vector<double>& counts, Sampling sampling)
     if (sampling == Sampling::whole) return {sum / views, {}, {}, true};
     if (sum == 0) return {0, 0, {}, false};
     return bootstrap(counts.size(), sampling, [&](const auto& indices) { return sum_of(counts, indices) / views; });
+}
+
+Estimate median_of_views(const std::vector<double>& values, Sampling sampling)
+{
+    if (values.empty()) throw Error(ErrorKind::internal, "the median of numbers of no views");
+    Estimate estimate{quantile(values, 0.5), {}, {}, false};
+    if (!bounds_anything(values.size(), sampling)) return estimate;
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t outside = left_out_of_median(sorted.size());
+    estimate.low = sorted[outside];
+    estimate.high = sorted[sorted.size() - 1 - outside];
+    return estimate;
 }
 
 Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator, Sampling sampling)

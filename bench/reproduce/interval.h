@@ -46,6 +46,12 @@ inline constexpr std::size_t least_views = 10;
 /// may hold any number. Throws Error{internal} for no counts.
 [[nodiscard]] Estimate mean_count(const std::vector<double>& counts, Sampling sampling);
 
+/// The median of numbers, one a view, as an estimate of the median over the whole set: its bounds are the order
+/// statistics that the sign test leaves, whatever the distribution; at 10 views the second and the ninth.
+/// Throws Error{internal} for no numbers.
+/// Source: Conover, "Practical Nonparametric Statistics" (1971), confidence intervals for a quantile.
+[[nodiscard]] Estimate median_of_views(const std::vector<double>& values, Sampling sampling = Sampling::even);
+
 /// The sum of one list over that of another, pairs belonging to one view each: percentile bootstrap over the views.
 /// Throws Error{internal} for no pairs, lists of different lengths, or a denominator that is not positive.
 [[nodiscard]] Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator,

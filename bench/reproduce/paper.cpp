@@ -17,6 +17,16 @@ constexpr NearestBuild builds[] = {
     {"banana", "pq5"},
 };
 
+constexpr FrameRates table6[] = {
+    {"armadillo", 82, 160, 130, 260}, // GRAPP 2017, Table 6
+};
+
+constexpr PairOutcome who_is_faster[] = {
+    {"banana", true},
+    {"bunny", true},
+    {"armadillo", false},
+};
+
 } // namespace
 
 std::optional<SceneCounts> counts_of(std::string_view scene)
@@ -33,6 +43,19 @@ std::optional<std::string_view> nearest_switches(std::string_view scene)
         std::find_if(std::begin(builds), std::end(builds), [&](const NearestBuild& row) { return row.scene == scene; });
     if (found == std::end(builds)) return std::nullopt;
     return found->switches;
+}
+
+std::optional<FrameRates> frames_of(std::string_view scene)
+{
+    const auto* const found =
+        std::find_if(std::begin(table6), std::end(table6), [&](const FrameRates& row) { return row.scene == scene; });
+    if (found == std::end(table6)) return std::nullopt;
+    return *found;
+}
+
+std::span<const PairOutcome> outcomes()
+{
+    return who_is_faster;
 }
 
 bool has_scene(std::string_view scene)

@@ -39,6 +39,22 @@ struct NearestBuild {
 inline constexpr double least_wrong_of_older = 0.004, most_wrong_of_older = 457, wrong_of_maria = 0;
 inline constexpr std::uint32_t image_pixels = 1024u * 1024u;
 
+/// Table 6, on the paper's GPU: frames of 1024 x 1024 a second over the views, the least and the most.
+struct FrameRates {
+    std::string_view scene;
+    double least_cdt = 0, most_cdt = 0;
+    double least_bvh = 0, most_bvh = 0;
+};
+/// Empty where they are not known here.
+[[nodiscard]] std::optional<FrameRates> frames_of(std::string_view scene);
+
+/// Who is faster there, the CDT or the BVH; a row a scene of the paper's.
+struct PairOutcome {
+    std::string_view scene;
+    bool cdt_is_faster = false;
+};
+[[nodiscard]] std::span<const PairOutcome> outcomes();
+
 /// Figure 6: mean tets that a ray traverses, over all views: the least and the most.
 inline constexpr double least_tets_a_ray = 9.2, most_tets_a_ray = 21.7;
 

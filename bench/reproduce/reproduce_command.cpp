@@ -12,6 +12,7 @@
 #include "bench/reproduce/table3.h"
 #include "bench/reproduce/table4.h"
 #include "bench/reproduce/table5.h"
+#include "bench/reproduce/table6.h"
 #include "bench/reproduce/yardsticks.h"
 #include "bench/row_json.h"
 
@@ -57,13 +58,33 @@ bool wants_scenes(const Options& options)
                        [](PaperTarget target) { return target != PaperTarget::table5; });
 }
 
+bool is_method_of(Structure structure, Method method)
+{
+    const auto& kernels = all_kernels();
+    return std::any_of(kernels.begin(), kernels.end(), [&](const KernelId& kernel) {
+        return kernel.structure == structure && kernel.method == method;
+    });
+}
+
+/// All methods of the paper where none of the CDT is named. Throws Error{usage} where table6 lacks its own.
+void add_methods(Options& options)
+{
+    const auto& methods = options.methods;
+    const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
+    const bool with_rivals = wants(options, PaperTarget::table6);
+    const bool names_any = std::any_of(methods.begin(), methods.end(), is_of_cdt);
+    if (with_rivals && names_any && std::find(methods.begin(), methods.end(), Method::maria) == methods.end())
+        throw Error(ErrorKind::usage, "table6 compares maria with BVHs: add it to --method");
+    if (names_any || (!methods.empty() && !with_rivals)) return;
+    for (const KernelId& kernel : all_kernels())
+        if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
+}
+
 /// All methods of the paper, and of its scenes those that can be had here, else the embedded one, where none are named.
 Options with_defaults(Options options, std::vector<std::string>& missing)
 {
     if (options.targets.empty()) options.targets = all_targets();
-    if (options.methods.empty())
-        for (const KernelId& kernel : all_kernels())
-            if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
+    add_methods(options);
     if (!options.scenes.empty() || !wants_scenes(options)) return options;
     for (const char* const name : {"banana", "bunny", "armadillo"}) {
         const std::string reason = why_not_available(name);
@@ -94,23 +115,22 @@ SceneBuild papers(SceneBuild build)
     build.build = papers_build;
     build.label += "-paper";
     build.robustness = false;
+    build.methods = true;
+    build.rivals = false;
     return build;
 }
 
 /// The builds that the tables asked for need.
 std::vector<SceneBuild> scene_builds(const Options& options)
 {
-    const bool table3 = wants(options, PaperTarget::table3);
+    const bool table3 = wants(options, PaperTarget::table3), table6 = wants(options, PaperTarget::table6);
+    const bool table4 = wants(options, PaperTarget::table4), figure6 = wants(options, PaperTarget::figure6);
     std::vector<SceneBuild> builds;
     if (!wants_scenes(options)) return builds;
     for (const SceneRequest& request : scene_requests(options)) {
         const std::string label = scene_label(request.name);
-        const SceneBuild ours = {request,
-                                 label,
-                                 our_build,
-                                 label,
-                                 wants(options, PaperTarget::table4),
-                                 table3 || wants(options, PaperTarget::figure6)};
+        const SceneBuild ours = {
+            request, label, our_build, label, table4, table3 || table6 || figure6, table3 || table4 || figure6, table6};
         builds.push_back(ours);
         if (table3 && has_papers_build(request.name)) builds.push_back(papers(ours));
     }
@@ -154,7 +174,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                                   {"resolution", how.resolution},
                                   {"robustness", build.robustness},
                                   {"timing", build.timing}});
-        for (const RowKey& key : select_rows(options, {build.label}))
+        for (const RowKey& key : rows_of_build(build, options))
             head["rows"].push_back(row_name(key));
     }
     if (wants(options, PaperTarget::table5)) {
@@ -199,14 +219,15 @@ void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds
         });
     };
     for (const json& entry : journal.entries())
-        if (!entry.contains("batch") && !entry.contains("yardstick") && !is_of_build(entry))
-            journal.reject("the journal has a line that is of no view of these scenes, no batch and no yardstick");
+        if (!entry.contains("batch") && !entry.contains("yardstick") && !entry.contains("setup") && !is_of_build(entry))
+            journal.reject(
+                "the journal has a line that is of no view of these scenes, no batch, no build and no yardstick");
 }
 
 /// What is kept beside the result; null where that has no file.
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
-        : journal(open_journal(options, builds)), yardsticks(journal.get()),
+        : journal(open_journal(options, builds)), yardsticks(journal.get()), costs(journal.get()),
           pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
     {
         if (journal != nullptr) check_entries(*journal, builds);
@@ -214,6 +235,7 @@ struct Keeping {
 
     std::unique_ptr<Journal> journal;
     Yardsticks yardsticks;
+    SetupCosts costs;
     std::unique_ptr<ResultPictures> pictures;
 };
 
@@ -229,6 +251,12 @@ void make_tables(Reproduction& all, const Options& options)
         all.figures.push_back(table4_views(ours));
     }
     if (all.searches) all.tables.push_back(table5(*all.searches, all.devices));
+    if (wants(options, PaperTarget::table6)) {
+        all.tables.push_back(table6(ours));
+        all.tables.push_back(table6_pairs(ours));
+        for (PaperFigure& figure : table6_figures(ours))
+            all.figures.push_back(std::move(figure));
+    }
     if (wants(options, PaperTarget::figure6)) {
         all.tables.push_back(figure6_table(ours));
         for (PaperFigure& figure : figure6(ours))
@@ -303,6 +331,7 @@ int rows_exit_code(const Reproduction& all)
 void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping)
 {
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
+    if (build.rivals) run.costs = keeping.costs.of(run.rows);
     run_views(run, options, keeping.journal.get(), all.progress);
     const bool is_ours = build.build == our_build;
     if (keeping.pictures != nullptr && is_ours)

@@ -47,6 +47,11 @@ bool is_whole(const RowRun& row)
     return traced(row) != nullptr && traced(row)->totals.rays > 0;
 }
 
+bool is_cdt(const RowRun& row)
+{
+    return row.key.kernel.structure == Structure::cdt;
+}
+
 void RunProgress::show(const std::string& stage) const
 {
     const auto fraction = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(all, 1));

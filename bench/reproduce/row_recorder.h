@@ -21,6 +21,9 @@ struct RecordedRows {
 /// Whether the row came through all parts with an answer.
 [[nodiscard]] bool is_whole(const RowRun& row);
 
+/// Whether the row is one of the CDT, not of a BVH beside it.
+[[nodiscard]] bool is_cdt(const RowRun& row);
+
 /// How far a run is, for the progress line.
 struct RunProgress {
     std::size_t all = 0;  ///< parts of all that is run

@@ -60,7 +60,7 @@ private:
         const std::uint32_t cap = job_of(row, view).max_steps;
         record.lost_at_cap = static_cast<std::uint64_t>(std::count_if(
             hits.begin(), hits.end(), [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
-        if (run_->flat == nullptr) return record;
+        if (run_->flat == nullptr || !is_cdt(row)) return record;
         record.flawed = run_->flat->walks(row, view, record.verdict.verdicts.flawed);
         record.any = run_->flat->walks_anywhere(row, view);
         return record;
@@ -77,7 +77,33 @@ private:
     std::vector<Hit> hits_;
 };
 
+/// The options with what selects among the structure's rows alone.
+Options options_of(Structure structure, Options options)
+{
+    const auto is_other_layout = [&](Layout layout) { return structure_of(layout) != structure; };
+    const auto is_other_method = [&](Method method) {
+        return std::none_of(all_kernels().begin(), all_kernels().end(), [&](const KernelId& kernel) {
+            return kernel.method == method && kernel.structure == structure;
+        });
+    };
+    options.structures = {structure};
+    std::erase_if(options.layouts, is_other_layout);
+    std::erase_if(options.methods, is_other_method);
+    return options;
+}
+
 } // namespace
+
+std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& options)
+{
+    if (!build.rivals) return select_rows(options, {build.label});
+    Options of_cdt = options_of(Structure::cdt, options);
+    if (!build.methods) of_cdt.methods = {Method::maria};
+    auto rows = select_rows(of_cdt, {build.label});
+    for (RowKey& key : select_rows(options_of(Structure::bvh, options), {build.label}))
+        rows.push_back(std::move(key));
+    return rows;
+}
 
 void SceneRun::close()
 {
@@ -101,7 +127,7 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
 {
     SceneRun run;
     run.build = build;
-    const auto keys = select_rows(options, {build.label});
+    const auto keys = rows_of_build(build, options);
     try {
         run.scene = std::make_unique<SceneWork>(load_work(build.request, options, build.label));
         run.sampling = sampling_of(*run.scene, view_count(options.camera_set));

@@ -2,6 +2,7 @@
 
 #include "bench/reproduce/flat_tets.h"
 #include "bench/reproduce/row_recorder.h"
+#include "bench/reproduce/setup_costs.h"
 #include "bench/verify.h"
 
 #include <memory>
@@ -22,6 +23,8 @@ struct SceneBuild {
     std::string label;      ///< what rows call it: the scene, "-paper" behind it for the paper's build
     bool robustness = true; ///< whether to look for flat tets
     bool timing = true;     ///< whether to take samples
+    bool methods = true;    ///< whether to trace all of the cdt's methods asked for, or maria alone
+    bool rivals = false;    ///< whether to trace the BVHs too
 };
 
 /// A scene with its rows, and what came of each view.
@@ -30,6 +33,8 @@ struct SceneRun : RecordedRows {
     std::unique_ptr<SceneWork> scene; ///< null where it could not be loaded
     std::unique_ptr<Verifier> verifier;
     std::unique_ptr<FlatTets> flat; ///< null where nobody asks
+
+    std::vector<std::optional<SetupCost>> costs; ///< row by row; nothing where nobody asks
 
     std::vector<std::string> flawed_pictures, extreme_pictures; ///< names of files beside the result's
     std::vector<std::string> picture_problems;                  ///< why one is missing, a sentence each
@@ -41,6 +46,10 @@ struct SceneRun : RecordedRows {
 
 /// Those of a run that a table is about.
 using SceneRuns = std::vector<const SceneRun*>;
+
+/// The rows of a build. Of the options' methods and layouts, those of a structure select among its rows alone where
+/// BVHs are traced beside the CDT: all of them where none is named. Throws Error{usage} as select_rows() does.
+[[nodiscard]] std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& options);
 
 /// How the scene's views were taken from a camera set of `population` views, for images of the paper's size.
 [[nodiscard]] Sampling sampling_of(const SceneWork& scene, std::size_t population);

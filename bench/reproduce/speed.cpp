@@ -25,21 +25,6 @@ std::size_t find_beside(const RecordedRows& run, const RowRun& other, std::strin
     return none;
 }
 
-/// The interval of views knows nothing of a machine that others use: noisy rows decide nothing.
-void withdraw_if_noisy(Claim& claim, bool noisy)
-{
-    if (!noisy) return;
-    claim.verdict = ClaimVerdict::not_testable;
-    claim.evidence +=
-        fmt::format(" Rows are noisy (spread above {:.0f} %): measure again on a quieter machine.", 100 * noisy_spread);
-}
-
-bool is_noisy(const RowRun& row)
-{
-    const auto figures = figures_of(row);
-    return figures && figures->kernel_s.noisy();
-}
-
 /// One row's time over that of another with the same layout and device.
 struct TimeRatio {
     std::string pair, where; ///< "plane / maria"; "bunny tet80 openmp"
@@ -124,13 +109,14 @@ void for_rows_of(Method method, const RecordedRuns& runs, const IsMeant& is_mean
                 visit(*run, run->rows[i]);
 }
 
-/// Rows that have a rate on a device of that type.
+/// Rows of the cdt that have a rate on a device of that type.
 template <class Visit>
 void for_rated_rows(const RecordedRuns& runs, const std::string& type, const Visit& visit)
 {
     for (const RecordedRows* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (run->rows[i].device.type == type && !view_seconds(*run, i).empty()) visit(*run, i);
+            if (is_cdt(run->rows[i]) && run->rows[i].device.type == type && !view_seconds(*run, i).empty())
+                visit(*run, i);
 }
 
 IsMeant of_type(const std::string& type)
@@ -139,6 +125,20 @@ IsMeant of_type(const std::string& type)
 }
 
 } // namespace
+
+void withdraw_if_noisy(Claim& claim, bool noisy)
+{
+    if (!noisy) return;
+    claim.verdict = ClaimVerdict::not_testable;
+    claim.evidence +=
+        fmt::format(" Rows are noisy (spread above {:.0f} %): measure again on a quieter machine.", 100 * noisy_spread);
+}
+
+bool is_noisy(const RowRun& row)
+{
+    const auto figures = figures_of(row);
+    return figures && figures->kernel_s.noisy();
+}
 
 const std::vector<Method>& older_methods()
 {

@@ -29,6 +29,10 @@ using IsMeant = std::function<bool(const RowRun&)>;
 
 // claim: its id and text.
 
+[[nodiscard]] bool is_noisy(const RowRun& row);
+/// The interval of views knows nothing of a machine that others use: noisy rows decide nothing.
+void withdraw_if_noisy(Claim& claim, bool noisy);
+
 /// "maria is the fastest of the five", for each of maria's rows that is meant: the time of each older method over
 /// maria's in the same views and layout, on the same device. Not testable unless all of them have a rate.
 [[nodiscard]] Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_meant);

@@ -166,7 +166,7 @@ PaperTable table3_rates(const SceneRuns& runs)
                                   paper::least_cpu_msteps, paper::most_cpu_msteps, paper::rest_is_there)}};
     for (const SceneRun* run : runs)
         for (const RowRun& row : run->rows)
-            table.rows.push_back(rate_cells(*run, row));
+            if (is_cdt(row)) table.rows.push_back(rate_cells(*run, row));
     return table;
 }
 

@@ -238,8 +238,8 @@ std::vector<MethodRow> method_rows(const SceneRuns& runs)
             for (std::size_t i = 0; i < run->rows.size(); ++i) {
                 const RowRun& row = run->rows[i];
                 const Method method = row.key.kernel.method;
-                const bool usable =
-                    is_whole(row) && traced(row)->different == 0 && (row.key.backend == "openmp") == openmp;
+                const bool usable = is_cdt(row) && is_whole(row) && traced(row)->different == 0 &&
+                                    (row.key.backend == "openmp") == openmp;
                 if (!usable || std::find(seen.begin(), seen.end(), method) != seen.end()) continue;
                 seen.push_back(method);
                 rows.push_back({run, i});
@@ -259,7 +259,7 @@ PaperTable table4(const SceneRuns& runs, std::size_t population)
                      notes_of(runs, population)};
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            table.rows.push_back(cells_of(*run, i));
+            if (is_cdt(run->rows[i])) table.rows.push_back(cells_of(*run, i));
     const auto rows = method_rows(runs);
     table.claims.push_back(count_claim(rows, Method::maria, population, false));
     for (const Method method : older_methods())

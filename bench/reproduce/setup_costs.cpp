@@ -1,0 +1,70 @@
+#include "bench/reproduce/setup_costs.h"
+
+#include <cmath>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* cost_key = "setup";
+
+json cost_entry(const std::string& row, const SetupCost& cost)
+{
+    return {{cost_key, row}, {"build_s", cost.build_s}, {"pack_s", cost.pack_s}, {"bytes", cost.bytes}};
+}
+
+bool is_duration(const json& entry, const char* key)
+{
+    return entry.contains(key) && entry[key].is_number() && std::isfinite(entry[key].get<double>()) && entry[key] >= 0;
+}
+
+bool is_whole_cost(const json& entry)
+{
+    return entry[cost_key].is_string() && is_duration(entry, "build_s") && is_duration(entry, "pack_s") &&
+           entry.contains("bytes") && entry["bytes"].is_number_unsigned();
+}
+
+} // namespace
+
+std::optional<SetupCost> setup_cost(const RowRun& row)
+{
+    if (row.session == nullptr) return std::nullopt;
+    SetupCost cost;
+    cost.bytes = row.session->bytes();
+    if (row.packed == nullptr) {
+        cost.build_s = row.session->setup_times().compile_s;
+        return cost;
+    }
+    cost.build_s = row.packed->bvh_build_s.value_or(row.scene->loaded().scene.build.build_s);
+    cost.pack_s = row.packed->pack_s;
+    return cost;
+}
+
+SetupCosts::SetupCosts(Journal* journal) : journal_(journal)
+{
+    if (journal == nullptr) return;
+    for (const json& entry : journal->entries()) {
+        if (!entry.contains(cost_key)) continue;
+        if (!is_whole_cost(entry)) journal->reject("a build time in the journal is damaged");
+        known_[entry[cost_key]] = {entry["build_s"], entry["pack_s"], entry["bytes"]};
+    }
+}
+
+std::vector<std::optional<SetupCost>> SetupCosts::of(const std::vector<RowRun>& rows)
+{
+    std::vector<std::optional<SetupCost>> costs;
+    for (const RowRun& row : rows) {
+        auto cost = setup_cost(row);
+        if (cost) {
+            const auto [place, is_new] = known_.emplace(row_name(row.key), *cost);
+            if (is_new && journal_ != nullptr) journal_->append(cost_entry(place->first, *cost));
+            cost = place->second;
+        }
+        costs.push_back(cost);
+    }
+    return costs;
+}
+
+} // namespace tetrace
