@@ -13,8 +13,6 @@ using namespace tetrace;
 
 namespace {
 
-const char* const wrong_row = "cdt/maria/tet80/cubes/primary/math:exact/api:";
-
 /// Why a backend cannot be tested here; empty where it can.
 std::string why_not(const std::string& name)
 {
@@ -54,6 +52,9 @@ Ended check(const std::string& program, const std::string& backend)
 struct Mutant {
     const char* name;
     const char* backend;
+    const char* kernel = "cdt/maria/tet80"; ///< the one with the mistake
+    const char* layout = "tet80";
+    const char* right_layout = "tet96"; ///< of another kernel, without it
 };
 std::ostream& operator<<(std::ostream& out, const Mutant& mutant)
 {
@@ -83,17 +84,18 @@ TEST_P(mutants, are_found_and_named_where_the_right_kernel_passes)
     EXPECT_EQ(right.code, 0) << right.out;
     const Ended wrong = check(std::string("tetrace_mutant_") + GetParam().name, backend);
     EXPECT_EQ(wrong.code, 1) << wrong.out;
-    EXPECT_TRUE(contains(wrong.out, wrong_row + backend));
+    EXPECT_TRUE(contains(wrong.out, GetParam().kernel + ("/cubes/primary/math:exact/api:" + backend)));
     EXPECT_TRUE(contains(wrong.out, "rays differ from openmp's, the first at view"));
     EXPECT_TRUE(contains(wrong.out, "wrong: "));
     const auto rows = wrong.json["tetrace"]["rows"];
-    expect_status(rows, backend, "tet80", "wrong");
-    expect_status(rows, backend, "tet96", "ok"); // the mistake is in the other layout's kernel
-    expect_status(rows, "openmp", "tet80", "ok");
+    expect_status(rows, backend, GetParam().layout, "wrong");
+    expect_status(rows, backend, GetParam().right_layout, "ok");
+    expect_status(rows, "openmp", GetParam().layout, "ok");
 }
 
 INSTANTIATE_TEST_SUITE_P(each, mutants,
                          testing::Values(Mutant{"opencl", "opencl"}, Mutant{"vulkan", "vulkan"},
                                          Mutant{"cuda_host_reordered", "cuda-host"},
-                                         Mutant{"cuda_host_fused", "cuda-host"}),
+                                         Mutant{"cuda_host_fused", "cuda-host"},
+                                         Mutant{"cuda_host_bvh2", "cuda-host", "bvh/single/bvh2", "bvh2", "cwbvh"}),
                          [](const auto& test) { return std::string(test.param.name); });
