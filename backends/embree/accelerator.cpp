@@ -77,7 +77,7 @@ Accelerator::~Accelerator()
 
 namespace {
 
-// One query, as both major versions have it: how rays are expected to lie, then the call.
+// What is asked of a query besides its rays, and in which order the two major versions take both.
 #if TETRACE_EMBREE_MAJOR >= 4
 template <class Arguments>
 Arguments with_coherence(Arguments arguments, Coherence coherence)
@@ -85,26 +85,21 @@ Arguments with_coherence(Arguments arguments, Coherence coherence)
     arguments.flags = coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     return arguments;
 }
-RTCIntersectArguments intersect_arguments(Coherence coherence)
+RTCIntersectArguments to_intersect(Coherence coherence)
 {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
     return with_coherence(arguments, coherence);
 }
-RTCOccludedArguments occluded_arguments(Coherence coherence)
+RTCOccludedArguments to_occlude(Coherence coherence)
 {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
     return with_coherence(arguments, coherence);
 }
-#define ASK(function, arguments, coherence, scene, rays)                                                               \
-    auto asked = arguments(coherence);                                                                                 \
-    function(scene, rays, &asked)
-#define ASK16(function, arguments, coherence, valid, scene, rays)                                                      \
-    auto asked = arguments(coherence);                                                                                 \
-    function(valid, scene, rays, &asked)
+#define QUERY(rays, arguments) rays, arguments
 #else
-RTCIntersectContext intersect_arguments(Coherence coherence)
+RTCIntersectContext to_intersect(Coherence coherence)
 {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -112,35 +107,34 @@ RTCIntersectContext intersect_arguments(Coherence coherence)
         coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
-constexpr auto occluded_arguments = intersect_arguments;
-#define ASK(function, arguments, coherence, scene, rays)                                                               \
-    auto asked = arguments(coherence);                                                                                 \
-    function(scene, &asked, rays)
-#define ASK16(function, arguments, coherence, valid, scene, rays)                                                      \
-    auto asked = arguments(coherence);                                                                                 \
-    function(valid, scene, &asked, rays)
+constexpr auto to_occlude = to_intersect;
+#define QUERY(rays, context) context, rays
 #endif
 
 } // namespace
 
 void Accelerator::intersect(RTCRayHit& ray, Coherence coherence) const
 {
-    ASK(rtcIntersect1, intersect_arguments, coherence, scene_, &ray);
+    auto how = to_intersect(coherence);
+    rtcIntersect1(scene_, QUERY(&ray, &how));
 }
 
 void Accelerator::intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const
 {
-    ASK16(rtcIntersect16, intersect_arguments, coherence, valid, scene_, &rays);
+    auto how = to_intersect(coherence);
+    rtcIntersect16(valid, scene_, QUERY(&rays, &how));
 }
 
 void Accelerator::occluded(RTCRay& ray, Coherence coherence) const
 {
-    ASK(rtcOccluded1, occluded_arguments, coherence, scene_, &ray);
+    auto how = to_occlude(coherence);
+    rtcOccluded1(scene_, QUERY(&ray, &how));
 }
 
 void Accelerator::occluded16(const int* valid, RTCRay16& rays, Coherence coherence) const
 {
-    ASK16(rtcOccluded16, occluded_arguments, coherence, valid, scene_, &rays);
+    auto how = to_occlude(coherence);
+    rtcOccluded16(valid, scene_, QUERY(&rays, &how));
 }
 
 const char* version_text()

@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::size_t packet_rays = 16;
 
-Hit nearest_hit(unsigned primitive, float t, float u, float v)
+tetrace::Hit nearest_hit(unsigned primitive, float t, float u, float v)
 {
     if (primitive == RTC_INVALID_GEOMETRY_ID) return {NO_HIT, NO_TET, 0, 0, 0, 0};
     return {primitive, NO_TET, t, u, v, 0};
 }
 
 /// Embree sets the end of a ray that is occluded to -inf.
-Hit any_hit(float end)
+tetrace::Hit any_hit(float end)
 {
     return {end < 0 ? SOME_HIT : NO_HIT, NO_TET, 0, 0, 0, 0};
 }
@@ -30,7 +30,7 @@ struct Rays {
     bool any_hit;
 };
 
-Hit trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number)
+tetrace::Hit trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number)
 {
     const Row& direction = rays.directions[number];
     const Row& origin = rays.origins[number];
@@ -53,7 +53,7 @@ Hit trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t n
     return nearest_hit(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
 }
 
-void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t first, std::span<Hit> hits)
+void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t first, std::span<tetrace::Hit> hits)
 {
     alignas(64) int valid[packet_rays];
     RTCRayHit16 query{};
@@ -87,7 +87,7 @@ void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t
 } // namespace
 
 void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Row> rows,
-                 std::span<Hit> hits, unsigned threads)
+                 std::span<tetrace::Hit> hits, unsigned threads)
 {
     const std::size_t count = hits.size();
     const Rays rays{rows.first(count), rows.subspan(count, count), job.any_hit};
