@@ -122,7 +122,8 @@ TEST(image_record, comes_back_from_json_as_it_was)
     ImageRecord record;
     record.verdict.totals = {100, 50, 40, 10, 0, 500, 300, 200};
     record.verdict.verdicts = {
-        100, 80, 5, 5, 3, 7, 1e-7, WrongRay{4, 1, 2, {7, 8, 0.1f, 0.2f, 0.3f, 9}, 6, 0.7f, "it is"}, {}};
+        100, 76, 5, 5, 4, 3, 7, 1e-7, WrongRay{4, 1, 2, {7, 8, 0.1f, 0.2f, 0.3f, 9}, 6, 0.7f, "it is"}, {}};
+    record.verdict.visits = {100, 2400, 470};
     record.verdict.compared = true;
     record.verdict.different = 1, record.verdict.inexact = 2, record.verdict.largest_ulps = 3;
     record.verdict.first_different = DifferingRay{4, 5, 6, {1, 2, 0.5f, 0.25f, 0.1f, 3}, {2, 2, 0.5f, 0.25f, 0.1f, 3}};
@@ -141,6 +142,9 @@ TEST(image_record, comes_back_from_json_as_it_was)
     EXPECT_EQ(back.verdict.first_different->openmp.face_id, 2u);
     EXPECT_EQ(back.samples_s, record.samples_s);
     EXPECT_EQ(back.verdict.totals.lost_steps, 200u);
+    EXPECT_EQ(back.verdict.verdicts.offset, 4u);
+    EXPECT_EQ(back.verdict.verdicts.lost, 7u);
+    EXPECT_EQ(back.verdict.visits.triangles, 470u);
     EXPECT_EQ(back.any.through_flat, 1u);
 }
 
