@@ -109,6 +109,11 @@ const VerbHelp verb_help[] = {
      "view; "
      "and after how many rays a slower build is paid. Of --method and --layout, what is a BVH's selects among the BVHs "
      "alone, and what is the CDT's among its own.\n\n"
+     "growth: how cost grows with the mesh: banana in several sizes (--sizes), traced as table6 traces its scenes; "
+     "what a "
+     "ray visits, its time, build and memory, and the exponents of power laws of the number of occlusive faces that "
+     "fit "
+     "them. Not in the paper, and made where it is named; it traces every 64th view unless --views is given.\n\n"
      "figure6: time and tets traversed, a point a view, their correlation, and pictures of the two extreme views.\n\n"
      "The views are those of the camera set 'flight'; --views takes a sample of them, and numbers then have 95 % "
      "intervals. Default scenes: banana, bunny and armadillo, as far as they can be had. With --out FILE, each "
@@ -118,6 +123,7 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
+     "  tetrace reproduce growth --sizes 1500,25000,400000,1000000 --backend openmp,embree\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::compare, "compare two results of bench, row by row",
      "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "

@@ -122,12 +122,20 @@ void add_target(Options& options, const std::string& text)
 std::vector<OptionRow> reproduce_options()
 {
     return {
-        {"Tables", "TABLE", "LIST", "What of the paper to make anew: " + target_names() + ". Default: all.",
+        {"Tables", "TABLE", "LIST",
+         "What of the paper to make anew: " + target_names() + ". Default: all but growth, which is not the paper's.",
          bit(Verb::reproduce), true, add_target},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: random tets, and the rays that stab each, a multiple of 8. Default: 10000x16384, as "
          "the paper has it.",
          bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.searches = parse_searches(v); }},
+        {"Tables", "--sizes", "N",
+         "Sizes of growth: triangles of banana, or cubes along an axis where --scene is cubes. Default: 1500, 6000, "
+         "25000, 100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
+         bit(Verb::reproduce), true,
+         [](Options& o, const std::string& v) {
+             o.sizes.push_back(static_cast<std::uint32_t>(parse_count("--sizes", v, 2, most_banana)));
+         }},
     };
 }
 
@@ -135,7 +143,8 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
-         "A name of the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL) or a .tet file. "
+         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana of about N triangles), a mesh file "
+         "(PLY, OBJ, OFF, STL) or a .tet file. "
          "May be repeated; several with commas between. Default: bunny and armadillo, or the embedded scenes where "
          "those cannot be had.",
          building, true, [](Options& o, const std::string& v) { o.scenes.push_back(v); }},

@@ -219,6 +219,7 @@ std::string_view name_of(PaperTarget target)
     case PaperTarget::table4: return "table4";
     case PaperTarget::table5: return "table5";
     case PaperTarget::table6: return "table6";
+    case PaperTarget::growth: return "growth";
     case PaperTarget::figure6: return "figure6";
     }
     throw Error(ErrorKind::internal, "name_of(PaperTarget): no such target");
@@ -226,8 +227,8 @@ std::string_view name_of(PaperTarget target)
 
 const std::vector<PaperTarget>& all_targets()
 {
-    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4, PaperTarget::table5,
-                                                     PaperTarget::table6, PaperTarget::figure6};
+    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4,  PaperTarget::table5,
+                                                     PaperTarget::table6, PaperTarget::figure6, PaperTarget::growth};
     return targets;
 }
 

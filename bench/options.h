@@ -23,7 +23,8 @@ enum class Format { table, json, csv, markdown };
 enum class Picture { normals, steps };
 
 /// A table or a figure of the paper that `reproduce` makes anew.
-enum class PaperTarget { table3, table4, table5, table6, figure6 };
+/// Growth, how cost grows with the mesh, is not in the paper.
+enum class PaperTarget { table3, table4, table5, table6, figure6, growth };
 
 /// How many exit searches Table 5 is made from. Default: the paper's.
 struct SearchSize {
@@ -72,8 +73,9 @@ struct Options {
     unsigned samples = 10;
     double budget_s = 120; ///< for the timed part
 
-    std::vector<PaperTarget> targets; ///< of `reproduce`; empty: all
+    std::vector<PaperTarget> targets; ///< of `reproduce`; empty: those of the paper
     SearchSize searches;              ///< of `reproduce`
+    std::vector<std::uint32_t> sizes; ///< of `reproduce growth`; empty: growth_sizes()
     bool resume = false;              ///< of `reproduce`: go on from the journal
 
     std::vector<std::string> required; ///< backends that must have a usable device

@@ -1,16 +1,18 @@
 // A tube along an arc of a circle; its radius tapers towards both ends and closes there with round caps. Only + - * /
-// and square roots of doubles, so the same bits come out everywhere: rings and sides turn by constants, and the arc is
-// the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
+// and square roots of doubles, so the same bits come out everywhere: rings and sides turn by steps whose sine and
+// cosine are power series, and the arc is the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
 #include "scenes/procedural.h"
 
+#include "core/error.h"
+#include "scenes/catalogue.h"
+
 #include <cmath>
+#include <fmt/format.h>
 
 namespace tetrace {
 
 namespace {
 
-constexpr std::uint32_t rings = 125;  ///< between the two tips
-constexpr std::uint32_t sides = 100;  ///< vertices of a ring
 constexpr double arc_end = 0.55;      ///< t at a tip: tan of a quarter of the angle of the arc, 115 degrees
 constexpr double thickness = 0.26;    ///< the tube's radius in its middle; the arc's is 1
 constexpr double taper = 0.4;         ///< share of it that is gone where the caps begin
@@ -22,8 +24,33 @@ struct Turn {
 
     friend Turn operator*(Turn a, Turn b) { return {a.cos * b.cos - a.sin * b.sin, a.cos * b.sin + a.sin * b.cos}; }
 };
-constexpr Turn side_step = {0.9980267284282716, 0.06279051952931337};  ///< 2 pi / sides
-constexpr Turn ring_step = {0.9996891820008162, 0.024930691738072875}; ///< pi / (rings + 1)
+
+/// By an angle of at most 1: the series' next term is below 1e-20.
+Turn turn_by(double angle)
+{
+    const double square = angle * angle;
+    double cos = 1, sin = 1;
+    for (int i = 20; i > 0; i -= 2) {
+        cos = 1 - cos * square / (i * (i - 1));
+        sin = 1 - sin * square / (i * (i + 1));
+    }
+    return {cos, sin * angle};
+}
+
+/// A ring has sides triangles towards each of its two neighbours; there are about five rings to four sides.
+struct Shape {
+    std::uint32_t rings, sides; ///< between the two tips; vertices of a ring
+    Turn ring_step, side_step;
+
+    explicit Shape(std::uint32_t triangles)
+    {
+        constexpr double pi = 3.14159265358979323846;
+        sides = static_cast<std::uint32_t>(std::lround(std::sqrt(triangles / 2.5)));
+        rings = triangles / (2 * sides);
+        ring_step = turn_by(pi / (rings + 1));
+        side_step = turn_by(2 * pi / sides);
+    }
+};
 
 /// The tube's radius at s in [-1, 1] along the arc.
 double radius_at(double s)
@@ -55,13 +82,13 @@ Float3 tube_point(double s, double distance, Turn side)
     return to_float({tidy(outwards.x * reach), tidy(outwards.y * reach), tidy(distance * side.sin)});
 }
 
-std::vector<Float3> make_vertices()
+std::vector<Float3> make_vertices(const Shape& shape)
 {
     std::vector<Float3> vertices;
-    Turn ring = ring_step;
-    for (std::uint32_t i = 0; i < rings; ++i, ring = ring * ring_step) {
+    Turn ring = shape.ring_step;
+    for (std::uint32_t i = 0; i < shape.rings; ++i, ring = ring * shape.ring_step) {
         Turn side;
-        for (std::uint32_t j = 0; j < sides; ++j, side = side * side_step)
+        for (std::uint32_t j = 0; j < shape.sides; ++j, side = side * shape.side_step)
             vertices.push_back(tube_point(ring.cos, radius_at(ring.cos) * ridges_at(side), side));
     }
     vertices.push_back(tube_point(1, 0, {}));
@@ -72,10 +99,15 @@ std::vector<Float3> make_vertices()
 } // namespace
 
 // Rings lie closer towards the tips, where the caps bend most: they are the projection of a half circle on the arc.
-TriangleMesh make_banana()
+TriangleMesh make_banana(std::uint32_t triangles)
 {
+    if (triangles < least_banana || triangles > most_banana)
+        throw Error(ErrorKind::usage, fmt::format("making scene banana: {} triangles; {} to {} are possible", triangles,
+                                                  least_banana, most_banana));
+    const Shape shape(triangles);
+    const std::uint32_t rings = shape.rings, sides = shape.sides;
     TriangleMesh mesh;
-    mesh.vertices = make_vertices();
+    mesh.vertices = make_vertices(shape);
     const std::uint32_t first_tip = rings * sides, last_tip = first_tip + 1;
     for (std::uint32_t j = 0; j < sides; ++j) {
         const std::uint32_t next = (j + 1) % sides;

@@ -1,9 +1,12 @@
 #include "scenes/catalogue.h"
 
+#include "core/error.h"
 #include "scenes/build_scene.h"
 #include "scenes/mesh_files.h"
 
+#include <charconv>
 #include <fmt/format.h>
+#include <string_view>
 
 namespace tetrace {
 
@@ -15,7 +18,7 @@ const std::vector<CatalogueEntry>& catalogue()
          "jittered grid of cubes cut into tets round a blocky ball; needs no TetGen",
          "",
          {}},
-        {"banana", SceneSource::banana, "procedural curved tube, 25,000 triangles", "", {}},
+        {"banana", SceneSource::banana, "procedural curved tube, 25,000 triangles; banana@N has about N", "", {}},
         {"bunny",
          SceneSource::file,
          "Stanford's bunny, 75,408 triangles as Debian's libcgal-demo has it",
@@ -28,6 +31,19 @@ const std::vector<CatalogueEntry>& catalogue()
          {"armadillo.off", "armadillo.ply", "Armadillo.ply"}},
     };
     return rows;
+}
+
+std::optional<std::uint32_t> banana_triangles(const std::string& name)
+{
+    constexpr std::string_view head = "banana@";
+    if (!name.starts_with(head)) return std::nullopt;
+    std::uint32_t triangles = 0;
+    const char *first = name.data() + head.size(), *last = name.data() + name.size();
+    const auto [end, error] = std::from_chars(first, last, triangles);
+    if (error != std::errc() || end != last || triangles < least_banana || triangles > most_banana)
+        throw Error(ErrorKind::usage, fmt::format("scene {}: behind the @ stands the number of its triangles, {} to {}",
+                                                  name, least_banana, most_banana));
+    return triangles;
 }
 
 const CatalogueEntry* find_in_catalogue(const std::string& name)
@@ -46,6 +62,7 @@ std::string why_not_available(const std::string& name)
 {
     const CatalogueEntry* entry = find_in_catalogue(name);
     if (entry != nullptr) return entry->source == SceneSource::file ? locate_mesh(*entry).reason : "";
+    if (banana_triangles(name)) return "";
     std::error_code ignored; // what cannot be looked at is not there for us
     if (std::filesystem::is_regular_file(name, ignored)) return "";
     return fmt::format("scene {}: neither a name of the catalogue nor a file", name);

@@ -26,6 +26,12 @@ struct CatalogueEntry {
 };
 [[nodiscard]] const std::vector<CatalogueEntry>& catalogue();
 
+/// Triangles that the catalogue's `banana` can be made with.
+inline constexpr std::uint32_t least_banana = 200, most_banana = 4'000'000;
+/// The number in a name such as "banana@100000", the same shape made finer or coarser; empty for another name.
+/// Throws Error{usage} for what is no number in that range.
+[[nodiscard]] std::optional<std::uint32_t> banana_triangles(const std::string& name);
+
 /// How a scene's CDT is to be made. Part of the scene's key.
 struct BuildOptions {
     DomainKind domain = DomainKind::tight;
@@ -36,7 +42,8 @@ struct BuildOptions {
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
 };
 
-/// A scene that somebody asked for: a name of the catalogue, or the path of a mesh file or of a `.tet` file.
+/// A scene that somebody asked for: a name of the catalogue, `banana@N`, or the path of a mesh file or of a `.tet`
+/// file.
 struct SceneRequest {
     std::string name; ///< as given; what rows call the scene is scene_label()
     BuildOptions build;

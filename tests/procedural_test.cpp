@@ -1,6 +1,7 @@
 #include "scenes/procedural.h"
 
 #include "core/hash.h"
+#include "scenes/catalogue.h"
 #include "tests/temporary_folder.h"
 
 #include <algorithm>
@@ -177,6 +178,27 @@ TEST(Banana, bends_and_tapers)
     EXPECT_GT(depth_at(62 * 100), 1.5f * depth_at(104 * 100));
     const Float3 tip = banana.vertices[12500], other_tip = banana.vertices[12501];
     EXPECT_LT(std::max(tip.x, other_tip.x), 0.7f); // the middle of the arc is at x = 1
+}
+
+TEST(Banana, is_closed_at_every_size_and_near_the_number_asked_for)
+{
+    for (const std::uint32_t triangles : {least_banana, 1'500u, 6'000u, 100'000u}) {
+        const TriangleMesh banana = make_banana(triangles);
+        EXPECT_LE(banana.triangles.size(), triangles);
+        EXPECT_GE(static_cast<double>(banana.triangles.size()), 0.9 * triangles);
+        EXPECT_TRUE(closed_manifold(banana)) << triangles;
+        EXPECT_NEAR(volume(banana), volume(make_banana()), 0.15 * volume(make_banana())) << triangles;
+    }
+}
+
+TEST(Banana, refuses_sizes_beyond_its_range)
+{
+    for (const std::uint32_t triangles : {0u, least_banana - 1, most_banana + 1})
+        EXPECT_TRUE(contains(error_of([&] { (void)make_banana(triangles); }), "usage: making scene banana: "));
+    EXPECT_EQ(banana_triangles("banana@1500"), 1'500u);
+    EXPECT_EQ(banana_triangles("banana"), std::nullopt);
+    for (const char* const name : {"banana@", "banana@x", "banana@199", "banana@4000001", "banana@1500.5", "banana@-1"})
+        EXPECT_TRUE(contains(error_of([&] { (void)banana_triangles(name); }), "the number of its triangles")) << name;
 }
 
 TEST(Banana, is_the_same_bits_everywhere)

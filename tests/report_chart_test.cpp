@@ -306,6 +306,19 @@ TEST(line_chart, takes_one_point_empty_series_and_thousands)
     EXPECT_LT(drawing.size(), 60'000u) << "a line's points have no marks of their own";
 }
 
+TEST(line_chart, a_power_law_is_a_straight_line_between_logarithmic_axes)
+{
+    LineChart chart{"a figure", "faces", "ns a ray", {{"bvh2", {{1e2, 1e0}, {1e3, 1e1}, {1e4, 1e2}}}}, true, true};
+    const std::string drawing = draw(chart).str();
+    std::smatch path;
+    ASSERT_TRUE(
+        std::regex_search(drawing, path, std::regex("M([0-9.]+) ([0-9.]+)L([0-9.]+) ([0-9.]+)L([0-9.]+) ([0-9.]+)")));
+    const auto at = [&](std::size_t i) { return std::stod(path[i]); };
+    EXPECT_NEAR(at(3) - at(1), at(5) - at(3), 0.21);
+    EXPECT_NEAR(at(4) - at(2), at(6) - at(4), 0.21);
+    EXPECT_LT(at(6), at(2)) << "upwards";
+}
+
 TEST(line_chart, every_label_of_twenty_series_lies_within_the_drawing)
 {
     LineChart chart{"a figure", "tets", "time, ms", {}};

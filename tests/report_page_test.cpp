@@ -349,6 +349,10 @@ TEST_F(report_page, values_that_cannot_be_drawn_are_named_with_their_key)
     EXPECT_TRUE(
         contains(error_with(reproduce_json(), "/figures/0/series/0/points/1", {1}), "points[1]: is not a point"));
     EXPECT_TRUE(contains(error_with(reproduce_json(), "/figures/0/series/0/points/1/0", 1e300), "points[1][0]"));
+    EXPECT_TRUE(contains(error_with(reproduce_json(), "/figures/0/x/scale", "cubic"), "is no scale"));
+    json logarithmic = reproduce_json();
+    logarithmic["tetrace"]["figures"][0]["x"]["scale"] = "logarithmic";
+    EXPECT_TRUE(contains(error_with(logarithmic, "/figures/0/series/0/points/1/0", 0), "on a logarithmic axis"));
     EXPECT_TRUE(contains(error_with(reproduce_json(), "/tables/0/rows/0/rate", false), "rows[0].rate"));
 }
 

@@ -30,8 +30,9 @@ struct Range {
         high = std::max(high, value);
     }
     /// A range of values that are not negative begins at zero where that leaves them half of it.
-    [[nodiscard]] Axis axis(int intervals) const
+    [[nodiscard]] Axis axis(int intervals, bool logarithmic) const
     {
+        if (logarithmic) return Axis::logarithmic(low, high);
         return Axis::linear(low >= 0 && low <= high / 2 ? 0 : low, high, intervals);
     }
 };
@@ -62,7 +63,8 @@ LineFrame frame_of(const LineChart& chart)
         }
         names = std::max(names, text_width(series.name, label_size));
     }
-    return {x.axis(4), y.axis(5), side_labels_left(names), bottom_of(chart.series.size())};
+    return {x.axis(4, chart.x_logarithmic), y.axis(5, chart.y_logarithmic), side_labels_left(names),
+            bottom_of(chart.series.size())};
 }
 
 Html grid(const LineChart& chart, const LineFrame& frame)

@@ -120,29 +120,39 @@ std::string axis_title(const ResultValue& axis)
     return axis.at("title").text() + (unit.empty() ? "" : ", " + unit);
 }
 
-double coordinate(const ResultValue& value)
+bool is_logarithmic(const ResultValue& axis)
 {
+    const auto scale = axis.find("scale");
+    if (!scale || scale->text() == "linear") return false;
+    if (scale->text() != "logarithmic") scale->reject("is no scale: linear and logarithmic are");
+    return true;
+}
+
+double coordinate(const ResultValue& value, bool logarithmic)
+{
+    if (logarithmic && !(value.number() >= 1e-18)) value.reject("is below 1e-18 on a logarithmic axis");
     if (value.number() < -1e18 || value.number() > 1e18) value.reject("is beyond 1e18");
     return value.number();
 }
 
-Series series_of(const ResultValue& value)
+Series series_of(const ResultValue& value, const LineChart& chart)
 {
     Series series{value.at("name").text(), {}};
     for (const ResultValue& point : value.at("points").items()) {
         const auto pair = point.items();
         if (pair.size() != 2) point.reject("is not a point: it has not two numbers");
-        series.points.emplace_back(coordinate(pair[0]), coordinate(pair[1]));
+        series.points.emplace_back(coordinate(pair[0], chart.x_logarithmic), coordinate(pair[1], chart.y_logarithmic));
     }
     return series;
 }
 
 Html chart_of(const ResultValue& part)
 {
-    LineChart chart{part.at("title").text(), axis_title(part.at("x")), axis_title(part.at("y")), {}};
+    LineChart chart{part.at("title").text(),      axis_title(part.at("x")),    axis_title(part.at("y")), {},
+                    is_logarithmic(part.at("x")), is_logarithmic(part.at("y"))};
     std::size_t points = 0;
     for (const ResultValue& series : part.at("series").items()) {
-        chart.series.push_back(series_of(series));
+        chart.series.push_back(series_of(series, chart));
         points += chart.series.back().points.size();
     }
     return points == 0 ? paragraph("This figure has no points.") : figure("", draw(chart), "");

@@ -64,6 +64,13 @@ json rows_json(const PaperTable& table)
     return rows;
 }
 
+json axis_json(const PaperFigure::Axis& axis)
+{
+    json object = {{"title", axis.title}, {"unit", axis.unit}};
+    if (axis.logarithmic) object["scale"] = "logarithmic";
+    return object;
+}
+
 json claims_json(const std::vector<Claim>& claims)
 {
     json list = json::array();
@@ -265,8 +272,8 @@ nlohmann::json figure_json(const PaperFigure& figure)
     return {{"id", figure.id},
             {"title", figure.title},
             {"source", figure.source},
-            {"x", {{"title", figure.x.title}, {"unit", figure.x.unit}}},
-            {"y", {{"title", figure.y.title}, {"unit", figure.y.unit}}},
+            {"x", axis_json(figure.x)},
+            {"y", axis_json(figure.y)},
             {"series", std::move(series)},
             {"claims", claims_json(figure.claims)},
             {"pictures", figure.pictures},

@@ -38,6 +38,7 @@ struct PaperTable {
 struct PaperFigure {
     struct Axis {
         std::string title, unit;
+        bool logarithmic = false;
     };
     struct Series {
         std::string name;

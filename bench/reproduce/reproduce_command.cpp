@@ -4,6 +4,7 @@
 #include "bench/identity.h"
 #include "bench/progress.h"
 #include "bench/reproduce/figure6.h"
+#include "bench/reproduce/growth.h"
 #include "bench/reproduce/paper.h"
 #include "bench/reproduce/paper_table.h"
 #include "bench/reproduce/pictures.h"
@@ -32,11 +33,11 @@ struct Reproduction {
     json search_records; ///< as results have them; null without searches
     RunProgress progress;
 
-    [[nodiscard]] SceneRuns of_build(const std::string& build) const
+    [[nodiscard]] SceneRuns of_builds(const std::vector<std::string>& builds) const
     {
         SceneRuns found;
         for (const SceneRun& run : runs)
-            if (build.empty() || run.build.build == build) found.push_back(&run);
+            if (std::find(builds.begin(), builds.end(), run.build.build) != builds.end()) found.push_back(&run);
         return found;
     }
 
@@ -54,8 +55,9 @@ bool wants(const Options& options, PaperTarget target)
 bool wants_scenes(const Options& options)
 {
     const auto& targets = options.targets;
-    return std::any_of(targets.begin(), targets.end(),
-                       [](PaperTarget target) { return target != PaperTarget::table5; });
+    return std::any_of(targets.begin(), targets.end(), [](PaperTarget target) {
+        return target != PaperTarget::table5 && target != PaperTarget::growth;
+    });
 }
 
 bool is_method_of(Structure structure, Method method)
@@ -66,15 +68,15 @@ bool is_method_of(Structure structure, Method method)
     });
 }
 
-/// All methods of the paper where none of the CDT is named. Throws Error{usage} where table6 lacks its own.
+/// All methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks its own.
 void add_methods(Options& options)
 {
     const auto& methods = options.methods;
     const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
-    const bool with_rivals = wants(options, PaperTarget::table6);
+    const bool with_rivals = wants(options, PaperTarget::table6) || wants(options, PaperTarget::growth);
     const bool names_any = std::any_of(methods.begin(), methods.end(), is_of_cdt);
     if (with_rivals && names_any && std::find(methods.begin(), methods.end(), Method::maria) == methods.end())
-        throw Error(ErrorKind::usage, "table6 compares maria with BVHs: add it to --method");
+        throw Error(ErrorKind::usage, "table6 and growth compare maria with BVHs: add it to --method");
     if (names_any || (!methods.empty() && !with_rivals)) return;
     for (const KernelId& kernel : all_kernels())
         if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
@@ -83,7 +85,9 @@ void add_methods(Options& options)
 /// All methods of the paper, and of its scenes those that can be had here, else the embedded one, where none are named.
 Options with_defaults(Options options, std::vector<std::string>& missing)
 {
-    if (options.targets.empty()) options.targets = all_targets();
+    if (options.targets.empty())
+        for (const PaperTarget target : all_targets())
+            if (target != PaperTarget::growth) options.targets.push_back(target);
     add_methods(options);
     if (!options.scenes.empty() || !wants_scenes(options)) return options;
     for (const char* const name : {"banana", "bunny", "armadillo"}) {
@@ -120,8 +124,8 @@ SceneBuild papers(SceneBuild build)
     return build;
 }
 
-/// The builds that the tables asked for need.
-std::vector<SceneBuild> scene_builds(const Options& options)
+/// The builds of the scenes asked for.
+std::vector<SceneBuild> paper_builds(const Options& options)
 {
     const bool table3 = wants(options, PaperTarget::table3), table6 = wants(options, PaperTarget::table6);
     const bool table4 = wants(options, PaperTarget::table4), figure6 = wants(options, PaperTarget::figure6);
@@ -135,6 +139,44 @@ std::vector<SceneBuild> scene_builds(const Options& options)
         if (table3 && has_papers_build(request.name)) builds.push_back(papers(ours));
     }
     return builds;
+}
+
+/// One scene in several sizes: banana, and cubes where they are asked for.
+void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
+{
+    static const std::vector<std::uint32_t> cubes_sizes = {4, 8, 16, 32, 64};
+    Options of_families = options;
+    std::erase_if(of_families.scenes, [](const std::string& name) { return name != "banana" && name != "cubes"; });
+    if (of_families.scenes.empty()) of_families.scenes = {"banana"};
+    for (const SceneRequest& request : scene_requests(of_families)) {
+        const auto& standard = request.name == "cubes" ? cubes_sizes : growth_sizes();
+        for (SceneBuild& build : growth_builds(request, options.sizes.empty() ? standard : options.sizes))
+            builds.push_back(std::move(build));
+    }
+}
+
+/// The builds that the tables asked for need.
+std::vector<SceneBuild> scene_builds(const Options& options)
+{
+    auto builds = paper_builds(options);
+    if (wants(options, PaperTarget::growth)) add_growth_builds(builds, options);
+    return builds;
+}
+
+/// The options with the views that the build is traced from.
+Options options_of_build(const SceneBuild& build, Options options)
+{
+    if (build.build == growth_build && options.views.empty() && options.camera_set == CameraSet::flight)
+        options.views = growth_views;
+    return options;
+}
+
+std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& options)
+{
+    std::size_t parts = wants(options, PaperTarget::table5) ? batch_count(options.searches) : 0;
+    for (const SceneBuild& build : builds)
+        parts += selected_views(options_of_build(build, options)).size();
+    return parts;
 }
 
 /// Each device once: all run on the same ones, but for scenes that could not be loaded.
@@ -172,6 +214,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                                   {"divisions", how.divisions},
                                   {"switches", how.switches},
                                   {"resolution", how.resolution},
+                                  {"views", selected_views(options_of_build(build, options))},
                                   {"robustness", build.robustness},
                                   {"timing", build.timing}});
         for (const RowKey& key : rows_of_build(build, options))
@@ -241,10 +284,10 @@ struct Keeping {
 
 void make_tables(Reproduction& all, const Options& options)
 {
-    const SceneRuns ours = all.of_build(our_build);
+    const SceneRuns ours = all.of_builds({our_build}), papers = all.of_builds({our_build, papers_build});
     if (wants(options, PaperTarget::table3)) {
-        all.tables.push_back(table3(all.of_build("")));
-        all.tables.push_back(table3_rates(all.of_build("")));
+        all.tables.push_back(table3(papers));
+        all.tables.push_back(table3_rates(papers));
     }
     if (wants(options, PaperTarget::table4)) {
         all.tables.push_back(table4(ours, view_count(options.camera_set)));
@@ -255,6 +298,13 @@ void make_tables(Reproduction& all, const Options& options)
         all.tables.push_back(table6(ours));
         all.tables.push_back(table6_pairs(ours));
         for (PaperFigure& figure : table6_figures(ours))
+            all.figures.push_back(std::move(figure));
+    }
+    if (wants(options, PaperTarget::growth)) {
+        const SceneRuns sizes = all.of_builds({growth_build});
+        all.tables.push_back(growth_table(sizes));
+        all.tables.push_back(growth_exponents(sizes));
+        for (PaperFigure& figure : growth_figures(sizes))
             all.figures.push_back(std::move(figure));
     }
     if (wants(options, PaperTarget::figure6)) {
@@ -328,8 +378,9 @@ int rows_exit_code(const Reproduction& all)
     return code;
 }
 
-void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping)
+void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked, Keeping& keeping)
 {
+    const Options options = options_of_build(build, asked);
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals) run.costs = keeping.costs.of(run.rows);
     run_views(run, options, keeping.journal.get(), all.progress);
@@ -362,12 +413,10 @@ int reproduce_command(const Options& asked)
     Keeping keeping(options, builds);
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
-    const bool with_searches = wants(options, PaperTarget::table5);
-    all.progress.all =
-        builds.size() * selected_views(options).size() + (with_searches ? batch_count(options.searches) : 0);
+    all.progress.all = parts_of(builds, options);
     for (const SceneBuild& build : builds)
         run_scene(all, build, options, keeping);
-    if (with_searches) run_all_searches(all, options, keeping);
+    if (wants(options, PaperTarget::table5)) run_all_searches(all, options, keeping);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (keeping.journal != nullptr) keeping.journal->finish();
