@@ -70,9 +70,10 @@ const char* const rate_columns =
     "noisy above 5 %.";
 
 const char* const time_columns =
-    "compile (of Embree, building its BVH) and upload are paid once; first: wall of the first pass, in which devices "
-    "compile what they left; then, for all views, kernel: device seconds; launch: wall less kernel, launching and "
-    "waiting; download: hits to the host; wall: launch to end. Medians of the samples but for download.";
+    "compile (with the building of Embree's BVH, or a driver's) and upload are paid once; first: wall of the first "
+    "pass, in which devices compile what they left; then, for all views, kernel: device seconds; launch: wall less "
+    "kernel, launching and waiting; download: hits to the host; wall: launch to end. Medians of the samples but for "
+    "download.";
 
 std::string closing_lines(const BenchResult& result, const Options& options)
 {

@@ -158,7 +158,7 @@ Table time_table(const BenchResult& result)
             const auto figures = figures_of(row);
             if (row.key.scene != scene->label() || !figures) continue;
             const SetupTimes setup = setup_of(row);
-            table.add({kernel_title(row.key), device_label(row.key), milliseconds(setup.compile_s),
+            table.add({kernel_title(row.key), device_label(row.key), milliseconds(setup.compile_s + setup.build_s),
                        setup.compile_cached ? Cell("yes") : Cell(), milliseconds(setup.upload_s),
                        milliseconds(traced(row)->wall_s), milliseconds(figures->kernel_s.median),
                        milliseconds(figures->overhead_s), milliseconds(traced(row)->download_s),

@@ -48,7 +48,8 @@ double bytes_per_step(const KernelId& kernel)
     case Layout::tet96: return vertices * 16 + 16;
     case Layout::bvh2:
     case Layout::cwbvh:
-    case Layout::embree: return 0;
+    case Layout::embree:
+    case Layout::rt: return 0;
     }
     throw Error(ErrorKind::internal, "bytes_per_step: no such layout");
 }
@@ -81,8 +82,8 @@ std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRu
     if (!runs_on_host(row.device)) return std::nullopt;
     const auto figures = figures_of(row);
     for (const RowRun& other : rows)
-        if (other.key.scene == row.key.scene && other.key.rays == row.key.rays && !is_portable(other.key.kernel) &&
-            other.key.kernel.method == Method::single)
+        if (other.key.scene == row.key.scene && other.key.rays == row.key.rays &&
+            other.key.kernel.layout == Layout::embree && other.key.kernel.method == Method::single)
             if (const auto single = figures_of(other); figures && single)
                 return figures->mrays_per_s / single->mrays_per_s;
     return std::nullopt;

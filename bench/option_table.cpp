@@ -189,7 +189,7 @@ std::vector<OptionRow> row_options()
     const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves Embree's own rows out unless "
+         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves the rows of Embree's and a driver's own BVHs out unless "
          "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
@@ -199,7 +199,8 @@ std::vector<OptionRow> row_options()
          reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 of the cdt; bvh2 or cwbvh of our BVHs; embree, what Embree "
-         "builds for itself. Default: all of the structures kept.",
+         "builds for itself; rt, what Vulkan's driver builds for its ray queries. Default: all of the structures kept, "
+         "rt where a device has it.",
          reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "

@@ -100,6 +100,7 @@ json times_json(const RowRun& row, const Traced& result)
     if (setup.upload_s > 0) times["upload_s"] = setup.upload_s;
     if (row.packed != nullptr) times["pack_s"] = row.packed->pack_s;
     if (row.packed != nullptr) set_if(times, "bvh_build_s", row.packed->bvh_build_s);
+    if (setup.build_s > 0) times["bvh_build_s"] = setup.build_s;
     if (!row.samples_s.empty()) times["samples_s"] = row.samples_s;
     if (!row.wall_samples_s.empty()) times["wall_samples_s"] = row.wall_samples_s;
     const auto figures = figures_of(row);

@@ -87,7 +87,7 @@ struct RowRun {
     Backend* backend = nullptr;
     Device device;
     std::optional<SelfTest> self_test; ///< of the device in the row's math mode; empty where it runs no kernel of ours
-    const Packed* packed = nullptr;    ///< null for layout embree
+    const Packed* packed = nullptr;    ///< null for kernels that are not portable
     std::unique_ptr<Session> session;
     std::optional<std::size_t> view_of_rays; ///< whose rays the session has been given; see prepare_view()
     Outcome outcome = Traced{};

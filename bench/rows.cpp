@@ -27,13 +27,13 @@ bool wanted_method(const Options& options, const KernelId& kernel)
 
 bool wanted_math(const Options& options, const KernelId& kernel)
 {
-    if (kernel.layout == Layout::embree) return true;
+    if (!is_portable(kernel)) return true;
     return options.math.empty() ? kernel.math == MathMode::exact : wanted(options.math, kernel.math);
 }
 
 bool wanted_schedule(const Options& options, const KernelId& kernel)
 {
-    if (kernel.layout == Layout::embree) return true;
+    if (!is_portable(kernel)) return true;
     return options.schedules.empty() ? kernel.schedule == Schedule::tiles : wanted(options.schedules, kernel.schedule);
 }
 
@@ -94,6 +94,13 @@ std::vector<std::size_t> devices_with_rows(const Options& options, const Backend
     return indices;
 }
 
+/// What most devices cannot run is a row there only where it is asked for.
+bool wanted_there(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
+{
+    if (kernel.layout != Layout::rt || !options.layouts.empty() || !options.filter.empty()) return true;
+    return backend.why_not(device, kernel).empty();
+}
+
 bool filter_keeps(const std::string& filter, const std::string& name)
 {
     return filter.empty() || std::regex_search(name, std::regex(filter));
@@ -102,12 +109,14 @@ bool filter_keeps(const std::string& filter, const std::string& name)
 void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
 {
     key.backend = backend.name();
-    for (const std::size_t device : devices_with_rows(options, backend))
+    for (const std::size_t device : devices_with_rows(options, backend)) {
+        if (!wanted_there(options, backend, device, key.kernel)) continue;
         for (const TetOrder order : wanted_orders(options, key.kernel)) {
             key.device = device;
             key.order = order;
             if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
         }
+    }
 }
 
 std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene,
@@ -223,11 +232,10 @@ std::string kernel_title(const RowKey& key)
 {
     const KernelId& kernel = key.kernel;
     std::string title(name_of(kernel.structure));
-    if (kernel.structure == Structure::cdt || !is_portable(kernel)) title.append(" ").append(name_of(kernel.method));
-    if (is_portable(kernel)) {
-        title.append(" ").append(name_of(kernel.layout));
-        if (kernel.math == MathMode::fast) title += " fast";
-    }
+    const bool is_embree = kernel.layout == Layout::embree;
+    if (kernel.structure == Structure::cdt || is_embree) title.append(" ").append(name_of(kernel.method));
+    if (!is_embree) title.append(" ").append(name_of(kernel.layout));
+    if (is_portable(kernel) && kernel.math == MathMode::fast) title += " fast";
     if (key.order != TetOrder::hilbert) title += " input order";
     if (kernel.schedule == Schedule::persistent) title += " persistent";
     if (key.rays != RayKind::primary) title.append(", ").append(name_of(key.rays));

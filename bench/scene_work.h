@@ -55,7 +55,7 @@ public:
     /// Host threads that all work uses.
     [[nodiscard]] unsigned threads() const { return threads_; }
 
-    /// The job of the view at `index` of views(). packed: null for kernels of layout embree.
+    /// The job of the view at `index` of views(). packed: null for kernels that are not portable.
     [[nodiscard]] TraceJob job(std::size_t index, const PackedScene* packed) const;
 
 private:

@@ -34,7 +34,8 @@ struct Device {
     std::string reason; ///< why not, where not usable
 };
 
-/// What a session works on; the caller keeps it alive. `packed` is null for kernels of layout embree.
+/// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not
+/// portable, which build a structure of the mesh.
 struct SceneData {
     const TriangleMesh* mesh = nullptr;
     const PackedScene* packed = nullptr;
@@ -69,6 +70,7 @@ struct SetupTimes {
     double compile_s = 0;        ///< kernels compiled, or a BVH built
     double upload_s = 0;         ///< data copied to where the kernel reads it
     bool compile_cached = false; ///< the kernels came from SessionOptions::program_cache
+    double build_s = 0;          ///< a BVH built by the device's driver, on the device's clock
 };
 
 /// What a device can do at best, the measure of every row on it.

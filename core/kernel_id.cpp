@@ -18,6 +18,7 @@ std::vector<KernelId> make_kernels()
                 kernels.push_back({Structure::bvh, Method::single, layout, math, schedule});
     for (const Method method : {Method::single, Method::packet16})
         kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
+    kernels.push_back({Structure::bvh, Method::single, Layout::rt, MathMode::fast});
     return kernels;
 }
 
@@ -56,7 +57,7 @@ Structure structure_of(Layout layout)
 
 bool is_portable(const KernelId& kernel)
 {
-    return kernel.layout != Layout::embree;
+    return kernel.layout != Layout::embree && kernel.layout != Layout::rt;
 }
 
 bool claims_robustness(const KernelId& kernel)
@@ -91,6 +92,7 @@ std::string_view name_of(Layout value)
     case Layout::bvh2: return "bvh2";
     case Layout::cwbvh: return "cwbvh";
     case Layout::embree: return "embree";
+    case Layout::rt: return "rt";
     }
     return "?";
 }

@@ -12,8 +12,8 @@ enum class Structure { cdt, bvh };
 /// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or by how
 /// many rays at once a BVH is asked.
 enum class Method { plane, plucker, stp, ms06, maria, single, packet16 };
-/// A packed form of the mesh: tets, a BVH of our own, or what Embree builds for itself.
-enum class Layout { tet80, tet96, bvh2, cwbvh, embree };
+/// A packed form of the mesh: tets, a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
+enum class Layout { tet80, tet96, bvh2, cwbvh, embree, rt };
 enum class MathMode { exact, fast };
 /// What rays are for (core/ray_set.h); all but primary ones are given to a session.
 enum class RayKind { primary, shadow, ao, diffuse, random };
@@ -53,7 +53,8 @@ struct KernelId {
 
 /// The structure that a layout packs.
 [[nodiscard]] Structure structure_of(Layout layout);
-/// Whether the kernel is one of kernels/, the same source on every backend; Embree's own are not.
+/// Whether the kernel is one of kernels/, the same source on every backend; Embree's own and
+/// those of drivers are not.
 [[nodiscard]] bool is_portable(const KernelId& kernel);
 
 /// Whether the kernel is one that should lose and mistake no ray: maria as published, and our BVHs by their watertight

@@ -6,13 +6,18 @@
 
 namespace tetrace {
 
-const PackedScene& packed_scene(const Backend& backend, std::size_t device, const KernelId& kernel,
-                                const SceneData& scene)
+void require_kernel(const Backend& backend, std::size_t device, const KernelId& kernel)
 {
     if (const Device& wanted = backend.devices().at(device); !wanted.usable)
         throw Error(ErrorKind::missing, wanted.reason);
     if (const std::string reason = backend.why_not(device, kernel); !reason.empty())
         throw Error(ErrorKind::unsupported, reason);
+}
+
+const PackedScene& packed_scene(const Backend& backend, std::size_t device, const KernelId& kernel,
+                                const SceneData& scene)
+{
+    require_kernel(backend, device, kernel);
     if (scene.packed == nullptr || scene.packed->layout != kernel.layout)
         throw Error(ErrorKind::internal, "opening " + backend.name() + ": the scene is not packed as " +
                                              std::string(name_of(kernel.layout)));

@@ -5,7 +5,11 @@
 namespace tetrace {
 
 /// What Backend::open of any API asks first. Throws Error{missing} where the device cannot be used, unsupported where
-/// the kernel does not run on it, internal where the scene is not packed in the kernel's layout.
+/// the kernel does not run on it.
+void require_kernel(const Backend& backend, std::size_t device, const KernelId& kernel);
+
+/// The scene of a kernel that reads it packed, after require_kernel(). Throws Error{internal} where it is not packed in
+/// the kernel's layout.
 [[nodiscard]] const PackedScene& packed_scene(const Backend& backend, std::size_t device, const KernelId& kernel,
                                               const SceneData& scene);
 

@@ -80,8 +80,8 @@ json status_of_device(const std::vector<RowRun>& rows)
 std::vector<RowKey> rows_on(Backend& backend, std::size_t device, const Options& options)
 {
     std::vector<RowKey> keys = select_rows(options, {"cubes"}, {&backend});
-    keys.erase(std::remove_if(keys.begin(), keys.end(), [&](const RowKey& key) { return key.device != device; }),
-               keys.end());
+    // A driver's own BVH is compared with nothing.
+    std::erase_if(keys, [&](const RowKey& key) { return key.device != device || !is_portable(key.kernel); });
     return keys;
 }
 

@@ -197,7 +197,8 @@ TEST(exit_codes, a_method_that_does_not_claim_robustness_fails_only_where_a_devi
         }
     EXPECT_TRUE(claims_robustness({}));
     EXPECT_TRUE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::cwbvh}));
-    EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::embree}));
+    for (const Layout theirs : {Layout::embree, Layout::rt})
+        EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = theirs}));
 }
 
 TEST(exit_codes, an_error_gives_that_of_its_kind_unless_something_is_wrong)

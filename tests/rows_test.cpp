@@ -42,6 +42,17 @@ private:
     std::vector<Device> devices_;
 };
 
+/// A backend whose kernels trace by the driver's own BVH, on its device number 1 alone.
+class Drivers : public OldHost {
+public:
+    Drivers() : OldHost({Device{}, Device{}}) {}
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId&) const override
+    {
+        return device == 1 ? "" : "no extension";
+    }
+};
+
 Device device_named(const char* name, const char* type, bool usable = true)
 {
     Device device;
@@ -110,6 +121,26 @@ TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
               std::vector<std::string>{"old: no device: no driver; install one"});
     EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 2u);
     EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
+}
+
+TEST(rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_asked_for)
+{
+    Drivers drivers;
+    const auto names_with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "bench");
+        std::vector<std::string> list;
+        for (const RowKey& key : select_rows(parse_options(arguments), {"s"}, {&drivers}))
+            list.push_back(row_name(key));
+        return list;
+    };
+    const std::string without = "bvh/single/rt/s/primary/math:fast/api:old", with = without + ":1";
+    EXPECT_EQ(names_with({}), std::vector{with});
+    EXPECT_EQ(names_with({"--math", "exact", "--schedule", "persistent"}), std::vector{with});
+    EXPECT_EQ(names_with({"--layout", "bvh2,rt"}), (std::vector{without, with}));
+    EXPECT_EQ(names_with({"--filter", "/rt/"}), (std::vector{without, with}));
+    EXPECT_THROW((void)names_with({"--layout", "bvh2"}), Error);
+    const KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = Layout::rt};
+    EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt");
 }
 
 TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)

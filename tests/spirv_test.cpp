@@ -26,12 +26,18 @@ bool is_probe(std::string_view name)
     return name.starts_with("probe");
 }
 
-/// Kernels and probes; not the empty shader.
+/// What traces by a driver's BVH reads no scene of ours.
+bool is_drivers(std::string_view name)
+{
+    return name.starts_with("single_rt_");
+}
+
+/// Portable kernels and probes; not the empty shader.
 std::vector<EmbeddedKernel> modules()
 {
     std::vector<EmbeddedKernel> found;
     for (const EmbeddedKernel& kernel : vulkan::embedded_kernels())
-        if (kernel.name != "empty") found.push_back(kernel);
+        if (kernel.name != "empty" && !is_drivers(kernel.name)) found.push_back(kernel);
     return found;
 }
 
@@ -154,6 +160,24 @@ TEST(Spirv, push_constants_are_launch_params_word_for_word)
         EXPECT_EQ(Module(kernel.bytes).push_constants(), expected_push_constants()) << kernel.name;
         EXPECT_TRUE(Module(kernel.bytes).has_specialization_constant(0)) << kernel.name << ": the tile's height";
     }
+}
+
+TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_same_rays)
+{
+    std::size_t checked = 0;
+    for (const EmbeddedKernel& kernel : vulkan::embedded_kernels()) {
+        if (!is_drivers(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        std::map<std::string, Array> arrays = {{"output_words", {OUTPUT_BINDING, 4, true}}};
+        if (takes_rays(kernel.name)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
+        EXPECT_EQ(module.arrays(), arrays) << kernel.name;
+        EXPECT_EQ(module.texels(), (std::map<std::string, std::uint32_t>{{"scene", 0}})) << "the top level";
+        EXPECT_EQ(module.push_constants(), expected_push_constants()) << kernel.name;
+        EXPECT_TRUE(module.has_specialization_constant(0)) << kernel.name << ": the tile's height";
+        EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
+        checked++;
+    }
+    EXPECT_EQ(checked, 2u);
 }
 
 TEST(Spirv, vectors_of_three_and_rows_read_as_words_would_be_found)

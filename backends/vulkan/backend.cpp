@@ -26,12 +26,18 @@ public:
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
     {
         if (!has_kernel(kernel)) return "vulkan has no kernel " + name_of(kernel);
-        return devices_.at(device).reason;
+        const std::string& reason = devices_.at(device).reason;
+        if (!reason.empty() || kernel.layout != Layout::rt) return reason;
+        return found_[device].ray_queries.reason;
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
                                                 const SessionOptions& options) override
     {
+        if (kernel.layout == Layout::rt) {
+            require_kernel(*this, device, kernel);
+            return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, *scene.mesh, options);
+        }
         const PackedScene& packed = packed_scene(*this, device, kernel, scene);
         return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, packed, options);
     }

@@ -14,9 +14,21 @@ constexpr std::uint64_t staging_bytes = std::uint64_t{64} << 20;
 vk::BufferUsageFlags usage_of(Place place)
 {
     using Usage = vk::BufferUsageFlagBits;
-    if (place == Place::device)
-        return Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eTransferSrc | Usage::eTransferDst;
-    return place == Place::upload ? Usage::eTransferSrc : Usage::eTransferDst;
+    switch (place) {
+    case Place::upload: return Usage::eTransferSrc;
+    case Place::read_back: return Usage::eTransferDst;
+    case Place::geometry:
+        return Usage::eAccelerationStructureBuildInputReadOnlyKHR | Usage::eShaderDeviceAddress | Usage::eTransferDst;
+    case Place::structure: return Usage::eAccelerationStructureStorageKHR | Usage::eShaderDeviceAddress;
+    case Place::scratch: return Usage::eStorageBuffer | Usage::eShaderDeviceAddress;
+    case Place::device: break;
+    }
+    return Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+}
+
+bool has_address(Place place)
+{
+    return static_cast<bool>(usage_of(place) & vk::BufferUsageFlagBits::eShaderDeviceAddress);
 }
 
 /// Wishes in falling order; every device has the last one of each (Vulkan 1.1, section 11.2.1, but for host-cached
@@ -28,7 +40,7 @@ std::initializer_list<vk::MemoryPropertyFlags> wishes_for(Place place)
         Property::eHostVisible | Property::eHostCoherent, Property::eHostVisible};
     static const std::initializer_list<vk::MemoryPropertyFlags> read_back = {
         Property::eHostVisible | Property::eHostCached, Property::eHostVisible};
-    return place == Place::device ? device : place == Place::upload ? upload : read_back;
+    return place == Place::upload ? upload : place == Place::read_back ? read_back : device;
 }
 
 /// Drivers list their types so that the first that has what is wished has least besides.
@@ -54,12 +66,20 @@ Buffer::Buffer(const Context& context, std::uint64_t bytes, Place place)
     const auto memory = context.memory();
     const std::uint32_t type = memory_type(memory, needs.memoryTypeBits, place);
     properties_ = memory.memoryTypes[type].propertyFlags;
-    memory_ = context.device().allocateMemory(
-        vk::MemoryAllocateInfo{}.setAllocationSize(needs.size).setMemoryTypeIndex(type));
+    const auto with_address = vk::MemoryAllocateFlagsInfo{}.setFlags(vk::MemoryAllocateFlagBits::eDeviceAddress);
+    auto allocation = vk::MemoryAllocateInfo{}.setAllocationSize(needs.size).setMemoryTypeIndex(type);
+    if (has_address(place)) allocation.setPNext(&with_address);
+    memory_ = context.device().allocateMemory(allocation);
     handle_.bindMemory(*memory_, 0);
-    const bool is_hidden = place == Place::device && context.found().always_stages;
+    const bool is_hosts = place == Place::upload || place == Place::read_back;
+    const bool is_hidden = !is_hosts && context.found().always_stages;
     if ((properties_ & Property::eHostVisible) && !is_hidden)
         mapped_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE, {}));
+}
+
+vk::DeviceAddress Buffer::address(const Context& context) const
+{
+    return context.device().getBufferAddressKHR(vk::BufferDeviceAddressInfo{}.setBuffer(*handle_));
 }
 
 std::span<std::byte> Buffer::mapped() const

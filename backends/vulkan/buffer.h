@@ -9,9 +9,12 @@ namespace tetrace::vulkan {
 
 /// Where a buffer lies, and what for.
 enum class Place {
-    device,   ///< the device's own memory: kernels and transfers use it
-    upload,   ///< the host writes, transfers read
-    read_back ///< transfers write, the host reads through its caches
+    device,    ///< the device's own memory: kernels and transfers use it
+    upload,    ///< the host writes, transfers read
+    read_back, ///< transfers write, the host reads through its caches
+    geometry,  ///< of the device, by address: what a BVH is built of; this and the next two need Uses::ray_queries
+    structure, ///< of the device: a BVH of the driver's
+    scratch    ///< of the device, by address: what building one needs meanwhile
 };
 
 /// A buffer with memory of its own.
@@ -24,6 +27,8 @@ public:
 
     [[nodiscard]] vk::Buffer handle() const { return *handle_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    /// As the device sees it; of those places alone that are used by address.
+    [[nodiscard]] vk::DeviceAddress address(const Context& context) const;
     /// The memory as the host sees it; empty where it does not.
     [[nodiscard]] std::span<std::byte> mapped() const;
     /// Whether the host reads it through its caches.

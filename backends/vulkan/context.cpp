@@ -17,24 +17,29 @@ vk::raii::PhysicalDevice physical_device(const FoundDevice& found)
     return {instance().handle(), found.handle};
 }
 
-vk::raii::Device make_device(const FoundDevice& found)
+vk::raii::Device make_device(const FoundDevice& found, Uses uses)
 {
     const std::array priorities = {1.0f};
     const auto queue =
         vk::DeviceQueueCreateInfo{}.setQueueFamilyIndex(*found.limits.queue_family).setQueuePriorities(priorities);
     std::vector<const char*> extensions;
     if (found.tells_cache_hits) extensions.push_back(VK_EXT_PIPELINE_CREATION_FEEDBACK_EXTENSION_NAME);
-    const auto info = vk::DeviceCreateInfo{}.setQueueCreateInfos(queue).setPEnabledExtensionNames(extensions);
-    return {physical_device(found), info};
+    const RayQueryFeatures features = ray_query_features();
+    auto info = vk::DeviceCreateInfo{}.setQueueCreateInfos(queue);
+    if (uses == Uses::ray_queries) {
+        extensions.insert(extensions.end(), ray_query_extensions.begin(), ray_query_extensions.end());
+        info.setPNext(&features.get<vk::PhysicalDeviceFeatures2>());
+    }
+    return {physical_device(found), info.setPEnabledExtensionNames(extensions)};
 }
 
 } // namespace
 
-Context::Context(const FoundDevice& found) : found_(found)
+Context::Context(const FoundDevice& found, Uses uses) : found_(found)
 {
     if (!found.facts.usable) throw Error(ErrorKind::missing, found.facts.reason);
     run("opening the device", 0, [&] {
-        device_ = make_device(found);
+        device_ = make_device(found, uses);
         queue_ = device_.getQueue(*found.limits.queue_family, 0);
         pool_ = device_.createCommandPool(vk::CommandPoolCreateInfo{}
                                               .setQueueFamilyIndex(*found.limits.queue_family)

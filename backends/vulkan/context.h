@@ -8,11 +8,14 @@
 
 namespace tetrace::vulkan {
 
+/// What a context is opened for: what devices offer beyond compute is enabled for those sessions alone that need it.
+enum class Uses { compute, ray_queries };
+
 /// A logical device with one queue: what belongs to one session, so that a device that is lost is lost to it alone.
 class Context {
 public:
-    /// Throws Error where the driver fails.
-    explicit Context(const FoundDevice& found);
+    /// Throws Error where the driver fails. uses: ray_queries where found.ray_queries has no reason against it.
+    explicit Context(const FoundDevice& found, Uses uses = Uses::compute);
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }
     [[nodiscard]] const Device& facts() const { return found_.facts; }

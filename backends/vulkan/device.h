@@ -1,6 +1,6 @@
 #pragma once
 
-#include "backends/vulkan/api.h"
+#include "backends/vulkan/ray_queries.h"
 #include "core/backend.h"
 
 #include <cstdint>
@@ -39,6 +39,7 @@ struct FoundDevice {
     Device facts;
     VkPhysicalDevice handle = nullptr;
     Limits limits;
+    RayQueries ray_queries;
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
     bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
     bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests

@@ -53,6 +53,7 @@ void Program::make_layout(const Context& context, const ProgramId& id)
         add(binding, vk::DescriptorType::eStorageBuffer);
     for (const TexelBinding& texels : id.texels)
         add(texels.binding, vk::DescriptorType::eUniformTexelBuffer);
+    if (id.structure) add(*id.structure, vk::DescriptorType::eAccelerationStructureKHR);
     set_layout_ = context.device().createDescriptorSetLayout(vk::DescriptorSetLayoutCreateInfo{}.setBindings(bindings));
     const std::array sets = {*set_layout_};
     const auto push =
@@ -125,6 +126,19 @@ void Program::bind_texels(const Context& context, const TexelBinding& texels, co
                            .setDstBinding(texels.binding)
                            .setDescriptorType(vk::DescriptorType::eUniformTexelBuffer)
                            .setTexelBufferView(view);
+    context.device().updateDescriptorSets(write, {});
+}
+
+void Program::bind_structure(const Context& context, std::uint32_t binding,
+                             vk::AccelerationStructureKHR structure) const
+{
+    const auto info = vk::WriteDescriptorSetAccelerationStructureKHR{}.setAccelerationStructures(structure);
+    const auto write = vk::WriteDescriptorSet{}
+                           .setDstSet(*set_)
+                           .setDstBinding(binding)
+                           .setDescriptorType(vk::DescriptorType::eAccelerationStructureKHR)
+                           .setDescriptorCount(1)
+                           .setPNext(&info);
     context.device().updateDescriptorSets(write, {});
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,9 @@ struct ProgramId {
     std::string name;
     std::vector<std::uint32_t> bindings = {}; ///< of its storage buffers
     std::vector<TexelBinding> texels = {};
-    std::uint32_t push_constant_bytes = 0; ///< 0: none
-    unsigned tile_height = 0;              ///< the height of its work groups; 0: as the module says
+    std::optional<std::uint32_t> structure = {}; ///< binding of a BVH that the driver has built
+    std::uint32_t push_constant_bytes = 0;       ///< 0: none
+    unsigned tile_height = 0;                    ///< the height of its work groups; 0: as the module says
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 
@@ -40,6 +42,8 @@ public:
     void bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const;
     /// The buffer that was bound there before must live until then.
     void bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer);
+    /// The structure must live as long as the program runs.
+    void bind_structure(const Context& context, std::uint32_t binding, vk::AccelerationStructureKHR structure) const;
     /// Records that the program and its buffers are what a dispatch runs.
     void record(const vk::raii::CommandBuffer& commands) const;
 

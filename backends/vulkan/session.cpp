@@ -41,6 +41,8 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
     return std::ranges::all_of(scene_buffers(scene), fits);
 }
 
+constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as kernel_rt.comp has it
+
 constexpr TexelBinding rays_as_texels{FIRST_ROWS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
 
 void require_variant(const KernelId& kernel, const TetParts& parts)
@@ -62,13 +64,23 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
 {
     require_storage_buffers(found, parts_);
     require_variant(kernel, parts_);
-    auto start = std::chrono::steady_clock::now();
+    const auto start = std::chrono::steady_clock::now();
     context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
     setup_.upload_s = seconds_since(start);
-    start = std::chrono::steady_clock::now();
-    make_program(kernel, options);
-    setup_.compile_s = seconds_since(start);
-    context_.check_validation("the first launch");
+    compile(kernel, options);
+}
+
+VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
+                             const SessionOptions& options)
+    : context_(found, Uses::ray_queries), max_buffer_bytes_(largest_buffer(found.facts, options)),
+      tile_height_(tile_height_for(found.facts, options)), structure_(kernel.structure), task_(kernel.task),
+      launches_(tile_height_, found.limits.groups)
+{
+    acceleration_.emplace(context_, mesh);
+    bytes_ = acceleration_->bytes();
+    setup_.upload_s = acceleration_->upload_s();
+    setup_.build_s = acceleration_->build_s();
+    compile(kernel, options);
 }
 
 VulkanSession::~VulkanSession()
@@ -97,6 +109,14 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
         more_parts_.push_back(make(parts_.part(tets, part)));
 }
 
+void VulkanSession::compile(const KernelId& kernel, const SessionOptions& options)
+{
+    const auto start = std::chrono::steady_clock::now();
+    make_program(kernel, options);
+    setup_.compile_s = seconds_since(start);
+    context_.check_validation("the first launch");
+}
+
 void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
 {
     const bool takes_rays = kernel.task != Task::trace;
@@ -106,6 +126,7 @@ void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& o
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_};
     if (in_texels_) id.texels = texel_bindings(structure_);
+    if (acceleration_) id.structure = structure_binding;
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
         id.bindings.push_back(binding);
     if (takes_rays && in_texels_) id.texels.push_back(rays_as_texels);
@@ -119,6 +140,7 @@ void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& o
 
 void VulkanSession::bind_scene()
 {
+    if (acceleration_) program_->bind_structure(context_, structure_binding, acceleration_->handle());
     for (const TexelBinding& texels : in_texels_ ? texel_bindings(structure_) : std::vector<TexelBinding>{})
         program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_ROWS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)

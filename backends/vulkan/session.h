@@ -1,5 +1,6 @@
 #pragma once
 
+#include "backends/vulkan/acceleration.h"
 #include "backends/vulkan/program.h"
 #include "core/launch.h"
 #include "core/scene_buffers.h"
@@ -9,11 +10,14 @@
 
 namespace tetrace::vulkan {
 
-/// One packed scene in the buffers of one device, and one pipeline that reads it.
+/// One packed scene in the buffers of one device, or the driver's own BVH of a mesh, and one pipeline that reads it.
 class VulkanSession : public Session {
 public:
     /// Throws Error{unsupported} where a limit or the memory does not suffice, with both numbers.
     VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
+                  const SessionOptions& options);
+    /// For kernels of layout rt; the device has ray queries.
+    VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
                   const SessionOptions& options);
     ~VulkanSession() override;
     VulkanSession(const VulkanSession&) = delete;
@@ -30,6 +34,7 @@ private:
 
     void make_scene_buffers(const PackedScene& scene);
     void make_program(const KernelId& kernel, const SessionOptions& options);
+    void compile(const KernelId& kernel, const SessionOptions& options);
     void bind_scene();
     void bind_rays(Buffer rays);
     void resize_output(std::size_t words);
@@ -47,13 +52,14 @@ private:
     unsigned tile_height_;
     Structure structure_;
     Task task_;
-    bool in_texels_; ///< the scene's arrays are read as texels
-    std::uint32_t divisions_;
+    bool in_texels_ = false; ///< the scene's arrays are read as texels
+    std::uint32_t divisions_ = 0;
     std::uint64_t bytes_ = 0;
     SetupTimes setup_;
 
     std::vector<Buffer> arrays_;     ///< by binding
     std::vector<Buffer> more_parts_; ///< of the tets, from the second on
+    std::optional<Acceleration> acceleration_;
     Buffer rays_, output_, staging_;
     std::size_t output_words_ = 0;
     std::optional<Program> program_;

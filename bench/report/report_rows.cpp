@@ -77,6 +77,7 @@ std::string kernel_of(const ResultValue& row)
     const std::string structure = row.at("structure").line(), method = row.at("method").line();
     const std::string layout = row.at("layout").line();
     if (layout == "embree") return structure + " " + method;
+    if (layout == "rt") return structure + " " + layout;
     const std::string math = row.at("math").line();
     return fmt::format("{} {}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,
                        math == "exact" ? "" : " " + math, unusual_parts(row.at("name").line()));

@@ -34,7 +34,8 @@ std::optional<SetupCost> setup_cost(const RowRun& row)
     SetupCost cost;
     cost.bytes = row.session->bytes();
     if (row.packed == nullptr) {
-        cost.build_s = row.session->setup_times().compile_s;
+        const SetupTimes setup = row.session->setup_times();
+        cost.build_s = setup.build_s > 0 ? setup.build_s : setup.compile_s; // a driver's; Embree's
         return cost;
     }
     cost.build_s = row.packed->bvh_build_s.value_or(row.scene->loaded().scene.build.build_s);

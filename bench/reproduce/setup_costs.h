@@ -14,7 +14,7 @@ namespace tetrace {
 /// What a row pays once, before its first ray, and what it occupies from then on. Compiling kernels and copying to the
 /// device are left out: they are the API's, not the structure's.
 struct SetupCost {
-    double build_s = 0;      ///< TetGen, the BVH's builder, or Embree
+    double build_s = 0;      ///< TetGen, the BVH's builder, Embree, or a GPU's driver
     double pack_s = 0;       ///< from what was built to the bytes that cross; none of Embree
     std::uint64_t bytes = 0; ///< of the session
 
