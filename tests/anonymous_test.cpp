@@ -19,7 +19,7 @@ protected:
     static bool can_name_a_host() { return std::system("unshare -u true 2> /dev/null") == 0; }
     Ended run_on_host(const std::string& name, const std::string& arguments)
     {
-        write_text(folder_ / "on-host", "#!/bin/sh\nhostname " + name + "\nexec '" TETRACE_PROGRAM "' \"$@\"\n");
+        write_file(folder_ / "on-host", "#!/bin/sh\nhostname " + name + "\nexec '" TETRACE_PROGRAM "' \"$@\"\n");
         const std::string out = (folder_ / "stdout").string(), errors = (folder_ / "stderr").string();
         const std::string command =
             fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' unshare -u sh ./on-host {1} > '{2}' 2> '{3}'",
@@ -82,7 +82,7 @@ TEST_F(anonymous_program, results_hold_neither_the_hosts_name_nor_a_folder)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";
     const std::string folder = folder_.path().string();
-    write_text(folder_ / "private/broken.tet", "no scene");
+    write_file(folder_ / "private/broken.tet", "no scene");
     const std::string scenes = fmt::format("--scene {}/private/broken.tet", folder);
     for (const std::string& arguments :
          {std::string("bench --samples 3"), std::string("check --junit {0}/check.xml")}) {

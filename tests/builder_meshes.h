@@ -83,7 +83,7 @@ class Builder : public testing::Test {
 protected:
     [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& bytes) const
     {
-        write_text(folder_ / name, bytes);
+        write_file(folder_ / name, bytes);
         return folder_ / name;
     }
     [[nodiscard]] BuilderOptions options(const TriangleMesh& mesh, DomainKind domain, const std::string& switches) const

@@ -84,10 +84,10 @@ TEST_F(Cache, is_empty_where_there_is_no_folder)
 
 TEST_F(Cache, lists_scenes_meshes_and_leftovers_with_their_sizes)
 {
-    write_text(cache / ("bunny" + key), "12345");
-    write_text(cache / ("bunny" + key + ".4194305-0.tmp") / "scene.tet", "123");
-    write_text(cached_mesh_path("bunny00.off", 7), "12");
-    write_text(cache / "notes.txt", "mine");
+    write_file(cache / ("bunny" + key), "12345");
+    write_file(cache / ("bunny" + key + ".4194305-0.tmp") / "scene.tet", "123");
+    write_file(cached_mesh_path("bunny00.off", 7), "12");
+    write_file(cache / "notes.txt", "mine");
     EXPECT_EQ(listed(), (std::set<std::string>{"bunny" + key, "bunny" + key + ".4194305-0.tmp",
                                                "meshes/0000000000000007/bunny00.off"}));
     std::uint64_t bytes = 0;
@@ -98,11 +98,11 @@ TEST_F(Cache, lists_scenes_meshes_and_leftovers_with_their_sizes)
 
 TEST_F(Cache, clears_what_is_its_own_and_nothing_else)
 {
-    write_text(cache / ("a.tet-b" + key), "12345");
-    write_text(cache / ("bunny" + key + ".lock"), "");
-    write_text(cache / ("bunny" + key + ".4194305-0.tmp") / "scene.tet", "123");
-    write_text(cached_mesh_path("bunny00.off", 7), "12");
-    write_text(cached_mesh_path("bunny00.off.4194305-0.tmp", 8), "1");
+    write_file(cache / ("a.tet-b" + key), "12345");
+    write_file(cache / ("bunny" + key + ".lock"), "");
+    write_file(cache / ("bunny" + key + ".4194305-0.tmp") / "scene.tet", "123");
+    write_file(cached_mesh_path("bunny00.off", 7), "12");
+    write_file(cached_mesh_path("bunny00.off.4194305-0.tmp", 8), "1");
     const std::set<fs::path> foreign = {cache / "notes.txt",
                                         cache / "bunny.tet",
                                         cache / "bunny-0123.tet",
@@ -117,7 +117,7 @@ TEST_F(Cache, clears_what_is_its_own_and_nothing_else)
                                         cache / ("a b" + key),
                                         folder / "xdg" / "other" / ("bunny" + key)};
     for (const fs::path& path : foreign)
-        write_text(path, "mine");
+        write_file(path, "mine");
     EXPECT_EQ(clear_cache(), 11u);
     EXPECT_TRUE(list_cache().empty());
     for (const fs::path& path : foreign)
@@ -130,12 +130,12 @@ TEST_F(Cache, lists_and_clears_compiled_programs)
 {
     const fs::path programs = cache / "programs";
     const std::string name = "0123456789abcdef.bin";
-    write_text(programs / name, "12345");
-    write_text(programs / (name + ".4194305-0.tmp"), "123");
+    write_file(programs / name, "12345");
+    write_file(programs / (name + ".4194305-0.tmp"), "123");
     const std::set<fs::path> foreign = {programs / "my.bin", programs / "0123456789abcdef.txt",
                                         programs / (name + ".bak"), programs / ("x" + name), cache / name};
     for (const fs::path& path : foreign)
-        write_text(path, "mine");
+        write_file(path, "mine");
     EXPECT_EQ(listed(), (std::set<std::string>{"programs/" + name, "programs/" + name + ".4194305-0.tmp"}));
     EXPECT_EQ(clear_cache(), 8u);
     for (const fs::path& path : foreign)
@@ -149,21 +149,21 @@ TEST_F(Cache, lists_and_clears_compiled_programs)
 TEST_F(Cache, spares_a_program_that_a_living_process_writes)
 {
     const fs::path path = cache / "programs" / ("0123456789abcdef.bin." + std::to_string(::getpid()) + "-0.tmp");
-    write_text(path, "12345");
+    write_file(path, "12345");
     EXPECT_EQ(clear_cache(), 0u);
     EXPECT_TRUE(fs::exists(path));
 }
 
 TEST_F(Cache, removes_its_folder_with_its_last_file)
 {
-    write_text(cache / ("bunny" + key), "12345");
+    write_file(cache / ("bunny" + key), "12345");
     (void)clear_cache();
     EXPECT_FALSE(fs::exists(cache));
 }
 
 TEST_F(Cache, follows_no_link_out_of_its_folder)
 {
-    write_text(folder / "elsewhere" / "precious", "mine");
+    write_file(folder / "elsewhere" / "precious", "mine");
     fs::create_directories(cache);
     fs::create_directory_symlink(folder / "elsewhere", cache / ("bunny" + key + ".4194305-0.tmp"));
     (void)clear_cache();
@@ -173,7 +173,7 @@ TEST_F(Cache, follows_no_link_out_of_its_folder)
 TEST_F(Cache, spares_a_build_that_is_going_on)
 {
     const fs::path work = cache / ("bunny" + key + ".4194305-0.tmp"), lock_path = cache / ("bunny" + key + ".lock");
-    write_text(work / "scene.tet", "123");
+    write_file(work / "scene.tet", "123");
     {
         const auto lock = FileLock::try_take(lock_path);
         ASSERT_TRUE(lock);
@@ -187,7 +187,7 @@ TEST_F(Cache, spares_a_build_that_is_going_on)
 
 TEST_F(Cache, says_which_folder_cannot_be_made)
 {
-    write_text(folder / "xdg", "a file where the folder should be");
+    write_file(folder / "xdg", "a file where the folder should be");
     EXPECT_TRUE(contains(error_of([&] { (void)cached_mesh_path("x.off", 1); }),
                          "invalid_input: making the cache's folder " + cache.string()));
 }
@@ -211,7 +211,7 @@ TEST_F(Cache, lock_ends_with_its_process)
     ASSERT_GE(owner, 0);
     if (owner == 0) {
         const auto lock = FileLock::try_take(path);
-        write_text(folder / "taken", lock ? "yes" : "no");
+        write_file(folder / "taken", lock ? "yes" : "no");
         for (;;)
             ::pause();
     }
@@ -227,7 +227,7 @@ TEST_F(Cache, lock_ends_with_its_process)
 TEST_F(Cache, atomic_file_appears_whole_or_not_at_all)
 {
     const std::string before = "before", after = "after";
-    write_text(folder / "file", before);
+    write_file(folder / "file", before);
     {
         AtomicFile file(folder / "file");
         file.write(std::as_bytes(std::span(after)));

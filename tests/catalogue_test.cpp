@@ -25,8 +25,8 @@ protected:
     /// A data.tar.gz as the package has it, with these texts as meshes.
     void make_archive(const fs::path& target, const std::string& bunny, const std::string& armadillo)
     {
-        write_text(folder / "tar/data/meshes/bunny00.off", bunny);
-        write_text(folder / "tar/data/meshes/armadillo.off", armadillo);
+        write_file(folder / "tar/data/meshes/bunny00.off", bunny);
+        write_file(folder / "tar/data/meshes/armadillo.off", armadillo);
         fs::create_directories(folder / "tar/data/meshes/folder.off");
         fs::create_directories(target.parent_path());
         ASSERT_EQ(std::system(("tar -C " + (folder / "tar").string() + " -czf " + target.string() + " data").c_str()),
@@ -63,7 +63,7 @@ TEST_F(Catalogue, prefers_a_mesh_in_the_folder_that_the_user_names)
 {
     const ScopedVariable given("TETRACE_MESHES", meshes);
     make_archive(archive, "of the archive", "of the archive");
-    write_text(meshes / "bunny.ply", "of the user");
+    write_file(meshes / "bunny.ply", "of the user");
     EXPECT_EQ(mesh_file(row("bunny")), meshes / "bunny.ply");
     EXPECT_EQ(read_text(mesh_file(row("armadillo"))), "of the archive");
     EXPECT_EQ(why_not_available("bunny"), "");
@@ -72,8 +72,8 @@ TEST_F(Catalogue, prefers_a_mesh_in_the_folder_that_the_user_names)
 TEST_F(Catalogue, takes_the_first_of_a_mesh_s_names)
 {
     const ScopedVariable given("TETRACE_MESHES", meshes);
-    write_text(meshes / "bun_zipper.ply", "Stanford's own");
-    write_text(meshes / "bunny00.off", "the one that results are of");
+    write_file(meshes / "bun_zipper.ply", "Stanford's own");
+    write_file(meshes / "bunny00.off", "the one that results are of");
     EXPECT_EQ(mesh_file(row("bunny")), meshes / "bunny00.off");
 }
 
@@ -127,7 +127,7 @@ TEST_F(Catalogue, refuses_a_damaged_archive)
     EXPECT_TRUE(contains(error_of_member("data/meshes/bunny00.off", 899), "it has 900 bytes, at most 899"));
     const std::string bytes = read_text(archive);
     for (std::size_t length = 0; length < bytes.size() - 8; length += 13) { // the last 8 are gzip's own trailer
-        write_text(archive, bytes.substr(0, length));
+        write_file(archive, bytes.substr(0, length));
         const std::string error = error_of_member("data/meshes/none.off");
         EXPECT_TRUE(contains(error, "invalid_input: unpacking data/meshes/none.off from " + archive.string()))
             << length;
@@ -158,7 +158,7 @@ TEST_F(Catalogue, repairs_a_damaged_banana_file)
 {
     const fs::path path = mesh_file(row("banana"));
     const std::string good = read_text(path);
-    write_text(path, good.substr(0, 1000));
+    write_file(path, good.substr(0, 1000));
     EXPECT_EQ(read_text(mesh_file(row("banana"))), good);
 }
 

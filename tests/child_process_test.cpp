@@ -92,7 +92,7 @@ TEST(ChildProcess, reports_the_signal_that_ended_the_child)
 TEST(ChildProcess, names_a_program_that_cannot_be_started)
 {
     TemporaryFolder folder;
-    write_text(folder / "text", "no program");
+    write_file(folder / "text", "no program");
     for (const std::filesystem::path& program : {folder / "none", folder / "text", folder.path()}) {
         const std::string error = error_of([&] { (void)run_child(program, {}, {}); });
         EXPECT_TRUE(contains(error, "missing: starting " + program.string()));

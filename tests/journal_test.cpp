@@ -47,7 +47,7 @@ TEST_F(journal, goes_on_where_a_line_was_cut_off)
 
 TEST_F(journal, begins_anew_where_the_head_itself_was_cut_off)
 {
-    write_text(path_, R"({"journal": {"com)");
+    write_file(path_, R"({"journal": {"com)");
     EXPECT_EQ(resumed(head_).size(), 0u);
     EXPECT_EQ(resumed(head_).size(), 0u) << "and is whole now";
 }

@@ -24,7 +24,7 @@ RowRun skipped_row(const std::string& reason)
 void expect_well_formed(const std::string& xml)
 {
     const TemporaryFolder folder;
-    write_text(folder / "result.xml", xml);
+    write_file(folder / "result.xml", xml);
     if (std::system("python3 -c 'import xml.dom.minidom' 2> /dev/null") != 0)
         GTEST_SKIP() << "python3 is not installed (package python3), so nothing reads the XML";
     const std::string command = "python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' " +

@@ -26,7 +26,7 @@ class Load : public ::testing::Test {
 protected:
     Load()
     {
-        write_text(mesh, mesh_text);
+        write_file(mesh, mesh_text);
         request.name = mesh.string();
         request.build.divisions = 3;
         write_scene(prepared, expected());
@@ -47,7 +47,7 @@ protected:
     void use_builder(const std::string& script) const
     {
         const std::string log = "echo \"$*\" >> " + (folder / "runs").string();
-        write_text(builder, "#!/bin/sh\n" + log + "\n" + script + "\ncp " + prepared.string() + " \"$4\"\n");
+        write_file(builder, "#!/bin/sh\n" + log + "\n" + script + "\ncp " + prepared.string() + " \"$4\"\n");
         fs::permissions(builder, fs::perms::owner_all);
     }
     [[nodiscard]] std::size_t builder_runs() const
@@ -193,7 +193,7 @@ TEST_F(Load, reads_a_tet_file_of_the_user_without_building)
 TEST_F(Load, refuses_a_damaged_tet_file_of_the_user)
 {
     const std::string bytes = read_text(prepared);
-    write_text(prepared, bytes.substr(0, bytes.size() - 1));
+    write_file(prepared, bytes.substr(0, bytes.size() - 1));
     request.name = prepared.string();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "invalid_input: reading scene " + prepared.string()));
     EXPECT_EQ(builder_runs(), 0u);
@@ -207,7 +207,7 @@ TEST_F(Load, refuses_a_name_that_is_neither_row_nor_file)
     EXPECT_TRUE(contains(error, "cubes, banana, bunny, armadillo"));
     request.name = folder.path().string();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "invalid_input: reading mesh"));
-    write_text(mesh, "");
+    write_file(mesh, "");
     request.name = mesh.string();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "it is empty"));
     EXPECT_EQ(builder_runs(), 0u);
@@ -219,7 +219,7 @@ TEST_F(Load, says_so_and_builds_again_where_the_cache_s_file_is_damaged)
     const std::string good = read_text(cached());
     const std::string foreign = "OFF, put here by somebody";
     for (const std::string& bad : {good.substr(0, good.size() / 2), std::string(), foreign, good + "x"}) {
-        write_text(cached(), bad);
+        write_file(cached(), bad);
         const LoadedScene loaded = load();
         EXPECT_EQ(loaded.scene, expected());
         EXPECT_FALSE(loaded.from_cache);

@@ -50,7 +50,7 @@ TEST_F(Opencl, survives_a_damaged_program_cache_and_mends_it)
     };
     for (const std::string& damaged : {std::string(), whole.substr(0, 7), whole.substr(0, whole.size() / 2), bent(0),
                                        bent(whole.size() - 1), std::string(100, 'x')}) {
-        write_text(file, damaged);
+        write_file(file, damaged);
         const auto session = backend.open(device, {}, rays.data(), options);
         EXPECT_FALSE(session->setup_times().compile_cached);
         EXPECT_EQ(different_rays(traced(*session, job), openmp_hits(rays, job), 3), 0u);
@@ -62,7 +62,7 @@ TEST_F(Opencl, does_without_a_cache_that_cannot_be_written)
 {
     const DeviceRays rays(make_cubes(3), Layout::tet80);
     const TemporaryFolder folder;
-    write_text(folder / "file", "not a folder");
+    write_file(folder / "file", "not a folder");
     EXPECT_NO_THROW((void)backend.open(usable.front(), {}, rays.data(), {.program_cache = folder / "file"}));
 }
 

@@ -179,7 +179,7 @@ protected:
         std::vector<std::filesystem::path> files;
         for (const json& result : results) {
             files.push_back(folder_ / fmt::format("{}.json", files.size()));
-            write_text(files.back(), result.dump());
+            write_file(files.back(), result.dump());
         }
         return tetrace::report_page(read_report_input(files, std::move(pictures)));
     }
@@ -201,7 +201,7 @@ const std::string
 
 TEST_F(report_page, tags_are_balanced)
 {
-    write_text(folder_ / "a.png", white_pixel);
+    write_file(folder_ / "a.png", white_pixel);
     std::vector<std::string> open;
     for (const std::string& tag : tags_of(page_of({bench_json(), check_json(), reproduce_json()}, {folder_ / "a.png"})))
         if (tag[0] == '/') {
@@ -226,7 +226,7 @@ TEST_F(report_page, names_of_whatever_characters_change_no_markup)
 
 TEST_F(report_page, loads_nothing_and_runs_nothing)
 {
-    write_text(folder_ / "a.png", white_pixel);
+    write_file(folder_ / "a.png", white_pixel);
     const std::string page = page_of({bench_json(hostile), check_json(hostile)}, {folder_ / "a.png"});
     for (const std::string& tag : tags_of(page))
         EXPECT_TRUE(tag != "script" && tag != "link" && tag != "iframe" && tag != "object") << tag;
@@ -316,7 +316,7 @@ TEST_F(report_page, numbers_have_the_decimals_of_their_column)
 
 TEST_F(report_page, pictures_are_in_the_page_byte_for_byte)
 {
-    write_text(folder_ / "bunny-0-normals.png", white_pixel);
+    write_file(folder_ / "bunny-0-normals.png", white_pixel);
     const std::string page = page_of({bench_json()}, {folder_ / "bunny-0-normals.png"});
     EXPECT_TRUE(contains(page, "data:image/png;base64," + base64(white_pixel)));
     json result = reproduce_json();
@@ -390,7 +390,7 @@ protected:
     }
     Browsed browse(const std::string& page)
     {
-        write_text(folder_ / "page.html", page);
+        write_file(folder_ / "page.html", page);
         const auto document = folder_ / "document", log = folder_ / "log";
         const std::string command = fmt::format(
             "HOME='{0}' timeout 60 {1} --headless --no-sandbox --disable-gpu --disable-dev-shm-usage "
@@ -411,7 +411,7 @@ protected:
 
 TEST_F(report_in_chromium, opens_without_a_word_on_the_console_and_every_chart_has_its_data)
 {
-    write_text(folder_ / "a.png", white_pixel);
+    write_file(folder_ / "a.png", white_pixel);
     const Browsed browsed =
         browse(page_of({bench_json(hostile), check_json(hostile), reproduce_json(hostile)}, {folder_ / "a.png"}));
     EXPECT_EQ(browsed.console, "");

@@ -27,7 +27,7 @@ class report_picture : public testing::Test {
 protected:
     std::string error_of_reading(const std::string& bytes)
     {
-        write_text(folder_ / "a.png", bytes);
+        write_file(folder_ / "a.png", bytes);
         return error_of([&] { static_cast<void>(read_picture(folder_ / "a.png")); });
     }
 
@@ -38,7 +38,7 @@ protected:
 
 TEST_F(report_picture, a_ppm_becomes_a_png_of_the_same_pixels)
 {
-    write_text(folder_ / "a.ppm", ppm);
+    write_file(folder_ / "a.ppm", ppm);
     const Png png = read_picture(folder_ / "a.ppm");
     EXPECT_EQ(png.width, 2u);
     EXPECT_EQ(png.height, 1u);
@@ -47,7 +47,7 @@ TEST_F(report_picture, a_ppm_becomes_a_png_of_the_same_pixels)
     EXPECT_EQ(png.bytes.substr(0, 33),
               std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\2\0\0\0\1\x08\2\0\0\0\x7b\x40\xe8\xdd", 33));
     EXPECT_EQ(png.bytes.substr(png.bytes.size() - 12), std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12));
-    write_text(folder_ / "a.png", png.bytes);
+    write_file(folder_ / "a.png", png.bytes);
     EXPECT_EQ(read_picture(folder_ / "a.png").bytes, png.bytes) << "a PNG stays as it is";
 }
 
@@ -66,9 +66,9 @@ TEST_F(report_picture, what_is_no_picture_is_named_with_the_reason)
 
 TEST_F(report_picture, a_named_one_is_shown_or_a_sentence)
 {
-    write_text(folder_ / "a.ppm", ppm);
+    write_file(folder_ / "a.ppm", ppm);
     EXPECT_TRUE(contains(named_picture(folder_.path(), "a.ppm").str(), base64(read_picture(folder_ / "a.ppm").bytes)));
-    write_text(folder_ / "cut.ppm", ppm.substr(0, 14));
+    write_file(folder_ / "cut.ppm", ppm.substr(0, 14));
     const std::string cut = named_picture(folder_.path(), "cut.ppm").str();
     EXPECT_TRUE(contains(cut, "&apos;cut.ppm&apos;, which the result names, is not shown: it has not the bytes"));
     EXPECT_FALSE(contains(cut, folder_.path().string()));

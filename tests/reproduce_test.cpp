@@ -115,7 +115,7 @@ TEST_F(reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
     const std::string octahedron = "OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n"
                                    "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n";
     for (const char* const name : {"dragon.off", "armadillo.off"})
-        write_text(folder_ / name, octahedron);
+        write_file(folder_ / name, octahedron);
     const Ended ended = run("table3 --scene dragon.off,armadillo.off --method maria --layout tet80 --size 8 "
                             "--samples 3 --views 0 --out r.json");
     ASSERT_TRUE(ended.code == 0 || ended.code == 3) << ended.errors; // 3: no TetGen is built here
@@ -161,7 +161,7 @@ TEST_F(reproduce, table6_is_the_same_again_from_its_journal_build_times_too)
     std::string journal = read_text(folder_ / "r.json.journal");
     const std::size_t place = journal.find("\"build_s\":");
     ASSERT_NE(place, std::string::npos);
-    write_text(folder_ / "r.json.journal", journal.insert(place + 10, 1, '-'));
+    write_file(folder_ / "r.json.journal", journal.insert(place + 10, 1, '-'));
     EXPECT_TRUE(contains(run(arguments + " --resume").errors, "a build time in the journal is damaged"));
 }
 

@@ -62,7 +62,7 @@ class result_comparison : public testing::Test {
 protected:
     const ResultFile& file(const char* name, const Json& json)
     {
-        write_text(folder_ / name, json.dump());
+        write_file(folder_ / name, json.dump());
         return files_.emplace_back(read_result(folder_ / name));
     }
     ResultComparison compare(const Json& before, const Json& after, const std::string& filter = {})

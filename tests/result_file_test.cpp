@@ -24,7 +24,7 @@ class result_file : public testing::Test {
 protected:
     [[nodiscard]] ResultFile read(const std::string& text) const
     {
-        write_text(folder_ / "a.json", text);
+        write_file(folder_ / "a.json", text);
         return read_result(folder_ / "a.json");
     }
     [[nodiscard]] std::string error_of_text(const std::string& text) const

@@ -24,7 +24,7 @@ TEST_F(resume, a_damaged_journal_is_refused)
             if (number == 2) damage(entry, entry["rows"].front());
             damaged += entry.dump() + "\n";
         }
-        write_text(folder_ / "r.json.journal", damaged);
+        write_file(folder_ / "r.json.journal", damaged);
         const Ended ended = run(arguments + " --resume");
         return std::to_string(ended.code) + " " + ended.errors;
     };
@@ -58,7 +58,7 @@ TEST_F(resume, a_damaged_yardstick_in_the_journal_is_refused)
     std::string journal = read_text(folder_ / "r.json.journal");
     const std::size_t place = journal.find("\"copy_bytes_per_s\":");
     ASSERT_NE(place, std::string::npos);
-    write_text(folder_ / "r.json.journal", journal.insert(place + 19, 1, '-'));
+    write_file(folder_ / "r.json.journal", journal.insert(place + 19, 1, '-'));
     const Ended ended = run(arguments + " --resume");
     EXPECT_EQ(ended.code, 2);
     EXPECT_TRUE(contains(ended.errors, "a yardstick in the journal is damaged; remove 'r.json.journal'"));

@@ -41,7 +41,7 @@ protected:
     /// What reading these bytes says.
     std::string error_with(const std::string& bytes)
     {
-        write_text(path, bytes);
+        write_file(path, bytes);
         return error_of([&] { (void)read_scene(path); });
     }
     std::uint64_t word(std::size_t at) const

@@ -69,7 +69,7 @@ inline std::string read_text(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-inline void write_text(const std::filesystem::path& path, const std::string& text)
+inline void write_file(const std::filesystem::path& path, const std::string& text)
 {
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path, std::ios::binary) << text;

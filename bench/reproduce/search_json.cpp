@@ -39,7 +39,7 @@ json search_row_json(const SearchRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
     json object = row_json(row);
-    for (const char* key : {"scene", "structure", "rays", "order", "counts", "rates"})
+    for (const char* key : {"scene", "structure", "rays", "ray_order", "order", "counts", "rates"})
         object.erase(key);
     object["host_threads"] = row.key.threads == 0 ? run.threads : row.key.threads;
     const Traced* result = traced(row);
