@@ -1,11 +1,12 @@
 // A tube along an arc of a circle; its radius tapers towards both ends and closes there with round caps. Only + - * /
-// and square roots of doubles, so the same bits come out everywhere: rings and sides turn by steps whose sine and
-// cosine are power series, and the arc is the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
+// and square roots of doubles, so the same bits come out everywhere: rings and sides turn by constants, and the arc is
+// the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
 #include "scenes/procedural.h"
 
 #include "core/error.h"
 #include "scenes/catalogue.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@ namespace tetrace {
 
 namespace {
 
+constexpr std::uint32_t rings = 125;  ///< between the two tips
+constexpr std::uint32_t sides = 100;  ///< vertices of a ring
 constexpr double arc_end = 0.55;      ///< t at a tip: tan of a quarter of the angle of the arc, 115 degrees
 constexpr double thickness = 0.26;    ///< the tube's radius in its middle; the arc's is 1
 constexpr double taper = 0.4;         ///< share of it that is gone where the caps begin
@@ -24,33 +27,8 @@ struct Turn {
 
     friend Turn operator*(Turn a, Turn b) { return {a.cos * b.cos - a.sin * b.sin, a.cos * b.sin + a.sin * b.cos}; }
 };
-
-/// By an angle of at most 1: the series' next term is below 1e-20.
-Turn turn_by(double angle)
-{
-    const double square = angle * angle;
-    double cos = 1, sin = 1;
-    for (int i = 20; i > 0; i -= 2) {
-        cos = 1 - cos * square / (i * (i - 1));
-        sin = 1 - sin * square / (i * (i + 1));
-    }
-    return {cos, sin * angle};
-}
-
-/// A ring has sides triangles towards each of its two neighbours; there are about five rings to four sides.
-struct Shape {
-    std::uint32_t rings, sides; ///< between the two tips; vertices of a ring
-    Turn ring_step, side_step;
-
-    explicit Shape(std::uint32_t triangles)
-    {
-        constexpr double pi = 3.14159265358979323846;
-        sides = static_cast<std::uint32_t>(std::lround(std::sqrt(triangles / 2.5)));
-        rings = triangles / (2 * sides);
-        ring_step = turn_by(pi / (rings + 1));
-        side_step = turn_by(2 * pi / sides);
-    }
-};
+constexpr Turn side_step = {0.9980267284282716, 0.06279051952931337};  ///< 2 pi / sides
+constexpr Turn ring_step = {0.9996891820008162, 0.024930691738072875}; ///< pi / (rings + 1)
 
 /// The tube's radius at s in [-1, 1] along the arc.
 double radius_at(double s)
@@ -82,13 +60,13 @@ Float3 tube_point(double s, double distance, Turn side)
     return to_float({tidy(outwards.x * reach), tidy(outwards.y * reach), tidy(distance * side.sin)});
 }
 
-std::vector<Float3> make_vertices(const Shape& shape)
+std::vector<Float3> make_vertices()
 {
     std::vector<Float3> vertices;
-    Turn ring = shape.ring_step;
-    for (std::uint32_t i = 0; i < shape.rings; ++i, ring = ring * shape.ring_step) {
+    Turn ring = ring_step;
+    for (std::uint32_t i = 0; i < rings; ++i, ring = ring * ring_step) {
         Turn side;
-        for (std::uint32_t j = 0; j < shape.sides; ++j, side = side * shape.side_step)
+        for (std::uint32_t j = 0; j < sides; ++j, side = side * side_step)
             vertices.push_back(tube_point(ring.cos, radius_at(ring.cos) * ridges_at(side), side));
     }
     vertices.push_back(tube_point(1, 0, {}));
@@ -96,18 +74,97 @@ std::vector<Float3> make_vertices(const Shape& shape)
     return vertices;
 }
 
+/// By an angle of at most 1.6: the series' next term is below 1e-16.
+Turn turn_by(double angle)
+{
+    const double square = angle * angle;
+    double cos = 1, sin = 1;
+    for (int i = 20; i > 0; i -= 2) {
+        cos = 1 - cos * square / (i * (i - 1));
+        sin = 1 - sin * square / (i * (i + 1));
+    }
+    return {cos, sin * angle};
+}
+
+/// The tube in triangles of about one size: an octahedron with a long waist. From either tip on, `levels` rings have 4
+/// vertices more each, and three times as many lie between those; neighbours are as far apart as their sides are long.
+class EvenBanana {
+public:
+    explicit EvenBanana(std::uint32_t levels) : levels_(levels)
+    {
+        for (std::uint32_t ring = 0; ring <= last_ring(); ++ring)
+            add_ring(ring);
+        for (std::uint32_t ring = 0; ring < last_ring(); ++ring)
+            connect(ring);
+    }
+
+    TriangleMesh mesh;
+
+private:
+    [[nodiscard]] std::uint32_t last_ring() const { return 5 * levels_; }
+    /// Vertices of a ring in a quarter turn; a tip has none.
+    [[nodiscard]] std::uint32_t quarter(std::uint32_t ring) const
+    {
+        return std::min({ring, last_ring() - ring, levels_});
+    }
+
+    void add_ring(std::uint32_t ring)
+    {
+        constexpr double pi = 3.14159265358979323846;
+        first_.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+        const std::uint32_t count = 4 * quarter(ring);
+        if (count == 0) {
+            mesh.vertices.push_back(tube_point(ring == 0 ? 1 : -1, 0, {}));
+            return;
+        }
+        const Turn step = turn_by(2 * pi / count);
+        along_ = along_ * turn_by(pi / last_ring());
+        Turn side;
+        for (std::uint32_t i = 0; i < count; ++i, side = side * step)
+            mesh.vertices.push_back(tube_point(along_.cos, radius_at(along_.cos) * ridges_at(side), side));
+    }
+
+    [[nodiscard]] std::uint32_t vertex(std::uint32_t ring, std::uint32_t quadrant, std::uint32_t i) const
+    {
+        const std::uint32_t count = quarter(ring);
+        return count == 0 ? first_[ring] : first_[ring] + (quadrant * count + i) % (4 * count);
+    }
+
+    /// A triangle for each side of this ring, and for each of the next.
+    void connect(std::uint32_t ring)
+    {
+        const std::uint32_t here = quarter(ring), there = quarter(ring + 1);
+        for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+            for (std::uint32_t i = 0; i < here; ++i)
+                mesh.triangles.push_back({vertex(ring, quadrant, i), vertex(ring, quadrant, i + 1),
+                                          vertex(ring + 1, quadrant, i + (here >= there ? 0 : 1))});
+            for (std::uint32_t i = 0; i < there; ++i)
+                mesh.triangles.push_back({vertex(ring, quadrant, i + (here < there ? 0 : 1)),
+                                          vertex(ring + 1, quadrant, i + 1), vertex(ring + 1, quadrant, i)});
+        }
+    }
+
+    std::uint32_t levels_;
+    std::vector<std::uint32_t> first_; ///< vertex of each ring
+    Turn along_;                       ///< of the half circle whose projection has the rings
+};
+
 } // namespace
 
-// Rings lie closer towards the tips, where the caps bend most: they are the projection of a half circle on the arc.
 TriangleMesh make_banana(std::uint32_t triangles)
 {
     if (triangles < least_banana || triangles > most_banana)
         throw Error(ErrorKind::usage, fmt::format("making scene banana: {} triangles; {} to {} are possible", triangles,
                                                   least_banana, most_banana));
-    const Shape shape(triangles);
-    const std::uint32_t rings = shape.rings, sides = shape.sides;
+    constexpr double triangles_of_one_level = 32;
+    return EvenBanana(static_cast<std::uint32_t>(std::lround(std::sqrt(triangles / triangles_of_one_level)))).mesh;
+}
+
+// Rings lie closer towards the tips, where the caps bend most: they are the projection of a half circle on the arc.
+TriangleMesh make_banana()
+{
     TriangleMesh mesh;
-    mesh.vertices = make_vertices(shape);
+    mesh.vertices = make_vertices();
     const std::uint32_t first_tip = rings * sides, last_tip = first_tip + 1;
     for (std::uint32_t j = 0; j < sides; ++j) {
         const std::uint32_t next = (j + 1) % sides;

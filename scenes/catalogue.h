@@ -27,8 +27,8 @@ struct CatalogueEntry {
 [[nodiscard]] const std::vector<CatalogueEntry>& catalogue();
 
 /// Triangles that the catalogue's `banana` can be made with.
-inline constexpr std::uint32_t least_banana = 200, most_banana = 4'000'000;
-/// The number in a name such as "banana@100000", the same shape made finer or coarser; empty for another name.
+inline constexpr std::uint32_t least_banana = 500, most_banana = 4'000'000;
+/// The number in a name such as "banana@100000", the same shape in about so many triangles; empty for another name.
 /// Throws Error{usage} for what is no number in that range.
 [[nodiscard]] std::optional<std::uint32_t> banana_triangles(const std::string& name);
 

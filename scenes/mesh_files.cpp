@@ -76,6 +76,18 @@ std::string off_text(const TriangleMesh& mesh)
     return text;
 }
 
+fs::path banana_file(const TriangleMesh& mesh)
+{
+    const std::string text = off_text(mesh);
+    fs::path target = cached_mesh_path("banana.off", hash_of(text));
+    std::ifstream present(target, std::ios::binary);
+    if (present && std::string(std::istreambuf_iterator<char>(present), {}) == text) return target;
+    AtomicFile file(target);
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+    return target;
+}
+
 } // namespace
 
 MeshLocation locate_mesh(const CatalogueEntry& entry)
@@ -102,19 +114,12 @@ MeshLocation locate_mesh(const CatalogueEntry& entry)
 
 fs::path banana_file(std::uint32_t triangles)
 {
-    const std::string text = off_text(make_banana(triangles));
-    fs::path target = cached_mesh_path("banana.off", hash_of(text));
-    std::ifstream present(target, std::ios::binary);
-    if (present && std::string(std::istreambuf_iterator<char>(present), {}) == text) return target;
-    AtomicFile file(target);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
-    return target;
+    return banana_file(make_banana(triangles));
 }
 
 fs::path mesh_file(const CatalogueEntry& entry)
 {
-    if (entry.source == SceneSource::banana) return banana_file(25'000);
+    if (entry.source == SceneSource::banana) return banana_file(make_banana());
     const MeshLocation found = locate_mesh(entry);
     if (!found.reason.empty()) throw Error(ErrorKind::missing, found.reason);
     return found.file.empty() ? unpacked(entry, found.archive) : found.file;

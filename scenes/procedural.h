@@ -12,10 +12,14 @@ namespace tetrace {
 /// surface is closed from 3 on; at 2 it is that of one corner cube, open towards the domain's boundary.
 [[nodiscard]] Scene make_cubes(std::uint32_t resolution);
 
-/// A curved, tapering, capped tube in mesh units: so many triangles or a few less, closed, the same bits everywhere.
-/// With 25,000 its CDT with the default switches keeps them whole and has about 71,000 tets, the size of the paper's
-/// smallest scene (Table 3's banana). triangles: least_banana to most_banana (scenes/catalogue.h), else throws
-/// Error{usage}.
-[[nodiscard]] TriangleMesh make_banana(std::uint32_t triangles = 25'000);
+/// A curved, tapering, capped tube in mesh units: 25,000 triangles, closed, the same bits everywhere. Its CDT with the
+/// default switches keeps them whole and has about 71,000 tets, the size of the paper's smallest scene (Table 3's
+/// banana).
+[[nodiscard]] TriangleMesh make_banana();
+
+/// The same tube in about so many triangles of about one size: needles at the tips, as rings of equal numbers of
+/// vertices have them, would be too thin for floats in fine meshes.
+/// triangles: least_banana to most_banana (scenes/catalogue.h), else throws Error{usage}.
+[[nodiscard]] TriangleMesh make_banana(std::uint32_t triangles);
 
 } // namespace tetrace

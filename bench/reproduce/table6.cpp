@@ -283,7 +283,7 @@ PaperFigure ratio_figure(const SceneRun& run, const std::string& type, const std
                        fmt::format("Time of a BVH over the CDT's, view by view: {}, {}", run.build.scene, type),
                        source(),
                        {"views that have at most this ratio", "%"},
-                       {"time of the BVH over the CDT's", ""},
+                       {"time of the BVH over the CDT's", "", true},
                        {},
                        {},
                        {},
