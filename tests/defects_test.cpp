@@ -111,7 +111,7 @@ TEST(Defects, are_those_that_each_implementation_is_known_for)
 
 TEST(Defects, a_kernels_wrong_items_are_counted)
 {
-    const Defect& defect = all_defects().front();
+    const Defect defect = all_defects().front();
     Words results(items);
     for (std::uint32_t item = 0; item < items; item++)
         results[item] = defect.expected(item);
