@@ -2,35 +2,44 @@
 
 #include "core/error.h"
 
-#include <zlib.h>
+#include <lzma.h>
+
+#include <algorithm>
+#include <limits>
 
 namespace tetrace {
 
 namespace {
 
-bool unpack(std::span<const unsigned char> packed, std::span<std::byte> bytes)
+/// Throws Error{internal}.
+std::vector<std::byte> unpack(std::span<const unsigned char> stream, std::size_t length)
 {
-    constexpr int gzip_windows = 15 + 16;
-    z_stream stream{};
-    if (inflateInit2(&stream, gzip_windows) != Z_OK) return false;
-    stream.next_in = const_cast<unsigned char*>(packed.data()); // zlib reads it only
-    stream.avail_in = static_cast<unsigned>(packed.size());
-    stream.next_out = reinterpret_cast<unsigned char*>(bytes.data());
-    stream.avail_out = static_cast<unsigned>(bytes.size());
-    const int result = inflate(&stream, Z_FINISH);
-    const bool whole = result == Z_STREAM_END && stream.avail_out == 0;
-    inflateEnd(&stream);
-    return whole;
+    std::vector<std::byte> bytes(length);
+    std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();
+    std::size_t read = 0, written = 0;
+    const lzma_ret result =
+        lzma_stream_buffer_decode(&memory, 0, nullptr, stream.data(), &read, stream.size(),
+                                  reinterpret_cast<unsigned char*>(bytes.data()), &written, bytes.size());
+    if (result != LZMA_OK || read != stream.size() || written != length)
+        throw Error(ErrorKind::internal, "the embedded kernels cannot be unpacked: xz says " + std::to_string(result) +
+                                             " after " + std::to_string(written) + " of " + std::to_string(length) +
+                                             " bytes");
+    return bytes;
 }
 
 } // namespace
 
-UnpackedKernels::UnpackedKernels(std::span<const PackedKernel> packed)
+UnpackedKernels::UnpackedKernels(std::span<const PackedKernel> packed, std::span<const unsigned char> stream)
 {
+    std::size_t length = 0;
+    for (const PackedKernel& kernel : packed)
+        length += kernel.length;
+    const std::vector<std::byte> all = unpack(stream, length);
+    auto next = all.begin();
     for (const PackedKernel& kernel : packed) {
         auto& bytes = storage_.emplace_back(kernel.length + 1); // the closing 0
-        if (!unpack(kernel.bytes, std::span(bytes).first(kernel.length)))
-            throw Error(ErrorKind::internal, "the embedded kernel " + std::string(kernel.name) + " cannot be unpacked");
+        std::copy_n(next, kernel.length, bytes.begin());
+        next += static_cast<std::ptrdiff_t>(kernel.length);
         list_.push_back({kernel.name, std::span(bytes).first(kernel.length)});
     }
 }

@@ -18,18 +18,17 @@ struct EmbeddedKernel {
     [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 };
 
-/// A kernel as it lies in the program: gzip's bytes, a third of its own or less.
+/// A kernel in the packed stream that the program carries, in which all of a list stand one behind the other.
 struct PackedKernel {
     std::string_view name;
-    std::span<const unsigned char> bytes;
-    std::size_t length; ///< of what they unpack to
+    std::size_t length; ///< of what it unpacks to
 };
 
-/// Kernels unpacked, all at once: a list's first use takes some 10 ms.
-/// Throws Error{internal} naming the kernel whose bytes are not gzip's of that length.
+/// Kernels unpacked, all at once: a list's first use takes some 50 ms.
+/// stream: xz's. Throws Error{internal} where its bytes are not xz's, or not of that length in all.
 class UnpackedKernels {
 public:
-    explicit UnpackedKernels(std::span<const PackedKernel> packed);
+    UnpackedKernels(std::span<const PackedKernel> packed, std::span<const unsigned char> stream);
     [[nodiscard]] std::span<const EmbeddedKernel> list() const { return list_; }
 
 private:

@@ -39,7 +39,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
 endif()
 
-find_program(TETRACE_GZIP gzip REQUIRED DOC "Packs the kernels that the program carries")
+find_program(TETRACE_XZ xz REQUIRED DOC "Packs the kernels that the program carries, and the bundle's scenes")
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
 
@@ -60,7 +60,7 @@ function(tetrace_embed output namespace)
   set(files ${ARGN})
   list(TRANSFORM files REPLACE "^[^=]*=" "")
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DNAMESPACE=${namespace} -DGZIP=${TETRACE_GZIP} "-DFILES=${ARGN}"
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DNAMESPACE=${namespace} -DXZ=${TETRACE_XZ} "-DFILES=${ARGN}"
             -P ${tetrace_kernels_scripts}/embed.cmake
     DEPENDS ${files} ${tetrace_kernels_scripts}/embed.cmake
     COMMENT "Embedding kernels of ${namespace}" VERBATIM)

@@ -3,32 +3,28 @@
 #include "core/error.h"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
+#include <lzma.h>
 
 using namespace tetrace;
 
 namespace {
 
-std::vector<unsigned char> gzipped(std::string_view text)
+std::vector<unsigned char> packed_by_xz(std::string_view text)
 {
-    std::vector<unsigned char> packed(text.size() + 64);
-    z_stream stream{};
-    EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
-    stream.next_in = reinterpret_cast<unsigned char*>(const_cast<char*>(text.data()));
-    stream.avail_in = static_cast<unsigned>(text.size());
-    stream.next_out = packed.data();
-    stream.avail_out = static_cast<unsigned>(packed.size());
-    EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-    packed.resize(stream.total_out);
-    deflateEnd(&stream);
-    return packed;
+    std::vector<unsigned char> stream(lzma_stream_buffer_bound(text.size()));
+    std::size_t length = 0;
+    EXPECT_EQ(lzma_easy_buffer_encode(6, LZMA_CHECK_CRC64, nullptr, reinterpret_cast<const unsigned char*>(text.data()),
+                                      text.size(), stream.data(), &length, stream.size()),
+              LZMA_OK);
+    stream.resize(length);
+    return stream;
 }
 
-std::string rejection(std::span<const unsigned char> bytes, std::size_t length)
+std::string rejection(std::span<const unsigned char> stream, std::size_t length)
 {
-    const PackedKernel packed[] = {{"maria", bytes, length}};
+    const PackedKernel packed[] = {{"maria", length}};
     try {
-        const UnpackedKernels kernels(packed);
+        const UnpackedKernels kernels(packed, stream);
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::internal);
         return error.what();
@@ -40,24 +36,28 @@ std::string rejection(std::span<const unsigned char> bytes, std::size_t length)
 
 TEST(embedded, kernels_are_unpacked_under_their_names_with_a_0_behind_them)
 {
-    const auto first = gzipped("void first() {}"), second = gzipped("");
-    const PackedKernel packed[] = {{"first", first, 15}, {"second", second, 0}};
-    const UnpackedKernels kernels(packed);
-    ASSERT_EQ(kernels.list().size(), 2u);
+    const auto stream = packed_by_xz("void first() {}void third() {}");
+    const PackedKernel packed[] = {{"first", 15}, {"second", 0}, {"third", 15}};
+    const UnpackedKernels kernels(packed, stream);
+    ASSERT_EQ(kernels.list().size(), 3u);
     const EmbeddedKernel* kernel = find_kernel(kernels.list(), "first");
     ASSERT_NE(kernel, nullptr);
     EXPECT_EQ(kernel->text(), "void first() {}");
     EXPECT_STREQ(kernel->text().data(), "void first() {}");
     EXPECT_EQ(find_kernel(kernels.list(), "second")->text(), "");
-    EXPECT_EQ(find_kernel(kernels.list(), "third"), nullptr);
+    EXPECT_EQ(find_kernel(kernels.list(), "third")->text(), "void third() {}");
+    EXPECT_EQ(find_kernel(kernels.list(), "fourth"), nullptr);
 }
 
-TEST(embedded, bytes_that_are_not_gzips_or_of_another_length_are_an_error_that_names_the_kernel)
+TEST(embedded, a_stream_that_is_not_xzs_or_of_another_length_is_an_error_that_says_so)
 {
-    const auto packed = gzipped("void first() {}");
-    EXPECT_EQ(rejection(packed, 15), "accepted");
+    const auto stream = packed_by_xz("void first() {}");
+    EXPECT_EQ(rejection(stream, 15), "accepted");
     for (const std::size_t length : {std::size_t{14}, std::size_t{16}})
-        EXPECT_EQ(rejection(packed, length), "the embedded kernel maria cannot be unpacked") << length;
-    EXPECT_NE(rejection(std::span(packed).first(packed.size() - 1), 15), "accepted");
-    EXPECT_NE(rejection(std::span(packed).subspan(1), 15), "accepted");
+        EXPECT_NE(rejection(stream, length).find("cannot be unpacked"), std::string::npos) << length;
+    EXPECT_NE(rejection(std::span(stream).first(stream.size() - 1), 15), "accepted");
+    EXPECT_NE(rejection(std::span(stream).subspan(1), 15), "accepted");
+    auto damaged = stream;
+    damaged[damaged.size() / 2] ^= 0x10;
+    EXPECT_NE(rejection(damaged, 15), "accepted");
 }
