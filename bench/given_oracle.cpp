@@ -20,23 +20,6 @@ static_assert(FREE_FACE == NO_HIT, "a ray that starts on no triangle starts on n
 
 constexpr std::size_t rays_at_once = 1024; // judged by one thread, one after the other
 
-RTCRayHit embree_query(const ExactRay& ray, float near, float end)
-{
-    RTCRayHit query{};
-    query.ray.org_x = ray.origin.x;
-    query.ray.org_y = ray.origin.y;
-    query.ray.org_z = ray.origin.z;
-    query.ray.dir_x = ray.direction.x;
-    query.ray.dir_y = ray.direction.y;
-    query.ray.dir_z = ray.direction.z;
-    query.ray.tnear = near;
-    query.ray.tfar = end;
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
-    return query;
-}
-
 struct Reference {
     std::uint32_t face = NO_HIT;
     float t = 0;
@@ -48,7 +31,7 @@ Reference embree_nearest(const embree::Accelerator& accelerator, const ExactRay&
 {
     float near = 0;
     while (near <= part.end) {
-        RTCRayHit query = embree_query(ray, near, part.end);
+        RTCRayHit query = embree::query_of(ray.origin, ray.direction, near, part.end);
         accelerator.intersect(query, embree::Coherence::incoherent);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
         if (query.hit.primID != part.start) return {query.hit.primID, query.ray.tfar};

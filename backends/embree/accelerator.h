@@ -17,6 +17,24 @@ namespace tetrace::embree {
 /// What a query asks of Embree; the two major versions spell it differently.
 enum class Coherence { coherent, incoherent };
 
+/// A query of one ray, from parameter `near` to `end`.
+[[nodiscard]] inline RTCRayHit query_of(Float3 origin, Float3 direction, float near, float end)
+{
+    RTCRayHit query{};
+    query.ray.org_x = origin.x;
+    query.ray.org_y = origin.y;
+    query.ray.org_z = origin.z;
+    query.ray.dir_x = direction.x;
+    query.ray.dir_y = direction.y;
+    query.ray.dir_z = direction.z;
+    query.ray.tnear = near;
+    query.ray.tfar = end;
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
 /// A triangle mesh in an Embree scene of its own device, built with quality high.
 class Accelerator {
 public:

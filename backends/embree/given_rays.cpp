@@ -24,6 +24,11 @@ tetrace::Hit any_hit(float end)
     return {end < 0 ? SOME_HIT : NO_HIT, NO_TET, 0, 0, 0, 0};
 }
 
+Float3 vector_of(const Row& row)
+{
+    return {std::bit_cast<float>(row.x), std::bit_cast<float>(row.y), std::bit_cast<float>(row.z)};
+}
+
 /// Rows as two lists (kernels/layout.h), and what is asked of each ray.
 struct Rays {
     std::span<const Row> directions, origins;
@@ -32,19 +37,9 @@ struct Rays {
 
 tetrace::Hit trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number)
 {
-    const Row& direction = rays.directions[number];
     const Row& origin = rays.origins[number];
-    RTCRayHit query{};
-    query.ray.org_x = std::bit_cast<float>(origin.x);
-    query.ray.org_y = std::bit_cast<float>(origin.y);
-    query.ray.org_z = std::bit_cast<float>(origin.z);
-    query.ray.dir_x = std::bit_cast<float>(direction.x);
-    query.ray.dir_y = std::bit_cast<float>(direction.y);
-    query.ray.dir_z = std::bit_cast<float>(direction.z);
-    query.ray.tfar = std::bit_cast<float>(origin.w);
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query =
+        query_of(vector_of(origin), vector_of(rays.directions[number]), 0, std::bit_cast<float>(origin.w));
     if (rays.any_hit) {
         accelerator.occluded(query.ray, Coherence::incoherent);
         return any_hit(query.ray.tfar);

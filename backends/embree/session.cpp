@@ -26,17 +26,9 @@ tetrace::Hit hit_of(unsigned primitive, float t, float u, float v)
 tetrace::Hit trace_one(const Accelerator& accelerator, const TraceParams& params, std::uint32_t x, std::uint32_t y)
 {
     const Ray ray = primary_ray(params, x, y);
-    RTCRayHit query{};
-    query.ray.org_x = ray.origin.x;
-    query.ray.org_y = ray.origin.y;
-    query.ray.org_z = ray.origin.z;
-    query.ray.dir_x = ray.direction.x;
-    query.ray.dir_y = ray.direction.y;
-    query.ray.dir_z = ray.direction.z;
-    query.ray.tfar = std::numeric_limits<float>::infinity();
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+    RTCRayHit query =
+        query_of({ray.origin.x, ray.origin.y, ray.origin.z}, {ray.direction.x, ray.direction.y, ray.direction.z}, 0,
+                 std::numeric_limits<float>::infinity());
     accelerator.intersect(query, Coherence::coherent);
     return hit_of(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
 }
