@@ -151,8 +151,8 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options)
     write_text(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
 }
 
-/// Rows of Embree's own BVH and of drivers' are judged only where somebody asks for them: they make no claim that can be
-/// broken.
+/// Rows of Embree's own BVH and of drivers' are judged only where somebody asks for them: they make no claim that can
+/// be broken.
 Options with_default_layouts(Options options)
 {
     const auto& required = options.required;

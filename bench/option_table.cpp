@@ -189,7 +189,8 @@ std::vector<OptionRow> row_options()
     const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves the rows of Embree's and a driver's own BVHs out unless "
+         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves the rows of Embree's and a "
+         "driver's own BVHs out unless "
          "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",

@@ -40,14 +40,10 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
             real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
             real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
             bool b_first = b < a;
-            child = b_first ? children.y : children.x;
+            child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x; // neither: an empty leaf
             stack[waiting] = b_first ? children.x : children.y;
             depths[waiting] = maximum(a, b);
             waiting += maximum(a, b) < NEVER ? 1u : 0u;
-            if (minimum(a, b) == NEVER) {
-                waiting--;
-                child = stack[waiting];
-            }
         }
         if (child != BVH2_END) {
             uint at = (child & ~BVH2_LEAF) >> 4u;
