@@ -7,6 +7,7 @@
 #include "bench/text.h"
 
 #include <fmt/format.h>
+#include <set>
 
 namespace tetrace {
 
@@ -33,19 +34,22 @@ std::string timed_sentence(const BenchResult& result, const Options& options)
         name_of(options.camera_set), options.width, options.height, resolved_threads(options));
 }
 
-/// How many steps a ray takes in the scene, which is the same for all its rows of one method.
-std::string steps_sentence(const std::string& scene, const std::vector<RowRun>& rows)
+/// How many steps a ray of each kind takes in the scene, which is the same for all its rows of one method.
+std::string steps_sentences(const std::string& scene, const std::vector<RowRun>& rows)
 {
+    std::string text;
+    std::set<RayKind> told;
     for (const RowRun* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
         const MeanSteps mean = result != nullptr ? mean_steps(result->totals) : MeanSteps{};
-        if (!mean.all) continue;
-        std::string text = fmt::format("{:.2f} steps a ray", *mean.all);
+        if (!mean.all || !told.insert(row->key.rays).second) continue;
+        text += row->key.rays == RayKind::primary ? "" : fmt::format("{}: ", name_of(row->key.rays));
+        text += fmt::format("{:.2f} steps a ray", *mean.all);
         if (mean.hit && mean.miss)
             text += fmt::format(": {:.2f} where it hits, {:.2f} where not", *mean.hit, *mean.miss);
-        return text + "\n";
+        text += "\n";
     }
-    return {};
+    return text;
 }
 
 /// What a ray visits in each BVH, kind after kind.
@@ -186,7 +190,7 @@ Report bench_report(const BenchResult& result, const Options& options)
 {
     Report report{{}, flat_table(result), bench_json(result, options)};
     for (const auto& scene : result.run.scenes)
-        report.text += scene_headline(*scene, result.run.rows) + steps_sentence(scene->label(), result.run.rows) +
+        report.text += scene_headline(*scene, result.run.rows) + steps_sentences(scene->label(), result.run.rows) +
                        visits_sentences(scene->label(), result.run.rows) + "\n" +
                        rate_table(scene->label(), result).text(2) + "\n";
     if (result.measurement.wall_s > 0)

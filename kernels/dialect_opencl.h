@@ -32,11 +32,11 @@ KERNEL_FN real square_root(real value)
 }
 KERNEL_FN real minimum(real a, real b)
 {
-    return fmin(a, b);
+    return min(a, b); // fmin cares for NaN, which costs processors several instructions
 }
 KERNEL_FN real maximum(real a, real b)
 {
-    return fmax(a, b);
+    return max(a, b);
 }
 KERNEL_FN uint highest_bit(uint value)
 {

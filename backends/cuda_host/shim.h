@@ -31,6 +31,16 @@ extern constinit thread_local Dimensions current_thread, current_block, block_si
 
 constexpr std::uint32_t warp_size = 1;
 
+// Of two numbers. What the device does in an instruction, the host's library does in a call, for the sake of NaN.
+inline float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+inline float greater(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 } // namespace tetrace::cuda_host
 
 // CUDA's built-in variables. They are macros because a thread's own variables cannot have another name.
@@ -38,6 +48,8 @@ constexpr std::uint32_t warp_size = 1;
 #define blockIdx (::tetrace::cuda_host::current_block)
 #define blockDim (::tetrace::cuda_host::block_size)
 #define warpSize (::tetrace::cuda_host::warp_size)
+#define fminf(a, b) (::tetrace::cuda_host::lesser((a), (b)))
+#define fmaxf(a, b) (::tetrace::cuda_host::greater((a), (b)))
 
 template <class Element>
 Element __ldg(const Element* element)
