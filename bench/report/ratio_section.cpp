@@ -17,6 +17,7 @@ const char* const how_to_read =
 struct RatioKey {
     std::size_t file;
     std::string scene;
+    std::string rays; ///< kind
     DeviceClass device_class;
     std::string reference; ///< API
 
@@ -48,7 +49,8 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
 {
     const ResultValue name = ratio.at("row");
     const ReportRow& row = row_named(input, file, name);
-    const RatioKey key{file, row.row->scene, row.device_class, row_named(input, file, ratio.at("reference")).api};
+    const RatioKey key{file, row.row->scene, row.rays, row.device_class,
+                       row_named(input, file, ratio.at("reference")).api};
     auto group = std::find_if(groups.begin(), groups.end(), [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
     group->intervals.push_back({row.name(), row.kernel + "  " + row.api, "", api_series(row.row->backend),
@@ -59,8 +61,8 @@ Html chart_of(const RatioGroup& group, const ReportInput& input)
 {
     const RatioKey& key = group.key;
     const std::string letter = file_letter(key.file, input.files.size());
-    const std::string title =
-        fmt::format("{}, {}{}", key.scene, name_of(key.device_class), letter.empty() ? "" : " · " + letter);
+    const std::string title = fmt::format("{}, {}{}{}", key.scene, key.rays == "primary" ? "" : key.rays + " rays, ",
+                                          name_of(key.device_class), letter.empty() ? "" : " · " + letter);
     return figure(title,
                   draw(IntervalChart{fmt::format("Rates over those of {}: {}", key.reference, title),
                                      "slower than " + key.reference, "faster", group.intervals}),

@@ -65,7 +65,7 @@ std::string unusual_parts(const std::string& name)
     for (std::size_t begin = 0; begin <= name.size();) {
         const std::size_t end = std::min(name.find('/', begin), name.size());
         const std::string part = name.substr(begin, end - begin);
-        for (const char* const key : {"order:", "schedule:"})
+        for (const char* const key : {"order:", "schedule:", "rays:"})
             if (part.starts_with(key)) parts.append(" ").append(part, part.find(':') + 1);
         begin = end + 1;
     }

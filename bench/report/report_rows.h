@@ -32,6 +32,8 @@ struct ReportRow {
     std::optional<RowRate> rate;
 
     [[nodiscard]] const std::string& name() const { return row->name; }
+    /// With the kind of rays behind it, where these are not primary ones.
+    [[nodiscard]] std::string kernel_and_rays() const { return rays == "primary" ? kernel : kernel + ", " + rays; }
 };
 
 /// Rows of any file that trace the same rays through the same scene on devices of one class.

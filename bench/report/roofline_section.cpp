@@ -41,7 +41,7 @@ void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
 {
     const RowRate& rate = *row.rate;
     roof.device_class = row.device_class;
-    roof.roofline.points.push_back({row.name(), without_structure(row.kernel) + "  " + row.row->scene,
+    roof.roofline.points.push_back({row.name(), without_structure(row.kernel_and_rays()) + "  " + row.row->scene,
                                     scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
                                     *rate.msteps_per_s});
     if (rate.launch_share)

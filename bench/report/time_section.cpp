@@ -44,10 +44,10 @@ HtmlTable empty_table()
 void add_row(HtmlTable& table, const ReportRow& row, const ResultValue& value, const std::string& letter)
 {
     const ResultValue times = value.at("times");
-    table.add({text(letter), text(row.row->scene), text(row.kernel), text(row.api), milliseconds(times, "compile_s"),
-               milliseconds(times, "upload_s"), milliseconds(times, "first_wall_s"), milliseconds(times, "median_s"),
-               milliseconds(times, "overhead_s", 2), milliseconds(times, "download_s"), milliseconds(times, "wall_s"),
-               size_of(value)});
+    table.add({text(letter), text(row.row->scene), text(row.kernel_and_rays()), text(row.api),
+               milliseconds(times, "compile_s"), milliseconds(times, "upload_s"), milliseconds(times, "first_wall_s"),
+               milliseconds(times, "median_s"), milliseconds(times, "overhead_s", 2), milliseconds(times, "download_s"),
+               milliseconds(times, "wall_s"), size_of(value)});
 }
 
 } // namespace
