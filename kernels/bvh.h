@@ -1,4 +1,5 @@
 // What the BVHs share: a ray as their tests take it, boxes, and the triangle test (SPEC.md, BVHs).
+#include "kernels/shear.h"
 
 // For a build that counts what a ray fetches; it is never a timed one.
 #ifndef COUNT_NODE
@@ -13,9 +14,7 @@ STRUCT(RayFrame)
     Vec3 origin;
     Vec3 inverse; // what depth a unit of each axis is
     Vec3 offset;  // origin * inverse
-    Vec3 across;  // seen along the ray, x and y of a point times 2^20 are its products with these: no product of two
-    Vec3 upwards; // such coordinates is denormal
-    Vec3 along;   // and its depth times 2^40 is that with this
+    Shear shear;
 };
 
 // The nearest hit so far.
@@ -41,24 +40,6 @@ KERNEL_FN real with_slack(real depth)
     return result;
 }
 
-KERNEL_FN uint deepest_axis(Vec3 direction)
-{
-    real x = magnitude(direction.x);
-    real y = magnitude(direction.y);
-    real z = magnitude(direction.z);
-    uint of_xy = y > x ? 1u : 0u;
-    return z > maximum(x, y) ? 2u : of_xy;
-}
-
-// The axes in cyclic order, so that the third becomes `axis`.
-KERNEL_FN Vec3 turned_to(Vec3 a, uint axis)
-{
-    real x = axis == 0u ? a.z : axis == 1u ? a.y : a.x;
-    real y = axis == 0u ? a.x : axis == 1u ? a.z : a.y;
-    real z = axis == 0u ? a.y : axis == 1u ? a.x : a.z;
-    return VEC3(x, y, z);
-}
-
 // A ray that does not move along an axis gets a large finite quotient (Aila and Laine 2009).
 KERNEL_FN real depth_per_unit(real deepest, real direction)
 {
@@ -68,20 +49,10 @@ KERNEL_FN real depth_per_unit(real deepest, real direction)
 
 KERNEL_FN RayFrame frame_of(Ray ray)
 {
-    uint axis = deepest_axis(ray.direction);
-    uint axis_x = axis == 2u ? 0u : axis + 1u;
-    uint axis_y = axis == 0u ? 2u : axis - 1u;
-    real deepest = component(ray.direction, axis);
-    real zero = real(0.0f);
-    PRECISE real x = component(ray.direction, axis_x) * real(-1048576.0f);
-    PRECISE real y = component(ray.direction, axis_y) * real(-1048576.0f);
-    PRECISE real z = deepest * real(1048576.0f);
-    real along = deepest < zero ? real(-1099511627776.0f) : real(1099511627776.0f);
+    real deepest = component(ray.direction, deepest_axis(ray.direction));
     RayFrame frame;
     frame.origin = ray.origin;
-    frame.across = turned_to(VEC3(z, zero, x), axis);
-    frame.upwards = turned_to(VEC3(zero, z, y), axis);
-    frame.along = turned_to(VEC3(zero, zero, along), axis);
+    frame.shear = shear_along(ray.direction);
     frame.inverse =
         VEC3(depth_per_unit(magnitude(deepest), ray.direction.x), depth_per_unit(magnitude(deepest), ray.direction.y),
              depth_per_unit(magnitude(deepest), ray.direction.z));
@@ -104,54 +75,9 @@ KERNEL_FN Nearest nothing_before(Ray ray, real end)
     return nearest;
 }
 
-// Seen along the ray: the ray is the origin.
-STRUCT(Sheared)
-{
-    real x;
-    real y;
-};
-
 KERNEL_FN Vec3 seen_from(Vec3 origin, uint4 row)
 {
     return sub3(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), origin);
-}
-
-// A vertex, whichever triangle asks; of three products one is zero.
-KERNEL_FN Sheared sheared(RayFrame frame, Vec3 seen)
-{
-    Sheared result;
-    result.x = dot3(seen, frame.across);
-    result.y = dot3(seen, frame.upwards);
-    return result;
-}
-
-// Side of the ray at the edge from a to b: right or zero, since rounding is monotone.
-KERNEL_FN real rough_side(Sheared a, Sheared b)
-{
-    PRECISE real side = a.x * b.y - a.y * b.x;
-    return side;
-}
-
-// What a product lost by rounding, exactly (Dekker 1971; Veltkamp's split: 12 bits and 12).
-KERNEL_FN real lost_by(real a, real b, real product)
-{
-    PRECISE real a_large = a * real(4097.0f);
-    PRECISE real a_high = a_large - (a_large - a);
-    PRECISE real a_low = a - a_high;
-    PRECISE real b_large = b * real(4097.0f);
-    PRECISE real b_high = b_large - (b_large - b);
-    PRECISE real b_low = b - b_high;
-    PRECISE real lost = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
-    return lost;
-}
-
-// The same side to some units in the last place, where rough_side() has cancelled too.
-KERNEL_FN real fine_side(Sheared a, Sheared b)
-{
-    PRECISE real plus = a.x * b.y;
-    PRECISE real minus = a.y * b.x;
-    PRECISE real side = (plus - minus) + (lost_by(a.x, b.y, plus) - lost_by(a.y, b.x, minus));
-    return side;
 }
 
 // Quotients that are compared must be the same bits everywhere, which division is not. a: normal, 2^-126 to 2^124.
@@ -178,9 +104,9 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
     Vec3 v0 = seen_from(frame.origin, row);
     Vec3 v1 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 1u));
     Vec3 v2 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 2u));
-    Sheared a = sheared(frame, v0);
-    Sheared b = sheared(frame, v1);
-    Sheared c = sheared(frame, v2);
+    Sheared a = sheared(frame.shear, v0);
+    Sheared b = sheared(frame.shear, v1);
+    Sheared c = sheared(frame.shear, v2);
     if (has_two_signs(rough_side(b, c), rough_side(c, a), rough_side(a, b))) return nearest;
 
     real u = fine_side(b, c);
@@ -188,7 +114,8 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
     real w = fine_side(a, b);
     PRECISE real determinant = u + v + w;
     if (has_two_signs(u, v, w) || determinant == real(0.0f)) return nearest;
-    PRECISE real weighted = u * dot3(v0, frame.along) + v * dot3(v1, frame.along) + w * dot3(v2, frame.along);
+    PRECISE real weighted =
+        u * dot3(v0, frame.shear.along) + v * dot3(v1, frame.shear.along) + w * dot3(v2, frame.shear.along);
     PRECISE real inverse = reciprocal(magnitude(determinant));
     PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
     PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
