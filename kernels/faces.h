@@ -7,6 +7,14 @@ KERNEL_FN uint corner(uint face, uint index)
     return (0x634B39u >> (6u * face + 2u * index)) & 3u;
 }
 
+// Table of exits: face that a ray which entered by `entry` leaves by, where the two tests of maria or project have
+// outcome 0, 1, 2; 2-bit entries as in corner().
+//   entry 0: 2 3 1    entry 1: 3 2 0    entry 2: 1 3 0    entry 3: 2 1 0
+KERNEL_FN uint other_face(uint entry, uint outcome)
+{
+    return (0x18D2DEu >> (6u * entry + 2u * outcome)) & 3u;
+}
+
 // Side of the ray with respect to the directed line from vertex `from` to vertex `to` (Pluecker side product), in the
 // frame of `from`: the line's moment vanishes there.
 KERNEL_FN real side_of_edge(Ray ray, Vec3 from, Vec3 to)

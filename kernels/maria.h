@@ -3,13 +3,6 @@
 // sections 3.1 to 3.4. 28 operations a step: 9 + 3 for the moment, twice 3 + 5 for a side product.
 #define TAKES_RAYS // the other methods are compared on primary rays, as in the paper
 
-// Table of exits: face reached from `entry` by outcome 0, 1, 2; 2-bit entries as in corner().
-//   entry 0: 2 3 1    entry 1: 3 2 0    entry 2: 1 3 0    entry 3: 2 1 0
-KERNEL_FN uint other_face(uint entry, uint outcome)
-{
-    return (0x18D2DEu >> (6u * entry + 2u * outcome)) & 3u;
-}
-
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
     Vec3 apex = vertex(scene, tet, entry);
