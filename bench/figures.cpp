@@ -20,7 +20,8 @@ double vertices_per_step(Method method)
     case Method::plucker:
     case Method::stp:
     case Method::ms06: return 3 + 2.0 / 3;
-    case Method::maria: return 3;
+    case Method::maria:
+    case Method::project: return 3;
     case Method::single:
     case Method::packet16: return 0;
     }

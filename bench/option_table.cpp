@@ -194,7 +194,8 @@ std::vector<OptionRow> row_options()
          "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
-         "Keep the rows of this method: plane, plucker, stp, ms06 or maria (exit-face searches of the cdt), single or "
+         "Keep the rows of this method: plane, plucker, stp, ms06, maria or project (exit-face searches of the cdt), "
+         "single or "
          "packet16 (how many rays at once a BVH is asked), or 'all'. Default: maria, and those of the BVHs where "
          "these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
          reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},

@@ -3,7 +3,7 @@
 # The kernels that every backend compiles in both math modes, as structure/method/layout: kernels/structure_<structure>.h
 # with kernels/<method>.h and kernels/<layout>.h. Structure bvh has no methods of its own.
 set(TETRACE_KERNELS "")
-foreach(method plane plucker stp ms06 maria)
+foreach(method plane plucker stp ms06 maria project)
   foreach(layout tet80 tet96)
     list(APPEND TETRACE_KERNELS cdt/${method}/${layout})
   endforeach()

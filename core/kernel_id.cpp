@@ -9,7 +9,8 @@ std::vector<KernelId> make_kernels()
     std::vector<KernelId> kernels;
     for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
         for (const MathMode math : {MathMode::exact, MathMode::fast})
-            for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria})
+            for (const Method method :
+                 {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria, Method::project})
                 for (const Layout layout : {Layout::tet80, Layout::tet96})
                     kernels.push_back({Structure::cdt, method, layout, math, schedule});
     for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
@@ -62,7 +63,8 @@ bool is_portable(const KernelId& kernel)
 
 bool claims_robustness(const KernelId& kernel)
 {
-    return kernel.method == Method::maria || (kernel.structure == Structure::bvh && is_portable(kernel));
+    return kernel.method == Method::maria || kernel.method == Method::project ||
+           (kernel.structure == Structure::bvh && is_portable(kernel));
 }
 
 std::string_view name_of(Structure value)
@@ -78,6 +80,7 @@ std::string_view name_of(Method value)
     case Method::stp: return "stp";
     case Method::ms06: return "ms06";
     case Method::maria: return "maria";
+    case Method::project: return "project";
     case Method::single: return "single";
     case Method::packet16: return "packet16";
     }

@@ -11,7 +11,7 @@ namespace tetrace {
 enum class Structure { cdt, bvh };
 /// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or by how
 /// many rays at once a BVH is asked.
-enum class Method { plane, plucker, stp, ms06, maria, single, packet16 };
+enum class Method { plane, plucker, stp, ms06, maria, project, single, packet16 };
 /// A packed form of the mesh: tets, a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
 enum class Layout { tet80, tet96, bvh2, cwbvh, embree, rt };
 enum class MathMode { exact, fast };
@@ -57,9 +57,9 @@ struct KernelId {
 /// those of drivers are not.
 [[nodiscard]] bool is_portable(const KernelId& kernel);
 
-/// Whether the kernel is one that should lose and mistake no ray: maria as published, and our BVHs by their watertight
-/// triangle test. Wrong and lost rays then fail a run. Those of the others are their nature: counted, told beside the
-/// rate, and no failure.
+/// Whether the kernel is one that should lose and mistake no ray: maria as published, project by its proof, and our
+/// BVHs by their watertight triangle test. Wrong and lost rays then fail a run. Those of the others are their nature:
+/// counted, told beside the rate, and no failure.
 [[nodiscard]] bool claims_robustness(const KernelId& kernel);
 
 [[nodiscard]] std::string_view name_of(Structure value);

@@ -72,7 +72,20 @@ KERNEL_FN real depth_in_face(SceneView scene, uint link, Ray ray)
     return ca < least ? ca : least;
 }
 
-// The boundary face that the ray enters by, as a link, or NO_LINK where it misses the domain.
+// The first of all boundary faces that the ray enters by, or NO_LINK.
+KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray)
+{
+    uint last = FETCH(scene, entry_ranges, 6u * scene.divisions * scene.divisions);
+    uint found = NO_LINK;
+    for (uint index = 0u; index < last && found == NO_LINK; index++) {
+        uint link = FETCH(scene, entry_links, index);
+        found = depth_in_face(scene, link, ray) < real(0.0f) ? NO_LINK : link;
+    }
+    return found;
+}
+
+// The boundary face that the ray enters by, as a link, or NO_LINK where it misses the domain. Where it is inside none
+// of the square's faces, most methods begin by the nearest; one that walks paths begins by its end or not at all.
 KERNEL_FN uint entry_link(SceneView scene, Ray ray)
 {
     uint square = entry_square(scene, ray);
@@ -87,5 +100,8 @@ KERNEL_FN uint entry_link(SceneView scene, Ray ray)
         best = candidate > depth ? link : best;
         depth = candidate > depth ? candidate : depth;
     }
+#ifdef WALKS_PATHS
+    if (depth < real(0.0f)) return entry_anywhere(scene, ray);
+#endif
     return best;
 }

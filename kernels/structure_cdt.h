@@ -9,6 +9,8 @@
 
 #include "kernels/entry.h"
 
+#include "kernels/path.h"
+
 #include "kernels/walk.h"
 
 #include "kernels/search.h"

@@ -72,6 +72,14 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
         face = exit_face(scene, tet, entry & 3u, ray);
     } else {
         face = start_face(scene, tet, ray);
+#ifdef WALKS_PATHS
+        if (face == NO_EXIT) {
+            uint exit = exit_ahead(scene, params, ray);
+            if (exit == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+            tet = exit >> 2u;
+            face = exit & 3u;
+        }
+#endif
     }
     return walk(scene, params, ray, tet, face, real(NO_END));
 }

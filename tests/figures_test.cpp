@@ -196,6 +196,7 @@ TEST(exit_codes, a_method_that_does_not_claim_robustness_fails_only_where_a_devi
             EXPECT_TRUE(fails(row_with(judged(3, 1, 1), method), passes)) << name_of(method);
         }
     EXPECT_TRUE(claims_robustness({}));
+    EXPECT_TRUE(claims_robustness({.method = Method::project}));
     EXPECT_TRUE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::cwbvh}));
     for (const Layout theirs : {Layout::embree, Layout::rt})
         EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = theirs}));

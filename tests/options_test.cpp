@@ -71,9 +71,9 @@ TEST(options, an_unknown_option_is_answered_with_the_accepted_ones)
 
 TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
 {
-    EXPECT_TRUE(
-        contains(rejection({"bench", "--method", "bsp"}), "all, plane, plucker, stp, ms06, maria, single or packet16"));
-    EXPECT_EQ(parse_options({"bench", "--method", "all"}).methods.size(), 7u);
+    EXPECT_TRUE(contains(rejection({"bench", "--method", "bsp"}),
+                         "all, plane, plucker, stp, ms06, maria, project, single or packet16"));
+    EXPECT_EQ(parse_options({"bench", "--method", "all"}).methods.size(), 8u);
     EXPECT_EQ(parse_options({"bench", "--method", "stp,ms06"}).methods,
               (std::vector<Method>{Method::stp, Method::ms06}));
     EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "cuda-host or embree"));

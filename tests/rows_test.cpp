@@ -165,10 +165,11 @@ TEST(rows, the_default_is_maria_on_both_layouts_beside_bvhs_and_embree)
 TEST(rows, every_method_has_rows_where_all_are_asked_for)
 {
     const auto list = names({"bench", "--method", "all", "--layout", "tet80,embree"}, {"a"});
-    ASSERT_EQ(list.size(), 7u);
+    ASSERT_EQ(list.size(), 8u);
     EXPECT_EQ(list[0], "cdt/plane/tet80/a/primary/math:exact/api:openmp");
     EXPECT_EQ(list[4], "cdt/maria/tet80/a/primary/math:exact/api:openmp");
-    EXPECT_EQ(list[5], "bvh/single/embree/a/primary/math:fast/api:embree");
+    EXPECT_EQ(list[5], "cdt/project/tet80/a/primary/math:exact/api:openmp");
+    EXPECT_EQ(list[6], "bvh/single/embree/a/primary/math:fast/api:embree");
     EXPECT_EQ(names({"check", "--method", "plucker"}, {"a"}).size(), 2u);
 }
 
@@ -237,11 +238,11 @@ TEST(rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays
     const auto rows = select_rows(parse_options({"bench", "--method", "all", "--layout", "tet80", "--rays",
                                                  "primary,ao,diffuse", "--ray-order", "tiles,shuffled"}),
                                   {"s"}, {&old});
-    ASSERT_EQ(rows.size(), 5u + 4u) << "five methods trace primary rays, maria alone is given others";
-    EXPECT_EQ(row_name(rows[5]), "cdt/maria/tet80/s/ao/math:exact/api:old");
-    EXPECT_EQ(row_name(rows[6]), "cdt/maria/tet80/s/ao/math:exact/rays:shuffled/api:old");
-    EXPECT_EQ(kernel_title(rows[6]), "cdt maria tet80, ao shuffled");
-    EXPECT_EQ(rows[6].kernel.task, Task::rays);
+    ASSERT_EQ(rows.size(), 6u + 4u) << "six methods trace primary rays, maria alone is given others";
+    EXPECT_EQ(row_name(rows[6]), "cdt/maria/tet80/s/ao/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[7]), "cdt/maria/tet80/s/ao/math:exact/rays:shuffled/api:old");
+    EXPECT_EQ(kernel_title(rows[7]), "cdt maria tet80, ao shuffled");
+    EXPECT_EQ(rows[7].kernel.task, Task::rays);
     EXPECT_EQ(rows[0].kernel.task, Task::trace);
 }
 

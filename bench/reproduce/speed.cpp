@@ -145,7 +145,7 @@ const std::vector<Method>& older_methods()
     static const std::vector<Method> methods = [] {
         std::vector<Method> found;
         for (const KernelId& kernel : all_kernels())
-            if (kernel.structure == Structure::cdt && kernel.method != Method::maria &&
+            if (kernel.structure == Structure::cdt && kernel.method < Method::maria &&
                 std::find(found.begin(), found.end(), kernel.method) == found.end())
                 found.push_back(kernel.method);
         return found;

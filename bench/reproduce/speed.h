@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// The cdt's methods but maria, in the order of all_kernels().
+/// The paper's methods but maria, in the order of all_kernels(): those older than the paper.
 [[nodiscard]] const std::vector<Method>& older_methods();
 
 /// Device seconds of each view or batch: the medians of its samples. Empty for a row without a rate.

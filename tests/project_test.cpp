@@ -1,0 +1,368 @@
+// What is built to break a walk by projected signs: grids, rays through their vertices, edges and faces, cameras on
+// them, thin and stretched tets.
+#include "bench/settle.h"
+#include "core/backend.h"
+#include "core/locate.h"
+#include "scenes/procedural.h"
+#include "tests/device_rays.h"
+#include "tests/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using tetrace::Float3;
+
+std::array<std::uint64_t, 3> decided{}; // signs by level: float products, what they lost, the order of the vertices
+#define COUNT_SIGN(level) (decided[level]++)
+
+#define KERNEL_STRUCTURE_HEADER "kernels/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/cdt_arrays.h"
+#define KERNEL_LAYOUT_HEADER "kernels/tet96.h"
+#define KERNEL_METHOD_HEADER "kernels/project.h"
+namespace right {
+#include "kernels/kernel_cpp.h"
+}
+#undef SIDE_AT_TIE
+#define SIDE_AT_TIE(p, q, product) false // "not positive", in whichever direction the edge is asked for
+namespace mutant {
+#include "kernels/kernel_cpp.h"
+}
+
+/// Where the lines of a grid stand along each axis.
+using Lines = std::array<std::vector<float>, 3>;
+
+/// `cubes` with its vertices on a grid of these lines; every tet keeps its orientation.
+tetrace::Scene grid_of(const Lines& lines)
+{
+    const auto n = static_cast<std::uint32_t>(lines[0].size() - 1);
+    tetrace::Scene scene = tetrace::make_cubes(n);
+    std::map<std::tuple<float, float, float>, Float3> moved;
+    for (std::uint32_t i = 0; i < scene.tets.vertices.size(); i++) {
+        Float3& vertex = scene.tets.vertices[i];
+        const Float3 place{lines[0][i % (n + 1)], lines[1][i / (n + 1) % (n + 1)], lines[2][i / (n + 1) / (n + 1)]};
+        moved[{vertex.x, vertex.y, vertex.z}] = place;
+        vertex = place;
+    }
+    for (Float3& vertex : scene.mesh.vertices)
+        vertex = moved.at({vertex.x, vertex.y, vertex.z});
+    scene.domain.lines = lines;
+    return scene;
+}
+
+std::vector<float> even_lines(std::uint32_t n, float reach)
+{
+    std::vector<float> lines;
+    for (std::uint32_t i = 0; i <= n; i++)
+        lines.push_back(tetrace::snap_to_grid(reach * (2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f)));
+    return lines;
+}
+
+/// Every other cell is so thin.
+std::vector<float> uneven_lines(std::uint32_t n, float thickness)
+{
+    std::vector<float> lines = even_lines(n, 1);
+    for (std::uint32_t i = 1; i < n; i += 2)
+        lines[i + 1] = lines[i] + thickness;
+    return lines;
+}
+
+struct Grid {
+    const char* name;
+    tetrace::Scene scene;
+    tetrace::PackedScene packed = tetrace::pack(scene, tetrace::Layout::tet96, tetrace::TetOrder::hilbert);
+    right::SceneView view = right::view_of(packed);
+    mutant::SceneView mutant_view = mutant::view_of(packed);
+    tetrace::Settler settler{scene.mesh};
+
+    Grid(const char* title, tetrace::Scene made) : name(title), scene(std::move(made)) {}
+    Grid(const Grid&) = delete;
+};
+
+const std::vector<std::unique_ptr<Grid>>& grids()
+{
+    static const auto made = [] {
+        std::vector<std::unique_ptr<Grid>> list;
+        const auto fine = even_lines(8, 1), even = even_lines(4, 1);
+        list.push_back(std::make_unique<Grid>("regular", grid_of({fine, fine, fine})));
+        list.push_back(std::make_unique<Grid>("jittered", tetrace::make_cubes(5)));
+        list.push_back(std::make_unique<Grid>("stretched 1:10,000", grid_of({even, even, even_lines(4, 1e-4f)})));
+        const auto thin = uneven_lines(4, 0x1p-18f);
+        list.push_back(std::make_unique<Grid>("slivers", grid_of({thin, thin, thin})));
+        return list;
+    }();
+    return made;
+}
+
+struct Line {
+    Float3 origin, direction;
+};
+
+Float3 along(Float3 a, Float3 b, float t)
+{
+    return tetrace::snap_to_grid(Float3{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)});
+}
+
+/// A vertex, the middle of an edge, or a point of a face of some tet.
+Float3 special_point(const Grid& grid, tetrace::test::Random& random)
+{
+    const auto& mesh = grid.scene.tets;
+    const auto& tet = mesh.tets[random.below(static_cast<std::uint32_t>(mesh.tets.size()))];
+    const Float3 a = mesh.vertices[tet.vertices[0]], b = mesh.vertices[tet.vertices[1]],
+                 c = mesh.vertices[tet.vertices[2]];
+    switch (random.below(3)) {
+    case 0: return a;
+    case 1: return along(a, b, 0.5f);
+    default: return along(along(a, b, 0.5f), c, 0.5f);
+    }
+}
+
+Float3 without_small(Float3 direction)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (std::abs(direction[axis]) < 0x1p-20f) direction[axis] = 0;
+    return direction;
+}
+
+/// Through two special points, or one and along an axis or a diagonal; never the zero vector.
+Line line_through(const Grid& grid, Float3 point, tetrace::test::Random& random)
+{
+    for (;;) {
+        Float3 direction;
+        if (random.below(2) == 0) {
+            for (int axis = 0; axis < 3; axis++)
+                direction[axis] = static_cast<float>(random.below(3)) - 1.0f;
+        } else {
+            const Float3 other = special_point(grid, random);
+            direction = without_small({other.x - point.x, other.y - point.y, other.z - point.z});
+        }
+        if (direction.x != 0 || direction.y != 0 || direction.z != 0) return {point, direction};
+    }
+}
+
+/// Moved back along its direction until it starts outside the domain: by powers of two, which mostly keeps it exact.
+Line from_outside(const Grid& grid, Line line)
+{
+    for (float back = 1; grid.scene.domain.contains(line.origin); back *= 2)
+        line.origin = tetrace::snap_to_grid(Float3{line.origin.x - back * line.direction.x,
+                                                   line.origin.y - back * line.direction.y,
+                                                   line.origin.z - back * line.direction.z});
+    return line;
+}
+
+bool is_in_range(const Line& line)
+{
+    return std::max({std::abs(line.origin.x), std::abs(line.origin.y), std::abs(line.origin.z)}) <= 4;
+}
+
+/// Faces of a tet that hold the ray: how many a ray enters by, and leaves by.
+struct Held {
+    int entered = 0, left = 0;
+};
+template <class Side>
+Held faces_that_hold(const tetrace::TetMesh& mesh, const tetrace::Tet& tet, const Side& side)
+{
+    Held held;
+    for (std::uint32_t face = 0; face < 4; face++) {
+        const auto v = [&](std::uint32_t i) { return mesh.vertices[tet.vertices[right::corner(face, i)]]; };
+        const float ab = side(v(0), v(1)), bc = side(v(1), v(2)), ca = side(v(2), v(0));
+        held.entered += ab > 0 && bc > 0 && ca > 0;
+        held.left += ab < 0 && bc < 0 && ca < 0;
+    }
+    return held;
+}
+
+/// Tets of the grid in which a ray does not have either no face, or one to enter and one to leave by.
+template <class Side>
+int torn_tets(const Grid& grid, const Side& side)
+{
+    int torn = 0;
+    for (const tetrace::Tet& tet : grid.scene.tets.tets) {
+        const Held held = faces_that_hold(grid.scene.tets, tet, side);
+        torn += held.entered != held.left || held.entered > 1;
+    }
+    return torn;
+}
+
+tetrace::Hit to_hit(const right::Hit& hit)
+{
+    return {hit.face_id, hit.tet, hit.t, hit.u, hit.v, hit.steps};
+}
+
+right::TraceParams params_of(const Grid& grid, std::uint32_t start_tet)
+{
+    right::TraceParams params{};
+    params.start_tet = start_tet;
+    params.max_steps = grid.packed.tet_count + 1; // more than there are tets: who gets there goes in circles
+    return params;
+}
+
+tetrace::Hit traced(const Grid& grid, const Line& line, std::uint32_t start_tet)
+{
+    const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
+    return to_hit(right::trace(grid.view, params_of(grid, start_tet), ray));
+}
+
+/// The nearest triangle that the exact ray meets.
+std::uint32_t nearest_triangle(const tetrace::TriangleMesh& mesh, const Line& line)
+{
+    std::uint32_t nearest = NO_HIT;
+    double t = HUGE_VAL;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); i++) {
+        const auto& [a, b, c] = mesh.triangles[i];
+        const auto crossing =
+            tetrace::cross_exactly(line.origin, line.direction, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+        if (!crossing.met || crossing.t >= t) continue;
+        nearest = i;
+        t = crossing.t;
+    }
+    return nearest;
+}
+
+} // namespace
+
+TEST(Project, the_grids_are_meshes_without_a_defect)
+{
+    for (const auto& grid : grids()) {
+        const auto defect = find_defect(grid->scene.tets, grid->scene.mesh.triangles.size());
+        EXPECT_FALSE(defect.has_value()) << grid->name << ": " << (defect ? defect->what : "");
+    }
+}
+
+TEST(Project, every_tet_has_no_face_that_holds_the_ray_or_one_to_enter_and_one_to_leave_by)
+{
+    tetrace::test::Random random(60);
+    for (const auto& grid : grids())
+        for (int i = 0; i < 48; i++) {
+            const Line line = line_through(*grid, special_point(*grid, random), random);
+            const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
+            const auto side = [&](Float3 a, Float3 b) {
+                return right::side_at_entry(ray, right::to_vec3(a), right::to_vec3(b));
+            };
+            ASSERT_EQ(torn_tets(*grid, side), 0) << grid->name << ", ray " << i;
+        }
+}
+
+TEST(Project, without_the_rule_for_ties_tets_are_torn)
+{
+    tetrace::test::Random random(60); // the same rays
+    for (const auto& grid : grids()) {
+        int torn = 0;
+        for (int i = 0; i < 48; i++) {
+            const Line line = line_through(*grid, special_point(*grid, random), random);
+            const auto ray = mutant::make_ray(mutant::to_vec3(line.origin), mutant::to_vec3(line.direction));
+            torn += torn_tets(*grid, [&](Float3 a, Float3 b) {
+                return mutant::side_at_entry(ray, mutant::to_vec3(a), mutant::to_vec3(b));
+            });
+        }
+        EXPECT_GT(torn, 0) << grid->name;
+    }
+}
+
+TEST(Project, each_level_of_a_sign_decides_some)
+{
+    tetrace::test::Random random(61);
+    decided = {};
+    for (const auto& grid : grids())
+        for (int i = 0; i < 2000; i++) {
+            const Line line = from_outside(*grid, line_through(*grid, special_point(*grid, random), random));
+            (void)traced(*grid, line, NO_TET);
+        }
+    for (const std::uint64_t count : decided)
+        EXPECT_GT(count, 0u);
+    RecordProperty("by_products", std::to_string(decided[0]));
+    RecordProperty("by_what_they_lost", std::to_string(decided[1]));
+    RecordProperty("by_order", std::to_string(decided[2]));
+}
+
+TEST(Project, loses_no_ray_from_outside_and_no_ray_from_a_vertex_an_edge_or_a_face)
+{
+    tetrace::test::Random random(62);
+    for (const auto& grid : grids()) {
+        int elsewhere = 0;
+        for (int i = 0; i < 2000; i++) {
+            const Line inside = line_through(*grid, special_point(*grid, random), random);
+            const Line outside = from_outside(*grid, inside);
+            ASSERT_NE(traced(*grid, outside, NO_TET).face_id, LOST) << grid->name << ", ray " << i;
+            const std::uint32_t tet = grid->packed.packed_of_mesh[locate(grid->scene.tets, inside.origin)];
+            const auto ray = right::make_ray(right::to_vec3(inside.origin), right::to_vec3(inside.direction));
+            elsewhere += right::start_face(grid->view, tet, ray) == NO_EXIT;
+            ASSERT_NE(traced(*grid, inside, tet).face_id, LOST) << grid->name << ", ray " << i;
+        }
+        EXPECT_GT(elsewhere, 200) << grid->name << ": starts whose tet the ray does not cross";
+    }
+}
+
+TEST(Project, is_right_by_exact_arithmetic_or_within_rounding_of_an_edge)
+{
+    tetrace::test::Random random(63);
+    for (const auto& grid : grids()) {
+        int hits = 0, ties = 0;
+        for (int i = 0; i < 500; i++) {
+            const Line line = from_outside(*grid, line_through(*grid, special_point(*grid, random), random));
+            if (!is_in_range(line)) continue;
+            const std::uint32_t ours = traced(*grid, line, NO_TET).face_id;
+            const std::uint32_t exact = nearest_triangle(grid->scene.mesh, line);
+            hits += exact != NO_HIT;
+            if (ours == exact) continue;
+            const auto settled =
+                grid->settler.settle({line.origin, line.direction}, ours, exact, tetrace::tie_bound(line.origin));
+            ties += settled.kind == tetrace::Settlement::Kind::tie;
+            EXPECT_NE(settled.kind, tetrace::Settlement::Kind::wrong)
+                << grid->name << ", ray " << i << ": " << settled.reason << ", ours " << ours << ", exact " << exact;
+        }
+        EXPECT_GT(hits, 50) << grid->name;
+    }
+}
+
+TEST(Project, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
+{
+    // Along lines of the domain's own squares and edges, where the look-up's square and the signs may differ.
+    tetrace::test::Random random(64);
+    for (const auto& grid : grids()) {
+        const auto& lines = grid->scene.domain.lines;
+        const auto at = [&](std::size_t axis) {
+            return lines[axis][random.below(static_cast<std::uint32_t>(lines[axis].size()))];
+        };
+        for (int i = 0; i < 300; i++) {
+            const Float3 from{2 * at(0), 2 * at(1), 3}, to{at(0), at(1), at(2)};
+            const Line line{from, without_small({to.x - from.x, to.y - from.y, to.z - from.z})};
+            const tetrace::Hit hit = traced(*grid, line, NO_TET);
+            ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
+        }
+    }
+}
+
+TEST(Project, has_the_same_bits_on_openmp_and_cuda_host_where_rays_pass_vertices_and_edges)
+{
+    const tetrace::Scene& scene = grids().front()->scene;
+    const tetrace::KernelId kernel{.method = tetrace::Method::project};
+    const auto packed = tetrace::pack(scene, kernel.layout, tetrace::TetOrder::hilbert);
+    tetrace::TraceJob job;
+    job.view = {{0.25f, 0, 3}, {-1, -1, -2}, {0.125f, 0, 0}, {0, 0.125f, 0}};
+    job.width = job.height = 17;
+    job.start_tet = NO_TET;
+    job.max_steps = packed.tet_count + 1;
+    std::vector<std::vector<tetrace::Hit>> answers;
+    for (tetrace::Backend* backend : tetrace::all_backends())
+        if (backend->name() == "openmp" || backend->name() == "cuda-host")
+            answers.push_back(traced(*backend->open(0, kernel, {&scene.mesh, &packed}, {.threads = 2}), job));
+    ASSERT_EQ(answers.size(), 2u);
+    EXPECT_EQ(different_rays(answers[0], answers[1], 0), 0u);
+    EXPECT_GT(std::count_if(answers[0].begin(), answers[0].end(),
+                            [](const tetrace::Hit& hit) { return hit.face_id != NO_HIT && hit.face_id != LOST; }),
+              20);
+}
