@@ -179,8 +179,8 @@ std::string reasons(const Options& options)
 {
     if (unfiltered.empty())
         throw Error(ErrorKind::usage,
-                    "no row has this combination of --structure, --method, --layout, --backend, --device, --schedule "
-                    "and --math" +
+                    "no row has this combination of --structure, --method, --layout, --rays, --backend, --device, "
+                    "--schedule and --math" +
                         reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));

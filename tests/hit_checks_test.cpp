@@ -67,6 +67,7 @@ TEST(compare_hits, either_triangle_will_do_where_any_hit_answers)
     EXPECT_EQ(found.count, 2u) << "a miss and a lost ray are no hits";
     EXPECT_EQ(found.inexact, 3u);
     EXPECT_EQ(found.largest_ulps, 0u) << "parameters on different triangles are not compared";
+    EXPECT_EQ(compare_hits(theirs, ours, {.ulps = 3, .any_triangle = true}).count, 2u);
 }
 
 TEST(compare_hits, images_of_different_sizes_are_an_error)
