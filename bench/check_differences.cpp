@@ -35,10 +35,17 @@ TraceJob job_of(const RowRun& row, std::uint32_t view)
     return row.scene->job(index, &row.packed->scene);
 }
 
+/// Whether a ray of the row can be walked again by its pixel: BVHs leave no tets, and rays that are given are not told
+/// by their pixels alone.
+bool leaves_tets(const RowRun& row)
+{
+    return row.key.kernel.structure == Structure::cdt && row.key.kernel.task == Task::trace;
+}
+
 /// openmp's walk.
 Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
 {
-    if (row.packed == nullptr) return {};
+    if (row.packed == nullptr || !leaves_tets(row)) return {};
     KernelId kernel = row.key.kernel;
     kernel.schedule = Schedule::tiles;
     return walk_path(row.packed->scene, kernel, job_of(row, view), x, y);
@@ -47,7 +54,7 @@ Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32
 /// The device's own walk; empty where the device cannot tell any more.
 Path own_path(const RowRun& row, const DifferingRay& ray)
 {
-    if (row.packed == nullptr || row.session == nullptr) return {};
+    if (row.packed == nullptr || row.session == nullptr || !leaves_tets(row)) return {};
     try {
         return walk_path(*row.session, job_of(row, ray.view), ray.x, ray.y, shown_tets);
     } catch (const Error& error) {
@@ -110,7 +117,7 @@ std::string differences_text(const RowRun& row)
 void add_paths(nlohmann::json& row_json, const RowRun& row)
 {
     const Traced* result = traced(row);
-    if (result == nullptr) return;
+    if (result == nullptr || !leaves_tets(row)) return;
     auto& verification = row_json["verification"];
     if (const auto& ray = result->verdicts.first_wrong)
         verification["first_wrong"]["path"] = path_of(row, ray->view, ray->x, ray->y);

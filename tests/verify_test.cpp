@@ -1,5 +1,6 @@
 #include "bench/verify.h"
 
+#include "bench/check_differences.h"
 #include "bench/conformity.h"
 #include "bench/difference_pictures.h"
 #include "bench/ray_store.h"
@@ -295,6 +296,25 @@ TEST_F(verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
     const std::uint32_t pixel = scene_.given_rays().set(scene_, RayKind::diffuse, RayOrder::tiles, 0).rays[17].pixel;
     EXPECT_EQ(traced(row)->first_different->x, pixel % 40);
     EXPECT_EQ(traced(row)->first_different->y, pixel / 40);
+}
+
+TEST_F(verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
+{
+    const auto one_step_more = [](std::span<Hit> hits) { hits[17].steps += 1; };
+    for (const Layout layout : {Layout::tet80, Layout::cwbvh}) {
+        const RowRun given = verified_given(RayKind::diffuse, layout, one_step_more);
+        const std::string text = differences_text(given);
+        EXPECT_NE(text.find("rays differ from openmp's"), std::string::npos) << text;
+        EXPECT_EQ(text.find("tets of"), std::string::npos) << text;
+        nlohmann::json object = {{"verification", nlohmann::json::object()}};
+        add_paths(object, given);
+        EXPECT_TRUE(object["verification"].empty()) << object;
+    }
+    const RowRun primary = verified("other", [](std::span<Hit> hits) {
+        for (Hit& hit : hits)
+            if (hit.face_id < POISON) hit.steps += 1;
+    });
+    EXPECT_NE(differences_text(primary).find("tets of openmp"), std::string::npos);
 }
 
 TEST_F(verify, a_given_ray_with_a_wrong_face_is_flawed)
