@@ -182,8 +182,8 @@ std::vector<OptionRow> scene_options()
 
 std::vector<OptionRow> row_options()
 {
-    const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::input};
-    const std::vector<Schedule> schedules = {Schedule::tiles, Schedule::persistent};
+    const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::reached, TetOrder::input};
+    const std::vector<Schedule> schedules = {Schedule::tiles, Schedule::persistent, Schedule::packets};
     const std::vector<RayKind> kinds = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse,
                                         RayKind::random};
     const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
@@ -196,11 +196,13 @@ std::vector<OptionRow> row_options()
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: plane, plucker, stp, ms06, maria or project (exit-face searches of the cdt), "
          "single or "
-         "packet16 (how many rays at once a BVH is asked), or 'all'. Default: maria, and those of the BVHs where "
-         "these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
+         "packet16 (how many rays at once a BVH is asked), or 'all'. Default: maria, project on half32, and those "
+         "of the BVHs where these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
          reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this packed form: tet80 or tet96 of the cdt; bvh2 or cwbvh of our BVHs; embree, what Embree "
+         "Keep the rows of this packed form: tet80 or tet96 of the cdt, of project also half32, tet20 or tet16; bvh2 "
+         "or "
+         "cwbvh of our BVHs; embree, what Embree "
          "builds for itself; rt, what Vulkan's driver builds for its ray queries. Default: all of the structures kept, "
          "rt where a device has it.",
          reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
@@ -228,12 +230,16 @@ std::vector<OptionRow> row_options()
          "one build, and rows of it whatever the mode. Default: exact.",
          tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
         {"Rows", "--order", "ORDER",
-         "Order of the tets in memory: 'hilbert', along a space-filling curve, or 'input', as TetGen wrote them. Rows "
-         "of structure cdt only. Default: hilbert.",
+         "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same with the tets that "
+         "no "
+         "ray from outside reaches behind all others; 'input', as TetGen wrote them. Rows of structure cdt only. "
+         "Default: hilbert.",
          tracing, true, append("--order", &Options::orders, orders)},
         {"Rows", "--schedule", "NAME",
          "How rays come to work items: 'tiles', one each, or 'persistent', items that stay and fetch rays until none "
-         "is left, on the backends that have such kernels; Embree has a schedule of its own. Default: tiles.",
+         "is left, on the backends that have such kernels, or 'packets', neighbours in the lanes of openmp's vectors, "
+         "of "
+         "project and half32; Embree has a schedule of its own. Default: tiles.",
          tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.",

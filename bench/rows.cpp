@@ -18,11 +18,12 @@ bool wanted(const std::vector<T>& list, const T& value)
     return list.empty() || std::find(list.begin(), list.end(), value) != list.end();
 }
 
-/// One exit-face search stands for the cdt where none is named: five times the rows for those who compare methods.
+/// Where no method is named, two stand for the cdt: the paper's, and the fastest on the layout made for it. Many more
+/// rows are for those who compare methods.
 bool wanted_method(const Options& options, const KernelId& kernel)
 {
-    if (kernel.structure != Structure::cdt) return wanted(options.methods, kernel.method);
-    return options.methods.empty() ? kernel.method == Method::maria : wanted(options.methods, kernel.method);
+    if (kernel.structure != Structure::cdt || !options.methods.empty()) return wanted(options.methods, kernel.method);
+    return kernel.method == Method::maria || kernel.layout == Layout::half32;
 }
 
 bool wanted_math(const Options& options, const KernelId& kernel)
@@ -204,10 +205,13 @@ std::string row_name(const RowKey& key)
         key.kernel.task == Task::search ? std::string() : std::string("/").append(name_of(key.rays));
     const std::string order =
         key.ray_order == RayOrder::tiles ? std::string() : std::string("/rays:").append(name_of(key.ray_order));
-    return fmt::format("{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
-                       key.order == TetOrder::hilbert ? "" : "/order:input",
-                       key.kernel.schedule == Schedule::tiles ? "" : "/schedule:persistent", order,
-                       numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
+    const std::string schedule = key.kernel.schedule == Schedule::tiles
+                                     ? std::string()
+                                     : std::string("/schedule:").append(name_of(key.kernel.schedule));
+    return fmt::format(
+        "{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
+        key.order == TetOrder::hilbert ? std::string() : std::string("/order:").append(name_of(key.order)), schedule,
+        order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
 }
 
 std::string device_label(const RowKey& key)
@@ -236,8 +240,8 @@ std::string kernel_title(const RowKey& key)
     if (kernel.structure == Structure::cdt || is_embree) title.append(" ").append(name_of(kernel.method));
     if (!is_embree) title.append(" ").append(name_of(kernel.layout));
     if (is_portable(kernel) && kernel.math == MathMode::fast) title += " fast";
-    if (key.order != TetOrder::hilbert) title += " input order";
-    if (kernel.schedule == Schedule::persistent) title += " persistent";
+    if (key.order != TetOrder::hilbert) title.append(" ").append(name_of(key.order)).append(" order");
+    if (kernel.schedule != Schedule::tiles) title.append(" ").append(name_of(kernel.schedule));
     if (key.rays != RayKind::primary) title.append(", ").append(name_of(key.rays));
     if (key.ray_order != RayOrder::tiles) title.append(" ").append(name_of(key.ray_order));
     return title;

@@ -65,8 +65,8 @@ TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
     job.view = views_.at(index);
     job.width = width_;
     job.height = height_;
-    if (packed != nullptr && start_tets_[index] != NO_TET && structure_of(packed->layout) == Structure::cdt)
-        job.start_tet = packed->packed_of_mesh[start_tets_[index]];
+    if (packed != nullptr && structure_of(packed->layout) == Structure::cdt)
+        start_in(job, *packed, loaded_.scene, start_tets_[index]);
     job.max_steps = max_steps();
     return job;
 }

@@ -1,31 +1,37 @@
 # Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
 
-# The kernels that every backend compiles in both math modes, as structure/method/layout: kernels/structure_<structure>.h
-# with kernels/<method>.h and kernels/<layout>.h. Structure bvh has no methods of its own.
+# The kernels that every backend compiles in both math modes, as structure/method/layout: kernels/structure_<family>.h
+# with kernels/<method>.h and kernels/<layout>.h. Structure bvh has no methods of its own, nor have compact layouts.
 set(TETRACE_KERNELS "")
 foreach(method plane plucker stp ms06 maria project)
   foreach(layout tet80 tet96)
     list(APPEND TETRACE_KERNELS cdt/${method}/${layout})
   endforeach()
 endforeach()
-list(APPEND TETRACE_KERNELS bvh/single/bvh2 bvh/single/cwbvh)
+list(APPEND TETRACE_KERNELS cdt/project/half32 cdt/project/tet20 cdt/project/tet16 bvh/single/bvh2 bvh/single/cwbvh)
+set(TETRACE_COMPACT_LAYOUTS tet20 tet16)
 
-# tetrace_kernel_parts(<kernel>): sets structure, method, layout, name, as embedded_name() has it without its math mode,
-# tasks, those of core/kernel_id.h that the kernel's text has, and definitions, what C++ needs to include it.
+# tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, which is cdt, bvh, or compact of tets that share
+# their vertices, name, as embedded_name() has it without its math mode, tasks, those of core/kernel_id.h that the
+# kernel's text has, and definitions, what C++ needs to include it.
 macro(tetrace_kernel_parts kernel)
   string(REPLACE "/" ";" parts ${kernel})
   list(GET parts 0 structure)
   list(GET parts 1 method)
   list(GET parts 2 layout)
   set(name ${method}_${layout})
+  set(family ${structure})
+  if(layout IN_LIST TETRACE_COMPACT_LAYOUTS)
+    set(family compact)
+  endif()
   set(tasks trace)
-  if(structure STREQUAL cdt)
+  if(family STREQUAL cdt AND NOT layout STREQUAL half32)
     list(APPEND tasks search)
   endif()
-  if(structure STREQUAL bvh OR method STREQUAL maria)
+  if(method MATCHES "^(maria|project|single)$" AND NOT family STREQUAL compact)
     list(APPEND tasks rays)
   endif()
-  set(definitions KERNEL_STRUCTURE_HEADER="kernels/structure_${structure}.h" KERNEL_ARRAYS_HEADER="kernels/${structure}_arrays.h"
+  set(definitions KERNEL_STRUCTURE_HEADER="kernels/structure_${family}.h" KERNEL_ARRAYS_HEADER="kernels/${family}_arrays.h"
     KERNEL_METHOD_HEADER="kernels/${method}.h" KERNEL_LAYOUT_HEADER="kernels/${layout}.h")
 endmacro()
 
@@ -47,8 +53,11 @@ file(GLOB TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels
 # it names (once more wherever it stands: there are no guards but one), and every #include KERNEL_..._HEADER by the
 # kernel's.
 function(tetrace_flatten output entry)
+  if(ARGC GREATER 2)
+    tetrace_kernel_parts(${ARGV2})
+  endif()
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR} -DKERNEL=${ARGV2}
+    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR} -DKERNEL=${ARGV2} -DFAMILY=${family}
             -P ${tetrace_kernels_scripts}/flatten.cmake
     DEPENDS ${entry} ${TETRACE_KERNEL_HEADERS} ${tetrace_kernels_scripts}/flatten.cmake
     COMMENT "Flattening ${output}" VERBATIM)

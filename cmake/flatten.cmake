@@ -1,6 +1,5 @@
-# Script of tetrace_flatten(), see Kernels.cmake: -DENTRY -DOUTPUT -DROOT -DKERNEL=[<structure>/<method>/<layout>].
+# Script of tetrace_flatten(), see Kernels.cmake: -DENTRY -DOUTPUT -DROOT -DFAMILY -DKERNEL=[<structure>/<method>/<layout>].
 string(REGEX MATCH "^([^/]*)/([^/]*)/([^/]*)$" ignored "${KERNEL}")
-set(STRUCTURE "${CMAKE_MATCH_1}")
 set(METHOD "${CMAKE_MATCH_2}")
 set(LAYOUT "${CMAKE_MATCH_3}")
 
@@ -15,8 +14,8 @@ function(flatten file result)
     string(LENGTH "${CMAKE_MATCH_0}" length)
     math(EXPR behind "${position} + ${length}")
     string(SUBSTRING "${text}" ${behind} -1 text)
-    string(REPLACE "KERNEL_STRUCTURE_HEADER" "\"kernels/structure_${STRUCTURE}.h\"" name "${name}")
-    string(REPLACE "KERNEL_ARRAYS_HEADER" "\"kernels/${STRUCTURE}_arrays.h\"" name "${name}")
+    string(REPLACE "KERNEL_STRUCTURE_HEADER" "\"kernels/structure_${FAMILY}.h\"" name "${name}")
+    string(REPLACE "KERNEL_ARRAYS_HEADER" "\"kernels/${FAMILY}_arrays.h\"" name "${name}")
     string(REPLACE "KERNEL_METHOD_HEADER" "\"kernels/${METHOD}.h\"" name "${name}")
     string(REPLACE "KERNEL_LAYOUT_HEADER" "\"kernels/${LAYOUT}.h\"" name "${name}")
     string(REPLACE "\"" "" name "${name}")

@@ -27,9 +27,10 @@ struct Device {
     std::uint64_t memory_bytes = 0;
     std::uint64_t max_buffer_bytes = 0; ///< the largest that a kernel can be given at once; 0: memory is the limit
     unsigned max_group_items = 0;       ///< work items of a group; 0: does not apply
-    unsigned group_width = 0;           ///< items that run in lockstep (warp, subgroup); 0: unknown or does not apply
-    double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
-    unsigned threads = 1;               ///< hardware threads or compute units
+    unsigned group_width =
+        0; ///< items that run in lockstep (warp, subgroup, rays of a packet); 0: unknown or does not apply
+    double timer_period_s = 0; ///< resolution of the clock that Session::wait reads; 0: unknown
+    unsigned threads = 1;      ///< hardware threads or compute units
     bool usable = true;
     std::string reason; ///< why not, where not usable
 };
@@ -53,9 +54,14 @@ struct TraceJob {
     View view; ///< of primary rays
     std::uint32_t width = 0, height = 0;
     std::uint32_t start_tet = NO_TET; ///< tet that holds view.origin, in packed order; NO_TET: rays enter from outside
+    StartTet start;                   ///< of start_tet, see start_in()
     std::uint32_t max_steps = 0;      ///< a walk that long is LOST
     bool any_hit = false;             ///< whether there is a hit is asked: whichever is found first will do
 };
+
+/// Lets the job's rays start in a tet.
+/// tet: of the scene that was packed, as its mesh numbers them; NO_TET: rays enter from outside.
+void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std::uint32_t tet);
 
 /// The job that traces so many rays, all that a session of task rays was given: a column of tiles.
 /// rays: a multiple of TILE_WIDTH.

@@ -4,6 +4,12 @@ namespace tetrace {
 
 namespace {
 
+/// Whether only a walk that carries vertices goes through the layout.
+bool needs_project(Layout layout)
+{
+    return layout == Layout::half32 || is_compact(layout);
+}
+
 std::vector<KernelId> make_kernels()
 {
     std::vector<KernelId> kernels;
@@ -11,12 +17,14 @@ std::vector<KernelId> make_kernels()
         for (const MathMode math : {MathMode::exact, MathMode::fast})
             for (const Method method :
                  {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria, Method::project})
-                for (const Layout layout : {Layout::tet80, Layout::tet96})
-                    kernels.push_back({Structure::cdt, method, layout, math, schedule});
+                for (const Layout layout : {Layout::tet80, Layout::tet96, Layout::half32, Layout::tet20, Layout::tet16})
+                    if (!needs_project(layout) || method == Method::project)
+                        kernels.push_back({Structure::cdt, method, layout, math, schedule});
     for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
         for (const MathMode math : {MathMode::exact, MathMode::fast})
             for (const Layout layout : {Layout::bvh2, Layout::cwbvh})
                 kernels.push_back({Structure::bvh, Method::single, layout, math, schedule});
+    kernels.push_back({Structure::cdt, Method::project, Layout::half32, MathMode::exact, Schedule::packets});
     for (const Method method : {Method::single, Method::packet16})
         kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
     kernels.push_back({Structure::bvh, Method::single, Layout::rt, MathMode::fast});
@@ -41,19 +49,32 @@ std::vector<KernelId> kernels_of(Task task)
     return kernels;
 }
 
+bool has_packets(const KernelId& kernel)
+{
+    return kernel.method == Method::project && kernel.layout == Layout::half32 && kernel.math == MathMode::exact;
+}
+
 bool has_task(const KernelId& kernel)
 {
     switch (kernel.task) {
     case Task::trace: return true;
-    case Task::rays: return kernel.structure == Structure::bvh || kernel.method == Method::maria;
-    case Task::search: return kernel.structure == Structure::cdt;
+    case Task::rays:
+        return kernel.structure == Structure::bvh || kernel.method == Method::maria ||
+               (kernel.method == Method::project && !is_compact(kernel.layout));
+    case Task::search: return kernel.structure == Structure::cdt && !needs_project(kernel.layout);
     }
     return false;
 }
 
 Structure structure_of(Layout layout)
 {
-    return layout == Layout::tet80 || layout == Layout::tet96 ? Structure::cdt : Structure::bvh;
+    const bool holds_corners = layout == Layout::tet80 || layout == Layout::tet96;
+    return holds_corners || needs_project(layout) ? Structure::cdt : Structure::bvh;
+}
+
+bool is_compact(Layout layout)
+{
+    return layout == Layout::tet20 || layout == Layout::tet16;
 }
 
 bool is_portable(const KernelId& kernel)
@@ -92,6 +113,9 @@ std::string_view name_of(Layout value)
     switch (value) {
     case Layout::tet80: return "tet80";
     case Layout::tet96: return "tet96";
+    case Layout::half32: return "half32";
+    case Layout::tet20: return "tet20";
+    case Layout::tet16: return "tet16";
     case Layout::bvh2: return "bvh2";
     case Layout::cwbvh: return "cwbvh";
     case Layout::embree: return "embree";
@@ -129,7 +153,12 @@ std::string_view name_of(RayOrder value)
 
 std::string_view name_of(Schedule value)
 {
-    return value == Schedule::tiles ? "tiles" : "persistent";
+    switch (value) {
+    case Schedule::tiles: return "tiles";
+    case Schedule::persistent: return "persistent";
+    case Schedule::packets: return "packets";
+    }
+    return "?";
 }
 
 std::string_view name_of(Task value)
@@ -144,7 +173,12 @@ std::string_view name_of(Task value)
 
 std::string_view name_of(TetOrder value)
 {
-    return value == TetOrder::hilbert ? "hilbert" : "input";
+    switch (value) {
+    case TetOrder::hilbert: return "hilbert";
+    case TetOrder::reached: return "reached";
+    case TetOrder::input: return "input";
+    }
+    return "?";
 }
 
 std::string name_of(const KernelId& kernel)

@@ -12,21 +12,23 @@ enum class Structure { cdt, bvh };
 /// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or by how
 /// many rays at once a BVH is asked.
 enum class Method { plane, plucker, stp, ms06, maria, project, single, packet16 };
-/// A packed form of the mesh: tets, a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
-enum class Layout { tet80, tet96, bvh2, cwbvh, embree, rt };
+/// A packed form of the mesh: tets (half32: a record for each way into one; tet20 and tet16: tets that share their
+/// vertices), a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
+enum class Layout { tet80, tet96, half32, tet20, tet16, bvh2, cwbvh, embree, rt };
 enum class MathMode { exact, fast };
 /// What rays are for (core/ray_set.h); all but primary ones are given to a session.
 enum class RayKind { primary, shadow, ao, diffuse, random };
 /// The order of rays that are given: as their pixels lie in tiles, along a space-filling curve, at random.
 enum class RayOrder { tiles, morton, shuffled };
 /// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
-/// (Aila, Laine, Karras 2012).
-enum class Schedule { tiles, persistent };
+/// (Aila, Laine, Karras 2012), or as many neighbours at once as a processor's vectors have lanes.
+enum class Schedule { tiles, persistent, packets };
 /// What a kernel does: traces the primary rays of an image, traces rays that it is given, or searches for the exit face
 /// of one tet alone for each ray that it is given.
 enum class Task { trace, rays, search };
-/// The order of the tets in memory.
-enum class TetOrder { hilbert, input };
+/// The order of the tets in memory: along a space-filling curve; the same, with those that no ray from outside reaches
+/// (inside closed surfaces) behind all others; as the tetrahedralization wrote them.
+enum class TetOrder { hilbert, reached, input };
 
 /// A kernel is data: backends map it to code, or say that they have none.
 struct KernelId {
@@ -44,15 +46,22 @@ struct KernelId {
 /// of the enum; the one list that options and rows come from.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the kernel's text does its task: exits are searched in a CDT alone, and rays are given to BVHs and to maria,
-/// the paper's own method, not to those that it is compared with.
+/// Whether the kernel's text does its task: exits are searched in a CDT alone, where its tets hold their corners: walks
+/// through other layouts carry what a search alone would have to make anew; and rays are given to BVHs, to maria, the
+/// paper's own method, and to project where a link says what its corners are, not to methods that they are compared
+/// with.
 [[nodiscard]] bool has_task(const KernelId& kernel);
+
+/// Whether the kernel, of whatever schedule, has packets: one walk is written for them, in exact mode.
+[[nodiscard]] bool has_packets(const KernelId& kernel);
 
 /// The kernels that do a task, in the same order; tasks that are given rays have schedule tiles alone.
 [[nodiscard]] std::vector<KernelId> kernels_of(Task task);
 
 /// The structure that a layout packs.
 [[nodiscard]] Structure structure_of(Layout layout);
+/// Whether a layout's tets share their vertices and name no corner: method project alone walks them.
+[[nodiscard]] bool is_compact(Layout layout);
 /// Whether the kernel is one of kernels/, the same source on every backend; Embree's own and
 /// those of drivers are not.
 [[nodiscard]] bool is_portable(const KernelId& kernel);

@@ -17,9 +17,8 @@ constexpr double largest_growth = 4;
 
 LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height, unsigned part_log2)
 {
-    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width, job.height,
-            job.start_tet,   job.max_steps,   job.any_hit,     divisions,       0,         tile_height,
-            part_log2};
+    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width, job.height,  job.start_tet,
+            job.max_steps,   job.any_hit,     job.start,       divisions,       0,         tile_height, part_log2};
 }
 
 std::uint32_t tile_count(const LaunchParams& image)

@@ -11,9 +11,10 @@ namespace tetrace {
 struct LaunchParams {
     Float3 origin, corner, step_x, step_y;
     std::uint32_t width, height, start_tet, max_steps, any_hit;
+    StartTet start;
     std::uint32_t divisions, first_tile, tile_height, part_log2;
 };
-static_assert(sizeof(LaunchParams) == 84, "every backend reads LaunchParams; see kernels/launch.h");
+static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; see kernels/launch.h");
 
 /// The params of a job's first launch.
 [[nodiscard]] LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height,

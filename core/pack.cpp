@@ -1,5 +1,7 @@
 #include "core/error.h"
 #include "core/hilbert.h"
+#include "core/pack_compact.h"
+#include "core/pack_half32.h"
 #include "core/packed_scene.h"
 
 #include <algorithm>
@@ -47,6 +49,26 @@ Double3 unit_centroid(const Scene& scene, const Tet& tet)
     return {offset.x / size.x, offset.y / size.y, offset.z / size.z};
 }
 
+// Which tets are joined to the domain's boundary by free faces: rays from there cross no others.
+std::vector<bool> reached_tets(const TetMesh& mesh)
+{
+    std::vector<bool> reached(mesh.tets.size());
+    std::vector<std::uint32_t> pending;
+    const auto reach = [&](std::uint32_t tet) {
+        if (!reached[tet]) pending.push_back(tet);
+        reached[tet] = true;
+    };
+    for (std::uint32_t tet = 0; tet < mesh.tets.size(); tet++)
+        if (std::ranges::count(mesh.tets[tet].links, NO_LINK) > 0) reach(tet);
+    while (!pending.empty()) {
+        const Tet& tet = mesh.tets[pending.back()];
+        pending.pop_back();
+        for (std::size_t face = 0; face < 4; face++)
+            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
+    }
+    return reached;
+}
+
 // Tets of the scene in the order in which they are packed.
 std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
 {
@@ -57,6 +79,10 @@ std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
     std::transform(scene.tets.tets.begin(), scene.tets.tets.end(), key.begin(),
                    [&](const Tet& tet) { return hilbert_index(unit_centroid(scene, tet)); });
     std::stable_sort(tets.begin(), tets.end(), [&](auto a, auto b) { return key[a] < key[b]; });
+    if (order == TetOrder::reached) {
+        const std::vector<bool> reached = reached_tets(scene.tets);
+        std::stable_partition(tets.begin(), tets.end(), [&](auto tet) { return reached[tet]; });
+    }
     return tets;
 }
 
@@ -65,16 +91,32 @@ std::uint32_t renumbered(std::uint32_t link, const std::vector<std::uint32_t>& p
     return link == NO_LINK ? NO_LINK : make_link(packed_of_mesh[link_tet(link)], link_face(link));
 }
 
-void pack_tet(PackedScene& packed, std::size_t position, const Scene& scene, const Tet& tet)
+// The scene's tets in packed order, linked by it.
+TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& tets,
+                        const std::vector<std::uint32_t>& packed_of_mesh)
+{
+    TetMesh result{mesh.vertices, {}};
+    result.tets.reserve(tets.size());
+    for (const auto index : tets) {
+        Tet tet = mesh.tets[index];
+        for (auto& link : tet.links)
+            link = renumbered(link, packed_of_mesh);
+        result.tets.push_back(tet);
+    }
+    return result;
+}
+
+void pack_tet(PackedScene& packed, std::size_t position, const TetMesh& mesh)
 {
     const WordMap map = words_of(packed.layout);
     const std::size_t first = position * rows_of(packed.layout) * 4;
+    const Tet& tet = mesh.tets[position];
     for (std::size_t i = 0; i < 4; i++) {
-        const Float3 vertex = scene.tets.vertices[tet.vertices[i]];
+        const Float3 vertex = mesh.vertices[tet.vertices[i]];
         for (int axis = 0; axis < 3; axis++)
             word(packed.tets, first + map.vertex_stride * i + static_cast<std::size_t>(axis)) =
                 std::bit_cast<std::uint32_t>(vertex[axis]);
-        word(packed.tets, first + map.first_face + 2 * i) = renumbered(tet.links[i], packed.packed_of_mesh);
+        word(packed.tets, first + map.first_face + 2 * i) = tet.links[i];
         word(packed.tets, first + map.first_face + 2 * i + 1) = tet.faces[i];
     }
 }
@@ -87,6 +129,21 @@ Row row_of(Float3 a)
 Float3 difference(Float3 a, Float3 b)
 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+void pack_tets(PackedScene& packed, const TetMesh& mesh)
+{
+    if (packed.layout == Layout::half32) {
+        packed.tets = half32_records(mesh);
+        return;
+    }
+    if (is_compact(packed.layout)) {
+        pack_compact(packed, mesh);
+        return;
+    }
+    packed.tets.assign(mesh.tets.size() * rows_of(packed.layout), Row{});
+    for (std::size_t position = 0; position < mesh.tets.size(); position++)
+        pack_tet(packed, position, mesh);
 }
 
 void pack_triangles(PackedScene& packed, const TriangleMesh& mesh)
@@ -114,13 +171,17 @@ void pack_domain(PackedScene& packed, const Scene& scene)
 
 std::size_t PackedScene::bytes() const
 {
-    return (tets.size() + triangles.size() + nodes.size() + leaf_triangles.size()) * sizeof(Row) +
-           (lines.size() + entry_ranges.size() + entry_links.size()) * sizeof(std::uint32_t);
+    return (tets.size() + triangles.size() + vertices.size() + entry_faces.size() + nodes.size() +
+            leaf_triangles.size()) *
+               sizeof(Row) +
+           (lines.size() + entry_ranges.size() + entry_links.size() + occlusive_faces.size()) * sizeof(std::uint32_t);
 }
 
 std::uint32_t most_tets(Layout layout)
 {
     constexpr std::uint64_t indices = std::uint64_t{1} << 32;
+    if (layout == Layout::half32) return HALF32_MAX_TETS;
+    if (is_compact(layout)) return layout == Layout::tet20 ? indices / TET20_WORDS : MAX_TETS;
     const std::uint64_t elements = layout == Layout::tet80 ? 4 * TET80_ROWS : rows_of(layout);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(MAX_TETS, indices / elements));
 }
@@ -132,6 +193,10 @@ PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
                                                 std::to_string(scene.tets.tets.size()) +
                                                 " tets, its kernels reach at most " +
                                                 std::to_string(most_tets(layout)));
+    if (layout == Layout::half32 && scene.mesh.triangles.size() > HALF32_MAX_TRIANGLES)
+        throw Error(ErrorKind::unsupported,
+                    "packing " + scene.name + " as half32: " + std::to_string(scene.mesh.triangles.size()) +
+                        " triangles, its records name at most " + std::to_string(HALF32_MAX_TRIANGLES));
     PackedScene packed;
     packed.layout = layout;
     packed.order = order;
@@ -141,16 +206,16 @@ PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
     packed.packed_of_mesh.resize(tets.size());
     for (std::uint32_t position = 0; position < tets.size(); position++)
         packed.packed_of_mesh[tets[position]] = position;
-    packed.tets.assign(tets.size() * rows_of(layout), Row{});
-    for (std::size_t position = 0; position < tets.size(); position++)
-        pack_tet(packed, position, scene, scene.tets.tets[tets[position]]);
     pack_triangles(packed, scene.mesh);
     pack_domain(packed, scene);
+    pack_tets(packed, in_packed_order(scene.tets, tets, packed.packed_of_mesh));
     return packed;
 }
 
 TetMesh unpack(const PackedScene& packed)
 {
+    if (packed.layout == Layout::half32) return half32_tets(packed.tets);
+    if (is_compact(packed.layout)) return unpack_compact(packed);
     const WordMap map = words_of(packed.layout);
     std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
     TetMesh mesh;

@@ -23,7 +23,7 @@ SceneBuffer buffer_of(const char* name, const std::vector<Element>& array)
 
 } // namespace
 
-std::span<const SceneArray> scene_arrays(Structure structure)
+std::span<const SceneArray> scene_arrays(Layout layout)
 {
     using uint = std::uint32_t;
     using uint4 = Row;
@@ -31,11 +31,15 @@ std::span<const SceneArray> scene_arrays(Structure structure)
     static constexpr SceneArray cdt[] = {
 #include "kernels/cdt_arrays.h"
     };
+    static constexpr SceneArray compact[] = {
+#include "kernels/compact_arrays.h"
+    };
     static constexpr SceneArray bvh[] = {
 #include "kernels/bvh_arrays.h"
     };
 #undef SCENE_ARRAY
-    return structure == Structure::cdt ? std::span(cdt) : std::span<const SceneArray>(bvh);
+    if (is_compact(layout)) return compact;
+    return structure_of(layout) == Structure::cdt ? std::span(cdt) : std::span<const SceneArray>(bvh);
 }
 
 std::vector<SceneBuffer> scene_buffers(const PackedScene& scene)
@@ -44,7 +48,9 @@ std::vector<SceneBuffer> scene_buffers(const PackedScene& scene)
 #define SCENE_ARRAY(element, name, member, binding)                                                                    \
     buffers.resize(std::max<std::size_t>(buffers.size(), binding + 1));                                                \
     buffers[binding] = buffer_of(#member, scene.member);
-    if (structure_of(scene.layout) == Structure::cdt) {
+    if (is_compact(scene.layout)) {
+#include "kernels/compact_arrays.h"
+    } else if (structure_of(scene.layout) == Structure::cdt) {
 #include "kernels/cdt_arrays.h"
     } else {
 #include "kernels/bvh_arrays.h"

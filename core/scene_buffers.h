@@ -9,21 +9,21 @@
 
 namespace tetrace {
 
-/// An array as a structure's kernels read it. One that they read both as words and as rows has two entries.
+/// An array as a layout's kernels read it. One that they read both as words and as rows has two entries.
 struct SceneArray {
     const char* name;
     std::uint32_t binding;
     std::uint32_t element_bytes; ///< 4 or 16
 };
-/// In the order of kernels/<structure>_arrays.h.
-[[nodiscard]] std::span<const SceneArray> scene_arrays(Structure structure);
+/// In the order of kernels/cdt_arrays.h, compact_arrays.h or bvh_arrays.h.
+[[nodiscard]] std::span<const SceneArray> scene_arrays(Layout layout);
 
 /// An array of a packed scene as the bytes that a device is given.
 struct SceneBuffer {
     const char* name;
     std::span<const std::byte> bytes;
 };
-/// All arrays of the scene's structure by their binding; at most SCENE_ARRAYS.
+/// All arrays of the scene's layout by their binding; at most SCENE_ARRAYS.
 [[nodiscard]] std::vector<SceneBuffer> scene_buffers(const PackedScene& scene);
 
 /// How the array of tets is cut where it exceeds a device's largest buffer: parts of 2^log2_bytes, the last one

@@ -1,5 +1,6 @@
 // The packed data that crosses to a device, stated once, for every language: constants and the hit record.
-// Plain C: no include, no type that a shading language lacks. Array names and bindings: cdt_arrays.h and bvh_arrays.h.
+// Plain C: no include, no type that a shading language lacks. Array names and bindings: cdt_arrays.h,
+// compact_arrays.h and bvh_arrays.h.
 #ifndef TETRACE_KERNELS_LAYOUT_H
 #define TETRACE_KERNELS_LAYOUT_H
 
@@ -40,20 +41,38 @@
 #define FREE_FACE 0xFFFFFFFFu // a face that belongs to no input triangle
 #define NO_EXIT 4u            // instead of a face: the method found none to leave the tet by
 
-// Bindings: those of the arrays are 0 to 4; then the output, the counter of persistent threads, and the parts of the
+// Bindings: those of the arrays are 0 to 6; then the output, the counter of persistent threads, and the parts of the
 // array of tets beyond its first, where one buffer cannot hold it.
-#define SCENE_ARRAYS 5u
-#define OUTPUT_BINDING 5u
-#define COUNTER_BINDING 6u
-#define SECOND_PART_BINDING 7u
+#define SCENE_ARRAYS 7u
+#define OUTPUT_BINDING 7u
+#define COUNTER_BINDING 8u
+#define SECOND_PART_BINDING 9u
 #define MAX_TET_PARTS 8u
 #define RAYS_BINDING (SECOND_PART_BINDING + MAX_TET_PARTS - 1u)
-#define FIRST_ROWS_BINDING 16u // of rows, where words and rows of one array are bound apart
+#define FIRST_ROWS_BINDING 32u // of rows, where words and rows of one array are bound apart
 
 // tet80: rows of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
 #define TET80_ROWS 5u
 // tet96: 4 vertices of 16 bytes (w is 0), then 4 faces of 8 bytes {link, input triangle}.
 #define TET96_ROWS 6u
+// half32: a record of 32 bytes for each tet and face that a ray may enter it by, at its link (tet << 2 | face):
+//   {apex.xyz, the apex's rank in the order of the vertices}  {exit 0, exit 1, exit 2, link of the entry face}
+// Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows, the
+// corners of whose entry face are the ray's three vertices turned by so many; else triangle << 2 | HALF32_END for the
+// input triangle that is hit there, or NO_LINK at the domain's boundary.
+#define HALF32_ROWS 2u // of a record; a tet has four
+#define HALF32_END 3u
+#define HALF32_MAX_TETS 0x0FFFFFFFu
+#define HALF32_MAX_TRIANGLES 0x3FFFFFFFu
+// tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
+#define TET20_WORDS 5u
+// tet16: a row, the same words but the last one, and those of neighbours xor that one.
+// vertices of both: {x, y, z, how many vertices are before it: by x, then y, then z}.
+// What is behind a face: a tet, OCCLUSIVE | 2 * occlusive face + side, or NO_LINK.
+#define OCCLUSIVE 0x80000000u
+// occlusive_faces: {input triangle, the tet on side 0, that on side 1}
+#define OCCLUSIVE_WORDS 3u
+// entry_faces: {three vertices in the order of faces.h, tet}
 // triangles: v0, v1 - v0, v2 - v0 of each input triangle, a row of 16 bytes each (w is 0).
 #define TRIANGLE_ROWS 3u
 

@@ -14,5 +14,10 @@ inline Vec3 to_vec3(tetrace::Float3 a)
             job.height,
             job.start_tet,
             job.max_steps,
-            job.any_hit ? 1u : 0u};
+            job.any_hit ? 1u : 0u,
+            job.start.vertices[0],
+            job.start.vertices[1],
+            job.start.vertices[2],
+            job.start.vertices[3],
+            job.start.neighbour};
 }

@@ -7,10 +7,16 @@
 
 #include KERNEL_METHOD_HEADER
 
-#include "kernels/entry.h"
+#include "kernels/entry_links.h"
 
 #include "kernels/path.h"
 
+#include "kernels/triangle_hit.h"
+
+#ifdef HAS_RECORDS
+#include "kernels/carried_walk.h"
+#else
 #include "kernels/walk.h"
 
 #include "kernels/search.h"
+#endif

@@ -1,18 +1,5 @@
-// The walk from tet to tet, and the hit at its end. A method brings exit_face() and start_face(), which return a face
+// The walk from tet to tet. A method brings exit_face() and start_face(), which return a face
 // of the tet, or NO_EXIT.
-
-// The hit on an input triangle; none where the ray ends before it.
-KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint steps, real end)
-{
-    uint4 r0 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle);
-    uint4 r1 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 1u);
-    uint4 r2 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 2u);
-    Vec3 v0 = VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z));
-    Vec3 edge_1 = VEC3(as_real(r1.x), as_real(r1.y), as_real(r1.z));
-    Vec3 edge_2 = VEC3(as_real(r2.x), as_real(r2.y), as_real(r2.z));
-    if (is_beyond(ray, v0, edge_1, edge_2, end)) return make_no_hit(NO_HIT, tet, steps);
-    return make_hit(ray, triangle, v0, edge_1, edge_2, tet, steps);
-}
 
 // The link of a face, or NO_LINK where there is none to leave by. Such a walk reads face 0 instead: a load that all
 // lanes do, and no word behind the last tet.
@@ -74,7 +61,7 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
         face = start_face(scene, tet, ray);
 #ifdef WALKS_PATHS
         if (face == NO_EXIT) {
-            uint exit = exit_ahead(scene, params, ray);
+            uint exit = exit_ahead(scene, params, ray, FREE_FACE);
             if (exit == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
             tet = exit >> 2u;
             face = exit & 3u;
@@ -85,13 +72,20 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 }
 
 // A ray that is given starts on the face that its link names, on the side of that tet: a method never leaves by the
-// face that it entered by, so that the surface a ray starts on is not hit again.
+// face that it entered by, so that the surface a ray starts on is not hit again. One that walks paths asks whether the
+// face is on its path.
 KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
 {
     Ray ray = given_ray(direction, origin);
     uint link = direction.w;
     if (link == NO_LINK) link = entry_link(scene, ray);
     if (link == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+#ifdef WALKS_PATHS
+    link = exit_from_face(scene, params, ray, link);
+    if (link == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint face = link & 3u;
+#else
     uint face = exit_face(scene, link >> 2u, link & 3u, ray);
+#endif
     return walk(scene, params, ray, link >> 2u, face, as_real(origin.w));
 }

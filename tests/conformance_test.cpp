@@ -22,7 +22,7 @@ using nlohmann::json;
 Options small_run(const std::string& backend, const std::string& rays, const std::string& structures)
 {
     return parse_options({"check", "--backend", backend, "--structure", structures, "--method", "all", "--schedule",
-                          "tiles,persistent", "--rays", rays, "--size", "32x24", "--views", "0,2"});
+                          "tiles,persistent,packets", "--rays", rays, "--size", "32x24", "--views", "0,2"});
 }
 
 LoadedScene small_cubes()
@@ -59,10 +59,11 @@ std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& sc
     return rows;
 }
 
-/// "cdt/maria/tet80", with "/persistent" or the kind of rays that it is given behind it.
+/// "cdt/maria/tet80", with "/persistent", "/packets" or the kind of rays that it is given behind it.
 std::string expected_name(const RowKey& key)
 {
-    std::string name = name_of(key.kernel) + (key.kernel.schedule == Schedule::tiles ? "" : "/persistent");
+    std::string name = name_of(key.kernel);
+    if (key.kernel.schedule != Schedule::tiles) name.append("/").append(name_of(key.kernel.schedule));
     return key.rays == RayKind::primary ? name : name.append("/").append(name_of(key.rays));
 }
 

@@ -6,6 +6,7 @@
 #include "scenes/bvh_scene.h"
 #include "tests/device_rays.h"
 #include "tests/given_scene.h"
+#include "tests/hard_rays.h"
 
 #include <algorithm>
 #include <string>
@@ -55,6 +56,26 @@ TEST_P(GivenRays, of_kind_primary_are_those_that_kernels_make)
         const auto session = backend.open(device, {.task = Task::rays}, {&cubes.scene.mesh, &cubes.packed}, {});
         const auto hits = traced_given(*session, set, given_rows(set, cubes.packed));
         EXPECT_EQ(different_rays(hits, by_ray, allowed_ulps(device)), 0u) << backend.devices()[device].name;
+    }
+}
+
+TEST_P(GivenRays, of_walks_that_ask_for_their_path_have_the_bits_of_openmp)
+{
+    RaySet hard = test::hard_ray_set(cubes.scene, 0, 3600);
+    for (std::size_t i = 1; i < hard.rays.size(); i += 2)
+        hard.rays[i].end = 0.375F;
+    for (const Layout layout : {Layout::tet80, Layout::half32}) {
+        const KernelId kernel{.method = Method::project, .layout = layout, .task = Task::rays};
+        const PackedScene packed = pack(cubes.scene, layout, TetOrder::hilbert);
+        for (const std::size_t device : usable) {
+            const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &packed}, {});
+            for (const RaySet& set :
+                 {hard, make_rays(RayKind::shadow, cubes.source()), make_rays(RayKind::diffuse, cubes.source())})
+                EXPECT_EQ(different_rays(traced_given(*session, set, given_rows(set, packed)),
+                                         cubes.answers(set, Method::project), allowed_ulps(device)),
+                          0u)
+                    << backend.devices()[device].name << ' ' << name_of(kernel);
+        }
     }
 }
 

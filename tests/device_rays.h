@@ -65,7 +65,7 @@ private:
         job.height = height;
         const Start start = find_start(scene_, job.view.origin);
         job.view.origin = start.origin;
-        job.start_tet = start.tet == NO_TET ? NO_TET : packed_.packed_of_mesh.at(start.tet);
+        start_in(job, packed_, scene_, start.tet);
         job.max_steps = 10'000;
         return job;
     }

@@ -54,6 +54,8 @@ TEST(figures, bandwidth_is_steps_times_what_a_step_loads)
     EXPECT_DOUBLE_EQ(bytes_per_step({}), 44);
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::maria, Layout::tet96}), 64);
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::plane, Layout::tet80}), 56);
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::project, Layout::tet20}), 24) << "a vertex and two words";
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::project, Layout::tet16}), 32) << "a vertex and a row";
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::ms06, Layout::tet80}), 52);
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::stp, Layout::tet96}), 64 + 32.0 / 3);
     EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet80))->gb_per_s.value(), 3.52);

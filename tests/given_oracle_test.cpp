@@ -26,23 +26,25 @@ const GivenScene& inside_camera()
     return made;
 }
 
-void expect_clean(const GivenScene& given, RayKind kind)
+void expect_clean(const GivenScene& given, RayKind kind, Method method)
 {
     GivenOracle oracle(given.scene.mesh, 2);
     const RaySet set = make_rays(kind, given.source());
-    const Verdicts verdicts = oracle.judge(set, given.answers(set), Origins::own);
+    const Verdicts verdicts = oracle.judge(set, given.answers(set, method), Origins::own);
     EXPECT_EQ(verdicts.rays, set.rays.size());
     EXPECT_EQ(verdicts.agreed + verdicts.ties + verdicts.settled, verdicts.rays);
     EXPECT_GT(verdicts.agreed, verdicts.rays * 99 / 100) << name_of(kind);
     EXPECT_TRUE(verdicts.clean()) << name_of(kind) << ": " << verdicts.wrong << " wrong, " << verdicts.lost << " lost";
 }
 
-TEST(GivenOracle, agrees_with_the_walk_on_every_kind_from_outside_and_inside)
+TEST(GivenOracle, agrees_with_walks_on_every_kind_from_outside_and_inside)
 {
-    for (const RayKind kind : all_kinds)
-        expect_clean(GivenScene(96), kind);
-    for (const RayKind kind : all_kinds)
-        expect_clean(inside_camera(), kind);
+    const GivenScene from_outside(96);
+    for (const Method method : {Method::maria, Method::project})
+        for (const RayKind kind : all_kinds) {
+            expect_clean(from_outside, kind, method);
+            expect_clean(inside_camera(), kind, method);
+        }
 }
 
 std::vector<Hit> bvh_answers(const TriangleMesh& mesh, const PackedScene& bvh, const RaySet& set)

@@ -44,11 +44,12 @@ struct GivenScene {
         return {scene, view_number, job.view, job.width, job.height, start_tet, hits, mesh_of_packed};
     }
 
-    /// What openmp's cdt/maria answers to given rays, one by one.
-    [[nodiscard]] std::vector<Hit> answers(const RaySet& set) const
+    /// What openmp answers to given rays, one by one.
+    [[nodiscard]] std::vector<Hit> answers(const RaySet& set, Method method = Method::maria) const
     {
         std::vector<Hit> answers(set.rays.size());
-        const auto session = openmp_backend().open(0, {.task = Task::rays}, {&scene.mesh, &packed}, {.threads = 2});
+        const auto session =
+            openmp_backend().open(0, {.method = method, .task = Task::rays}, {&scene.mesh, &packed}, {.threads = 2});
         session->set_rays(given_rows(set, packed));
         session->launch(given_job(set.rays.size(), packed.tet_count + 1, set.any_hit));
         (void)session->wait();

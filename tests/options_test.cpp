@@ -79,7 +79,7 @@ TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "cuda-host or embree"));
     EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
-    EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert or input"));
+    EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert, reached or input"));
     EXPECT_TRUE(contains(rejection({"draw"}),
                          "devices, scenes, build, bench, check, render, reproduce, compare, report or help"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
@@ -197,7 +197,7 @@ TEST(options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_EQ(options.tile_height, 4u);
     EXPECT_EQ(options.buffer_limit, 65536u);
     EXPECT_TRUE(contains(rejection({"bench", "--tile", "4x8"}), "8x4 or 8x8"));
-    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles or persistent"));
+    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent or packets"));
 }
 
 TEST(options, files_stand_between_options_wherever_they_are_given)

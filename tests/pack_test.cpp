@@ -1,5 +1,6 @@
 #include "core/packed_scene.h"
 
+#include "core/error.h"
 #include "core/hilbert.h"
 #include "scenes/procedural.h"
 
@@ -42,8 +43,8 @@ TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
 }
 
 INSTANTIATE_TEST_SUITE_P(EachLayoutAndOrder, Packing,
-                         testing::Combine(testing::Values(Layout::tet80, Layout::tet96),
-                                          testing::Values(TetOrder::hilbert, TetOrder::input)),
+                         testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32),
+                                          testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
                          [](const auto& row) {
                              return std::string(name_of(std::get<0>(row.param))) + "_" +
                                     std::string(name_of(std::get<1>(row.param)));
@@ -55,12 +56,14 @@ TEST(Pack, sizes_are_those_of_the_layout)
     const auto tets = scene.tets.tets.size();
     EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Row), 80 * tets);
     EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Row), 96 * tets);
+    EXPECT_EQ(pack(scene, Layout::half32, TetOrder::hilbert).tets.size() * sizeof(Row), 4 * 32 * tets);
 }
 
 TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
 {
     EXPECT_EQ(most_tets(Layout::tet80), 214'748'364u) << "20 words each";
     EXPECT_EQ(most_tets(Layout::tet96), 715'827'882u) << "6 rows each";
+    EXPECT_EQ(most_tets(Layout::half32), 268'435'455u) << "28 bits in an exit";
 }
 
 // Along the curve no two tets that follow each other are far apart; row after row of cubes, the ends of rows are.
@@ -78,7 +81,30 @@ TEST(Pack, hilbert_order_has_no_long_jumps)
     EXPECT_LT(longest_jump(TetOrder::hilbert), 0.5 * longest_jump(TetOrder::input));
 }
 
-TEST(Pack, both_layouts_number_the_tets_alike)
+// cubes are closed surfaces: a part of the tets lies inside them.
+TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached)
+{
+    const Scene scene = make_cubes(12);
+    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::reached);
+    const TetMesh mesh = unpack(packed);
+    std::vector<bool> reached(mesh.tets.size());
+    std::size_t count = 0;
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t tet = 0; tet < mesh.tets.size(); tet++)
+            for (std::size_t face = 0; face < 4 && !reached[tet]; face++) {
+                const auto link = mesh.tets[tet].links[face];
+                const bool is_open =
+                    link == NO_LINK || (mesh.tets[tet].faces[face] == FREE_FACE && reached[link_tet(link)]);
+                if (is_open) grows = reached[tet] = true, count++;
+            }
+    }
+    EXPECT_GT(count, 0u);
+    EXPECT_LT(count, mesh.tets.size());
+    EXPECT_TRUE(std::is_partitioned(reached.begin(), reached.end(), [](bool is_reached) { return is_reached; }));
+}
+
+TEST(Pack, layouts_number_the_tets_alike)
 {
     const Scene scene = make_cubes(5);
     EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).packed_of_mesh,
@@ -102,6 +128,21 @@ TEST(Pack, every_word_of_a_tet_matters)
             EXPECT_FALSE(unpack(spoilt) == whole) << name_of(layout) << " word " << word;
         }
     }
+}
+
+// half32 says most things several times: no copy may differ from the others.
+TEST(Pack, no_word_of_a_record_may_contradict_the_others)
+{
+    const Scene scene = make_cubes(2);
+    const PackedScene packed = pack(scene, Layout::half32, TetOrder::hilbert);
+    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_ROWS; word++)
+        for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
+            PackedScene spoilt = packed;
+            Row& row = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            *at[word % 4] ^= bit;
+            EXPECT_THROW((void)unpack(spoilt), Error) << "word " << word << ", bit " << bit;
+        }
 }
 
 TEST(Pack, triangles_hold_a_corner_and_two_edges)

@@ -3,8 +3,10 @@
 #include "bench/settle.h"
 #include "core/backend.h"
 #include "core/locate.h"
-#include "scenes/procedural.h"
+#include "core/ray_offset.h"
 #include "tests/device_rays.h"
+#include "tests/hard_rays.h"
+#include "tests/hard_scenes.h"
 #include "tests/random.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,6 +28,8 @@ using tetrace::Float3;
 
 std::array<std::uint64_t, 3> decided{}; // signs by level: float products, what they lost, the order of the vertices
 #define COUNT_SIGN(level) (decided[level]++)
+std::array<std::uint64_t, 3> sought{}; // see COUNT_SEARCH in kernels/entry.h
+#define COUNT_SEARCH(where) (sought[where]++)
 
 #define KERNEL_STRUCTURE_HEADER "kernels/structure_cdt.h"
 #define KERNEL_ARRAYS_HEADER "kernels/cdt_arrays.h"
@@ -37,47 +39,9 @@ namespace right {
 #include "kernels/kernel_cpp.h"
 }
 #undef SIDE_AT_TIE
-#define SIDE_AT_TIE(p, q, product) false // "not positive", in whichever direction the edge is asked for
+#define SIDE_AT_TIE(p, q, p_is_first, product) false // "not positive", in whichever direction the edge is asked for
 namespace mutant {
 #include "kernels/kernel_cpp.h"
-}
-
-/// Where the lines of a grid stand along each axis.
-using Lines = std::array<std::vector<float>, 3>;
-
-/// `cubes` with its vertices on a grid of these lines; every tet keeps its orientation.
-tetrace::Scene grid_of(const Lines& lines)
-{
-    const auto n = static_cast<std::uint32_t>(lines[0].size() - 1);
-    tetrace::Scene scene = tetrace::make_cubes(n);
-    std::map<std::tuple<float, float, float>, Float3> moved;
-    for (std::uint32_t i = 0; i < scene.tets.vertices.size(); i++) {
-        Float3& vertex = scene.tets.vertices[i];
-        const Float3 place{lines[0][i % (n + 1)], lines[1][i / (n + 1) % (n + 1)], lines[2][i / (n + 1) / (n + 1)]};
-        moved[{vertex.x, vertex.y, vertex.z}] = place;
-        vertex = place;
-    }
-    for (Float3& vertex : scene.mesh.vertices)
-        vertex = moved.at({vertex.x, vertex.y, vertex.z});
-    scene.domain.lines = lines;
-    return scene;
-}
-
-std::vector<float> even_lines(std::uint32_t n, float reach)
-{
-    std::vector<float> lines;
-    for (std::uint32_t i = 0; i <= n; i++)
-        lines.push_back(tetrace::snap_to_grid(reach * (2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f)));
-    return lines;
-}
-
-/// Every other cell is so thin.
-std::vector<float> uneven_lines(std::uint32_t n, float thickness)
-{
-    std::vector<float> lines = even_lines(n, 1);
-    for (std::uint32_t i = 1; i < n; i += 2)
-        lines[i + 1] = lines[i] + thickness;
-    return lines;
 }
 
 struct Grid {
@@ -96,12 +60,8 @@ const std::vector<std::unique_ptr<Grid>>& grids()
 {
     static const auto made = [] {
         std::vector<std::unique_ptr<Grid>> list;
-        const auto fine = even_lines(8, 1), even = even_lines(4, 1);
-        list.push_back(std::make_unique<Grid>("regular", grid_of({fine, fine, fine})));
-        list.push_back(std::make_unique<Grid>("jittered", tetrace::make_cubes(5)));
-        list.push_back(std::make_unique<Grid>("stretched 1:10,000", grid_of({even, even, even_lines(4, 1e-4f)})));
-        const auto thin = uneven_lines(4, 0x1p-18f);
-        list.push_back(std::make_unique<Grid>("slivers", grid_of({thin, thin, thin})));
+        for (auto& [name, scene] : tetrace::test::make_hard_scenes())
+            list.push_back(std::make_unique<Grid>(name, std::move(scene)));
         return list;
     }();
     return made;
@@ -216,6 +176,16 @@ tetrace::Hit traced(const Grid& grid, const Line& line, std::uint32_t start_tet)
     return to_hit(right::trace(grid.view, params_of(grid, start_tet), ray));
 }
 
+/// Whether the ray enters by the face.
+bool holds(const Grid& grid, std::uint32_t link, const right::Ray& ray)
+{
+    const auto corner = [&](std::uint32_t i) {
+        return right::vertex(grid.view, link >> 2, right::corner(link & 3u, i));
+    };
+    return right::side_at_entry(ray, corner(0), corner(1)) > 0 && right::side_at_entry(ray, corner(1), corner(2)) > 0 &&
+           right::side_at_entry(ray, corner(2), corner(0)) > 0;
+}
+
 /// The nearest triangle that the exact ray meets.
 std::uint32_t nearest_triangle(const tetrace::TriangleMesh& mesh, const Line& line)
 {
@@ -306,6 +276,126 @@ TEST(Project, loses_no_ray_from_outside_and_no_ray_from_a_vertex_an_edge_or_a_fa
     }
 }
 
+TEST(Project, loses_no_ray_that_is_given_and_never_hits_the_face_that_it_starts_on)
+{
+    std::uint64_t elsewhere = 0, from_beginning = 0, beyond = 0;
+    for (const auto& grid : grids()) {
+        const auto set = tetrace::test::hard_ray_set(grid->scene, 0, 9 * 800);
+        const auto rows = given_rows(set, grid->packed);
+        sought = {};
+        for (std::size_t i = 0; i < set.rays.size(); i++) {
+            const auto hit =
+                right::trace_given(grid->view, params_of(*grid, NO_TET), rows[i], rows[set.rays.size() + i]);
+            ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
+            if (set.rays[i].triangle != FREE_FACE) {
+                ASSERT_NE(hit.face_id, set.rays[i].triangle) << grid->name << ", ray " << i;
+            }
+            if (rows[i].w == NO_LINK) continue;
+            const auto ray = right::given_ray(rows[i], rows[set.rays.size() + i]);
+            elsewhere += !holds(*grid, rows[i].w, ray);
+        }
+        from_beginning += sought[1];
+        beyond += sought[2];
+        EXPECT_GT(sought[1], 100u) << grid->name;
+    }
+    EXPECT_GT(elsewhere, from_beginning + beyond) << "starts whose face does not hold the rounded ray";
+    EXPECT_GT(beyond, 0u);
+    RecordProperty("starts_elsewhere", std::to_string(elsewhere));
+    RecordProperty("starts_from_the_beginning", std::to_string(from_beginning));
+    RecordProperty("starts_beyond", std::to_string(beyond));
+}
+
+namespace {
+
+/// Of a ray's path from the boundary.
+std::uint32_t tets_on_path(const Grid& grid, const right::Ray& ray)
+{
+    std::uint32_t count = 0;
+    const std::uint32_t entry = right::entry_anywhere(grid.view, ray, 0, 0);
+    for (std::uint32_t link = entry == NO_ENTRY ? NO_LINK : grid.packed.entry_links[entry]; link != NO_LINK; count++)
+        link = right::face_link(grid.view, link >> 2, right::exit_face(grid.view, link >> 2, link & 3u, ray));
+    return count;
+}
+
+/// How far a point is from the nearest of the planes of a tet's faces, negative where it is outside.
+double clearance(const tetrace::TetMesh& mesh, std::uint32_t tet, Float3 point)
+{
+    double least = HUGE_VAL;
+    for (std::uint32_t face = 0; face < 4; face++) {
+        const auto at = [&](std::uint32_t i) {
+            return to_double(mesh.vertices[mesh.tets[tet].vertices[i < 3 ? right::corner(face, i) : face]]);
+        };
+        const auto normal = normalized(cross(at(1) - at(0), at(2) - at(0)));
+        const double apex = dot(normal, at(3) - at(0)), height = dot(normal, to_double(point) - at(0));
+        least = std::min(least, apex < 0 ? -height : height);
+    }
+    return least;
+}
+
+/// How many steps after it leaves a tet that it crosses a ray enters it again; 0 where it never does.
+std::uint32_t cycle_length(const Grid& grid, const right::Ray& ray, std::uint32_t tet)
+{
+    std::uint32_t link = right::face_link(grid.view, tet, right::start_face(grid.view, tet, ray));
+    for (std::uint32_t steps = 1; link != NO_LINK; steps++) {
+        if (link >> 2 == tet) return steps;
+        link = right::face_link(grid.view, link >> 2, right::exit_face(grid.view, link >> 2, link & 3u, ray));
+    }
+    return 0;
+}
+
+} // namespace
+
+TEST(Project, goes_in_circles_only_from_tets_within_rounding_and_counts_that_as_lost)
+{
+    const Grid grid("cluster", tetrace::test::cluster_of(0x1p-24f));
+    EXPECT_FALSE(find_defect(grid.scene.tets, grid.scene.mesh.triangles.size()));
+    const tetrace::test::HardRays rays(grid.scene);
+    std::uint32_t on_cycles = 0, lost = 0, longest = 0;
+    for (std::uint64_t number = 0; number < 3000; number++) {
+        const auto given = rays.ray(number);
+        const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
+        std::uint32_t crossed = 0, cyclic = 0;
+        for (std::uint32_t tet = 0; tet < grid.packed.tet_count; tet++) {
+            if (right::start_face(grid.view, tet, ray) == NO_EXIT) continue;
+            crossed++;
+            const std::uint32_t length = cycle_length(grid, ray, tet);
+            longest = std::max(longest, length);
+            if (length == 0) continue;
+            cyclic++;
+            const tetrace::Hit hit = traced(grid, {given.origin, given.direction}, tet);
+            if (hit.face_id != LOST) continue; // a triangle lies on the cycle
+            lost++;
+            ASSERT_EQ(hit.steps, grid.packed.tet_count + 1) << "ray " << number;
+        }
+        ASSERT_EQ(crossed, tets_on_path(grid, ray) + cyclic) << "ray " << number;
+        on_cycles += cyclic;
+    }
+    EXPECT_GT(on_cycles, 50u);
+    EXPECT_GT(lost, 0u);
+    RecordProperty("tets_on_cycles", std::to_string(on_cycles));
+    RecordProperty("longest_cycle", std::to_string(longest));
+}
+
+TEST(Project, is_on_its_path_where_it_starts_in_a_tet_by_more_than_the_bound)
+{
+    const Grid grid("cluster", tetrace::test::cluster_of(0x1p-24f));
+    const tetrace::test::HardRays rays(grid.scene);
+    int starts = 0, through_cluster = 0;
+    for (std::uint64_t number = 0; number < 60'000; number++) {
+        const auto given = rays.ray(number);
+        if (rays.kind_of(number) != tetrace::test::HardKind::from_inside) continue;
+        const std::uint32_t tet = given.link >> 2;
+        if (clearance(grid.scene.tets, tet, given.origin) <= tetrace::tie_bound(given.origin)) continue;
+        starts++;
+        const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
+        ASSERT_NE(right::start_face(grid.view, grid.packed.packed_of_mesh[tet], ray), NO_EXIT) << "ray " << number;
+        ASSERT_EQ(cycle_length(grid, ray, grid.packed.packed_of_mesh[tet]), 0u) << "ray " << number;
+        through_cluster += tets_on_path(grid, ray) > 20;
+    }
+    EXPECT_GT(starts, 200);
+    EXPECT_GT(through_cluster, 100);
+}
+
 TEST(Project, is_right_by_exact_arithmetic_or_within_rounding_of_an_edge)
 {
     tetrace::test::Random random(63);
@@ -332,6 +422,7 @@ TEST(Project, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
 {
     // Along lines of the domain's own squares and edges, where the look-up's square and the signs may differ.
     tetrace::test::Random random(64);
+    sought = {};
     for (const auto& grid : grids()) {
         const auto& lines = grid->scene.domain.lines;
         const auto at = [&](std::size_t axis) {
@@ -344,6 +435,7 @@ TEST(Project, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
             ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
         }
     }
+    EXPECT_GT(sought[0], 0u) << "rays whose square has no face that holds them";
 }
 
 TEST(Project, has_the_same_bits_on_openmp_and_cuda_host_where_rays_pass_vertices_and_edges)

@@ -39,9 +39,24 @@ TEST_F(reproduce, table4_of_a_sample_of_views)
         EXPECT_EQ(column.value("decimals", -1) == 0, column["key"] == "views") << column;
     EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
     EXPECT_EQ(claim(table, "maria-has-the-fewest")["verdict"], "not testable here") << "nothing to compare with";
+    EXPECT_EQ(claim(table, "project-has-no-wrong-result")["verdict"], "not testable here") << "it was not traced";
     EXPECT_EQ(section["rows"][0]["verification"]["rays"], 13 * 24 * 24);
     EXPECT_FALSE(section["rows"][0].contains("rates")) << "nothing was timed";
     EXPECT_TRUE(contains(ended.out, "table4: Rays with a wrong result"));
+}
+
+TEST_F(reproduce, table4_has_every_method_where_none_is_named_and_none_wrong_of_project)
+{
+    const Ended ended = run("table4 --layout tet80 --size 24 --views 0-1281:100 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json table = of_id(result("r.json")["tables"], "table4");
+    ASSERT_EQ(table["rows"].size(), 6u);
+    const json row = table["rows"][5];
+    EXPECT_EQ(row["method"], "project");
+    EXPECT_EQ(row["status"], "ok");
+    EXPECT_EQ(row["flawed"]["value"], 0);
+    EXPECT_FALSE(row["flawed"].contains("paper")) << "it does not have this method";
+    EXPECT_TRUE(contains(claim(table, "project-has-no-wrong-result")["evidence"], "0 of 7,488 rays in 13 of 1,282"));
 }
 
 TEST_F(reproduce, all_views_of_smaller_images_are_a_sample_still)

@@ -46,16 +46,20 @@ bool takes_rays(std::string_view name)
     return name.find("_trace") == std::string_view::npos;
 }
 
-Structure structure_of_module(std::string_view name)
+/// A kernel's module is called method_layout_math_variant.
+Layout layout_of_module(std::string_view name)
 {
-    return name.starts_with(name_of(Method::single)) ? Structure::bvh : Structure::cdt;
+    for (const KernelId& kernel : all_kernels())
+        if (name.starts_with(std::string(name_of(kernel.method)).append("_").append(name_of(kernel.layout)) + "_"))
+            return kernel.layout;
+    throw std::runtime_error("no kernel is called " + std::string(name));
 }
 
-/// What a kernel's storage buffers must be: kernels/<structure>_arrays.h and kernels/layout.h.
+/// What a kernel's storage buffers must be: its layout's arrays (core/scene_buffers.h) and kernels/layout.h.
 std::map<std::string, Array> expected_arrays(std::string_view module, bool in_parts)
 {
     std::map<std::string, Array> arrays;
-    for (const SceneArray& array : scene_arrays(structure_of_module(module)))
+    for (const SceneArray& array : scene_arrays(layout_of_module(module)))
         arrays[array.name] = {array.binding, array.element_bytes, false};
     arrays["output_words"] = {OUTPUT_BINDING, 4, true};
     if (takes_rays(module)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
@@ -70,7 +74,7 @@ std::map<std::string, Array> expected_arrays(std::string_view module, bool in_pa
 std::map<std::string, std::uint32_t> expected_texels(std::string_view module)
 {
     std::map<std::string, std::uint32_t> bindings;
-    for (const SceneArray& array : scene_arrays(structure_of_module(module)))
+    for (const SceneArray& array : scene_arrays(layout_of_module(module)))
         bindings[array.name] = array.binding + (array.element_bytes == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
     if (takes_rays(module)) bindings["rays"] = FIRST_ROWS_BINDING + RAYS_BINDING;
     return bindings;
@@ -98,6 +102,9 @@ std::vector<Member> expected_push_constants()
     add("trace.start_tet", offsetof(LaunchParams, start_tet));
     add("trace.max_steps", offsetof(LaunchParams, max_steps));
     add("trace.any_hit", offsetof(LaunchParams, any_hit));
+    for (std::size_t i = 0; i < 4; i++)
+        add("trace.start_v" + std::to_string(i), offsetof(LaunchParams, start.vertices) + i * sizeof(std::uint32_t));
+    add("trace.start_neighbour", offsetof(LaunchParams, start.neighbour));
     add("divisions", offsetof(LaunchParams, divisions));
     add("first_tile", offsetof(LaunchParams, first_tile));
     add("tile_height", offsetof(LaunchParams, tile_height));

@@ -71,7 +71,7 @@ void CudaSession::upload(const PackedScene& scene)
         arrays_.emplace_back(device_.context, buffer.bytes, buffer.name, device_.stream.get());
     device_.synchronize();
     setup_.upload_s = seconds_since(start);
-    for (const SceneArray& array : scene_arrays(structure_of(scene.layout)))
+    for (const SceneArray& array : scene_arrays(scene.layout))
         scene_.push_back(arrays_[array.binding].address());
     scene_.push_back(divisions_); // in the low half of the last eight bytes, as a little-endian host has it
 }

@@ -19,7 +19,9 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return (kernel.task == Task::trace || kernel.schedule == Schedule::tiles) && has_task(kernel) &&
+        const bool has_schedule =
+            kernel.task == Task::trace ? kernel.schedule != Schedule::packets : kernel.schedule == Schedule::tiles;
+        return has_schedule && has_task(kernel) &&
                find_kernel(opencl::embedded_kernels(), opencl::source_name(kernel)) != nullptr;
     }
 

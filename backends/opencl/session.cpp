@@ -103,7 +103,7 @@ void OpenclSession::compile(const ProgramCache& cache)
 void OpenclSession::set_arguments()
 {
     cl_uint argument = first_array_argument;
-    for (const SceneArray& array : scene_arrays(kernel_id_.structure))
+    for (const SceneArray& array : scene_arrays(kernel_id_.layout))
         kernel_.setArg(argument++, arrays_[array.binding]);
     for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; part++)
         kernel_.setArg(argument++, part < parts_.count ? more_parts_[part] : arrays_[0]);

@@ -154,8 +154,8 @@ std::string why_not_usable(const Limits& limits)
     if (!limits.queue_family) return "no queue of the device both computes and has timestamps";
     if (limits.push_constant_bytes < sizeof(LaunchParams))
         return too_small("bytes of push constants", limits.push_constant_bytes, sizeof(LaunchParams));
-    if (limits.storage_buffers < storage_buffers_needed(false))
-        return too_small("storage buffers of a shader", limits.storage_buffers, storage_buffers_needed(false));
+    if (limits.storage_buffers < least_storage_buffers)
+        return too_small("storage buffers of a shader", limits.storage_buffers, least_storage_buffers);
     if (limits.group_items < tile_items) return too_small("items of a work group", limits.group_items, tile_items);
     if (limits.group_height < 8) return too_small("height of a work group", limits.group_height, 8);
     return {};

@@ -28,10 +28,11 @@ struct Limits {
 /// Empty where the device can run our kernels, else the reason with both numbers.
 [[nodiscard]] std::string why_not_usable(const Limits& limits);
 
-/// Storage buffers that a kernel is given: the scene's arrays, the output, and further parts of the tets.
-[[nodiscard]] constexpr std::uint32_t storage_buffers_needed(bool in_parts)
+/// Storage buffers that a kernel is given: so many arrays of a scene, the output, and rays, or further parts of the
+/// tets.
+[[nodiscard]] constexpr std::uint32_t storage_buffers_needed(std::size_t arrays, bool in_parts)
 {
-    return in_parts ? MAX_TET_PARTS + SCENE_ARRAYS : 2 + SCENE_ARRAYS; // the output, and rays that are given
+    return static_cast<std::uint32_t>(arrays) + (in_parts ? MAX_TET_PARTS : 2);
 }
 
 /// A physical device of instance(). handle is null where facts speak of there being none.
@@ -45,6 +46,9 @@ struct FoundDevice {
     bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests
     std::string build_key;         ///< device and driver with versions: compiled pipelines are valid for these alone
 };
+
+/// Of the structure that has most: a device that has fewer is of no use.
+inline constexpr std::uint32_t least_storage_buffers = storage_buffers_needed(5, false);
 
 /// Every device of every driver, or one entry that says why there is none. Throws nothing.
 [[nodiscard]] std::vector<FoundDevice> find_devices();

@@ -12,6 +12,7 @@
 #include "kernels/kernel.h"
 
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the tile's height
+layout(constant_id = 1) const bool starts_outside = false; // all rays of task trace do: no start in a tet is compiled
 layout(push_constant) uniform Launch
 {
     LaunchParams launch;
@@ -49,7 +50,9 @@ void main()
     uint ray = ray_index(pixel);
     Hit hit = trace_given(scene, launch.trace, RAY_ROW(ray), RAY_ROW(ray_count(launch) + ray));
 #else
-    Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
+    TraceParams params = launch.trace;
+    params.start_tet = starts_outside ? NO_TET : params.start_tet;
+    Hit hit = trace(scene, params, primary_ray(params, pixel.x, pixel.y));
 #endif
     uint word = output_word(launch, pixel);
     output_words[word] = hit.face_id;

@@ -10,7 +10,8 @@ namespace {
 
 std::uint64_t key_of(const FoundDevice& device, const ProgramId& id, std::span<const std::byte> code)
 {
-    return hash_bytes(code, hash_of(device.build_key + ";" + std::to_string(id.tile_height)));
+    return hash_bytes(
+        code, hash_of(device.build_key + ";" + std::to_string(id.tile_height) + (id.starts_outside ? ";outside" : "")));
 }
 
 vk::raii::PipelineCache make_cache(const Context& context, const ProgramCache& cache, std::uint64_t key)
@@ -82,9 +83,12 @@ void Program::make_pipeline(const Context& context, const ProgramId& id, const P
         vk::ShaderModuleCreateInfo{}
             .setCodeSize(kernel->bytes.size())
             .setPCode(reinterpret_cast<const std::uint32_t*>(kernel->bytes.data())));
-    const auto height = vk::SpecializationMapEntry{}.setConstantID(0).setSize(sizeof(id.tile_height));
+    const std::array<std::uint32_t, 2> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE};
+    const std::array entries = {
+        vk::SpecializationMapEntry{}.setConstantID(0).setOffset(0).setSize(sizeof(values[0])),
+        vk::SpecializationMapEntry{}.setConstantID(1).setOffset(sizeof(values[0])).setSize(sizeof(values[1]))};
     const auto constants =
-        vk::SpecializationInfo{}.setMapEntries(height).setDataSize(sizeof(id.tile_height)).setPData(&id.tile_height);
+        vk::SpecializationInfo{}.setMapEntries(entries).setDataSize(sizeof(values)).setPData(values.data());
     auto stage = vk::PipelineShaderStageCreateInfo{}
                      .setStage(vk::ShaderStageFlagBits::eCompute)
                      .setModule(*module)

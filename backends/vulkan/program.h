@@ -26,6 +26,7 @@ struct ProgramId {
     std::optional<std::uint32_t> structure = {}; ///< binding of a BVH that the driver has built
     std::uint32_t push_constant_bytes = 0;       ///< 0: none
     unsigned tile_height = 0;                    ///< the height of its work groups; 0: as the module says
+    bool starts_outside = false;                 ///< no ray starts in a tet
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 

@@ -11,9 +11,9 @@ namespace tetrace::vulkan {
 
 namespace {
 
-void require_storage_buffers(const FoundDevice& found, const TetParts& parts)
+void require_storage_buffers(const FoundDevice& found, const PackedScene& scene, const TetParts& parts)
 {
-    const std::uint32_t needed = storage_buffers_needed(parts.count > 1);
+    const std::uint32_t needed = storage_buffers_needed(scene_buffers(scene).size(), parts.count > 1);
     if (found.limits.storage_buffers >= needed) return;
     throw Error(ErrorKind::unsupported, "tets in " + std::to_string(parts.count) + " buffers on '" + found.facts.name +
                                             "': a shader has " + std::to_string(found.limits.storage_buffers) +
@@ -21,10 +21,10 @@ void require_storage_buffers(const FoundDevice& found, const TetParts& parts)
 }
 
 /// Every array as texels, those of rows apart from those of words: kernels/scene_view_texels_glsl.h.
-std::vector<TexelBinding> texel_bindings(Structure structure)
+std::vector<TexelBinding> texel_bindings(Layout layout)
 {
     std::vector<TexelBinding> texels;
-    for (const SceneArray& array : scene_arrays(structure))
+    for (const SceneArray& array : scene_arrays(layout))
         texels.push_back(array.element_bytes == sizeof(Row)
                              ? TexelBinding{FIRST_ROWS_BINDING + array.binding, vk::Format::eR32G32B32A32Uint}
                              : TexelBinding{array.binding, vk::Format::eR32Uint});
@@ -59,28 +59,28 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
                              const SessionOptions& options)
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_for(found.facts, options)),
-      structure_(kernel.structure), task_(kernel.task), in_texels_(is_in_texels(found, scene, parts_)),
+      kernel_(kernel), program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, parts_)),
       divisions_(scene.divisions), launches_(tile_height_, found.limits.groups)
 {
-    require_storage_buffers(found, parts_);
+    require_storage_buffers(found, scene, parts_);
     require_variant(kernel, parts_);
     const auto start = std::chrono::steady_clock::now();
     context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
     setup_.upload_s = seconds_since(start);
-    compile(kernel, options);
+    compile();
 }
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
                              const SessionOptions& options)
     : context_(found, Uses::ray_queries), max_buffer_bytes_(largest_buffer(found.facts, options)),
-      tile_height_(tile_height_for(found.facts, options)), structure_(kernel.structure), task_(kernel.task),
+      tile_height_(tile_height_for(found.facts, options)), kernel_(kernel), program_cache_(options.program_cache),
       launches_(tile_height_, found.limits.groups)
 {
     acceleration_.emplace(context_, mesh);
     bytes_ = acceleration_->bytes();
     setup_.upload_s = acceleration_->upload_s();
     setup_.build_s = acceleration_->build_s();
-    compile(kernel, options);
+    compile();
 }
 
 VulkanSession::~VulkanSession()
@@ -109,23 +109,32 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
         more_parts_.push_back(make(parts_.part(tets, part)));
 }
 
-void VulkanSession::compile(const KernelId& kernel, const SessionOptions& options)
+void VulkanSession::compile()
 {
     const auto start = std::chrono::steady_clock::now();
-    make_program(kernel, options);
-    setup_.compile_s = seconds_since(start);
+    make_program();
+    setup_.compile_s += seconds_since(start);
     context_.check_validation("the first launch");
 }
 
-void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& options)
+void VulkanSession::compile_starts_inside()
 {
-    const bool takes_rays = kernel.task != Task::trace;
+    take_times(); // of what still runs the old program
+    starts_outside_ = false;
+    compile();
+    if (output_words_ != 0) program_->bind(context_, OUTPUT_BINDING, output_);
+}
+
+void VulkanSession::make_program()
+{
+    const bool takes_rays = kernel_.task != Task::trace;
     const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
-    ProgramId id{.name = shader_name(kernel) + variant,
+    ProgramId id{.name = shader_name(kernel_) + variant,
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
-                 .tile_height = tile_height_};
-    if (in_texels_) id.texels = texel_bindings(structure_);
+                 .tile_height = tile_height_,
+                 .starts_outside = starts_outside_};
+    if (in_texels_) id.texels = texel_bindings(kernel_.layout);
     if (acceleration_) id.structure = structure_binding;
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
         id.bindings.push_back(binding);
@@ -133,7 +142,7 @@ void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& o
     if (takes_rays && !in_texels_) id.bindings.push_back(RAYS_BINDING);
     for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
-    program_.emplace(context_, id, ProgramCache(options.program_cache));
+    program_.emplace(context_, id, ProgramCache(program_cache_));
     setup_.compile_cached = program_->is_cached();
     bind_scene();
 }
@@ -141,7 +150,7 @@ void VulkanSession::make_program(const KernelId& kernel, const SessionOptions& o
 void VulkanSession::bind_scene()
 {
     if (acceleration_) program_->bind_structure(context_, structure_binding, acceleration_->handle());
-    for (const TexelBinding& texels : in_texels_ ? texel_bindings(structure_) : std::vector<TexelBinding>{})
+    for (const TexelBinding& texels : in_texels_ ? texel_bindings(kernel_.layout) : std::vector<TexelBinding>{})
         program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_ROWS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
         program_->bind(context_, binding, arrays_[binding]);
@@ -221,7 +230,8 @@ void VulkanSession::launch(const TraceJob& job)
 {
     context_.run("launching", output_bytes(), [&] {
         take_times(); // of a launch that nobody waited for
-        resize_output(output_words(job, task_));
+        if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
+        resize_output(output_words(job, kernel_.task));
         launches_.start(
             launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
             [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },

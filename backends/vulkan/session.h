@@ -33,8 +33,11 @@ private:
     void read_output(std::span<std::uint32_t> words) override;
 
     void make_scene_buffers(const PackedScene& scene);
-    void make_program(const KernelId& kernel, const SessionOptions& options);
-    void compile(const KernelId& kernel, const SessionOptions& options);
+    void make_program();
+    /// Adds to the times of the session's set-up.
+    void compile();
+    /// For the first job whose rays start in a tet.
+    void compile_starts_inside();
     void bind_scene();
     void bind_rays(Buffer rays);
     void resize_output(std::size_t words);
@@ -50,9 +53,10 @@ private:
     TetParts parts_;
     std::uint64_t max_buffer_bytes_;
     unsigned tile_height_;
-    Structure structure_;
-    Task task_;
-    bool in_texels_ = false; ///< the scene's arrays are read as texels
+    KernelId kernel_;
+    std::filesystem::path program_cache_;
+    bool starts_outside_ = true; ///< all rays so far: the program has no other start
+    bool in_texels_ = false;     ///< the scene's arrays are read as texels
     std::uint32_t divisions_ = 0;
     std::uint64_t bytes_ = 0;
     SetupTimes setup_;

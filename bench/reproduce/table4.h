@@ -7,7 +7,8 @@
 
 namespace tetrace {
 
-/// Table 4: rays with a wrong result per image of 1024 x 1024, by method, scene and device, split by what went wrong.
+/// Table 4: rays with a wrong result per image of 1024 x 1024, by method, scene and device, split by what went
+/// wrong; project, which the paper does not have, beside its methods.
 /// population: views of the camera set, of which the runs have some or all.
 [[nodiscard]] PaperTable table4(const SceneRuns& runs, std::size_t population);
 

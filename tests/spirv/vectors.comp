@@ -26,7 +26,7 @@ layout(std430, set = 0, binding = 1) readonly buffer Buffer_triangles
 {
     uint triangles[];
 };
-layout(std430, set = 0, binding = 5) writeonly buffer Output
+layout(std430, set = 0, binding = 7) writeonly buffer Output
 {
     uint output_words[];
 };

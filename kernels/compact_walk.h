@@ -1,0 +1,177 @@
+// The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; SPEC.md, Compact layouts). The
+// three vertices of the face that the ray is at are carried as the ray sees them: the tet's fourth is what is left of
+// the xor, a step projects that one alone, and its two signs say which of the three it replaces. Decisions, and so the
+// bits of the hits, are those of walk.h. A layout brings CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank,
+// known_rank, known): what is behind the face opposite the vertex of that rank among the four, where `known` is behind
+// that of known_rank.
+
+// rank: in the order that decides ties; carried, since some devices would look it up in every step, tie or not.
+STRUCT(Carried)
+{
+    Sheared seen;
+    uint rank;
+    uint vertex;
+};
+
+// The face that the ray is at, by which it leaves a tet. Seen by the tet behind, its edges from p0 to p1, p1 to p2, p2
+// to p0 have the ray on their positive side.
+STRUCT(Gate)
+{
+    Carried p0;
+    Carried p1;
+    Carried p2;
+    uint tet;    // that is left; NO_TET where the ray enters the domain
+    uint behind; // what the tet names behind the face: a tet, or an end of the walk (layout.h)
+    uint before; // what the one behind names here
+};
+
+KERNEL_FN Carried carried(SceneView scene, Ray ray, Shear shear, uint vertex)
+{
+    uint4 row = FETCH(scene, vertices, vertex);
+    Carried result;
+    result.seen = sheared(shear, sub3(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), ray.origin));
+    result.rank = row.w;
+    result.vertex = vertex;
+    return result;
+}
+
+// is_left() of signs.h, where ranks tell the order.
+KERNEL_FN bool carried_is_left(Carried p, Carried q)
+{
+    PRECISE real plus = p.seen.x * q.seen.y;
+    PRECISE real minus = p.seen.y * q.seen.x;
+    if (plus == minus) return SIDE_AT_TIE(p.seen, q.seen, p.rank < q.rank, plus);
+    COUNT_SIGN(0);
+    return plus > minus;
+}
+
+// How many of four vertices come before one of them.
+KERNEL_FN uint rank_among(uint vertex, uint a, uint b, uint c, uint d)
+{
+    return (a < vertex ? 1u : 0u) + (b < vertex ? 1u : 0u) + (c < vertex ? 1u : 0u) + (d < vertex ? 1u : 0u);
+}
+
+// From a face through the tet behind it to the next. The two tests of maria: of the edges that end in the apex, that
+// from p2, then that from p0 or p1.
+KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
+{
+    uint v0 = gate.p0.vertex;
+    uint v1 = gate.p1.vertex;
+    uint v2 = gate.p2.vertex;
+    CompactTet tet = compact_tet(scene, gate.behind);
+    Carried apex = carried(scene, ray, shear, tet.vertices ^ v0 ^ v1 ^ v2);
+    bool left = carried_is_left(gate.p2, apex);
+    bool left_of_other = carried_is_left(left ? gate.p1 : gate.p0, apex);
+    uint replaced = left_of_other ? (left ? 2u : 1u) : (left ? 0u : 2u);
+    uint gone = replaced == 0u ? v0 : replaced == 1u ? v1 : v2;
+    uint rank = rank_among(gone, v0, v1, v2, apex.vertex);
+    Gate next;
+    next.p0 = replaced == 0u ? apex : gate.p0;
+    next.p1 = replaced == 1u ? apex : gate.p1;
+    next.p2 = replaced == 2u ? apex : gate.p2;
+    next.tet = gate.behind;
+    next.behind = NEIGHBOUR(scene, tet, rank, rank_among(apex.vertex, v0, v1, v2, apex.vertex), gate.before);
+    next.before = gate.behind;
+    return next;
+}
+
+// The boundary face of that number, from outside.
+KERNEL_FN Gate entry_gate(SceneView scene, Ray ray, Shear shear, uint entry)
+{
+    uint4 row = FETCH(scene, entry_faces, entry);
+    Gate gate;
+    gate.p0 = carried(scene, ray, shear, row.x);
+    gate.p1 = carried(scene, ray, shear, row.y);
+    gate.p2 = carried(scene, ray, shear, row.z);
+    gate.tet = NO_TET;
+    gate.behind = row.w;
+    gate.before = NO_LINK;
+    return gate;
+}
+
+KERNEL_FN uint start_vertex(TraceParams params, uint corner)
+{
+    uint of_low = corner == 0u ? params.start_v0 : params.start_v1;
+    uint of_high = corner == 2u ? params.start_v2 : params.start_v3;
+    return corner < 2u ? of_low : of_high;
+}
+
+// A face of the tet that a ray starts in.
+KERNEL_FN Gate start_gate(SceneView scene, TraceParams params, Ray ray, Shear shear, uint face)
+{
+    uint rank =
+        rank_among(start_vertex(params, face), params.start_v0, params.start_v1, params.start_v2, params.start_v3);
+    Gate gate; // turned round: the corners of a face are listed for the tet itself
+    gate.p0 = carried(scene, ray, shear, start_vertex(params, corner(face, 0u)));
+    gate.p1 = carried(scene, ray, shear, start_vertex(params, corner(face, 2u)));
+    gate.p2 = carried(scene, ray, shear, start_vertex(params, corner(face, 1u)));
+    gate.tet = params.start_tet;
+    gate.behind = NEIGHBOUR(scene, compact_tet(scene, params.start_tet), rank, 3u, params.start_neighbour);
+    gate.before = params.start_tet;
+    return gate;
+}
+
+// The same face, with the tet behind it where it is occlusive: the ray goes on.
+KERNEL_FN Gate opened(SceneView scene, Gate gate)
+{
+    Gate result = gate;
+    if (gate.behind >= OCCLUSIVE && gate.behind != NO_LINK) {
+        uint other_side = (gate.behind ^ OCCLUSIVE) ^ 1u;
+        result.behind = FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * (other_side >> 1u) + 1u + (other_side & 1u));
+        result.before = OCCLUSIVE | other_side;
+    }
+    return result;
+}
+
+KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
+{
+    return is_face_ahead(ray, position_of(scene, gate.p0.vertex), position_of(scene, gate.p1.vertex),
+                         position_of(scene, gate.p2.vertex));
+}
+
+// The first face of the ray's path that it crosses in front of its origin, as path.h finds it; tet is NO_TET where the
+// ray has no path.
+KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear)
+{
+    uint entry = entry_anywhere(scene, ray, 0u, 0u);
+    Gate gate = entry_gate(scene, ray, shear, entry == NO_ENTRY ? 0u : entry);
+    bool done = entry == NO_ENTRY;
+    for (uint steps = 0u; !done && steps < params.max_steps; steps++) {
+        gate = next_gate(scene, ray, shear, opened(scene, gate));
+        done = gate.behind == NO_LINK || is_gate_ahead(scene, ray, gate);
+    }
+    return gate;
+}
+
+// From a face that the ray leaves a tet by to the ray's hit. first_steps: tets that it has left by then.
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps)
+{
+    Gate gate = first;
+    uint steps = first_steps;
+    while (gate.behind < OCCLUSIVE && steps < params.max_steps) {
+        gate = next_gate(scene, ray, shear, gate);
+        steps++;
+    }
+    if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);
+    if (gate.behind < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);
+    uint face = (gate.behind ^ OCCLUSIVE) >> 1u;
+    return hit_on(scene, ray, FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * face), gate.tet, steps, real(NO_END));
+}
+
+KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
+{
+    Shear shear = shear_of(ray);
+    if (params.start_tet == NO_TET) {
+        uint entry = entry_index(scene, ray);
+        if (entry == NO_ENTRY) return make_no_hit(NO_HIT, NO_TET, 0u);
+        return walk(scene, params, ray, shear, entry_gate(scene, ray, shear, entry), 0u);
+    }
+    uint face = face_left_by(ray, position_of(scene, params.start_v0), position_of(scene, params.start_v1),
+                             position_of(scene, params.start_v2), position_of(scene, params.start_v3));
+    Gate gate = start_gate(scene, params, ray, shear, face & 3u);
+    if (face == NO_EXIT) {
+        gate = gate_ahead(scene, params, ray, shear);
+        if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
+    }
+    return walk(scene, params, ray, shear, gate, 1u);
+}

@@ -1,0 +1,35 @@
+// Layout tet16 (Aman, Demirci, Guedukbay 2022): a row of the xor of a tet's four vertices, and the xor of each of three
+// neighbours with the fourth: who knows one of the four, as a walk does that comes from it, knows all.
+STRUCT(CompactTet)
+{
+    uint vertices; // their xor
+    uint n0;       // neighbours in the order of the vertices that they are opposite to, xor the last one
+    uint n1;
+    uint n2;
+};
+
+KERNEL_FN CompactTet compact_tet(SceneView scene, uint tet)
+{
+    uint4 row = FETCH(scene, tet_rows, tet);
+    CompactTet result;
+    result.vertices = row.x;
+    result.n0 = row.y;
+    result.n1 = row.z;
+    result.n2 = row.w;
+    return result;
+}
+
+KERNEL_FN uint neighbour_code(CompactTet tet, uint rank)
+{
+    uint of_first = rank == 0u ? tet.n0 : tet.n1;
+    uint of_last = rank == 2u ? tet.n2 : 0u;
+    return rank < 2u ? of_first : of_last;
+}
+
+// What is behind the face opposite the vertex of that rank among the four. known: what is behind that of `known_rank`.
+KERNEL_FN uint neighbour(CompactTet tet, uint rank, uint known_rank, uint known)
+{
+    return neighbour_code(tet, rank) ^ neighbour_code(tet, known_rank) ^ known;
+}
+
+#define NEIGHBOUR(scene, tet, rank, known_rank, known) neighbour(tet, rank, known_rank, known)
