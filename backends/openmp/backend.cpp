@@ -1,5 +1,6 @@
 #include "backends/openmp/backend.h"
 
+#include "backends/openmp/packet_session.h"
 #include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
 #include "backends/openmp/yardstick.h"
@@ -19,6 +20,7 @@ Device openmp_device()
     device.driver = "OpenMP " + std::to_string(_OPENMP);
     device.implementation = "openmp";
     device.threads = static_cast<unsigned>(omp_get_max_threads());
+    device.group_width = openmp::packet_kernels().front().lanes;
     return device;
 }
 
@@ -31,6 +33,7 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
+        if (kernel.schedule == Schedule::packets) return kernel.task == Task::trace && has_packets(kernel);
         return kernel.schedule == Schedule::tiles &&
                openmp::find_function(openmp::compiled_kernels(), kernel) != nullptr;
     }
@@ -47,6 +50,9 @@ public:
                                                 const SessionOptions& options) override
     {
         const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
+        if (kernel.schedule == Schedule::packets)
+            return std::make_unique<openmp::PacketSession>(openmp::packet_kernels().front(), packed,
+                                                           threads_of(options));
         return std::make_unique<openmp::OpenmpSession>(openmp::find_function(openmp::compiled_kernels(), kernel),
                                                        kernel.task, packed, threads_of(options),
                                                        tile_height_for(devices_[0], options));

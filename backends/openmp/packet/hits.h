@@ -1,0 +1,79 @@
+// The hits of a packet's lanes: make_hit() of hit.h, lane by lane, and hits in memory.
+
+// The six words of a hit.
+struct Hits {
+    Words of[HIT_WORDS];
+};
+
+// t, u and v of lanes that hit a triangle. A ray in its triangle's plane is left to the scalar kernel.
+LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hits& hits)
+{
+    LaneWords offsets;
+    store(offsets, select(mask_of(lanes), (packet.exit >> 2) * (4 * TRIANGLE_ROWS), Words{}));
+    const Quad rows[3] = {load_rows(job.triangles, offsets), load_rows(job.triangles + 4, offsets),
+                          load_rows(job.triangles + 8, offsets)};
+    const auto vectors = [](const Quad& row) {
+        return Vectors{as_floats(row.of[0]), as_floats(row.of[1]), as_floats(row.of[2])};
+    };
+    const Vectors v0 = vectors(rows[0]), edge_1 = vectors(rows[1]), edge_2 = vectors(rows[2]);
+    const Vectors direction = {packet.direction[0], packet.direction[1], packet.direction[2]};
+    const Vectors offset = sub3({all(job.origin[0]), all(job.origin[1]), all(job.origin[2])}, v0);
+    const Vectors p = cross3(direction, edge_2), q = cross3(offset, edge_1);
+    const Floats determinant = dot3(edge_1, p);
+    const Mask mask = mask_of(lanes);
+    hits.of[2] = select(mask, as_words(dot3(edge_2, q) / determinant), Words{});
+    hits.of[3] = select(mask, as_words(dot3(offset, p) / determinant), Words{});
+    hits.of[4] = select(mask, as_words(dot3(direction, q) / determinant), Words{});
+    packet.left_to_scalar |= lanes & lanes_of(equal(determinant, Floats{}));
+}
+
+// Pixel of a lane, as a number in the image.
+LANE_FN std::size_t pixel_of(const PacketJob& job, const Packet& packet, uint lane)
+{
+    return std::size_t{packet.y + lane / packet_width} * job.width + packet.x + lane % packet_width;
+}
+
+// Hits of so many lanes, each as its first four words and its last two.
+LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes, const Hits& hits)
+{
+    const Quad first = transposed(hits.of[0], hits.of[1], hits.of[2], hits.of[3]);
+    LaneWords firsts[4], lasts[2];
+    for (uint i = 0; i < 4; i++)
+        store(firsts[i], first.of[i]);
+    store(lasts[0], __builtin_shufflevector(hits.of[4], hits.of[5], LOW_WORDS));
+    store(lasts[1], __builtin_shufflevector(hits.of[4], hits.of[5], HIGH_WORDS));
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const uint lane = first_of(lanes), quarter = lane & ~3u;
+        uint* const to = job.hits + HIT_WORDS * pixel_of(job, packet, lane);
+        __builtin_memcpy(to, &firsts[lane & 3u].of[quarter], 16);
+        __builtin_memcpy(to + 4, &lasts[(lane >> 1) & 1u].of[quarter + 2 * (lane & 1u)], 8);
+    }
+}
+
+[[gnu::noinline]] void write_hits(const PacketJob& job, Packet& packet)
+{
+    const Mask no_hit = equal(packet.exit, all(NO_LINK));
+    Hits hits{};
+    hits.of[0] = select(no_hit, all(NO_HIT), packet.exit >> 2);
+    hits.of[1] = packet.record >> 2; // NO_TET of a ray that entered none
+    hits.of[5] = packet.steps;
+    const uint hitting = packet.lanes & ~packet.left_to_scalar & ~lanes_of(no_hit);
+    if (hitting != 0) meet_triangles(job, packet, hitting, hits);
+    write_words(job, packet, packet.lanes & ~packet.left_to_scalar, hits);
+    for (uint lanes = packet.left_to_scalar; lanes != 0; lanes &= lanes - 1) {
+        const uint lane = first_of(lanes);
+        job.trace_one(job.context, packet.x + lane % packet_width, packet.y + lane / packet_width);
+    }
+}
+
+// The hits of rays that miss the domain, of pixels [x, x_end) x [y, y_end).
+LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint x_end, uint y_end)
+{
+    for (; y < y_end; y++)
+        for (uint i = x; i < x_end; i++) {
+            uint* const to = job.hits + HIT_WORDS * (std::size_t{y} * job.width + i);
+            to[0] = NO_HIT;
+            to[1] = NO_TET;
+            to[2] = to[3] = to[4] = to[5] = 0;
+        }
+}

@@ -1,0 +1,259 @@
+// A vector layer as small as packets need it: LANES floats or words at once, 4, 8 (AVX2) or 16 (AVX-512). Arithmetic is
+// that of the compilers' vector types, IEEE lane by lane; here are masks, which differ most among processors, and what
+// loads records. For inclusion in an unnamed namespace, with LANES set: nothing in here may be shared with code that is
+// compiled for another processor. The including file has <cstdint>, <immintrin.h> for 8 and 16 lanes, and layout.h.
+#define LANE_FN [[maybe_unused, gnu::always_inline]] inline
+
+using uint = std::uint32_t;
+using Floats = float __attribute__((vector_size(4 * LANES)));
+using Words = uint __attribute__((vector_size(4 * LANES)));
+using Ints = int __attribute__((vector_size(4 * LANES)));
+using Longs = std::uint64_t __attribute__((vector_size(4 * LANES)));
+
+constexpr uint every_lane = (1u << LANES) - 1u;
+
+LANE_FN Floats as_floats(Words a)
+{
+    return reinterpret_cast<Floats>(a);
+}
+LANE_FN Words as_words(Floats a)
+{
+    return reinterpret_cast<Words>(a);
+}
+LANE_FN Floats all(float a)
+{
+    return a - Floats{};
+}
+LANE_FN Words all(uint a)
+{
+    return a - Words{};
+}
+LANE_FN uint first_of(uint lanes)
+{
+    return static_cast<uint>(__builtin_ctz(lanes));
+}
+
+#if LANES == 16
+struct Mask {
+    __mmask16 of;
+};
+LANE_FN Mask mask_of(uint lanes)
+{
+    return {static_cast<__mmask16>(lanes)};
+}
+LANE_FN uint lanes_of(Mask a)
+{
+    return a.of;
+}
+LANE_FN Mask operator&(Mask a, Mask b)
+{
+    return mask_of(lanes_of(a) & lanes_of(b));
+}
+LANE_FN Mask operator|(Mask a, Mask b)
+{
+    return mask_of(lanes_of(a) | lanes_of(b));
+}
+LANE_FN Mask without(Mask a, Mask b)
+{
+    return mask_of(lanes_of(a) & ~lanes_of(b));
+}
+LANE_FN Mask greater(Floats a, Floats b)
+{
+    return {_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ)};
+}
+LANE_FN Mask equal(Floats a, Floats b)
+{
+    return {_mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ)};
+}
+LANE_FN Mask equal(Words a, Words b)
+{
+    return {_mm512_cmpeq_epi32_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b))};
+}
+LANE_FN Floats select(Mask mask, Floats a, Floats b)
+{
+    return _mm512_mask_blend_ps(mask.of, b, a);
+}
+LANE_FN Words select(Mask mask, Words a, Words b)
+{
+    return reinterpret_cast<Words>(
+        _mm512_mask_blend_epi32(mask.of, reinterpret_cast<__m512i>(b), reinterpret_cast<__m512i>(a)));
+}
+#else
+using Mask = Words; // all bits of a lane, or none
+LANE_FN Mask without(Mask a, Mask b)
+{
+    return a & ~b;
+}
+LANE_FN Mask greater(Floats a, Floats b)
+{
+    return reinterpret_cast<Mask>(a > b);
+}
+LANE_FN Mask equal(Floats a, Floats b)
+{
+    return reinterpret_cast<Mask>(a == b);
+}
+LANE_FN Mask equal(Words a, Words b)
+{
+    return reinterpret_cast<Mask>(a == b);
+}
+LANE_FN Words select(Mask mask, Words a, Words b)
+{
+    return (a & mask) | (b & ~mask);
+}
+LANE_FN Floats select(Mask mask, Floats a, Floats b)
+{
+    return as_floats(select(mask, as_words(a), as_words(b)));
+}
+#if LANES == 8
+constexpr Words lane_bits = {1, 2, 4, 8, 16, 32, 64, 128};
+LANE_FN uint lanes_of(Mask a)
+{
+    return static_cast<uint>(_mm256_movemask_ps(reinterpret_cast<__m256>(a)));
+}
+#else
+constexpr Words lane_bits = {1, 2, 4, 8};
+LANE_FN uint lanes_of(Mask a)
+{
+    const Words set = a & lane_bits;
+    return set[0] | set[1] | set[2] | set[3];
+}
+#endif
+LANE_FN Mask mask_of(uint lanes)
+{
+    return equal(all(lanes) & lane_bits, lane_bits);
+}
+#endif
+
+LANE_FN Words least(Words a, Words b)
+{
+    return a < b ? a : b;
+}
+LANE_FN Floats magnitude(Floats a)
+{
+    return as_floats(as_words(a) & all(0x7FFFFFFFu));
+}
+LANE_FN Floats negated_where(Mask mask, Floats a)
+{
+    return as_floats(as_words(a) ^ select(mask, all(0x80000000u), Words{}));
+}
+
+// A word a lane in memory. What is written as a vector is read word by word: a compiler that sees through it takes the
+// words out of the register one by one, which is dearer.
+struct LaneWords {
+    alignas(4 * LANES) uint of[LANES];
+};
+LANE_FN void store(LaneWords& to, Words a)
+{
+    *reinterpret_cast<Words*>(to.of) = a;
+    asm("" : "+m"(to));
+}
+
+// Rows of 16 bytes, one a lane, in four vectors of their words. 4 x 4 words are transposed at once.
+struct Quad {
+    Words of[4];
+};
+#if LANES == 16
+#define LOW_WORDS 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29
+#define HIGH_WORDS 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31
+#define LOW_PAIRS 0, 8, 2, 10, 4, 12, 6, 14
+#define HIGH_PAIRS 1, 9, 3, 11, 5, 13, 7, 15
+#define EVEN_ROWS 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27
+#define ODD_ROWS 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31
+#elif LANES == 8
+#define LOW_WORDS 0, 8, 1, 9, 4, 12, 5, 13
+#define HIGH_WORDS 2, 10, 3, 11, 6, 14, 7, 15
+#define LOW_PAIRS 0, 4, 2, 6
+#define HIGH_PAIRS 1, 5, 3, 7
+#define EVEN_ROWS 0, 1, 2, 3, 8, 9, 10, 11
+#define ODD_ROWS 4, 5, 6, 7, 12, 13, 14, 15
+#else
+#define LOW_WORDS 0, 4, 1, 5
+#define HIGH_WORDS 2, 6, 3, 7
+#define LOW_PAIRS 0, 2
+#define HIGH_PAIRS 1, 3
+#endif
+LANE_FN Words low_pairs(Words a, Words b)
+{
+    return reinterpret_cast<Words>(
+        __builtin_shufflevector(reinterpret_cast<Longs>(a), reinterpret_cast<Longs>(b), LOW_PAIRS));
+}
+LANE_FN Words high_pairs(Words a, Words b)
+{
+    return reinterpret_cast<Words>(
+        __builtin_shufflevector(reinterpret_cast<Longs>(a), reinterpret_cast<Longs>(b), HIGH_PAIRS));
+}
+LANE_FN Quad transposed(Words a, Words b, Words c, Words d)
+{
+    const Words ab_low = __builtin_shufflevector(a, b, LOW_WORDS), cd_low = __builtin_shufflevector(c, d, LOW_WORDS);
+    const Words ab_high = __builtin_shufflevector(a, b, HIGH_WORDS),
+                cd_high = __builtin_shufflevector(c, d, HIGH_WORDS);
+    return {{low_pairs(ab_low, cd_low), high_pairs(ab_low, cd_low), low_pairs(ab_high, cd_high),
+             high_pairs(ab_high, cd_high)}};
+}
+
+using Row4 = uint __attribute__((vector_size(16)));
+LANE_FN Row4 row_at(const uint* words)
+{
+    return *reinterpret_cast<const Row4*>(words);
+}
+#if LANES == 16
+LANE_FN Words rows_at(const uint* base, const uint* offsets)
+{
+    const auto low =
+        __builtin_shufflevector(row_at(base + offsets[0]), row_at(base + offsets[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto high =
+        __builtin_shufflevector(row_at(base + offsets[8]), row_at(base + offsets[12]), 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+#elif LANES == 8
+LANE_FN Words rows_at(const uint* base, const uint* offsets)
+{
+    return __builtin_shufflevector(row_at(base + offsets[0]), row_at(base + offsets[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+#else
+LANE_FN Words rows_at(const uint* base, const uint* offsets)
+{
+    return row_at(base + offsets[0]);
+}
+#endif
+// offsets: in words, of one row a lane.
+LANE_FN Quad load_rows(const uint* base, const LaneWords& offsets)
+{
+    const uint* of = offsets.of;
+    return transposed(rows_at(base, of), rows_at(base, of + 1), rows_at(base, of + 2), rows_at(base, of + 3));
+}
+
+// Both rows of half32's records, one a lane. A load takes a whole record, which a cache line holds; so records come
+// with their two rows side by side, and what is transposed holds first and second rows by turns.
+struct Records {
+    Quad apex, exits;
+};
+LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
+{
+#if LANES == 4
+    return {load_rows(base, offsets), load_rows(base + 4, offsets)};
+#else
+    using Record = uint __attribute__((vector_size(32), aligned(16)));
+    Quad half[2];
+    for (uint i = 0; i < 2; i++) {
+        const auto record = [&](uint lane) {
+            return *reinterpret_cast<const Record*>(base + offsets.of[i * (LANES / 2) + lane]);
+        };
+#if LANES == 16
+        const auto records = [&](uint lane) {
+            return __builtin_shufflevector(record(lane), record(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
+                                           14, 15);
+        };
+#else
+        const auto& records = record;
+#endif
+        half[i] = transposed(records(0), records(1), records(2), records(3));
+    }
+    Records result;
+    for (uint i = 0; i < 4; i++) {
+        result.apex.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], EVEN_ROWS);
+        result.exits.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], ODD_ROWS);
+    }
+    return result;
+#endif
+}

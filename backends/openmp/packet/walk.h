@@ -1,0 +1,104 @@
+// The walk of a packet's lanes, carried_walk.h lane by lane. A sign that is a tie is no lane's business: it hardly ever
+// occurs, and the scalar kernel then traces that ray anew.
+
+// The walk of lanes with one deepest axis.
+template <int z>
+struct Walk {
+    Shear<z> shear;
+    Seen carried[3];
+    Words turn, record;
+    LaneWords offsets; // of the records, in words
+    uint live;
+};
+
+LANE_FN uint corner(uint face, uint index)
+{
+    return (0x634B39u >> (6u * face + 2u * index)) & 3u;
+}
+
+// Lets lanes enter a tet by the face that a record is of.
+template <int z>
+LANE_FN void enter_record(const PacketJob& job, Walk<z>& walk, uint lanes, uint record)
+{
+    const Mask mask = mask_of(lanes);
+    for (uint i = 0; i < 3; i++) {
+        const Seen seen = apex_seen(job, walk.shear, (record & ~3u) | corner(record & 3u, i));
+        walk.carried[i].x = select(mask, seen.x, walk.carried[i].x);
+        walk.carried[i].y = select(mask, seen.y, walk.carried[i].y);
+    }
+    walk.record = select(mask, all(record), walk.record);
+    walk.live |= lanes;
+}
+
+// The lanes of the packet that see q to the left of p, those that see it to the right, and ties.
+struct Sides {
+    Mask left, tie;
+};
+LANE_FN Sides sides_of(const Seen& p, const Seen& q)
+{
+    const Floats plus = p.x * q.y, minus = p.y * q.x;
+    return {greater(plus, minus), equal(plus, minus)};
+}
+
+// Ends lanes whose ray has met a triangle or the domain's boundary.
+LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uint steps)
+{
+    const Mask mask = mask_of(lanes);
+    packet.exit = select(mask, exit, packet.exit);
+    packet.record = select(mask, record, packet.record);
+    packet.steps = select(mask, all(steps), packet.steps);
+}
+
+// A step of all live lanes, which will then have left so many tets.
+template <int z>
+LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint steps)
+{
+    const Records at = load_records(job.records, walk.offsets);
+    const Seen apex = seen_at(job, walk.shear, at.apex.of);
+    const Sides s0 = sides_of(walk.carried[0], apex), s1 = sides_of(walk.carried[1], apex),
+                s2 = sides_of(walk.carried[2], apex);
+    // The table of exits, which is the same whichever corner comes first: the vertex goes behind which, in their
+    // order, a right side is followed by a left one.
+    const Mask replaced[3] = {without(s2.left, s1.left), without(s0.left, s2.left), without(s1.left, s0.left)};
+    for (uint i = 0; i < 3; i++) {
+        walk.carried[i].x = select(replaced[i], apex.x, walk.carried[i].x);
+        walk.carried[i].y = select(replaced[i], apex.y, walk.carried[i].y);
+    }
+    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - walk.turn;
+    const Words index = least(place, place + all(3u)); // of the corner that it is: one below 0 is a large number
+    const Words* exits = at.exits.of;
+    const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
+    const Words rotation = exit & all(3u), turned = walk.turn + rotation;
+    walk.turn = least(turned, turned - all(3u));
+    const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
+    const uint ended = walk.live & ~ties & lanes_of(equal(rotation, all(HALF32_END)));
+    if ((ties | ended) != 0) {
+        end_lanes(packet, ended, exit, walk.record, steps);
+        packet.left_to_scalar |= ties;
+        walk.live &= ~(ties | ended);
+    }
+    walk.record = select(mask_of(walk.live), exit >> 2, walk.record); // others stay where there is a record
+    store(walk.offsets, walk.record * (4 * HALF32_ROWS));
+}
+
+// Walks several packets in turns until all lanes have ended: while one waits for its records, others compute.
+// steps: tets that the lanes have left before.
+template <int z, uint count>
+LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint steps)
+{
+    for (uint i = 0; i < count; i++)
+        store(walks[i].offsets, walks[i].record * (4 * HALF32_ROWS));
+    uint live = every_lane;
+    while (live != 0 && steps < job.max_steps) {
+        steps++;
+        live = 0;
+#pragma GCC unroll 4
+        for (uint i = 0; i < count; i++) {
+            if (walks[i].live == 0) continue;
+            step(job, packets[i], walks[i], steps);
+            live |= walks[i].live;
+        }
+    }
+    for (uint i = 0; i < count; i++)
+        packets[i].left_to_scalar |= walks[i].live; // lost, which is the scalar kernel's to say
+}

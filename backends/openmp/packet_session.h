@@ -1,0 +1,40 @@
+#pragma once
+
+#include "backends/openmp/packets.h"
+#include "core/host_session.h"
+
+#include <memory>
+#include <vector>
+
+namespace tetrace::openmp {
+
+/// A width that packets are compiled for, and their kernel.
+struct PacketKernel {
+    unsigned lanes;
+    TraceBlock* trace;
+};
+/// Those that this processor runs, the widest first; never empty.
+[[nodiscard]] const std::vector<PacketKernel>& packet_kernels();
+
+/// Traces packets of primary rays through layout half32: schedule packets. The bits are those of schedule tiles.
+class PacketSession : public HostSession {
+public:
+    PacketSession(PacketKernel kernel, const PackedScene& scene, unsigned threads);
+    [[nodiscard]] SetupTimes setup_times() const override;
+    [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
+
+private:
+    struct Free {
+        void operator()(void* block) const;
+    };
+
+    void run(const TraceJob& job, std::span<std::uint32_t> output) override;
+
+    PacketKernel kernel_;
+    const PackedScene& scene_;
+    unsigned threads_;
+    double copy_s_ = 0;
+    std::unique_ptr<std::uint32_t, Free> records_; ///< where no record crosses a line of the cache, on huge pages
+};
+
+} // namespace tetrace::openmp

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tetrace::openmp {
+
+/// What a packet kernel gets (packet/block.cpp): pointers and numbers alone, since it is compiled for processors that
+/// have more than the one which the rest of the program is compiled for, and may share no inline function with it.
+struct PacketJob {
+    const std::uint32_t* records;   ///< PackedScene::tets of layout half32
+    const std::uint32_t* triangles; ///< and the other arrays of that scene
+    const float* lines;
+    const std::uint32_t* entry_ranges;
+    const std::uint32_t* entry_links;
+    std::uint32_t divisions;
+    float origin[3], corner[3], step_x[3], step_y[3]; ///< of the view
+    std::uint32_t width, height, start_tet, max_steps;
+    std::uint32_t* hits; ///< HIT_WORDS a pixel, row after row
+    /// Traces the pixel's ray with the scalar kernel, and writes its hit.
+    void (*trace_one)(const void* context, std::uint32_t x, std::uint32_t y);
+    const void* context;
+};
+
+/// Pixels along the side of a block, which one call traces; those beyond the image's edge are left out.
+inline constexpr std::uint32_t packet_block_size = 32;
+
+/// Traces the block of pixels whose first one is (x, y), in packets of so many lanes: 16 need AVX-512 (F, BW, DQ, VL),
+/// 8 AVX2, and 4 nothing but what the whole program needs.
+using TraceBlock = void(const PacketJob& job, std::uint32_t x, std::uint32_t y);
+extern "C" TraceBlock tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
+
+} // namespace tetrace::openmp
