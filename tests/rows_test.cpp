@@ -76,10 +76,10 @@ TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--math", "exact,fast"}), {"a"}, {&old});
-    EXPECT_EQ(rows.size(), 4u);
+    EXPECT_EQ(rows.size(), 6u);
     EXPECT_EQ(
         std::count_if(rows.begin(), rows.end(), [](const RowKey& key) { return key.kernel.math == MathMode::fast; }),
-        2);
+        3);
     EXPECT_TRUE(std::none_of(rows.begin(), rows.end(),
                              [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
 }
@@ -115,11 +115,11 @@ TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
 {
     OldHost old({device_named("none", "gpu", false)});
     OldHost usable;
-    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 2u);
+    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 3u);
     EXPECT_THROW(static_cast<void>(select_rows(parse_options({"bench"}), {"s"}, {&old})), Error);
     EXPECT_EQ(missing_devices(parse_options({"bench"}), {&old}),
               std::vector<std::string>{"old: no device: no driver; install one"});
-    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 2u);
+    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 3u);
     EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
 }
 
@@ -147,15 +147,16 @@ TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--schedule", "tiles,persistent"}), {"s"}, {&old});
-    EXPECT_EQ(rows.size(), 4u);
-    EXPECT_EQ(row_name(rows[2]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
+    EXPECT_EQ(rows.size(), 6u);
+    EXPECT_EQ(row_name(rows[3]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
-TEST(rows, the_default_is_maria_on_both_layouts_beside_bvhs_and_embree)
+TEST(rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
 {
     EXPECT_EQ(names({"bench"}, {"bunny"}),
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
                                         "cdt/maria/tet96/bunny/primary/math:exact/api:openmp",
+                                        "cdt/project/half32/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",
@@ -202,7 +203,7 @@ TEST(rows, values_given_twice_give_a_row_once)
 TEST(rows, the_filter_is_a_search_in_names)
 {
     EXPECT_EQ(names({"bench", "--filter", "tet80|packet"}, {"a"}).size(), 2u);
-    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 4u);
+    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 5u);
 }
 
 TEST(rows, an_empty_selection_is_an_error_that_says_so)
@@ -212,7 +213,7 @@ TEST(rows, an_empty_selection_is_an_error_that_says_so)
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("matches none of the 6 rows"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("matches none of the 7 rows"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("cdt/maria/tet96/a"), std::string::npos) << error.what();
     }
     try {
@@ -238,11 +239,12 @@ TEST(rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays
     const auto rows = select_rows(parse_options({"bench", "--method", "all", "--layout", "tet80", "--rays",
                                                  "primary,ao,diffuse", "--ray-order", "tiles,shuffled"}),
                                   {"s"}, {&old});
-    ASSERT_EQ(rows.size(), 6u + 4u) << "six methods trace primary rays, maria alone is given others";
+    ASSERT_EQ(rows.size(), 6u + 8u) << "six methods trace primary rays, maria and project are given others";
     EXPECT_EQ(row_name(rows[6]), "cdt/maria/tet80/s/ao/math:exact/api:old");
-    EXPECT_EQ(row_name(rows[7]), "cdt/maria/tet80/s/ao/math:exact/rays:shuffled/api:old");
-    EXPECT_EQ(kernel_title(rows[7]), "cdt maria tet80, ao shuffled");
-    EXPECT_EQ(rows[7].kernel.task, Task::rays);
+    EXPECT_EQ(row_name(rows[7]), "cdt/project/tet80/s/ao/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[8]), "cdt/maria/tet80/s/ao/math:exact/rays:shuffled/api:old");
+    EXPECT_EQ(kernel_title(rows[8]), "cdt maria tet80, ao shuffled");
+    EXPECT_EQ(rows[8].kernel.task, Task::rays);
     EXPECT_EQ(rows[0].kernel.task, Task::trace);
 }
 
