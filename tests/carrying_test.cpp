@@ -1,6 +1,6 @@
-// Method project has the same bits where a walk carries the vertices of its face, on half32 and on tets that share their
-// vertices, as on tets that hold them: on every device, also where rays pass vertices and edges and where a walk begins
-// by following its path from the boundary.
+// Method project has the same bits where a walk carries the vertices of its face, on half32 and on tets that share
+// their vertices, as on tets that hold them: on every device, also where rays pass vertices and edges and where a walk
+// begins by following its path from the boundary.
 #include "core/exact.h"
 #include "core/locate.h"
 #include "core/scene_buffers.h"
