@@ -231,15 +231,13 @@ std::vector<OptionRow> row_options()
          tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
         {"Rows", "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same with the tets that "
-         "no "
-         "ray from outside reaches behind all others; 'input', as TetGen wrote them. Rows of structure cdt only. "
+         "no ray from outside reaches behind all others; 'input', as TetGen wrote them. Rows of structure cdt only. "
          "Default: hilbert.",
          tracing, true, append("--order", &Options::orders, orders)},
         {"Rows", "--schedule", "NAME",
-         "How rays come to work items: 'tiles', one each, or 'persistent', items that stay and fetch rays until none "
-         "is left, on the backends that have such kernels, or 'packets', neighbours in the lanes of openmp's vectors, "
-         "of "
-         "project and half32; Embree has a schedule of its own. Default: tiles.",
+         "How rays come to work items: 'tiles', one each; 'persistent', items that stay and fetch rays until none is "
+         "left, on the backends that have such kernels; 'packets', neighbours in the lanes of openmp's vectors, of "
+         "project and half32. Embree has a schedule of its own. Default: tiles, and packets.",
          tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.",

@@ -35,7 +35,8 @@ bool wanted_math(const Options& options, const KernelId& kernel)
 bool wanted_schedule(const Options& options, const KernelId& kernel)
 {
     if (!is_portable(kernel)) return true;
-    return options.schedules.empty() ? kernel.schedule == Schedule::tiles : wanted(options.schedules, kernel.schedule);
+    return options.schedules.empty() ? kernel.schedule != Schedule::persistent
+                                     : wanted(options.schedules, kernel.schedule);
 }
 
 std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kernel)

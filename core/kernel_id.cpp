@@ -20,11 +20,11 @@ std::vector<KernelId> make_kernels()
                 for (const Layout layout : {Layout::tet80, Layout::tet96, Layout::half32, Layout::tet20, Layout::tet16})
                     if (!needs_project(layout) || method == Method::project)
                         kernels.push_back({Structure::cdt, method, layout, math, schedule});
+    kernels.push_back({Structure::cdt, Method::project, Layout::half32, MathMode::exact, Schedule::packets});
     for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
         for (const MathMode math : {MathMode::exact, MathMode::fast})
             for (const Layout layout : {Layout::bvh2, Layout::cwbvh})
                 kernels.push_back({Structure::bvh, Method::single, layout, math, schedule});
-    kernels.push_back({Structure::cdt, Method::project, Layout::half32, MathMode::exact, Schedule::packets});
     for (const Method method : {Method::single, Method::packet16})
         kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
     kernels.push_back({Structure::bvh, Method::single, Layout::rt, MathMode::fast});

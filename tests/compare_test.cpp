@@ -56,7 +56,7 @@ TEST_F(compare, finds_a_result_the_same_as_itself)
 {
     const Ended ended = compare_with([](Json&) {});
     EXPECT_EQ(ended.code, 0) << ended.errors;
-    EXPECT_TRUE(contains(unwrapped(ended), "6 of 6 rows: 6 SAME; geometric mean of B / A 1.000"));
+    EXPECT_TRUE(contains(unwrapped(ended), "8 of 8 rows: 8 SAME; geometric mean of B / A 1.000"));
     EXPECT_TRUE(contains(unwrapped(ended), "Differ in nothing"));
     EXPECT_TRUE(contains(unwrapped(ended), "is at most 1 %"));
 }
@@ -91,7 +91,7 @@ TEST_F(compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_all
     const Ended failed = compare_with(fail, "--allow-missing");
     EXPECT_EQ(failed.code, 1) << failed.out;
     EXPECT_TRUE(contains(failed.out, "FAILED: B: error: the driver is ?[31mgone"));
-    EXPECT_TRUE(contains(unwrapped(failed), "5 of 6 rows: 5 SAME"));
+    EXPECT_TRUE(contains(unwrapped(failed), "7 of 8 rows: 7 SAME"));
     const auto drop = [](Json& section) { section["rows"].erase(0); };
     EXPECT_EQ(compare_with(drop).code, 1);
     EXPECT_EQ(compare_with(drop, "--allow-missing").code, 0);
@@ -130,7 +130,7 @@ TEST_F(compare, says_so_where_samples_are_too_few_to_tell)
     });
     EXPECT_EQ(ended.code, 0);
     EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: too few samples for an interval: 7 in A and 3 in B"));
-    EXPECT_TRUE(contains(unwrapped(ended), "5 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
+    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
 }
 
 TEST_F(compare, never_replaces_what_it_compares)
@@ -172,7 +172,7 @@ TEST_F(compare, gives_a_table_csv_markdown_and_json)
     const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.25); };
     const Ended csv = compare_with(slower, "--format csv");
     EXPECT_EQ(csv.out.rfind("name,verdict,ratio,low,high,confidence,", 0), 0u);
-    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 7);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
     EXPECT_EQ(compare_with(slower, "--format markdown").out.rfind("| name | verdict |", 0), 0u);
     const Ended both = compare_with(slower, "--out comparison.json");
     EXPECT_EQ(both.code, 1);
@@ -183,7 +183,7 @@ TEST_F(compare, gives_a_table_csv_markdown_and_json)
     EXPECT_EQ(comparison["rows"][1]["verdict"], "SLOWER");
     ASSERT_EQ(comparison["regressions"].size(), 1u);
     EXPECT_EQ(comparison["regressions"][0], comparison["rows"][1]["name"]);
-    EXPECT_NEAR(comparison["geometric_mean"].get<double>(), std::pow(0.8, 1.0 / 6), 1e-9);
+    EXPECT_NEAR(comparison["geometric_mean"].get<double>(), std::pow(0.8, 1.0 / 8), 1e-9);
 }
 
 TEST_F(compare, refuses_files_that_it_cannot_compare)

@@ -67,7 +67,7 @@ TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)
         EXPECT_NE(ended.errors, "") << bad;
     }
     EXPECT_TRUE(contains(run("bench --backend openmp,embree --scene cubes --filter nothing").errors,
-                         "matches none of the 6 rows"));
+                         "matches none of the 8 rows"));
 }
 
 TEST_F(program, renders_without_openimageio)
@@ -108,10 +108,10 @@ TEST_F(program, benches_and_writes_the_table_and_the_json)
     const Ended ended = bench("--out result.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "Mrays/s"));
-    EXPECT_TRUE(contains(ended.out, "Verified  13,824 rays"));
+    EXPECT_TRUE(contains(ended.out, "Verified  18,432 rays"));
     const auto json = nlohmann::json::parse(file("result.json"));
     EXPECT_EQ(json["tetrace"]["schema_version"], 2);
-    ASSERT_EQ(json["tetrace"]["rows"].size(), 6u);
+    ASSERT_EQ(json["tetrace"]["rows"].size(), 8u);
     std::set<std::string> benchmarked;
     for (const auto& entry : json["benchmarks"])
         benchmarked.insert(entry["run_name"].get<std::string>());
@@ -144,7 +144,7 @@ TEST_F(program, benches_as_csv_and_markdown)
     const Ended csv = bench("--format csv");
     ASSERT_EQ(csv.code, 0) << csv.errors;
     EXPECT_EQ(csv.out.rfind("name,scene,structure,method,", 0), 0u);
-    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 7);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
     EXPECT_EQ(bench("--format markdown").out.rfind("| name | scene |", 0), 0u);
     const Ended to_file = bench("--format csv --out table.csv");
     EXPECT_EQ(to_file.out, "");
@@ -155,11 +155,13 @@ TEST_F(program, lists_rows_without_loading_scenes)
 {
     const Ended ours = run("bench --backend openmp,embree --scene bunny,armadillo --list");
     EXPECT_EQ(ours.code, 0) << ours.errors;
-    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 12);
+    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 16);
     EXPECT_EQ(run("bench --backend openmp,embree --scene bunny,armadillo --benchmark_list_tests").out, ours.out);
     EXPECT_EQ(
         run("bench --backend openmp,embree --scene bunny --benchmark_list_tests=true --benchmark_filter=-bvh").out,
-        "cdt/maria/tet80/bunny/primary/math:exact/api:openmp\ncdt/maria/tet96/bunny/primary/math:exact/api:openmp\n");
+        "cdt/maria/tet80/bunny/primary/math:exact/api:openmp\ncdt/maria/tet96/bunny/primary/math:exact/api:openmp\n"
+        "cdt/project/half32/bunny/primary/math:exact/api:openmp\n"
+        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n");
 }
 
 TEST_F(program, google_benchmarks_flags_keep_their_meaning)
@@ -184,7 +186,7 @@ TEST_F(program, checks_every_ray)
         "--require openmp,embree --out check.json");
     ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
     const auto rows = nlohmann::json::parse(file("check.json"))["tetrace"]["rows"];
-    EXPECT_EQ(rows.size(), 14u);
+    EXPECT_EQ(rows.size(), 20u);
     for (const auto& row : rows) {
         EXPECT_EQ(row["status"], "ok") << row;
         const auto& found = row["verification"];
@@ -199,14 +201,14 @@ TEST_F(program, check_shows_rows_against_devices_and_writes_junit)
     const Ended ended = run("check --backend openmp --scene cubes --resolution 6 --size 24 --junit check.xml "
                             "--out check.json");
     ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
-    EXPECT_TRUE(contains(ended.out, "cdt maria tet96  reference"));
+    EXPECT_TRUE(contains(ended.out, "cdt maria tet96             reference"));
     EXPECT_TRUE(contains(ended.out, "self-test, exact mode"));
     const auto section = nlohmann::json::parse(file("check.json"))["tetrace"];
     const auto& cell = section["matrix"]["cubes"]["cdt maria tet80"]["openmp"];
     EXPECT_EQ(cell["cell"], "reference");
     EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
     EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
-    EXPECT_TRUE(contains(file("check.xml"), "tests=\"4\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+    EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
 }
 
 TEST_F(program, a_check_of_which_no_row_could_run_does_not_pass)
@@ -246,7 +248,7 @@ TEST_F(program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
         "bench --backend openmp,embree --scene cubes,broken.tet --resolution 6 --size 24 --samples 3 --format json");
     EXPECT_NE(ended.code, 0);
     const auto rows = nlohmann::json::parse(ended.out)["tetrace"]["rows"];
-    ASSERT_EQ(rows.size(), 12u);
+    ASSERT_EQ(rows.size(), 16u);
     for (const auto& row : rows) {
         EXPECT_EQ(row["status"], row["scene"] == "cubes" ? "ok" : "error") << row;
         EXPECT_EQ(row.contains("rates"), row["scene"] == "cubes");

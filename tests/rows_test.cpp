@@ -76,7 +76,7 @@ TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--math", "exact,fast"}), {"a"}, {&old});
-    EXPECT_EQ(rows.size(), 6u);
+    EXPECT_EQ(rows.size(), 7u);
     EXPECT_EQ(
         std::count_if(rows.begin(), rows.end(), [](const RowKey& key) { return key.kernel.math == MathMode::fast; }),
         3);
@@ -115,11 +115,11 @@ TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
 {
     OldHost old({device_named("none", "gpu", false)});
     OldHost usable;
-    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 3u);
+    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 4u);
     EXPECT_THROW(static_cast<void>(select_rows(parse_options({"bench"}), {"s"}, {&old})), Error);
     EXPECT_EQ(missing_devices(parse_options({"bench"}), {&old}),
               std::vector<std::string>{"old: no device: no driver; install one"});
-    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 3u);
+    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 4u);
     EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
 }
 
@@ -157,6 +157,7 @@ TEST(rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
                                         "cdt/maria/tet96/bunny/primary/math:exact/api:openmp",
                                         "cdt/project/half32/bunny/primary/math:exact/api:openmp",
+                                        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp",
                                         "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",
@@ -202,8 +203,8 @@ TEST(rows, values_given_twice_give_a_row_once)
 
 TEST(rows, the_filter_is_a_search_in_names)
 {
-    EXPECT_EQ(names({"bench", "--filter", "tet80|packet"}, {"a"}).size(), 2u);
-    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 5u);
+    EXPECT_EQ(names({"bench", "--filter", "tet80|packet16"}, {"a"}).size(), 2u);
+    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 6u);
 }
 
 TEST(rows, an_empty_selection_is_an_error_that_says_so)
@@ -213,7 +214,7 @@ TEST(rows, an_empty_selection_is_an_error_that_says_so)
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("matches none of the 7 rows"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("matches none of the 8 rows"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("cdt/maria/tet96/a"), std::string::npos) << error.what();
     }
     try {
