@@ -76,7 +76,7 @@ std::vector<Row> vertex_rows(const TetMesh& mesh, const std::vector<std::uint32_
     for (std::uint32_t rank = 0; rank < in_order.size(); rank++) {
         const Float3 at = mesh.vertices[in_order[rank]];
         rows[number[in_order[rank]]] = {std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y),
-                                        std::bit_cast<std::uint32_t>(at.z), rank};
+                                        std::bit_cast<std::uint32_t>(at.z), FIRST_RANK + rank};
     }
     return rows;
 }

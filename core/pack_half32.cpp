@@ -17,7 +17,7 @@ std::tuple<float, float, float> place_of(Float3 a)
     return {a.x, a.y, a.z};
 }
 
-// Number of each vertex in lexicographic order, that of is_before() in kernels/signs.h.
+// Of each vertex, in the order of is_before() in kernels/signs.h.
 std::vector<std::uint32_t> ranks_of(const std::vector<Float3>& vertices)
 {
     std::vector<std::uint32_t> order(vertices.size());
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> ranks_of(const std::vector<Float3>& vertices)
                      [&](auto a, auto b) { return place_of(vertices[a]) < place_of(vertices[b]); });
     std::vector<std::uint32_t> ranks(order.size());
     for (std::uint32_t rank = 0; rank < order.size(); rank++)
-        ranks[order[rank]] = rank;
+        ranks[order[rank]] = FIRST_RANK + rank;
     return ranks;
 }
 

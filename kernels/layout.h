@@ -55,8 +55,12 @@
 #define TET80_ROWS 5u
 // tet96: 4 vertices of 16 bytes (w is 0), then 4 faces of 8 bytes {link, input triangle}.
 #define TET96_ROWS 6u
+// The rank of a vertex: how many are before it, by x, then y, then z, and FIRST_RANK. It lies beside the vertex's
+// coordinates, and compilers compute with all four words at once: as a float it must not be denormal, since some
+// processors multiply those a hundred times slower.
+#define FIRST_RANK 0x3F800000u
 // half32: a record of 32 bytes for each tet and face that a ray may enter it by, at its link (tet << 2 | face):
-//   {apex.xyz, the apex's rank in the order of the vertices}  {exit 0, exit 1, exit 2, link of the entry face}
+//   {apex.xyz, its rank}  {exit 0, exit 1, exit 2, link of the entry face}
 // Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows, the
 // corners of whose entry face are the ray's three vertices turned by so many; else triangle << 2 | HALF32_END for the
 // input triangle that is hit there, or NO_LINK at the domain's boundary.
@@ -67,7 +71,7 @@
 // tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
 #define TET20_WORDS 5u
 // tet16: a row, the same words but the last one, and those of neighbours xor that one.
-// vertices of both: {x, y, z, how many vertices are before it: by x, then y, then z}.
+// vertices of both: {x, y, z, rank}
 // What is behind a face: a tet, OCCLUSIVE | 2 * occlusive face + side, or NO_LINK.
 #define OCCLUSIVE 0x80000000u
 // occlusive_faces: {input triangle, the tet on side 0, that on side 1}

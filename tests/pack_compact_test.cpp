@@ -89,7 +89,8 @@ TEST_P(CompactPacking, vertices_have_the_rank_of_their_place)
     for (const Row& row : packed.vertices)
         places[row.w] = {std::bit_cast<float>(row.x), std::bit_cast<float>(row.y), std::bit_cast<float>(row.z)};
     ASSERT_EQ(places.size(), packed.vertices.size());
-    EXPECT_EQ(places.rbegin()->first, packed.vertices.size() - 1);
+    EXPECT_EQ(places.begin()->first, FIRST_RANK);
+    EXPECT_EQ(places.rbegin()->first, FIRST_RANK + packed.vertices.size() - 1);
     EXPECT_TRUE(
         std::is_sorted(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.second < b.second; }));
 }

@@ -145,6 +145,14 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
         }
 }
 
+// Compilers compute with a record's ranks as with its coordinates.
+TEST(Pack, no_rank_is_denormal_as_a_float)
+{
+    const PackedScene packed = pack(make_cubes(4), Layout::half32, TetOrder::hilbert);
+    for (std::size_t row = 0; row < packed.tets.size(); row += HALF32_ROWS)
+        ASSERT_TRUE(std::isnormal(std::bit_cast<float>(packed.tets[row].w))) << "row " << row;
+}
+
 TEST(Pack, triangles_hold_a_corner_and_two_edges)
 {
     const Scene scene = make_cubes(3);
