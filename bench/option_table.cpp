@@ -236,7 +236,7 @@ std::vector<OptionRow> row_options()
          tracing, true, append("--order", &Options::orders, orders)},
         {"Rows", "--schedule", "NAME",
          "How rays come to work items: 'tiles', one each; 'persistent', items that stay and fetch rays until none is "
-         "left, on the backends that have such kernels; 'packets', neighbours in the lanes of openmp's vectors, of "
+         "left, on the backends that have such kernels; 'packets', many rays in the lanes of openmp's vectors, of "
          "project and half32. Embree has a schedule of its own. Default: tiles, and packets.",
          tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",

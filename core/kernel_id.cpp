@@ -44,7 +44,8 @@ std::vector<KernelId> kernels_of(Task task)
     std::vector<KernelId> kernels;
     for (KernelId kernel : all_kernels()) {
         kernel.task = task;
-        if (has_task(kernel) && (task == Task::trace || kernel.schedule == Schedule::tiles)) kernels.push_back(kernel);
+        if (has_task(kernel) && (task == Task::trace || kernel.schedule != Schedule::persistent))
+            kernels.push_back(kernel);
     }
     return kernels;
 }

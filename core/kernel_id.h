@@ -21,7 +21,7 @@ enum class RayKind { primary, shadow, ao, diffuse, random };
 /// The order of rays that are given: as their pixels lie in tiles, along a space-filling curve, at random.
 enum class RayOrder { tiles, morton, shuffled };
 /// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
-/// (Aila, Laine, Karras 2012), or as many neighbours at once as a processor's vectors have lanes.
+/// (Aila, Laine, Karras 2012), or as many rays at once as a processor's vectors have lanes.
 enum class Schedule { tiles, persistent, packets };
 /// What a kernel does: traces the primary rays of an image, traces rays that it is given, or searches for the exit face
 /// of one tet alone for each ray that it is given.
@@ -55,7 +55,7 @@ struct KernelId {
 /// Whether the kernel, of whatever schedule, has packets: one walk is written for them, in exact mode.
 [[nodiscard]] bool has_packets(const KernelId& kernel);
 
-/// The kernels that do a task, in the same order; tasks that are given rays have schedule tiles alone.
+/// The kernels that do a task, in the same order; those that are given rays have no schedule persistent.
 [[nodiscard]] std::vector<KernelId> kernels_of(Task task);
 
 /// The structure that a layout packs.

@@ -2,6 +2,8 @@
 #include "backends/openmp/packet_session.h"
 #include "core/error.h"
 #include "tests/device_rays.h"
+#include "tests/given_scene.h"
+#include "tests/hard_rays.h"
 #include "tests/hard_scenes.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +33,7 @@ std::vector<tetrace::Hit> scalar_hits(const tetrace::DeviceRays& rays, const Tra
 
 std::vector<tetrace::Hit> packet_hits(PacketKernel kernel, const tetrace::DeviceRays& rays, const TraceJob& job)
 {
-    tetrace::openmp::PacketSession session(kernel, rays.packed(), 2);
+    tetrace::openmp::PacketSession session(kernel, tetrace::Task::trace, rays.packed(), 2);
     return traced(session, job);
 }
 
@@ -46,6 +48,31 @@ void expect_scalar_bits(const tetrace::DeviceRays& rays, const TraceJob& job, co
     for (const PacketKernel& kernel : packet_kernels())
         EXPECT_EQ(different_rays(packet_hits(kernel, rays, job), expected, 0), 0u)
             << kernel.lanes << " lanes, " << job.width << " x " << job.height << ", " << what;
+}
+
+std::vector<tetrace::Hit> traced_given(tetrace::Session& session, const std::vector<tetrace::Row>& rows,
+                                       const TraceJob& job)
+{
+    session.set_rays(rows);
+    return traced(session, job);
+}
+
+/// max_steps: 0 for as many as no walk takes.
+void expect_scalar_bits_given(const tetrace::PackedScene& packed, const tetrace::RaySet& set, const std::string& what,
+                              std::uint32_t max_steps = 0)
+{
+    const TraceJob job =
+        tetrace::given_job(set.rays.size(), max_steps == 0 ? packed.tet_count + 1 : max_steps, set.any_hit);
+    const auto rows = given_rows(set, packed);
+    KernelId kernel = scalar;
+    kernel.task = tetrace::Task::rays;
+    const auto session = tetrace::openmp_backend().open(0, kernel, {nullptr, &packed}, {.threads = 2});
+    const auto expected = traced_given(*session, rows, job);
+    for (const PacketKernel& width : packet_kernels()) {
+        tetrace::openmp::PacketSession tested(width, tetrace::Task::rays, packed, 2);
+        EXPECT_EQ(different_rays(traced_given(tested, rows, job), expected, 0), 0u)
+            << width.lanes << " lanes, " << set.rays.size() << " rays, " << what;
+    }
 }
 
 /// On the lines of a regular grid: rays pass its vertices and edges, and more than one in ten meets a tie.
@@ -97,6 +124,51 @@ TEST(Packets, of_views_along_each_axis_and_of_all_round_have_the_scalar_kernels_
         }
 }
 
+TEST(Packets, of_given_rays_of_every_kind_have_the_scalar_kernels_bits)
+{
+    using tetrace::RayKind;
+    for (const bool inside : {false, true}) {
+        const tetrace::test::GivenScene cubes(96, inside);
+        const auto packed = pack(cubes.scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
+        for (const RayKind kind : {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random}) {
+            const tetrace::RaySet set = make_rays(kind, cubes.source());
+            ASSERT_FALSE(set.rays.empty());
+            expect_scalar_bits_given(packed, set, std::string(name_of(kind)) + (inside ? ", inside" : ", outside"));
+        }
+    }
+}
+
+TEST(Packets, of_given_rays_that_pass_vertices_and_edges_have_the_scalar_kernels_bits)
+{
+    for (const auto& [name, scene] : tetrace::test::make_hard_scenes()) {
+        const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
+        tetrace::RaySet set = tetrace::test::hard_ray_set(scene, 0, 9 * 2048);
+        expect_scalar_bits_given(packed, set, name);
+        for (std::size_t i = 1; i < set.rays.size(); i += 2)
+            set.rays[i].end = 0.375f;
+        expect_scalar_bits_given(packed, set, std::string(name) + ", some with ends");
+    }
+}
+
+TEST(Packets, of_given_rays_have_the_scalar_kernels_bits_however_many_they_are)
+{
+    const tetrace::Scene scene = tetrace::make_cubes(5);
+    const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
+    for (const std::size_t count : {8u, 24u, 40u, 8184u, 8192u, 8200u, 16'400u})
+        expect_scalar_bits_given(packed, tetrace::test::hard_ray_set(scene, 7, count), "a range and a rest");
+}
+
+TEST(Packets, of_given_rays_lose_those_that_the_scalar_kernel_loses)
+{
+    const tetrace::Scene scene = tetrace::make_cubes(7);
+    const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
+    tetrace::RaySet set = tetrace::test::hard_ray_set(scene, 0, 4000);
+    for (std::size_t i = 1; i < set.rays.size(); i += 2)
+        set.rays[i].end = 0.5f;
+    for (const std::uint32_t most : {1u, 2u, 9u})
+        expect_scalar_bits_given(packed, set, "at most " + std::to_string(most) + " steps", most);
+}
+
 TEST(Packets, lose_the_rays_that_the_scalar_kernel_loses)
 {
     const tetrace::DeviceRays rays(tetrace::make_cubes(7), tetrace::Layout::half32);
@@ -126,6 +198,8 @@ TEST(Packets, are_a_schedule_of_openmp_for_one_kernel)
     EXPECT_FALSE(openmp.has_kernel(other));
     other = packets;
     other.task = tetrace::Task::rays;
+    EXPECT_TRUE(openmp.has_kernel(other));
+    other.layout = tetrace::Layout::tet80;
     EXPECT_FALSE(openmp.has_kernel(other));
 }
 

@@ -33,7 +33,7 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        if (kernel.schedule == Schedule::packets) return kernel.task == Task::trace && has_packets(kernel);
+        if (kernel.schedule == Schedule::packets) return has_packets(kernel) && has_task(kernel);
         return kernel.schedule == Schedule::tiles &&
                openmp::find_function(openmp::compiled_kernels(), kernel) != nullptr;
     }
@@ -51,7 +51,7 @@ public:
     {
         const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
         if (kernel.schedule == Schedule::packets)
-            return std::make_unique<openmp::PacketSession>(openmp::packet_kernels().front(), packed,
+            return std::make_unique<openmp::PacketSession>(openmp::packet_kernels().front(), kernel.task, packed,
                                                            threads_of(options));
         return std::make_unique<openmp::OpenmpSession>(openmp::find_function(openmp::compiled_kernels(), kernel),
                                                        kernel.task, packed, threads_of(options),

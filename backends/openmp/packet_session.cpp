@@ -28,18 +28,39 @@ namespace scalar {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
-// What the scalar kernel needs for a pixel that packets leave to it.
-struct Pixels {
+// What the scalar kernel needs for a ray that packets leave to it.
+struct Rays {
     scalar::SceneView scene;
     scalar::TraceParams params;
+    std::span<const Row> given;
     Hit* hits;
+
+    [[nodiscard]] const Row& direction(std::uint32_t number) const { return given[number]; }
+    [[nodiscard]] const Row& origin(std::uint32_t number) const
+    {
+        return given[given.size() / GIVEN_RAY_ROWS + number];
+    }
 };
 
-void trace_pixel(const void* context, std::uint32_t x, std::uint32_t y)
+void trace_pixel(const void* context, std::uint32_t number)
 {
-    const Pixels& image = *static_cast<const Pixels*>(context);
-    image.hits[std::size_t{y} * image.params.width + x] =
-        std::bit_cast<Hit>(scalar::trace(image.scene, image.params, scalar::primary_ray(image.params, x, y)));
+    const Rays& rays = *static_cast<const Rays*>(context);
+    const std::uint32_t width = rays.params.width;
+    rays.hits[number] = std::bit_cast<Hit>(
+        scalar::trace(rays.scene, rays.params, scalar::primary_ray(rays.params, number % width, number / width)));
+}
+
+void trace_given(const void* context, std::uint32_t number)
+{
+    const Rays& rays = *static_cast<const Rays*>(context);
+    rays.hits[number] =
+        std::bit_cast<Hit>(scalar::trace_given(rays.scene, rays.params, rays.direction(number), rays.origin(number)));
+}
+
+std::uint32_t entry_of(const void* context, std::uint32_t number)
+{
+    const Rays& rays = *static_cast<const Rays*>(context);
+    return scalar::entry_link(rays.scene, scalar::given_ray(rays.direction(number), rays.origin(number)));
 }
 
 std::vector<PacketKernel> kernels_of_host()
@@ -48,10 +69,10 @@ std::vector<PacketKernel> kernels_of_host()
 #ifdef TETRACE_WIDE_PACKETS
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
-        kernels.push_back({16, tetrace_trace_block_16});
-    if (__builtin_cpu_supports("avx2")) kernels.push_back({8, tetrace_trace_block_8});
+        kernels.push_back({16, tetrace_trace_block_16, tetrace_trace_range_16});
+    if (__builtin_cpu_supports("avx2")) kernels.push_back({8, tetrace_trace_block_8, tetrace_trace_range_8});
 #endif
-    kernels.push_back({4, tetrace_trace_block_4});
+    kernels.push_back({4, tetrace_trace_block_4, tetrace_trace_range_4});
     return kernels;
 }
 
@@ -77,7 +98,7 @@ void copy3(Float3 from, float* to)
     to[2] = from.z;
 }
 
-PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, const TraceJob& job, const Pixels& pixels)
+PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, const TraceJob& job, const Rays& rays)
 {
     PacketJob result{};
     result.records = records;
@@ -94,10 +115,31 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     result.height = job.height;
     result.start_tet = job.start_tet;
     result.max_steps = job.max_steps;
-    result.hits = reinterpret_cast<std::uint32_t*>(pixels.hits);
-    result.trace_one = trace_pixel;
-    result.context = &pixels;
+    if (!rays.given.empty()) {
+        result.directions = reinterpret_cast<const std::uint32_t*>(&rays.direction(0));
+        result.origins = reinterpret_cast<const std::uint32_t*>(&rays.origin(0));
+    }
+    result.hits = reinterpret_cast<std::uint32_t*>(rays.hits);
+    result.trace_one = rays.given.empty() ? trace_pixel : trace_given;
+    result.entry_of = entry_of;
+    result.context = &rays;
     return result;
+}
+
+// Calls work with each number below count, on so many threads.
+template <class Work>
+void share_out(std::uint32_t count, unsigned threads, const Work& work)
+{
+#pragma omp parallel num_threads(static_cast <int>(threads))
+    {
+        std::fenv_t environment;
+        std::fegetenv(&environment);
+        std::fesetenv(FE_DFL_ENV); // as kernel.cpp
+#pragma omp for schedule(dynamic, 1)
+        for (std::uint32_t i = 0; i < count; i++)
+            work(i);
+        std::fesetenv(&environment);
+    }
 }
 
 } // namespace
@@ -108,8 +150,8 @@ const std::vector<PacketKernel>& packet_kernels()
     return kernels;
 }
 
-PacketSession::PacketSession(PacketKernel kernel, const PackedScene& scene, unsigned threads)
-    : HostSession(Task::trace), kernel_(kernel), scene_(scene), threads_(threads)
+PacketSession::PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads)
+    : HostSession(task), kernel_(kernel), task_(task), scene_(scene), threads_(threads)
 {
     const auto start = std::chrono::steady_clock::now();
     records_.reset(copy_of(scene.tets));
@@ -128,21 +170,30 @@ SetupTimes PacketSession::setup_times() const
     return times;
 }
 
+void PacketSession::set_rays(std::span<const Row> rows)
+{
+    rays_.assign(rows.begin(), rows.end());
+    const auto origins = rows.subspan(rows.size() / GIVEN_RAY_ROWS);
+    rays_end_ = std::ranges::any_of(origins, [](const Row& row) { return std::bit_cast<float>(row.w) < NO_END; });
+}
+
 void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
 {
-    const Pixels pixels{scalar::view_of(scene_), scalar::params_of(job), as_hits(output).data()};
-    const PacketJob packets = packet_job(scene_, records_.get(), job, pixels);
-    const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
-    const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
-#pragma omp parallel num_threads(static_cast <int>(threads_))
-    {
-        std::fenv_t environment;
-        std::fegetenv(&environment);
-        std::fesetenv(FE_DFL_ENV); // as kernel.cpp
-#pragma omp for schedule(dynamic, 1)
-        for (std::uint32_t block = 0; block < blocks; block++)
+    const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_, as_hits(output).data()};
+    PacketJob packets = packet_job(scene_, records_.get(), job, rays);
+    packets.has_ends = rays_end_;
+    if (task_ == Task::trace) {
+        const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
+        const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
+        share_out(blocks, threads_, [&](std::uint32_t block) {
             kernel_.trace(packets, block % across * packet_block_size, block / across * packet_block_size);
-        std::fesetenv(&environment);
+        });
+    } else {
+        const std::uint32_t count = job.width * job.height;
+        share_out((count + packet_range_size - 1) / packet_range_size, threads_, [&](std::uint32_t range) {
+            const std::uint32_t first = range * packet_range_size;
+            kernel_.rays(packets, first, std::min(count, first + packet_range_size));
+        });
     }
 }
 

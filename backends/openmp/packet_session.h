@@ -12,14 +12,17 @@ namespace tetrace::openmp {
 struct PacketKernel {
     unsigned lanes;
     TraceBlock* trace;
+    TraceRange* rays;
 };
 /// Those that this processor runs, the widest first; never empty.
 [[nodiscard]] const std::vector<PacketKernel>& packet_kernels();
 
-/// Traces packets of primary rays through layout half32: schedule packets. The bits are those of schedule tiles.
+/// Traces packets of primary or given rays through layout half32: schedule packets. The bits are those of schedule
+/// tiles.
 class PacketSession : public HostSession {
 public:
-    PacketSession(PacketKernel kernel, const PackedScene& scene, unsigned threads);
+    PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads);
+    void set_rays(std::span<const Row> rows) override;
     [[nodiscard]] SetupTimes setup_times() const override;
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
@@ -31,9 +34,12 @@ private:
     void run(const TraceJob& job, std::span<std::uint32_t> output) override;
 
     PacketKernel kernel_;
+    Task task_;
     const PackedScene& scene_;
     unsigned threads_;
     double copy_s_ = 0;
+    std::vector<Row> rays_;
+    bool rays_end_ = false;                        ///< any of them
     std::unique_ptr<std::uint32_t, Free> records_; ///< where no record crosses a line of the cache, on huge pages
 };
 

@@ -15,9 +15,14 @@ struct PacketJob {
     std::uint32_t divisions;
     float origin[3], corner[3], step_x[3], step_y[3]; ///< of the view
     std::uint32_t width, height, start_tet, max_steps;
-    std::uint32_t* hits; ///< HIT_WORDS a pixel, row after row
-    /// Traces the pixel's ray with the scalar kernel, and writes its hit.
-    void (*trace_one)(const void* context, std::uint32_t x, std::uint32_t y);
+    const std::uint32_t* directions; ///< rows of rays that are given, null where there are none: {direction, link}
+    const std::uint32_t* origins;    ///< {origin, end}
+    bool has_ends;                   ///< whether any of them ends
+    std::uint32_t* hits;             ///< HIT_WORDS a ray: pixels row after row, or rays in their order
+    /// Traces the ray of that number with the scalar kernel, and writes its hit.
+    void (*trace_one)(const void* context, std::uint32_t number);
+    /// The link of the boundary face that the given ray of that number enters the domain by, or NO_LINK.
+    std::uint32_t (*entry_of)(const void* context, std::uint32_t number);
     const void* context;
 };
 
@@ -28,5 +33,12 @@ inline constexpr std::uint32_t packet_block_size = 32;
 /// 8 AVX2, and 4 nothing but what the whole program needs.
 using TraceBlock = void(const PacketJob& job, std::uint32_t x, std::uint32_t y);
 extern "C" TraceBlock tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
+
+/// Rays of one call at most where they are given.
+inline constexpr std::uint32_t packet_range_size = 8192;
+
+/// Traces the given rays from number `first` on to the one before `end`, in lanes that take another as one has ended.
+using TraceRange = void(const PacketJob& job, std::uint32_t first, std::uint32_t end);
+extern "C" TraceRange tetrace_trace_range_4, tetrace_trace_range_8, tetrace_trace_range_16;
 
 } // namespace tetrace::openmp

@@ -1,7 +1,7 @@
-// Traces a block of an image in packets of LANES rays: compiled once for each of 4, 8 and 16 (CMakeLists.txt), the
-// wider ones with instructions that few processors have. So nothing here may have external linkage but the entry point,
-// and no inline function of a library may be called: the linker keeps one of all copies of such a one, and might keep
-// this.
+// Traces a block of an image, or a range of given rays, in packets of LANES rays: compiled once for each of 4, 8 and 16
+// (CMakeLists.txt), the wider ones with instructions that few processors have. So nothing here may have external
+// linkage but the entry point, and no inline function of a library may be called: the linker keeps one of all copies of
+// such a one, and might keep this.
 #include "backends/openmp/packets.h"
 #include "kernels/layout.h"
 
@@ -26,6 +26,8 @@ using tetrace::openmp::PacketJob;
 #include "backends/openmp/packet/hits.h"
 
 #include "backends/openmp/packet/shaft.h"
+
+#include "backends/openmp/packet/given.h"
 
 constexpr uint packets_at_once = 4;
 
@@ -67,7 +69,7 @@ void trace_packets(const PacketJob& job, const uint* x, const uint* y)
     if (any[1] != 0) trace_lanes<1, count>(job, packets, lanes);
     if (any[2] != 0) trace_lanes<2, count>(job, packets, lanes);
     for (Packet& packet : packets)
-        write_hits(job, packet);
+        write_hits(job, packet, packet.lanes);
 }
 
 void trace_square(const PacketJob& job, const Square& square)
@@ -105,9 +107,16 @@ void trace_squares(const PacketJob& job, uint x, uint y)
 } // namespace
 
 #define JOINED(prefix, lanes) prefix##lanes
-#define ENTRY_POINT(lanes) JOINED(tetrace_trace_block_, lanes)
+#define ENTRY_POINT(prefix, lanes) JOINED(prefix, lanes)
 
-extern "C" void tetrace::openmp::ENTRY_POINT(LANES)(const PacketJob& job, std::uint32_t x, std::uint32_t y)
+extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_range_, LANES)(const PacketJob& job, std::uint32_t first,
+                                                                          std::uint32_t end)
+{
+    trace_range(job, first, end);
+}
+
+extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job, std::uint32_t x,
+                                                                          std::uint32_t y)
 {
     trace_squares<tetrace::openmp::packet_block_size>(job, x, y);
 }

@@ -5,7 +5,8 @@ struct Hits {
     Words of[HIT_WORDS];
 };
 
-// t, u and v of lanes that hit a triangle. A ray in its triangle's plane is left to the scalar kernel.
+// The triangle, t, u and v of lanes that hit one, where no ray ends before. A ray in its triangle's plane is left to
+// the scalar kernel.
 LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hits& hits)
 {
     LaneWords offsets;
@@ -17,20 +18,17 @@ LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hi
     };
     const Vectors v0 = vectors(rows[0]), edge_1 = vectors(rows[1]), edge_2 = vectors(rows[2]);
     const Vectors direction = {packet.direction[0], packet.direction[1], packet.direction[2]};
-    const Vectors offset = sub3({all(job.origin[0]), all(job.origin[1]), all(job.origin[2])}, v0);
+    const Vectors offset = sub3({packet.origin[0], packet.origin[1], packet.origin[2]}, v0);
     const Vectors p = cross3(direction, edge_2), q = cross3(offset, edge_1);
-    const Floats determinant = dot3(edge_1, p);
-    const Mask mask = mask_of(lanes);
-    hits.of[2] = select(mask, as_words(dot3(edge_2, q) / determinant), Words{});
+    const Floats determinant = dot3(edge_1, p), along = dot3(edge_2, q), limit = packet.end * determinant;
+    const Mask is_beyond = (greater(determinant, Floats{}) & greater(along, limit)) |
+                           (greater(Floats{}, determinant) & greater(limit, along));
+    const Mask mask = without(mask_of(lanes), is_beyond);
+    hits.of[0] = select(mask, packet.exit >> 2, hits.of[0]);
+    hits.of[2] = select(mask, as_words(along / determinant), Words{});
     hits.of[3] = select(mask, as_words(dot3(offset, p) / determinant), Words{});
     hits.of[4] = select(mask, as_words(dot3(direction, q) / determinant), Words{});
     packet.left_to_scalar |= lanes & lanes_of(equal(determinant, Floats{}));
-}
-
-// Pixel of a lane, as a number in the image.
-LANE_FN std::size_t pixel_of(const PacketJob& job, const Packet& packet, uint lane)
-{
-    return std::size_t{packet.y + lane / packet_width} * job.width + packet.x + lane % packet_width;
 }
 
 // Hits of so many lanes, each as its first four words and its last two.
@@ -44,26 +42,24 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
     store(lasts[1], __builtin_shufflevector(hits.of[4], hits.of[5], HIGH_WORDS));
     for (; lanes != 0; lanes &= lanes - 1) {
         const uint lane = first_of(lanes), quarter = lane & ~3u;
-        uint* const to = job.hits + HIT_WORDS * pixel_of(job, packet, lane);
+        uint* const to = job.hits + HIT_WORDS * std::size_t{packet.numbers.of[lane]};
         __builtin_memcpy(to, &firsts[lane & 3u].of[quarter], 16);
         __builtin_memcpy(to + 4, &lasts[(lane >> 1) & 1u].of[quarter + 2 * (lane & 1u)], 8);
     }
 }
 
-[[gnu::noinline]] void write_hits(const PacketJob& job, Packet& packet)
+// The hits of lanes whose rays have ended, or are left to the scalar kernel.
+[[gnu::noinline]] void write_hits(const PacketJob& job, Packet& packet, uint lanes)
 {
-    const Mask no_hit = equal(packet.exit, all(NO_LINK));
     Hits hits{};
-    hits.of[0] = select(no_hit, all(NO_HIT), packet.exit >> 2);
+    hits.of[0] = all(NO_HIT);
     hits.of[1] = packet.record >> 2; // NO_TET of a ray that entered none
     hits.of[5] = packet.steps;
-    const uint hitting = packet.lanes & ~packet.left_to_scalar & ~lanes_of(no_hit);
+    const uint hitting = lanes & ~packet.left_to_scalar & ~lanes_of(equal(packet.exit, all(NO_LINK)));
     if (hitting != 0) meet_triangles(job, packet, hitting, hits);
-    write_words(job, packet, packet.lanes & ~packet.left_to_scalar, hits);
-    for (uint lanes = packet.left_to_scalar; lanes != 0; lanes &= lanes - 1) {
-        const uint lane = first_of(lanes);
-        job.trace_one(job.context, packet.x + lane % packet_width, packet.y + lane / packet_width);
-    }
+    write_words(job, packet, lanes & ~packet.left_to_scalar, hits);
+    for (uint left = lanes & packet.left_to_scalar; left != 0; left &= left - 1)
+        job.trace_one(job.context, packet.numbers.of[first_of(left)]);
 }
 
 // The hits of rays that miss the domain, of pixels [x, x_end) x [y, y_end).

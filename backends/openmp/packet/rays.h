@@ -1,5 +1,5 @@
-// The rays of a packet, a lane each: LANES neighbouring pixels, 4 x 4, 4 x 2 or 2 x 2. As ray.h and shear.h have them,
-// operation for operation. After lanes.h.
+// The rays of a packet, a lane each: of an image LANES neighbouring pixels, 4 x 4, 4 x 2 or 2 x 2. As ray.h and shear.h
+// have them, operation for operation. After lanes.h.
 constexpr uint packet_width = LANES == 4 ? 2 : 4;
 constexpr uint packet_height = LANES / packet_width;
 
@@ -20,31 +20,34 @@ LANE_FN Vectors cross3(const Vectors& a, const Vectors& b)
 }
 
 struct Packet {
-    uint x, y; // its first pixel
-    Floats direction[3];
-    uint lanes;          // that are in the image
+    LaneWords numbers; // of the rays: of pixels row after row, or as they are given
+    Floats origin[3], direction[3];
+    Floats end;          // ray parameter that a hit has at most
+    uint lanes;          // that have a ray
     uint left_to_scalar; // those whose sign is a tie, or that do what hardly any ray does
-    // How a ray has ended: the exit's word, the record of the tet that it left last, tets left.
+    // How a ray has ended: the exit's word, the record of the tet that it left last, tets left; of one that has not,
+    // these less the steps that its packet has done.
     Words exit, record, steps;
 };
 
 LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
 {
     Ints column{}, row{};
-    packet.x = x;
-    packet.y = y;
     packet.lanes = 0;
     for (uint lane = 0; lane < LANES; lane++) {
         const uint at_x = x + lane % packet_width, at_y = y + lane / packet_width;
         column[lane] = static_cast<int>(at_x);
         row[lane] = static_cast<int>(at_y);
+        packet.numbers.of[lane] = at_y * job.width + at_x;
         if (at_x < job.width && at_y < job.height) packet.lanes |= 1u << lane;
     }
     const Floats px = __builtin_convertvector(column, Floats), py = __builtin_convertvector(row, Floats);
     for (uint axis = 0; axis < 3; axis++) {
         const Floats d = all(job.corner[axis]) + all(job.step_x[axis]) * px + all(job.step_y[axis]) * py;
         packet.direction[axis] = select(greater(all(0x1p-20f), magnitude(d)), Floats{}, d);
+        packet.origin[axis] = all(job.origin[axis]);
     }
+    packet.end = all(__builtin_inff());
     packet.left_to_scalar = 0;
     packet.exit = packet.record = all(NO_LINK);
     packet.steps = Words{};
@@ -85,19 +88,31 @@ LANE_FN Shear<z> shear_of(const Floats* direction)
 }
 
 template <int z>
-LANE_FN Seen seen_at(const PacketJob& job, const Shear<z>& shear, const Words* place)
+LANE_FN Seen seen_at(const Packet& packet, const Shear<z>& shear, const Words* place)
 {
     constexpr int x = Shear<z>::x, y = Shear<z>::y;
-    const Floats along_x = as_floats(place[x]) - all(job.origin[x]);
-    const Floats along_y = as_floats(place[y]) - all(job.origin[y]);
-    const Floats along_z = as_floats(place[z]) - all(job.origin[z]);
+    const Floats along_x = as_floats(place[x]) - packet.origin[x];
+    const Floats along_y = as_floats(place[y]) - packet.origin[y];
+    const Floats along_z = as_floats(place[z]) - packet.origin[z];
     return {along_x * shear.x_from_x + along_z * shear.x_from_z, along_y * shear.y_from_y + along_z * shear.y_from_z};
 }
 // A vertex for all lanes, the apex of a record.
 template <int z>
-LANE_FN Seen apex_seen(const PacketJob& job, const Shear<z>& shear, uint record)
+LANE_FN Seen apex_seen(const PacketJob& job, const Packet& packet, const Shear<z>& shear, uint record)
 {
     const uint* words = job.records + 4 * HALF32_ROWS * std::size_t{record};
     const Words place[3] = {all(words[0]), all(words[1]), all(words[2])};
-    return seen_at(job, shear, place);
+    return seen_at(packet, shear, place);
+}
+// How deep along the ray a vertex is, as carried_walk.h has it, and the same for where rays end.
+LANE_FN Floats depth_at(const Packet& packet, const Words* place)
+{
+    const Vectors offset = {as_floats(place[0]) - packet.origin[0], as_floats(place[1]) - packet.origin[1],
+                            as_floats(place[2]) - packet.origin[2]};
+    return dot3(offset, {packet.direction[0], packet.direction[1], packet.direction[2]});
+}
+LANE_FN Floats depth_of_end(const Packet& packet)
+{
+    const Vectors direction = {packet.direction[0], packet.direction[1], packet.direction[2]};
+    return packet.end * dot3(direction, direction);
 }

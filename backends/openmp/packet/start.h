@@ -36,7 +36,7 @@ LANE_FN uint lanes_entering(const PacketJob& job, Packet& packet, const Walk<z>&
 {
     Seen corners[3];
     for (uint i = 0; i < 3; i++)
-        corners[i] = apex_seen(job, walk.shear, (link & ~3u) | corner(link & 3u, i));
+        corners[i] = apex_seen(job, packet, walk.shear, (link & ~3u) | corner(link & 3u, i));
     const Sides s0 = sides_of(corners[0], corners[1]), s1 = sides_of(corners[1], corners[2]),
                 s2 = sides_of(corners[2], corners[0]);
     const uint inside = lanes & lanes_of((s0.left | s0.tie) & (s1.left | s1.tie) & (s2.left | s2.tie));
@@ -60,7 +60,7 @@ template <int z>
         for (uint i = job.entry_ranges[here]; waiting != 0 && i < job.entry_ranges[here + 1]; i++) {
             const uint link = job.entry_links[i];
             const uint entering = lanes_entering(job, packet, walk, waiting, link);
-            if (entering != 0) enter_record(job, walk, entering, link);
+            if (entering != 0) enter_record(job, packet, walk, entering, link);
             waiting &= ~(entering | packet.left_to_scalar);
         }
         packet.left_to_scalar |= waiting; // those that entry_anywhere() is for
@@ -83,7 +83,21 @@ LANE_FN void leave_first(const PacketJob& job, Packet& packet, Walk<z>& walk, ui
     if ((exit & 3u) == HALF32_END)
         end_lanes(packet, lanes, all(exit), all(job.start_tet << 2), 1);
     else
-        enter_record(job, walk, lanes, exit >> 2);
+        enter_record(job, packet, walk, lanes, exit >> 2);
+}
+
+// face_left_by() of signs.h: the lanes that leave a tet by each of its faces. ties: those with a sign that is one.
+struct ByFace {
+    uint of[4], ties;
+};
+LANE_FN ByFace by_face_left(const Seen* v)
+{
+    const Sides s01 = sides_of(v[0], v[1]), s02 = sides_of(v[0], v[2]), s03 = sides_of(v[0], v[3]),
+                s12 = sides_of(v[1], v[2]), s13 = sides_of(v[1], v[3]), s23 = sides_of(v[2], v[3]);
+    return {{lanes_of(without(without(s13.left, s12.left), s23.left)), lanes_of(without(s23.left & s02.left, s03.left)),
+             lanes_of(without(without(s03.left, s01.left), s13.left)),
+             lanes_of(without(s12.left & s01.left, s02.left))},
+            lanes_of(s01.tie | s02.tie | s03.tie | s12.tie | s13.tie | s23.tie)};
 }
 
 // From inside: start_face() of project.h.
@@ -92,17 +106,12 @@ template <int z>
 {
     Seen v[4];
     for (uint i = 0; i < 4; i++)
-        v[i] = apex_seen(job, walk.shear, job.start_tet << 2 | i);
-    const Sides s01 = sides_of(v[0], v[1]), s02 = sides_of(v[0], v[2]), s03 = sides_of(v[0], v[3]),
-                s12 = sides_of(v[1], v[2]), s13 = sides_of(v[1], v[3]), s23 = sides_of(v[2], v[3]);
-    const uint ties = lanes_of(s01.tie | s02.tie | s03.tie | s12.tie | s13.tie | s23.tie);
-    const uint by[4] = {
-        lanes_of(without(without(s13.left, s12.left), s23.left)), lanes_of(without(s23.left & s02.left, s03.left)),
-        lanes_of(without(without(s03.left, s01.left), s13.left)), lanes_of(without(s12.left & s01.left, s02.left))};
-    uint waiting = lanes & ~ties;
+        v[i] = apex_seen(job, packet, walk.shear, job.start_tet << 2 | i);
+    const ByFace left = by_face_left(v);
+    uint waiting = lanes & ~left.ties;
     for (uint face = 0; face < 4; face++) {
-        leave_first(job, packet, walk, waiting & by[face], face);
-        waiting &= ~by[face];
+        leave_first(job, packet, walk, waiting & left.of[face], face);
+        waiting &= ~left.of[face];
     }
-    packet.left_to_scalar |= (lanes & ties) | waiting;
+    packet.left_to_scalar |= (lanes & left.ties) | waiting;
 }

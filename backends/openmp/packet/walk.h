@@ -6,6 +6,7 @@ template <int z>
 struct Walk {
     Shear<z> shear;
     Seen carried[3];
+    Floats depths[3], reach; // of the carried vertices, and of the rays' ends: where rays have ends
     Words turn, record;
     LaneWords offsets; // of the records, in words
     uint live;
@@ -18,11 +19,11 @@ LANE_FN uint corner(uint face, uint index)
 
 // Lets lanes enter a tet by the face that a record is of.
 template <int z>
-LANE_FN void enter_record(const PacketJob& job, Walk<z>& walk, uint lanes, uint record)
+LANE_FN void enter_record(const PacketJob& job, const Packet& packet, Walk<z>& walk, uint lanes, uint record)
 {
     const Mask mask = mask_of(lanes);
     for (uint i = 0; i < 3; i++) {
-        const Seen seen = apex_seen(job, walk.shear, (record & ~3u) | corner(record & 3u, i));
+        const Seen seen = apex_seen(job, packet, walk.shear, (record & ~3u) | corner(record & 3u, i));
         walk.carried[i].x = select(mask, seen.x, walk.carried[i].x);
         walk.carried[i].y = select(mask, seen.y, walk.carried[i].y);
     }
@@ -40,21 +41,29 @@ LANE_FN Sides sides_of(const Seen& p, const Seen& q)
     return {greater(plus, minus), equal(plus, minus)};
 }
 
-// Ends lanes whose ray has met a triangle or the domain's boundary.
+// Ends lanes whose ray has met a triangle or the domain's boundary, or its own end, after so many steps of the packet.
 LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uint steps)
 {
     const Mask mask = mask_of(lanes);
     packet.exit = select(mask, exit, packet.exit);
     packet.record = select(mask, record, packet.record);
-    packet.steps = select(mask, all(steps), packet.steps);
+    packet.steps = select(mask, packet.steps + all(steps), packet.steps);
 }
 
-// A step of all live lanes, which will then have left so many tets.
+// The lanes whose ray ends before it enters the tet behind the carried vertices.
 template <int z>
+LANE_FN Mask lies_beyond(const Walk<z>& walk)
+{
+    return greater(walk.depths[0], walk.reach) & greater(walk.depths[1], walk.reach) &
+           greater(walk.depths[2], walk.reach);
+}
+
+// A step of all live lanes, which is their packet's step of that number.
+template <int z, bool has_ends>
 LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint steps)
 {
     const Records at = load_records(job.records, walk.offsets);
-    const Seen apex = seen_at(job, walk.shear, at.apex.of);
+    const Seen apex = seen_at(packet, walk.shear, at.apex.of);
     const Sides s0 = sides_of(walk.carried[0], apex), s1 = sides_of(walk.carried[1], apex),
                 s2 = sides_of(walk.carried[2], apex);
     // The table of exits, which is the same whichever corner comes first: the vertex goes behind which, in their
@@ -67,11 +76,20 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - walk.turn;
     const Words index = least(place, place + all(3u)); // of the corner that it is: one below 0 is a large number
     const Words* exits = at.exits.of;
-    const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
+    Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
     const Words rotation = exit & all(3u), turned = walk.turn + rotation;
     walk.turn = least(turned, turned - all(3u));
     const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
-    const uint ended = walk.live & ~ties & lanes_of(equal(rotation, all(HALF32_END)));
+    Mask is_end = equal(rotation, all(HALF32_END));
+    if constexpr (has_ends) {
+        const Floats depth = depth_at(packet, at.apex.of);
+        for (uint i = 0; i < 3; i++)
+            walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
+        const Mask is_beyond = without(lies_beyond(walk), is_end);
+        exit = select(is_beyond, all(NO_LINK), exit);
+        is_end = is_end | is_beyond;
+    }
+    const uint ended = walk.live & ~ties & lanes_of(is_end);
     if ((ties | ended) != 0) {
         end_lanes(packet, ended, exit, walk.record, steps);
         packet.left_to_scalar |= ties;
@@ -95,7 +113,7 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
 #pragma GCC unroll 4
         for (uint i = 0; i < count; i++) {
             if (walks[i].live == 0) continue;
-            step(job, packets[i], walks[i], steps);
+            step<z, false>(job, packets[i], walks[i], steps);
             live |= walks[i].live;
         }
     }
