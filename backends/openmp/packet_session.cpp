@@ -57,12 +57,6 @@ void trace_given(const void* context, std::uint32_t number)
         std::bit_cast<Hit>(scalar::trace_given(rays.scene, rays.params, rays.direction(number), rays.origin(number)));
 }
 
-std::uint32_t entry_of(const void* context, std::uint32_t number)
-{
-    const Rays& rays = *static_cast<const Rays*>(context);
-    return scalar::entry_link(rays.scene, scalar::given_ray(rays.direction(number), rays.origin(number)));
-}
-
 std::vector<PacketKernel> kernels_of_host()
 {
     std::vector<PacketKernel> kernels;
@@ -121,7 +115,6 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     }
     result.hits = reinterpret_cast<std::uint32_t*>(rays.hits);
     result.trace_one = rays.given.empty() ? trace_pixel : trace_given;
-    result.entry_of = entry_of;
     result.context = &rays;
     return result;
 }

@@ -21,8 +21,6 @@ struct PacketJob {
     std::uint32_t* hits;             ///< HIT_WORDS a ray: pixels row after row, or rays in their order
     /// Traces the ray of that number with the scalar kernel, and writes its hit.
     void (*trace_one)(const void* context, std::uint32_t number);
-    /// The link of the boundary face that the given ray of that number enters the domain by, or NO_LINK.
-    std::uint32_t (*entry_of)(const void* context, std::uint32_t number);
     const void* context;
 };
 

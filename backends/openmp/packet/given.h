@@ -1,7 +1,10 @@
 // Rays that are given, which share no way: packets of rays with one deepest axis, in which lanes whose rays have ended
 // take those that wait.
 constexpr uint packets_in_turns = 4;
-constexpr uint lanes_wanted = LANES * 3 / 4; // a packet takes rays when it walks with fewer
+constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes rays when it walks with fewer
+constexpr uint rays_ahead = 32;              // whose tets are asked for before the rays are taken
+
+constexpr uint record_words = 4 * HALF32_ROWS, tet_words = 4 * record_words;
 
 // Rays of one deepest axis.
 struct Queue {
@@ -9,13 +12,22 @@ struct Queue {
     const uint* end;
 };
 
+// Asks for the two lines of the tet that a given ray's link names.
+LANE_FN void prefetch_tet(const PacketJob& job, uint number)
+{
+    const uint link = job.directions[4 * std::size_t{number} + 3];
+    if (link == NO_LINK) return;
+    const uint* const records = job.records + std::size_t{tet_words} * (link >> 2);
+    __builtin_prefetch(records);
+    __builtin_prefetch(records + tet_words / 2);
+}
+
 // Fetches the rays of lanes that have their numbers, and tells their links.
 LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
 {
     const Mask mask = mask_of(lanes);
     LaneWords offsets;
-    for (uint lane = 0; lane < LANES; lane++)
-        offsets.of[lane] = 4 * packet.numbers.of[lane];
+    store(offsets, *reinterpret_cast<const Words*>(packet.numbers.of) * 4);
     const Quad direction = load_rows(job.directions, offsets), origin = load_rows(job.origins, offsets);
     for (uint axis = 0; axis < 3; axis++) {
         packet.direction[axis] = select(mask, as_floats(direction.of[axis]), packet.direction[axis]);
@@ -23,24 +35,25 @@ LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
     }
     const Floats end = as_floats(origin.of[3]);
     packet.end = select(mask, select(greater(all(NO_END), end), end, all(__builtin_inff())), packet.end);
-    const uint outside = lanes & lanes_of(equal(direction.of[3], all(NO_LINK)));
-    if (outside == 0) return direction.of[3];
-    LaneWords links;
-    store(links, direction.of[3]);
-    for (uint left = outside; left != 0; left &= left - 1)
-        links.of[first_of(left)] = job.entry_of(job.context, packet.numbers.of[first_of(left)]);
-    return *reinterpret_cast<const Words*>(links.of);
+    return direction.of[3];
 }
 
-// Lets lanes leave the tets that their rays start in: exit_from_face() of path.h, and as a step what it finds. Where
-// the rays leave by face 0 that step is from the record of face 1, else from that of face 0. steps: of the packet.
+// What becomes carried vertex i, of what the four vertices of lanes' tets have, where a ray leaves its tet by a face as
+// if it had entered by face 1, whose corners are 0 3 2, where that is face 0, and else by face 0, whose are 1 2 3.
+template <class T>
+LANE_FN T carried_behind(const Mask* by_face, const T* of, uint i)
+{
+    constexpr uint behind_first[3] = {1, 3, 2};
+    return select(by_face[0], of[behind_first[i]], select(by_face[i + 1], of[0], of[i + 1]));
+}
+
+// Lets lanes leave the tets that their rays start in: exit_from_face() of path.h. steps: of the packet.
 template <int z, bool has_ends>
 LANE_FN void leave_tets(const PacketJob& job, Packet& packet, Walk<z>& walk, uint lanes, Words links, uint steps)
 {
     const Mask mask = mask_of(lanes);
-    constexpr uint record_words = 4 * HALF32_ROWS;
     LaneWords offsets;
-    store(offsets, select(mask, (links >> 2) * (4 * record_words), Words{}));
+    store(offsets, select(mask, (links >> 2) * tet_words, Words{}));
     const Records first = load_records(job.records, offsets),
                   second = load_records(job.records + record_words, offsets);
     const Quad apexes[4] = {first.apex, second.apex, load_rows(job.records + 2 * record_words, offsets),
@@ -49,41 +62,33 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, Walk<z>& walk, uin
     for (uint i = 0; i < 4; i++)
         v[i] = seen_at(packet, walk.shear, apexes[i].of);
     const ByFace left = by_face_left(v);
-    const Mask by[4] = {mask_of(left.of[0]), mask_of(left.of[1]), mask_of(left.of[2]), mask_of(left.of[3])};
-    const auto carry = [&](uint i, const auto& p0, const auto& p1, const auto& p2,
-                           auto& to) { // face 0, face i + 1, others
-        to = select(mask, select(by[0], p0, select(by[i + 1], p1, p2)), to);
+    const Mask by_face[4] = {mask_of(left.of[0]), mask_of(left.of[1]), mask_of(left.of[2]), mask_of(left.of[3])};
+    const auto by = [&](Words a, Words b, Words c, Words d) {
+        return select(by_face[0], a, select(by_face[1], b, select(by_face[2], c, d)));
     };
-    const uint behind_first[3] = {1, 3, 2};
-    for (uint i = 0; i < 3; i++) {
-        carry(i, v[behind_first[i]].x, v[0].x, v[i + 1].x, walk.carried[i].x);
-        carry(i, v[behind_first[i]].y, v[0].y, v[i + 1].y, walk.carried[i].y);
-    }
-    const Words record = (links & all(~3u)) + select(by[0], all(1u), Words{});
-    Words exit = select(by[0], second.exits.of[0],
-                        select(by[1], first.exits.of[0], select(by[2], first.exits.of[1], first.exits.of[2])));
-    Mask is_end = equal(exit & all(3u), all(HALF32_END));
+    const uint back = lanes_of(equal(by(all(0u), all(1u), all(2u), all(3u)), links & 3u));
+    const uint leaving = lanes & (left.of[0] | left.of[1] | left.of[2] | left.of[3]) & ~(back | left.ties);
+    packet.left_to_scalar |= lanes & ~leaving;
+
+    Words exit = by(second.exits.of[0], first.exits.of[0], first.exits.of[1], first.exits.of[2]);
+    Mask is_end = equal(exit & 3u, all(HALF32_END));
+    for (uint i = 0; i < 3; i++)
+        walk.carried[i] = select(mask, carried_behind(by_face, v, i), walk.carried[i]);
     if constexpr (has_ends) {
         Floats depths[4];
         for (uint i = 0; i < 4; i++)
             depths[i] = depth_at(packet, apexes[i].of);
         for (uint i = 0; i < 3; i++)
-            carry(i, depths[behind_first[i]], depths[0], depths[i + 1], walk.depths[i]);
+            walk.depths[i] = select(mask, carried_behind(by_face, depths, i), walk.depths[i]);
         walk.reach = depth_of_end(packet);
-        const Mask is_beyond = without(lies_beyond(walk), is_end);
-        exit = select(is_beyond, all(NO_LINK), exit);
-        is_end = is_end | is_beyond;
+        is_end = end_behind(walk, is_end, exit);
     }
-    const Words entry = links & all(3u);
-    const uint back = (left.of[0] & lanes_of(equal(entry, Words{}))) | (left.of[1] & lanes_of(equal(entry, all(1u)))) |
-                      (left.of[2] & lanes_of(equal(entry, all(2u)))) | (left.of[3] & lanes_of(equal(entry, all(3u))));
-    const uint forth = lanes & (left.of[0] | left.of[1] | left.of[2] | left.of[3]) & ~(back | left.ties);
-    packet.left_to_scalar |= lanes & ~forth;
+    const uint ended = leaving & lanes_of(is_end);
     packet.steps = select(mask, all(1u - steps), packet.steps);
-    end_lanes(packet, forth & lanes_of(is_end), exit, record, steps);
-    walk.live |= forth & ~lanes_of(is_end);
-    walk.turn = select(mask, exit & all(3u), walk.turn);
-    walk.record = select(mask_of(walk.live) & mask, exit >> 2, walk.record);
+    end_lanes(packet, ended, exit, links, steps);
+    walk.live |= leaving & ~ended;
+    walk.turn = select(mask, exit & 3u, walk.turn);
+    walk.record = select(mask_of(leaving & ~ended), exit >> 2, walk.record);
     store(walk.offsets, walk.record * record_words);
 }
 
@@ -104,12 +109,14 @@ template <int z, bool has_ends>
     for (uint free = every_lane & ~walk.live; free != 0 && queue.next != queue.end; free &= free - 1) {
         packet.numbers.of[first_of(free)] = *queue.next++;
         taken |= free & -free;
+        if (queue.end - queue.next > rays_ahead) prefetch_tet(job, queue.next[rays_ahead]);
     }
     if (taken == 0) return;
-    const Words links = fetch_rays(job, packet, taken);
+    Words links = fetch_rays(job, packet, taken);
     const Mask mask = mask_of(taken);
-    const Shear<z> shear = shear_of<z>(packet.direction);
-    walk.shear = shear;
+    walk.shear = shear_of<z>(packet.direction);
+    const uint outside = taken & lanes_of(equal(links, all(NO_LINK)));
+    if (outside != 0) links = select(mask_of(outside), entry_links(job, packet, walk, outside), links);
     packet.lanes |= taken;
     packet.exit = select(mask, all(NO_LINK), packet.exit);
     packet.record = select(mask, all(NO_LINK), packet.record);
@@ -132,7 +139,10 @@ template <int z, bool has_ends>
     while (goes_on) {
         goes_on = false;
         for (uint i = 0; i < packets_in_turns; i++) {
-            if (walks[i].live != 0) step<z, has_ends>(job, packets[i], walks[i], steps);
+            if (walks[i].live != 0) {
+                step<z, has_ends>(job, packets[i], walks[i], steps);
+                prefetch_rows(job.records, walks[i].offsets);
+            }
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
             const bool takes = live < lanes_wanted && queue.next != queue.end;
             const bool has_ended = live == 0 && packets[i].lanes != 0;

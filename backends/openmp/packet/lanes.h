@@ -223,6 +223,13 @@ LANE_FN Quad load_rows(const uint* base, const LaneWords& offsets)
     return transposed(rows_at(base, of), rows_at(base, of + 1), rows_at(base, of + 2), rows_at(base, of + 3));
 }
 
+// Asks for what lanes will load next.
+LANE_FN void prefetch_rows(const uint* base, const LaneWords& offsets)
+{
+    for (const uint offset : offsets.of)
+        __builtin_prefetch(base + offset);
+}
+
 // Both rows of half32's records, one a lane. A load takes a whole record, which a cache line holds; so records come
 // with their two rows side by side, and what is transposed holds first and second rows by turns.
 struct Records {

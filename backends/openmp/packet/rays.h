@@ -69,6 +69,10 @@ LANE_FN ByAxis by_deepest_axis(const Packet& packet)
 struct Seen {
     Floats x, y;
 };
+LANE_FN Seen select(Mask mask, const Seen& a, const Seen& b)
+{
+    return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
+}
 // shear_of() of project.h for rays whose deepest axis is z, without its products by zero: a point's x is that of its
 // components along the axes behind z and z with two numbers, and y likewise. Where the kernel has x and y change places
 // this has y negated, which makes the same products and the same signs.

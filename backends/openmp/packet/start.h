@@ -8,35 +8,32 @@ LANE_FN Words entry_squares(const PacketJob& job, const Packet& packet)
     for (uint axis = 0; axis < 3; axis++) {
         const uint across[2] = {axis == 2 ? 0 : axis + 1, axis == 0 ? 2 : axis - 1};
         const float* const planes = job.lines + axis * (n + 1);
-        const bool from_high = planes[n] < job.origin[axis];
-        if (!from_high && !(planes[0] > job.origin[axis])) continue;
-        const float gap = from_high ? job.origin[axis] - planes[n] : planes[0] - job.origin[axis];
-        const Floats direction = packet.direction[axis], slope = magnitude(direction);
-        Mask met = from_high ? greater(Floats{}, direction) : greater(direction, Floats{});
+        const Floats origin = packet.origin[axis], direction = packet.direction[axis], slope = magnitude(direction);
+        const Mask from_high = greater(origin, all(planes[n]));
+        const Floats gap = select(from_high, origin - all(planes[n]), all(planes[0]) - origin);
+        Mask met = (from_high & greater(Floats{}, direction)) |
+                   (greater(all(planes[0]), origin) & greater(direction, Floats{}));
         Words index[2]{};
         for (uint i = 0; i < 2; i++) {
             const float* const lines = job.lines + across[i] * (n + 1);
-            const float origin = job.origin[across[i]];
-            const Floats along = packet.direction[across[i]], reach = all(gap) * along;
-            const Floats first = all(lines[0] - origin) * slope, last = all(lines[n] - origin) * slope;
+            const Floats start = packet.origin[across[i]], along = packet.direction[across[i]], reach = gap * along;
+            const Floats first = (all(lines[0]) - start) * slope, last = (all(lines[n]) - start) * slope;
             met = met & (greater(reach, first) | (equal(reach, first) & greater(along, Floats{})));
             met = met & (greater(last, reach) | (equal(last, reach) & greater(Floats{}, along)));
             if (lanes_of(met) == 0) break;
             for (uint line = 1; line < n; line++)
-                index[i] = select(greater(all(lines[line] - origin) * slope, reach), index[i], index[i] + all(1u));
+                index[i] = select(greater((all(lines[line]) - start) * slope, reach), index[i], index[i] + all(1u));
         }
-        squares = select(met, (all((2 * axis + (from_high ? 1u : 0u)) * n) + index[1]) * n + index[0], squares);
+        const Words side = all(2 * axis) + select(from_high, all(1u), Words{});
+        squares = select(met, (side * n + index[1]) * n + index[0], squares);
     }
     return squares;
 }
 
-// The lanes that enter the domain by a boundary face; `left_to_scalar` gets those for which a sign is a tie.
-template <int z>
-LANE_FN uint lanes_entering(const PacketJob& job, Packet& packet, const Walk<z>& walk, uint lanes, uint link)
+// The lanes that enter the domain by a boundary face, by its corners; `left_to_scalar` gets those for which a sign is a
+// tie.
+LANE_FN uint lanes_entering(Packet& packet, uint lanes, const Seen* corners)
 {
-    Seen corners[3];
-    for (uint i = 0; i < 3; i++)
-        corners[i] = apex_seen(job, packet, walk.shear, (link & ~3u) | corner(link & 3u, i));
     const Sides s0 = sides_of(corners[0], corners[1]), s1 = sides_of(corners[1], corners[2]),
                 s2 = sides_of(corners[2], corners[0]);
     const uint inside = lanes & lanes_of((s0.left | s0.tie) & (s1.left | s1.tie) & (s2.left | s2.tie));
@@ -59,12 +56,49 @@ template <int z>
         lanes &= ~waiting;
         for (uint i = job.entry_ranges[here]; waiting != 0 && i < job.entry_ranges[here + 1]; i++) {
             const uint link = job.entry_links[i];
-            const uint entering = lanes_entering(job, packet, walk, waiting, link);
+            Seen corners[3];
+            for (uint corner_i = 0; corner_i < 3; corner_i++)
+                corners[corner_i] = apex_seen(job, packet, walk.shear, (link & ~3u) | corner(link & 3u, corner_i));
+            const uint entering = lanes_entering(packet, waiting, corners);
             if (entering != 0) enter_record(job, packet, walk, entering, link);
             waiting &= ~(entering | packet.left_to_scalar);
         }
         packet.left_to_scalar |= waiting; // those that entry_anywhere() is for
     }
+}
+
+// The same where each lane may have a square of its own: the links of the faces, NO_LINK for lanes that miss the
+// domain.
+template <int z>
+LANE_FN Words entry_links(const PacketJob& job, Packet& packet, const Walk<z>& walk, uint lanes)
+{
+    const Words squares = entry_squares(job, packet);
+    lanes &= ~lanes_of(equal(squares, all(6 * job.divisions * job.divisions)));
+    LaneWords square, link{};
+    store(square, select(mask_of(lanes), squares, Words{}));
+    Words links = all(NO_LINK);
+    for (uint face = 0; lanes != 0; face++) {
+        for (uint left = lanes; left != 0; left &= left - 1) {
+            const uint lane = first_of(left), index = job.entry_ranges[square.of[lane]] + face;
+            if (index < job.entry_ranges[square.of[lane] + 1])
+                link.of[lane] = job.entry_links[index];
+            else
+                packet.left_to_scalar |= 1u << lane; // which entry_anywhere() is for
+        }
+        lanes &= ~packet.left_to_scalar;
+        const Words candidates = *reinterpret_cast<const Words*>(link.of), faces = candidates & all(3u);
+        Seen corners[3];
+        for (uint i = 0; i < 3; i++) {
+            const Words apex = (candidates & all(~3u)) | corner(faces, i);
+            LaneWords offsets;
+            store(offsets, apex * (4 * HALF32_ROWS));
+            corners[i] = seen_at(packet, walk.shear, load_rows(job.records, offsets).of);
+        }
+        const uint entering = lanes_entering(packet, lanes, corners);
+        links = select(mask_of(entering), candidates, links);
+        lanes &= ~(entering | packet.left_to_scalar);
+    }
+    return links;
 }
 
 // exit_through() of half32.h.

@@ -16,6 +16,10 @@ LANE_FN uint corner(uint face, uint index)
 {
     return (0x634B39u >> (6u * face + 2u * index)) & 3u;
 }
+LANE_FN Words corner(Words face, uint index)
+{
+    return (all(0x634B39u) >> (6u * face + 2u * index)) & 3u;
+}
 
 // Lets lanes enter a tet by the face that a record is of.
 template <int z>
@@ -24,8 +28,7 @@ LANE_FN void enter_record(const PacketJob& job, const Packet& packet, Walk<z>& w
     const Mask mask = mask_of(lanes);
     for (uint i = 0; i < 3; i++) {
         const Seen seen = apex_seen(job, packet, walk.shear, (record & ~3u) | corner(record & 3u, i));
-        walk.carried[i].x = select(mask, seen.x, walk.carried[i].x);
-        walk.carried[i].y = select(mask, seen.y, walk.carried[i].y);
+        walk.carried[i] = select(mask, seen, walk.carried[i]);
     }
     walk.record = select(mask, all(record), walk.record);
     walk.live |= lanes;
@@ -50,12 +53,15 @@ LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uin
     packet.steps = select(mask, packet.steps + all(steps), packet.steps);
 }
 
-// The lanes whose ray ends before it enters the tet behind the carried vertices.
+// The lanes that are at their end as is_end says, or because the ray ends before it enters the tet behind the carried
+// vertices: their exit is then none.
 template <int z>
-LANE_FN Mask lies_beyond(const Walk<z>& walk)
+LANE_FN Mask end_behind(const Walk<z>& walk, Mask is_end, Words& exit)
 {
-    return greater(walk.depths[0], walk.reach) & greater(walk.depths[1], walk.reach) &
-           greater(walk.depths[2], walk.reach);
+    const Mask is_beyond =
+        greater(walk.depths[0], walk.reach) & greater(walk.depths[1], walk.reach) & greater(walk.depths[2], walk.reach);
+    exit = select(without(is_beyond, is_end), all(NO_LINK), exit);
+    return is_end | is_beyond;
 }
 
 // A step of all live lanes, which is their packet's step of that number.
@@ -69,10 +75,8 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     // The table of exits, which is the same whichever corner comes first: the vertex goes behind which, in their
     // order, a right side is followed by a left one.
     const Mask replaced[3] = {without(s2.left, s1.left), without(s0.left, s2.left), without(s1.left, s0.left)};
-    for (uint i = 0; i < 3; i++) {
-        walk.carried[i].x = select(replaced[i], apex.x, walk.carried[i].x);
-        walk.carried[i].y = select(replaced[i], apex.y, walk.carried[i].y);
-    }
+    for (uint i = 0; i < 3; i++)
+        walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
     const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - walk.turn;
     const Words index = least(place, place + all(3u)); // of the corner that it is: one below 0 is a large number
     const Words* exits = at.exits.of;
@@ -85,9 +89,7 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         const Floats depth = depth_at(packet, at.apex.of);
         for (uint i = 0; i < 3; i++)
             walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
-        const Mask is_beyond = without(lies_beyond(walk), is_end);
-        exit = select(is_beyond, all(NO_LINK), exit);
-        is_end = is_end | is_beyond;
+        is_end = end_behind(walk, is_end, exit);
     }
     const uint ended = walk.live & ~ties & lanes_of(is_end);
     if ((ties | ended) != 0) {
