@@ -1,6 +1,6 @@
 // Rays that are given, which share no way: packets of rays with one deepest axis, in which lanes whose rays have ended
 // take those that wait.
-constexpr uint packets_in_turns = 4;
+constexpr uint packets_in_turns = 8;
 constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes rays when it walks with fewer
 constexpr uint rays_ahead = 32;              // whose tets are asked for before the rays are taken
 
@@ -134,15 +134,10 @@ template <int z, bool has_ends>
         __builtin_memset(&packets[i], 0, sizeof(Packet));
         __builtin_memset(&walks[i], 0, sizeof(Walk<z>));
     }
-    uint steps = 0;
     bool goes_on = true;
-    while (goes_on) {
+    for (uint steps = 0; goes_on; steps++) {
         goes_on = false;
         for (uint i = 0; i < packets_in_turns; i++) {
-            if (walks[i].live != 0) {
-                step<z, has_ends>(job, packets[i], walks[i], steps);
-                prefetch_rows(job.records, walks[i].offsets);
-            }
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
             const bool takes = live < lanes_wanted && queue.next != queue.end;
             const bool has_ended = live == 0 && packets[i].lanes != 0;
@@ -150,9 +145,12 @@ template <int z, bool has_ends>
                 take_rays<z, has_ends>(job, queue, packets[i], walks[i], steps);
                 checked[i] = steps;
             }
+            if (walks[i].live != 0) {
+                step<z, has_ends>(job, packets[i], walks[i], steps + 1);
+                prefetch_rows(job.records, walks[i].offsets);
+            }
             goes_on = goes_on || packets[i].lanes != 0;
         }
-        steps++;
     }
 }
 

@@ -92,11 +92,9 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         is_end = end_behind(walk, is_end, exit);
     }
     const uint ended = walk.live & ~ties & lanes_of(is_end);
-    if ((ties | ended) != 0) {
-        end_lanes(packet, ended, exit, walk.record, steps);
-        packet.left_to_scalar |= ties;
-        walk.live &= ~(ties | ended);
-    }
+    end_lanes(packet, ended, exit, walk.record, steps); // always: hardly a branch would be foreseen
+    packet.left_to_scalar |= ties;
+    walk.live &= ~(ties | ended);
     walk.record = select(mask_of(walk.live), exit >> 2, walk.record); // others stay where there is a record
     store(walk.offsets, walk.record * (4 * HALF32_ROWS));
 }
