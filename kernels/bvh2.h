@@ -30,33 +30,37 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
     depths[0] = real(0.0f);
     uint waiting = 1u;
     uint child = 0u;
-    while (child != BVH2_END) {
-        while ((child & BVH2_LEAF) == 0u) {
-            COUNT_NODE();
-            uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_ROWS * child);
-            uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 1u);
-            uint4 z = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 2u);
-            uint4 children = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 3u);
-            real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
-            real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
-            bool b_first = b < a;
-            child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x; // neither: an empty leaf
-            stack[waiting] = b_first ? children.x : children.y;
-            depths[waiting] = maximum(a, b);
-            waiting += maximum(a, b) < NEVER ? 1u : 0u;
+    do {
+        if ((child & BVH2_LEAF) == 0u) {
+            do {
+                COUNT_NODE();
+                uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_ROWS * child);
+                uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 1u);
+                uint4 z = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 2u);
+                uint4 children = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 3u);
+                real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
+                real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
+                bool b_first = b < a;
+                child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x; // neither: empty
+                stack[waiting] = b_first ? children.x : children.y;
+                depths[waiting] = maximum(a, b);
+                waiting += maximum(a, b) < NEVER ? 1u : 0u;
+            } while ((child & BVH2_LEAF) == 0u);
         }
         if (child != BVH2_END) {
             uint at = (child & ~BVH2_LEAF) >> 4u;
             uint behind = at + (child & 15u);
-            while (at < behind) {
-                nearest = nearer_triangle(scene, frame, nearest, at);
-                at++;
+            if (at < behind) {
+                do {
+                    nearest = nearer_triangle(scene, frame, nearest, at);
+                    at++;
+                } while (at < behind);
             }
-            waiting--;
-            while (depths[waiting] > with_slack(nearest.depth))
+            do {
                 waiting--;
+            } while (depths[waiting] > with_slack(nearest.depth));
             child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : stack[waiting];
         }
-    }
+    } while (child != BVH2_END);
     return hit_of(scene, ray, nearest);
 }

@@ -16,13 +16,20 @@ STRUCT(Pixel)
     uint y;
 };
 
-// Pixel of an item, row after row in its tile; beyond the image where the tile is cut off.
+// Bits 0, 2 and 4 of an item's number, side by side.
+KERNEL_FN uint even_bits(uint item)
+{
+    return (item & 1u) | ((item >> 1u) & 2u) | ((item >> 2u) & 4u);
+}
+
+// Pixel of an item, along a Morton curve in its tile, so that items which a device executes at once, 4, 8, 16 or 32 of
+// them, are a block of pixels; beyond the image where the tile is cut off.
 KERNEL_FN Pixel pixel_of(LaunchParams launch, uint tile, uint item)
 {
     uint tiles_x = (launch.trace.width + (TILE_WIDTH - 1u)) / TILE_WIDTH;
     Pixel pixel;
-    pixel.x = tile % tiles_x * TILE_WIDTH + item % TILE_WIDTH;
-    pixel.y = tile / tiles_x * launch.tile_height + item / TILE_WIDTH;
+    pixel.x = tile % tiles_x * TILE_WIDTH + even_bits(item);
+    pixel.y = tile / tiles_x * launch.tile_height + even_bits(item >> 1u);
     return pixel;
 }
 
