@@ -1,6 +1,10 @@
 // project on rays that are built to break a walk (tests/hard_rays.h), each judged by Embree and, where that disagrees,
 // by exact arithmetic. TETRACE_HARD_RAYS is how many rays a scene gets: 100,000,000 are some minutes a scene.
+#include "backends/embree/accelerator.h"
 #include "bench/given_oracle.h"
+#include "bench/hit_point.h"
+#include "core/exact.h"
+#include "core/random_words.h"
 #include "core/ray_offset.h"
 #include "scenes/load.h"
 #include "tests/device_rays.h"
@@ -10,8 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
-#include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,41 +42,33 @@ std::uint64_t rays_wanted(std::uint64_t otherwise)
 
 struct Judged {
     Verdicts verdicts;
-    std::array<std::uint64_t, test::hard_kinds> flawed{}; ///< by kind, without those along a triangle
-    std::uint64_t along = 0;                              ///< flawed ones along a triangle
+    std::uint64_t nearby = 0;                             ///< called wrong, and right for a ray nearby
+    std::array<std::uint64_t, test::hard_kinds> flawed{}; ///< by kind, without those
     std::string first;                                    ///< of the flawed rays
 };
 
-/// Whether a ray passes a triangle so flatly that float32 may place the crossing anywhere along it, where the oracle
-/// asks for one edge: it is seen thinner than four times the bound, so that its corners, each moved by less than the
-/// bound, may turn an edge past others; or the start is within the bound of its plane, and farther from it along the
-/// ray.
-bool runs_along(const GivenRay& ray, const std::array<Float3, 3>& triangle)
+/// Whether Embree has that answer (NO_HIT: none) for one of many rays nearby: the start moved by the bound or less, and
+/// any point up to two units farther on by no more than that against it. The oracle looks for what explains an answer
+/// across one edge; of slivers and of triangles seen from their edges there may be several on the way.
+bool is_that_of_a_ray_nearby(const Scene& scene, const embree::Accelerator& accelerator, const GivenRay& ray,
+                             const Hit& hit)
 {
+    constexpr std::uint32_t rays_nearby = 20'000, stream = 101;
     const double bound = tie_bound(ray.origin);
-    const Double3 along = normalized(to_double(ray.direction)), start = to_double(ray.origin);
-    const auto at = [&](std::size_t i) { return cross(to_double(triangle[i % 3]) - start, along); };
-    double longest = 0, nearest = HUGE_VAL;
-    for (std::size_t i = 0; i < 3; i++) {
-        const Double3 edge = at(i + 1) - at(i);
-        const double square = dot(edge, edge);
-        const double s = square > 0 ? std::clamp(-dot(at(i), edge) / square, 0.0, 1.0) : 0.0;
-        longest = std::max(longest, length(edge));
-        nearest = std::min(nearest, length(at(i) + edge * s));
+    const bool is_hit = hit.face_id < scene.mesh.triangles.size();
+    if (!is_hit && hit.face_id != NO_HIT) return false;
+    if (is_hit && !names_one_point(scene.mesh, {ray.origin, ray.direction}, hit, bound)) return false;
+    const double turn = bound * length(to_double(ray.direction)) / 2;
+    for (std::uint32_t i = 0; i < rays_nearby; i++) {
+        const Double3 shift = random_direction({stream, i, 0, 0}) * (bound * (i % 4 + 1) / 4);
+        const Double3 bend = random_direction({stream, i, 1, 0}) * (turn * (i / 4 % 4) / 3);
+        RTCRayHit query = embree::query_of(to_float(to_double(ray.origin) + shift),
+                                           to_float(to_double(ray.direction) + bend), 0, ray.end);
+        accelerator.intersect(query, embree::Coherence::incoherent);
+        const bool meets = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        if (hit.face_id == (meets ? query.hit.primID : NO_HIT)) return true;
     }
-    if (nearest > bound) return false;
-    if (length(cross(at(1) - at(0), at(2) - at(0))) <= 4 * bound * longest) return true;
-    const Double3 corner = to_double(triangle[0]);
-    const Double3 normal = normalized(cross(to_double(triangle[1]) - corner, to_double(triangle[2]) - corner));
-    const double height = std::abs(dot(normal, corner - start));
-    return ray.link != NO_LINK && height <= bound && height > bound * std::abs(dot(normal, along));
-}
-
-bool runs_along_any(const GivenRay& ray, const TriangleMesh& mesh)
-{
-    return std::ranges::any_of(mesh.triangles, [&](const auto& v) {
-        return runs_along(ray, {mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]});
-    });
+    return false;
 }
 
 /// Traces that many rays with trace(set, rows), and judges each.
@@ -82,6 +76,7 @@ template <class Trace>
 Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count, const Trace& trace)
 {
     GivenOracle oracle(scene.mesh, 0);
+    const embree::Accelerator accelerator(scene.mesh, true, 0);
     Judged all;
     for (std::uint64_t first = 0; first < count; first += rays_at_once) {
         const std::size_t size = std::min(rays_at_once, count - first) / TILE_WIDTH * TILE_WIDTH;
@@ -90,8 +85,8 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
         const Verdicts verdicts = oracle.judge(set, hits, Origins::own);
         all.verdicts.add(verdicts);
         for (const std::uint32_t ray : verdicts.flawed) {
-            if (hits[ray].face_id != LOST && runs_along_any(set.rays[ray], scene.mesh)) {
-                all.along++;
+            if (is_that_of_a_ray_nearby(scene, accelerator, set.rays[ray], hits[ray])) {
+                all.nearby++;
                 continue;
             }
             all.flawed[(first + ray) % test::hard_kinds]++;
@@ -122,15 +117,16 @@ Judged judged_on_openmp(const Scene& scene, std::uint64_t count)
 
 void expect_none_wrong_or_lost(const Scene& scene, const char* name)
 {
-    const auto [verdicts, flawed, along, first] = judged_on_openmp(scene, rays_wanted(40'000));
-    const std::string counts = fmt::format(
-        "{}: {} rays: {} agree, {} ties, {} settled for us, {} lost, {} along a triangle, {} wrong by kind{}", name,
-        verdicts.rays, verdicts.agreed, verdicts.ties, verdicts.settled, verdicts.lost, along,
-        verdicts.wrong + verdicts.lost - along, fmt::format(" {}", fmt::join(flawed, " ")));
+    const auto [verdicts, nearby, flawed, first] = judged_on_openmp(scene, rays_wanted(40'000));
+    const std::string counts =
+        fmt::format("{}: {} rays: {} agree, {} ties, {} settled for us, {} right for a ray nearby, {} lost, {} wrong; "
+                    "flawed by kind {}",
+                    name, verdicts.rays, verdicts.agreed, verdicts.ties, verdicts.settled, nearby, verdicts.lost,
+                    verdicts.wrong - nearby, fmt::join(flawed, " "));
     fmt::print("{}\n", counts);
     EXPECT_EQ(verdicts.lost, 0u) << counts << "; " << first;
-    EXPECT_EQ(verdicts.wrong, along) << counts << "; " << first;
-    EXPECT_LT(along, verdicts.rays / 100);
+    EXPECT_EQ(verdicts.wrong, nearby) << counts << "; " << first;
+    EXPECT_LT(nearby, verdicts.rays / 100);
     EXPECT_GT(verdicts.agreed, verdicts.rays / 2);
 }
 
@@ -161,11 +157,11 @@ TEST(HardRays, find_a_walk_without_the_rule_for_ties)
     const mutant::SceneView view = mutant::view_of(packed);
     mutant::TraceParams params{};
     params.max_steps = packed.tet_count + 1;
-    const Judged all = judged(scene, packed, 9'000, [&](const RaySet& set, const std::vector<Row>& rows) {
+    const Judged all = judged(scene, packed, 1'800, [&](const RaySet& set, const std::vector<Row>& rows) {
         std::vector<Hit> hits;
         for (std::size_t i = 0; i < set.rays.size(); i++)
             hits.push_back(std::bit_cast<Hit>(mutant::trace_given(view, params, rows[i], rows[set.rays.size() + i])));
         return hits;
     });
-    EXPECT_GT(all.verdicts.lost + all.verdicts.wrong, 100u);
+    EXPECT_GT(all.verdicts.lost + all.verdicts.wrong - all.nearby, 20u);
 }
