@@ -27,6 +27,7 @@ namespace scalar {
 } // namespace scalar
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
+constexpr std::uint32_t range_size = 8192; // given rays that a thread takes at once
 
 // What the scalar kernel needs for a ray that packets leave to it.
 struct Rays {
@@ -183,9 +184,9 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
         });
     } else {
         const std::uint32_t count = job.width * job.height;
-        share_out((count + packet_range_size - 1) / packet_range_size, threads_, [&](std::uint32_t range) {
-            const std::uint32_t first = range * packet_range_size;
-            kernel_.rays(packets, first, std::min(count, first + packet_range_size));
+        share_out((count + range_size - 1) / range_size, threads_, [&](std::uint32_t range) {
+            const std::uint32_t first = range * range_size;
+            kernel_.rays(packets, first, std::min(count, first + range_size));
         });
     }
 }

@@ -32,9 +32,6 @@ inline constexpr std::uint32_t packet_block_size = 32;
 using TraceBlock = void(const PacketJob& job, std::uint32_t x, std::uint32_t y);
 extern "C" TraceBlock tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
 
-/// Rays of one call at most where they are given.
-inline constexpr std::uint32_t packet_range_size = 8192;
-
 /// Traces the given rays from number `first` on to the one before `end`, in lanes that take another as one has ended.
 using TraceRange = void(const PacketJob& job, std::uint32_t first, std::uint32_t end);
 extern "C" TraceRange tetrace_trace_range_4, tetrace_trace_range_8, tetrace_trace_range_16;

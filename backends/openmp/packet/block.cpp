@@ -112,7 +112,10 @@ void trace_squares(const PacketJob& job, uint x, uint y)
 extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_range_, LANES)(const PacketJob& job, std::uint32_t first,
                                                                           std::uint32_t end)
 {
-    trace_range(job, first, end);
+    if (job.has_ends)
+        trace_rays<true>(job, {first, end});
+    else
+        trace_rays<false>(job, {first, end});
 }
 
 extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job, std::uint32_t x,

@@ -1,15 +1,15 @@
-// Rays that are given, which share no way: packets of rays with one deepest axis, in which lanes whose rays have ended
-// take those that wait.
+// Rays that are given, which share no way: lanes whose rays have ended take those that wait.
 constexpr uint packets_in_turns = 8;
 constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes rays when it walks with fewer
 constexpr uint rays_ahead = 32;              // whose tets are asked for before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_ROWS, tet_words = 4 * record_words;
 
-// Rays of one deepest axis.
+using GivenWalk = Walk<any_axis>;
+
+// Numbers of the rays that wait.
 struct Queue {
-    const uint* next;
-    const uint* end;
+    uint next, end;
 };
 
 // Asks for the two lines of the tet that a given ray's link names.
@@ -48,8 +48,8 @@ LANE_FN T carried_behind(const Mask* by_face, const T* of, uint i)
 }
 
 // Lets lanes leave the tets that their rays start in: exit_from_face() of path.h. steps: of the packet.
-template <int z, bool has_ends>
-LANE_FN void leave_tets(const PacketJob& job, Packet& packet, Walk<z>& walk, uint lanes, Words links, uint steps)
+template <bool has_ends>
+LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, uint lanes, Words links, uint steps)
 {
     const Mask mask = mask_of(lanes);
     LaneWords offsets;
@@ -93,8 +93,8 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, Walk<z>& walk, uin
 }
 
 // Writes what has ended in a packet, and lets its free lanes take rays. steps: that the packet has done.
-template <int z, bool has_ends>
-[[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Packet& packet, Walk<z>& walk, uint steps)
+template <bool has_ends>
+[[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Packet& packet, GivenWalk& walk, uint steps)
 {
     const Words most = all(job.max_steps);
     const auto are_too_many = [&](Words a) { return lanes_of(equal(least(a, most), most)); };
@@ -107,32 +107,32 @@ template <int z, bool has_ends>
     packet.left_to_scalar = 0;
     uint taken = 0;
     for (uint free = every_lane & ~walk.live; free != 0 && queue.next != queue.end; free &= free - 1) {
-        packet.numbers.of[first_of(free)] = *queue.next++;
+        packet.numbers.of[first_of(free)] = queue.next++;
         taken |= free & -free;
-        if (queue.end - queue.next > rays_ahead) prefetch_tet(job, queue.next[rays_ahead]);
+        if (queue.end - queue.next > rays_ahead) prefetch_tet(job, queue.next + rays_ahead);
     }
     if (taken == 0) return;
     Words links = fetch_rays(job, packet, taken);
     const Mask mask = mask_of(taken);
-    walk.shear = shear_of<z>(packet.direction);
+    walk.shear = shear_of<any_axis>(packet.direction);
     const uint outside = taken & lanes_of(equal(links, all(NO_LINK)));
     if (outside != 0) links = select(mask_of(outside), entry_links(job, packet, walk, outside), links);
     packet.lanes |= taken;
     packet.exit = select(mask, all(NO_LINK), packet.exit);
     packet.record = select(mask, all(NO_LINK), packet.record);
     packet.steps = select(mask, Words{}, packet.steps);
-    leave_tets<z, has_ends>(job, packet, walk, taken & ~lanes_of(equal(links, all(NO_LINK))), links, steps);
+    leave_tets<has_ends>(job, packet, walk, taken & ~lanes_of(equal(links, all(NO_LINK))), links, steps);
 }
 
-template <int z, bool has_ends>
-[[gnu::noinline]] void trace_queue(const PacketJob& job, Queue queue)
+template <bool has_ends>
+[[gnu::noinline]] void trace_rays(const PacketJob& job, Queue queue)
 {
     Packet packets[packets_in_turns];
-    Walk<z> walks[packets_in_turns];
+    GivenWalk walks[packets_in_turns];
     uint checked[packets_in_turns] = {};
     for (uint i = 0; i < packets_in_turns; i++) {
         __builtin_memset(&packets[i], 0, sizeof(Packet));
-        __builtin_memset(&walks[i], 0, sizeof(Walk<z>));
+        __builtin_memset(&walks[i], 0, sizeof(GivenWalk));
     }
     bool goes_on = true;
     for (uint steps = 0; goes_on; steps++) {
@@ -142,47 +142,14 @@ template <int z, bool has_ends>
             const bool takes = live < lanes_wanted && queue.next != queue.end;
             const bool has_ended = live == 0 && packets[i].lanes != 0;
             if (takes || has_ended || steps - checked[i] >= job.max_steps) {
-                take_rays<z, has_ends>(job, queue, packets[i], walks[i], steps);
+                take_rays<has_ends>(job, queue, packets[i], walks[i], steps);
                 checked[i] = steps;
             }
             if (walks[i].live != 0) {
-                step<z, has_ends>(job, packets[i], walks[i], steps + 1);
+                step<any_axis, has_ends>(job, packets[i], walks[i], steps + 1);
                 prefetch_rows(job.records, walks[i].offsets);
             }
             goes_on = goes_on || packets[i].lanes != 0;
         }
     }
-}
-
-LANE_FN uint deepest_axis(const uint* direction)
-{
-    const uint x = direction[0] & 0x7FFFFFFFu, y = direction[1] & 0x7FFFFFFFu, z = direction[2] & 0x7FFFFFFFu;
-    const uint of_xy = y > x ? 1 : 0; // bits of magnitudes have their order
-    return z > (x < y ? y : x) ? 2 : of_xy;
-}
-
-template <bool has_ends>
-LANE_FN void trace_queues(const PacketJob& job, const Queue* queues)
-{
-    trace_queue<0, has_ends>(job, queues[0]);
-    trace_queue<1, has_ends>(job, queues[1]);
-    trace_queue<2, has_ends>(job, queues[2]);
-}
-
-// Given rays [first, end), those of each deepest axis by themselves.
-LANE_FN void trace_range(const PacketJob& job, uint first, uint end)
-{
-    uint numbers[3][tetrace::openmp::packet_range_size];
-    uint counts[3] = {};
-    for (uint number = first; number < end; number++) {
-        const uint axis = deepest_axis(job.directions + 4 * std::size_t{number});
-        numbers[axis][counts[axis]++] = number;
-    }
-    Queue queues[3];
-    for (uint axis = 0; axis < 3; axis++)
-        queues[axis] = {numbers[axis], numbers[axis] + counts[axis]};
-    if (job.has_ends)
-        trace_queues<true>(job, queues);
-    else
-        trace_queues<false>(job, queues);
 }

@@ -65,6 +65,12 @@ LANE_FN ByAxis by_deepest_axis(const Packet& packet)
     return {{packet.lanes & ~of_y & ~of_z, packet.lanes & of_y, packet.lanes & of_z}};
 }
 
+LANE_FN Vectors offset_of(const Packet& packet, const Words* place)
+{
+    return {as_floats(place[0]) - packet.origin[0], as_floats(place[1]) - packet.origin[1],
+            as_floats(place[2]) - packet.origin[2]};
+}
+
 // Where a lane sees a vertex.
 struct Seen {
     Floats x, y;
@@ -100,6 +106,38 @@ LANE_FN Seen seen_at(const Packet& packet, const Shear<z>& shear, const Words* p
     const Floats along_z = as_floats(place[z]) - packet.origin[z];
     return {along_x * shear.x_from_x + along_z * shear.x_from_z, along_y * shear.y_from_y + along_z * shear.y_from_z};
 }
+
+// The same for lanes that have deepest axes of their own: with the products by zero.
+constexpr int any_axis = 3;
+template <>
+struct Shear<any_axis> {
+    Vectors across, upwards;
+};
+
+template <>
+LANE_FN Shear<any_axis> shear_of<any_axis>(const Floats* direction)
+{
+    const Floats x = magnitude(direction[0]), y = magnitude(direction[1]), z = magnitude(direction[2]), zero{};
+    const Mask is_z = greater(z, x) & greater(z, y), is_y = without(greater(y, x), is_z);
+    const auto by_axis = [&](Floats of_x, Floats of_y, Floats of_z) {
+        return select(is_z, of_z, select(is_y, of_y, of_x));
+    };
+    const Floats deepest = by_axis(direction[0], direction[1], direction[2]);
+    const Mask backwards = greater(zero, deepest);
+    const Floats depth = deepest * all(0x1p20f), depth_up = negated_where(backwards, depth);
+    const Floats across = by_axis(direction[1], direction[2], direction[0]) * all(-0x1p20f);
+    const Floats upwards = negated_where(backwards, by_axis(direction[2], direction[0], direction[1]) * all(-0x1p20f));
+    return {{by_axis(across, zero, depth), by_axis(depth, across, zero), by_axis(zero, depth, across)},
+            {by_axis(upwards, depth_up, zero), by_axis(zero, upwards, depth_up), by_axis(depth_up, zero, upwards)}};
+}
+
+template <>
+LANE_FN Seen seen_at<any_axis>(const Packet& packet, const Shear<any_axis>& shear, const Words* place)
+{
+    const Vectors offset = offset_of(packet, place);
+    return {dot3(offset, shear.across), dot3(offset, shear.upwards)};
+}
+
 // A vertex for all lanes, the apex of a record.
 template <int z>
 LANE_FN Seen apex_seen(const PacketJob& job, const Packet& packet, const Shear<z>& shear, uint record)
@@ -111,9 +149,7 @@ LANE_FN Seen apex_seen(const PacketJob& job, const Packet& packet, const Shear<z
 // How deep along the ray a vertex is, as carried_walk.h has it, and the same for where rays end.
 LANE_FN Floats depth_at(const Packet& packet, const Words* place)
 {
-    const Vectors offset = {as_floats(place[0]) - packet.origin[0], as_floats(place[1]) - packet.origin[1],
-                            as_floats(place[2]) - packet.origin[2]};
-    return dot3(offset, {packet.direction[0], packet.direction[1], packet.direction[2]});
+    return dot3(offset_of(packet, place), {packet.direction[0], packet.direction[1], packet.direction[2]});
 }
 LANE_FN Floats depth_of_end(const Packet& packet)
 {
