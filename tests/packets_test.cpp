@@ -154,8 +154,9 @@ TEST(Packets, of_given_rays_have_the_scalar_kernels_bits_however_many_they_are)
 {
     const tetrace::Scene scene = tetrace::make_cubes(5);
     const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
-    for (const std::size_t count : {8u, 24u, 40u, 8184u, 8192u, 8200u, 16'400u})
-        expect_scalar_bits_given(packed, tetrace::test::hard_ray_set(scene, 7, count), "a range and a rest");
+    for (const std::size_t count : {8u, 24u, 40u, 504u, 512u, 520u, 16'400u})
+        expect_scalar_bits_given(packed, tetrace::test::hard_ray_set(scene, 7, count),
+                                 "two threads that take 512 at once");
 }
 
 TEST(Packets, of_given_rays_lose_those_that_the_scalar_kernel_loses)

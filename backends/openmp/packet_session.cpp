@@ -27,7 +27,6 @@ namespace scalar {
 } // namespace scalar
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
-constexpr std::uint32_t range_size = 8192; // given rays that a thread takes at once
 
 // What the scalar kernel needs for a ray that packets leave to it.
 struct Rays {
@@ -64,10 +63,10 @@ std::vector<PacketKernel> kernels_of_host()
 #ifdef TETRACE_WIDE_PACKETS
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
-        kernels.push_back({16, tetrace_trace_block_16, tetrace_trace_range_16});
-    if (__builtin_cpu_supports("avx2")) kernels.push_back({8, tetrace_trace_block_8, tetrace_trace_range_8});
+        kernels.push_back({16, tetrace_trace_block_16, tetrace_trace_rays_16});
+    if (__builtin_cpu_supports("avx2")) kernels.push_back({8, tetrace_trace_block_8, tetrace_trace_rays_8});
 #endif
-    kernels.push_back({4, tetrace_trace_block_4, tetrace_trace_range_4});
+    kernels.push_back({4, tetrace_trace_block_4, tetrace_trace_rays_4});
     return kernels;
 }
 
@@ -120,18 +119,16 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     return result;
 }
 
-// Calls work with each number below count, on so many threads.
+// Calls work on so many threads, which compute as kernel.cpp's.
 template <class Work>
-void share_out(std::uint32_t count, unsigned threads, const Work& work)
+void on_threads(unsigned threads, const Work& work)
 {
 #pragma omp parallel num_threads(static_cast <int>(threads))
     {
         std::fenv_t environment;
         std::fegetenv(&environment);
-        std::fesetenv(FE_DFL_ENV); // as kernel.cpp
-#pragma omp for schedule(dynamic, 1)
-        for (std::uint32_t i = 0; i < count; i++)
-            work(i);
+        std::fesetenv(FE_DFL_ENV);
+        work();
         std::fesetenv(&environment);
     }
 }
@@ -176,19 +173,20 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
     const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_, as_hits(output).data()};
     PacketJob packets = packet_job(scene_, records_.get(), job, rays);
     packets.has_ends = rays_end_;
-    if (task_ == Task::trace) {
-        const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
-        const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
-        share_out(blocks, threads_, [&](std::uint32_t block) {
+    const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
+    const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
+    std::uint32_t next_ray = 0;
+    packets.ray_count = job.width * job.height;
+    packets.next_ray = &next_ray;
+    on_threads(threads_, [&] {
+        if (task_ == Task::rays) {
+            kernel_.rays(packets);
+            return;
+        }
+#pragma omp for schedule(dynamic, 1)
+        for (std::uint32_t block = 0; block < blocks; block++)
             kernel_.trace(packets, block % across * packet_block_size, block / across * packet_block_size);
-        });
-    } else {
-        const std::uint32_t count = job.width * job.height;
-        share_out((count + range_size - 1) / range_size, threads_, [&](std::uint32_t range) {
-            const std::uint32_t first = range * range_size;
-            kernel_.rays(packets, first, std::min(count, first + range_size));
-        });
-    }
+    });
 }
 
 } // namespace tetrace::openmp

@@ -12,7 +12,7 @@ namespace tetrace::openmp {
 struct PacketKernel {
     unsigned lanes;
     TraceBlock* trace;
-    TraceRange* rays;
+    TraceRays* rays;
 };
 /// Those that this processor runs, the widest first; never empty.
 [[nodiscard]] const std::vector<PacketKernel>& packet_kernels();

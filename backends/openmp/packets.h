@@ -18,6 +18,8 @@ struct PacketJob {
     const std::uint32_t* directions; ///< rows of rays that are given, null where there are none: {direction, link}
     const std::uint32_t* origins;    ///< {origin, end}
     bool has_ends;                   ///< whether any of them ends
+    std::uint32_t ray_count;         ///< how many they are
+    std::uint32_t* next_ray;         ///< the first that no thread has taken
     std::uint32_t* hits;             ///< HIT_WORDS a ray: pixels row after row, or rays in their order
     /// Traces the ray of that number with the scalar kernel, and writes its hit.
     void (*trace_one)(const void* context, std::uint32_t number);
@@ -32,8 +34,9 @@ inline constexpr std::uint32_t packet_block_size = 32;
 using TraceBlock = void(const PacketJob& job, std::uint32_t x, std::uint32_t y);
 extern "C" TraceBlock tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
 
-/// Traces the given rays from number `first` on to the one before `end`, in lanes that take another as one has ended.
-using TraceRange = void(const PacketJob& job, std::uint32_t first, std::uint32_t end);
-extern "C" TraceRange tetrace_trace_range_4, tetrace_trace_range_8, tetrace_trace_range_16;
+/// What each thread does where rays are given: traces rays until no thread finds one, in lanes that take another as one
+/// has ended.
+using TraceRays = void(const PacketJob& job);
+extern "C" TraceRays tetrace_trace_rays_4, tetrace_trace_rays_8, tetrace_trace_rays_16;
 
 } // namespace tetrace::openmp

@@ -1,4 +1,4 @@
-// Traces a block of an image, or a range of given rays, in packets of LANES rays: compiled once for each of 4, 8 and 16
+// Traces a block of an image, or given rays, in packets of LANES rays: compiled once for each of 4, 8 and 16
 // (CMakeLists.txt), the wider ones with instructions that few processors have. So nothing here may have external
 // linkage but the entry point, and no inline function of a library may be called: the linker keeps one of all copies of
 // such a one, and might keep this.
@@ -109,13 +109,12 @@ void trace_squares(const PacketJob& job, uint x, uint y)
 #define JOINED(prefix, lanes) prefix##lanes
 #define ENTRY_POINT(prefix, lanes) JOINED(prefix, lanes)
 
-extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_range_, LANES)(const PacketJob& job, std::uint32_t first,
-                                                                          std::uint32_t end)
+extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_rays_, LANES)(const PacketJob& job)
 {
     if (job.has_ends)
-        trace_rays<true>(job, {first, end});
+        trace_rays<true>(job);
     else
-        trace_rays<false>(job, {first, end});
+        trace_rays<false>(job);
 }
 
 extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job, std::uint32_t x,

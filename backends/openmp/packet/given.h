@@ -1,16 +1,28 @@
 // Rays that are given, which share no way: lanes whose rays have ended take those that wait.
 constexpr uint packets_in_turns = 8;
 constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes rays when it walks with fewer
+constexpr uint rays_at_once = 512;           // that a thread takes
 constexpr uint rays_ahead = 32;              // whose tets are asked for before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_ROWS, tet_words = 4 * record_words;
 
 using GivenWalk = Walk<any_axis>;
 
-// Numbers of the rays that wait.
+// Numbers of the rays that this thread has taken, and that wait.
 struct Queue {
     uint next, end;
 };
+
+// Whether a ray waits, after taking others where none does.
+LANE_FN bool has_rays(const PacketJob& job, Queue& queue)
+{
+    if (queue.next == queue.end && queue.end < job.ray_count) {
+        const auto at_most = [&](uint number) { return number < job.ray_count ? number : job.ray_count; };
+        const uint first = __atomic_fetch_add(job.next_ray, rays_at_once, __ATOMIC_RELAXED);
+        queue = {at_most(first), at_most(first + rays_at_once)};
+    }
+    return queue.next != queue.end;
+}
 
 // Asks for the two lines of the tet that a given ray's link names.
 LANE_FN void prefetch_tet(const PacketJob& job, uint number)
@@ -109,7 +121,7 @@ template <bool has_ends>
     for (uint free = every_lane & ~walk.live; free != 0 && queue.next != queue.end; free &= free - 1) {
         packet.numbers.of[first_of(free)] = queue.next++;
         taken |= free & -free;
-        if (queue.end - queue.next > rays_ahead) prefetch_tet(job, queue.next + rays_ahead);
+        if (queue.next + rays_ahead < job.ray_count) prefetch_tet(job, queue.next + rays_ahead);
     }
     if (taken == 0) return;
     Words links = fetch_rays(job, packet, taken);
@@ -125,8 +137,9 @@ template <bool has_ends>
 }
 
 template <bool has_ends>
-[[gnu::noinline]] void trace_rays(const PacketJob& job, Queue queue)
+[[gnu::noinline]] void trace_rays(const PacketJob& job)
 {
+    Queue queue{};
     Packet packets[packets_in_turns];
     GivenWalk walks[packets_in_turns];
     uint checked[packets_in_turns] = {};
@@ -139,7 +152,7 @@ template <bool has_ends>
         goes_on = false;
         for (uint i = 0; i < packets_in_turns; i++) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
-            const bool takes = live < lanes_wanted && queue.next != queue.end;
+            const bool takes = live < lanes_wanted && has_rays(job, queue);
             const bool has_ended = live == 0 && packets[i].lanes != 0;
             if (takes || has_ended || steps - checked[i] >= job.max_steps) {
                 take_rays<has_ends>(job, queue, packets[i], walks[i], steps);
