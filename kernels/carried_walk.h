@@ -46,8 +46,9 @@ KERNEL_FN uint record_of_corner(uint link, uint index)
 // Which of the entry face's vertices the ray leaves behind: the exit face has the apex in its place.
 KERNEL_FN uint left_behind(Carried p0, Carried p1, Carried p2, Carried apex)
 {
-    if (carried_is_left(p2, apex)) return carried_is_left(p1, apex) ? 2u : 0u;
-    return carried_is_left(p0, apex) ? 1u : 2u;
+    bool left = carried_is_left(p2, apex);
+    bool other_left = carried_is_left(left ? p1 : p0, apex);
+    return other_left ? (left ? 2u : 1u) : (left ? 0u : 2u);
 }
 
 // The same where float products decide; UNDECIDED at a tie.
@@ -63,54 +64,78 @@ KERNEL_FN uint roughly_left_behind(Sheared p0, Sheared p1, Sheared p2, Sheared a
     return plus == minus || other_plus == other_minus ? UNDECIDED : behind;
 }
 
+// How far a ray has come: the face that it is at, and what is behind it.
+STRUCT(Walker)
+{
+    Carried p0;
+    Carried p1;
+    Carried p2;
+    uint turn;   // corner i of the face, as the record before it has them, is the carried vertex (i + turn) % 3
+    uint exit;   // of that record
+    uint record; // whichever of its tet's
+    uint steps;
+};
+
+// reach: of the end, as ends_before() of walk.h has it.
+KERNEL_FN bool goes_on(Walker at, TraceParams params, bool is_endless, real reach)
+{
+    return (at.exit & 3u) != HALF32_END && at.steps < params.max_steps &&
+           (is_endless || at.p0.along <= reach || at.p1.along <= reach || at.p2.along <= reach);
+}
+
+// The face by which the ray leaves the tet behind this one.
+KERNEL_FN Walker next_face(SceneView scene, Walker at, Carried apex, uint behind)
+{
+    uint4 exits = record_exits(scene, at.exit >> 2u);
+    Walker next;
+    next.p0 = behind == 0u ? apex : at.p0;
+    next.p1 = behind == 1u ? apex : at.p1;
+    next.p2 = behind == 2u ? apex : at.p2;
+    uint turn = at.turn + (at.exit & 3u);
+    next.turn = turn >= 3u ? turn - 3u : turn;
+    uint index = behind < next.turn ? behind + 3u - next.turn : behind - next.turn;
+    next.exit = index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
+    next.record = at.exit >> 2u;
+    next.steps = at.steps + 1u;
+    return next;
+}
+
 // From an exit of `tet`, left in so many steps, to the ray's hit. first_steps: 0 where the exit is the boundary face
-// that the ray enters by, else 1. end: as in walk.h. Ties are decided between two runs of the inner loop: some devices
-// execute what is behind a condition whether a lane meets it or not.
+// that the ray enters by, else 1. end: as in walk.h. Loops are left at their ends, and ties are decided behind the
+// inner one: some devices execute what is behind a condition whether a lane meets it or not (SPEC.md, On devices).
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint tet, uint first_exit, uint first_steps, real end)
 {
     bool is_endless = end >= real(NO_END);
     PRECISE real reach = end * dot3(ray.direction, ray.direction);
     Shear shear = shear_of(ray);
-    uint exit = first_exit;
-    uint record = (exit & 3u) == HALF32_END ? tet << 2u : exit >> 2u;
-    Carried p0 = carried(ray, shear, record_apex(scene, record_of_corner(record, 0u)));
-    Carried p1 = carried(ray, shear, record_apex(scene, record_of_corner(record, 1u)));
-    Carried p2 = carried(ray, shear, record_apex(scene, record_of_corner(record, 2u)));
-    record = tet << 2u; // whose exit this is: any of its records
-    uint turn = 0u;     // corner i of the entry face is the carried vertex (i + turn) % 3
-    uint steps = first_steps;
-    uint decided = UNDECIDED;
-    bool goes_on = (exit & 3u) != HALF32_END && steps < params.max_steps &&
-                   (is_endless || p0.along <= reach || p1.along <= reach || p2.along <= reach);
-    while (goes_on) {
-        bool is_tie = false;
-        while (goes_on && !is_tie) {
-            Carried apex = carried(ray, shear, record_apex(scene, exit >> 2u));
-            uint4 exits = record_exits(scene, exit >> 2u);
-            uint behind = roughly_left_behind(p0.seen, p1.seen, p2.seen, apex.seen);
-            behind = decided == UNDECIDED ? behind : decided;
-            decided = UNDECIDED;
-            is_tie = behind == UNDECIDED;
-            if (!is_tie) {
-                record = exit >> 2u;
-                turn += exit & 3u;
-                turn = turn >= 3u ? turn - 3u : turn;
-                p0 = behind == 0u ? apex : p0;
-                p1 = behind == 1u ? apex : p1;
-                p2 = behind == 2u ? apex : p2;
-                uint index = behind < turn ? behind + 3u - turn : behind - turn;
-                exit = index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
-                steps++;
+    uint first = (first_exit & 3u) == HALF32_END ? tet << 2u : first_exit >> 2u;
+    Walker at;
+    at.p0 = carried(ray, shear, record_apex(scene, record_of_corner(first, 0u)));
+    at.p1 = carried(ray, shear, record_apex(scene, record_of_corner(first, 1u)));
+    at.p2 = carried(ray, shear, record_apex(scene, record_of_corner(first, 2u)));
+    at.turn = 0u;
+    at.exit = first_exit;
+    at.record = tet << 2u;
+    at.steps = first_steps;
+    if (goes_on(at, params, is_endless, reach)) {
+        for (;;) {
+            for (;;) {
+                Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
+                uint behind = roughly_left_behind(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
+                if (behind == UNDECIDED) break;
+                at = next_face(scene, at, apex, behind);
+                if (!goes_on(at, params, is_endless, reach)) break;
             }
-            goes_on = (exit & 3u) != HALF32_END && steps < params.max_steps &&
-                      (is_endless || p0.along <= reach || p1.along <= reach || p2.along <= reach);
+            if (!goes_on(at, params, is_endless, reach)) break;
+            Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
+            at = next_face(scene, at, apex, left_behind(at.p0, at.p1, at.p2, apex));
+            if (!goes_on(at, params, is_endless, reach)) break;
         }
-        if (is_tie) decided = left_behind(p0, p1, p2, carried(ray, shear, record_apex(scene, exit >> 2u)));
     }
-    tet = record >> 2u;
-    if (exit == NO_LINK) return make_no_hit(NO_HIT, tet, steps);
-    if ((exit & 3u) == HALF32_END) return hit_on(scene, ray, exit >> 2u, tet, steps, end);
-    return make_no_hit(!is_endless && steps < params.max_steps ? NO_HIT : LOST, tet, steps);
+    tet = at.record >> 2u;
+    if (at.exit == NO_LINK) return make_no_hit(NO_HIT, tet, at.steps);
+    if ((at.exit & 3u) == HALF32_END) return hit_on(scene, ray, at.exit >> 2u, tet, at.steps, end);
+    return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);
 }
 
 KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)

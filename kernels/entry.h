@@ -16,52 +16,108 @@ KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
     return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
 }
 
-// The interval of lines along `axis` that holds the ray's position on a side of the box; `divisions` where it is off
-// the side. On the side's border the ray must be moving inwards: one that only grazes the box, in the plane of a side,
-// has missed it.
-KERNEL_FN uint line_interval(SceneView scene, uint axis, real origin, real direction, real slope, real reach)
+STRUCT(DomainBox)
 {
-    uint low = 0u;
-    uint high = scene.divisions;
-    PRECISE real first = (domain_line(scene, axis, low) - origin) * slope;
-    PRECISE real last = (domain_line(scene, axis, high) - origin) * slope;
-    if (first > reach || last < reach) return scene.divisions;
-    if (first == reach && direction <= real(0.0f)) return scene.divisions;
-    if (last == reach && direction >= real(0.0f)) return scene.divisions;
-    while (high - low > 1u) {
-        uint middle = (low + high) >> 1u;
-        PRECISE real product = (domain_line(scene, axis, middle) - origin) * slope;
-        bool below = product <= reach;
-        low = below ? middle : low;
-        high = below ? high : middle;
-    }
-    return low;
+    Vec3 low;
+    Vec3 high;
+};
+
+KERNEL_FN DomainBox domain_box(SceneView scene)
+{
+    uint n = scene.divisions;
+    DomainBox box;
+    box.low = VEC3(domain_line(scene, 0u, 0u), domain_line(scene, 1u, 0u), domain_line(scene, 2u, 0u));
+    box.high = VEC3(domain_line(scene, 0u, n), domain_line(scene, 1u, n), domain_line(scene, 2u, n));
+    return box;
+}
+
+// The axes of the sides across another one.
+KERNEL_FN uint first_axis(uint across)
+{
+    return across == 2u ? 0u : across + 1u;
+}
+
+KERNEL_FN uint second_axis(uint across)
+{
+    return across == 0u ? 2u : across - 1u;
+}
+
+// How far the ray is from the plane of the side that it enters by if by one across this axis.
+KERNEL_FN real gap_to_side(DomainBox box, Ray ray, uint across)
+{
+    bool from_high = component(ray.direction, across) < real(0.0f);
+    PRECISE real gap = component(from_high ? box.high : box.low, across) - component(ray.origin, across);
+    return gap;
+}
+
+// Where the ray meets that plane, along an axis: beyond a line where slope (line - origin) <= reach.
+STRUCT(SideCrossing)
+{
+    uint axis;
+    real origin;
+    real direction;
+    real slope;
+    real reach;
+};
+
+KERNEL_FN SideCrossing side_crossing(DomainBox box, Ray ray, uint across, uint axis)
+{
+    SideCrossing at;
+    at.axis = axis;
+    at.origin = component(ray.origin, axis);
+    at.direction = component(ray.direction, axis);
+    at.slope = magnitude(component(ray.direction, across));
+    PRECISE real reach = magnitude(gap_to_side(box, ray, across)) * at.direction;
+    at.reach = reach;
+    return at;
+}
+
+KERNEL_FN bool is_beyond_line(SceneView scene, SideCrossing at, uint index)
+{
+    PRECISE real product = (domain_line(scene, at.axis, index) - at.origin) * at.slope;
+    return product <= at.reach;
+}
+
+// Whether the ray meets the plane between the side's borders. On a border it must be moving inwards: a ray that only
+// grazes the box, in the plane of a side, has missed it.
+KERNEL_FN bool is_on_side(DomainBox box, SideCrossing at)
+{
+    PRECISE real first = (component(box.low, at.axis) - at.origin) * at.slope;
+    PRECISE real last = (component(box.high, at.axis) - at.origin) * at.slope;
+    if (first > at.reach || last < at.reach) return false;
+    if (first == at.reach && at.direction <= real(0.0f)) return false;
+    return last != at.reach || at.direction < real(0.0f);
+}
+
+KERNEL_FN bool enters_across(DomainBox box, Ray ray, uint across)
+{
+    real direction = component(ray.direction, across);
+    real gap = gap_to_side(box, ray, across);
+    bool ahead = direction < real(0.0f) ? gap < real(0.0f) : (direction > real(0.0f) && gap > real(0.0f));
+    return ahead && is_on_side(box, side_crossing(box, ray, across, first_axis(across))) &&
+           is_on_side(box, side_crossing(box, ray, across, second_axis(across)));
 }
 
 // The square of the box that the ray enters by, or 6 divisions^2 where it misses the box. The origin is not inside.
 KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 {
     uint n = scene.divisions;
-    uint square = 6u * n * n;
-    for (uint axis = 0u; axis < 3u; axis++) {
-        uint axis_a = axis == 2u ? 0u : axis + 1u;
-        uint axis_b = axis == 0u ? 2u : axis - 1u;
-        real direction = component(ray.direction, axis);
-        bool from_high = direction < real(0.0f);
-        real plane = domain_line(scene, axis, from_high ? n : 0u);
-        PRECISE real gap = plane - component(ray.origin, axis);
-        bool ahead = from_high ? gap < real(0.0f) : (direction > real(0.0f) && gap > real(0.0f));
-        if (!ahead) continue;
-        real slope = magnitude(direction);
-        real direction_a = component(ray.direction, axis_a);
-        real direction_b = component(ray.direction, axis_b);
-        PRECISE real reach_a = magnitude(gap) * direction_a;
-        PRECISE real reach_b = magnitude(gap) * direction_b;
-        uint i = line_interval(scene, axis_a, component(ray.origin, axis_a), direction_a, slope, reach_a);
-        uint j = line_interval(scene, axis_b, component(ray.origin, axis_b), direction_b, slope, reach_b);
-        if (i < n && j < n) square = ((2u * axis + (from_high ? 1u : 0u)) * n + j) * n + i;
+    DomainBox box = domain_box(scene);
+    uint across = 3u;
+    for (uint axis = 0u; axis < 3u; axis++)
+        across = enters_across(box, ray, axis) ? axis : across;
+    if (across == 3u) return 6u * n * n;
+    SideCrossing a = side_crossing(box, ray, across, first_axis(across));
+    SideCrossing b = side_crossing(box, ray, across, second_axis(across));
+    uint i = 0u; // the last line that the ray is beyond is one of so many from here on
+    uint j = 0u;
+    for (uint count = n; count > 1u; count -= count >> 1u) {
+        uint middle = count >> 1u;
+        i += is_beyond_line(scene, a, i + middle) ? middle : 0u;
+        j += is_beyond_line(scene, b, j + middle) ? middle : 0u;
     }
-    return square;
+    uint side = 2u * across + (component(ray.direction, across) < real(0.0f) ? 1u : 0u);
+    return (side * n + j) * n + i;
 }
 
 // How deep the ray is inside the boundary face `index` of the list: the smallest of its three side products, negative
@@ -101,13 +157,16 @@ KERNEL_FN uint entry_index(SceneView scene, Ray ray)
     if (square == 6u * scene.divisions * scene.divisions) return NO_ENTRY;
     uint first = FETCH(scene, entry_ranges, square);
     uint last = FETCH(scene, entry_ranges, square + 1u);
+    Shear shear = shear_of(ray);
     uint found = NO_ENTRY;
-    bool is_tie = false;
-    for (uint index = first; index < last && found == NO_ENTRY && !is_tie; index++) {
+    for (uint index = first;; index++) {
         EntryFace face = entry_face(scene, index);
-        uint held = roughly_held(ray, face.a, face.b, face.c);
-        is_tie = held == HELD_OR_TIE;
-        found = held == HELD ? index : NO_ENTRY;
+        uint held = roughly_held(ray, shear, face.a, face.b, face.c);
+        if (held == HELD) {
+            found = index;
+            break;
+        }
+        if (held == HELD_OR_TIE || index + 1u == last) break;
     }
     if (found == NO_ENTRY) return entry_anywhere(scene, ray, first, last);
     return found;

@@ -91,9 +91,8 @@ KERNEL_FN bool is_left(Projected p, Projected q)
 #define HELD 0u
 #define NOT_HELD 1u
 #define HELD_OR_TIE 2u
-KERNEL_FN uint roughly_held(Ray ray, Vec3 a, Vec3 b, Vec3 c)
+KERNEL_FN uint roughly_held(Ray ray, Shear shear, Vec3 a, Vec3 b, Vec3 c)
 {
-    Shear shear = shear_of(ray);
     Sheared p0 = sheared(shear, sub3(a, ray.origin));
     Sheared p1 = sheared(shear, sub3(b, ray.origin));
     Sheared p2 = sheared(shear, sub3(c, ray.origin));
