@@ -101,8 +101,8 @@ KERNEL_FN Walker next_face(SceneView scene, Walker at, Carried apex, uint behind
 }
 
 // From an exit of `tet`, left in so many steps, to the ray's hit. first_steps: 0 where the exit is the boundary face
-// that the ray enters by, else 1. end: as in walk.h. Loops are left at their ends, and ties are decided behind the
-// inner one: some devices execute what is behind a condition whether a lane meets it or not (SPEC.md, On devices).
+// that the ray enters by, else 1. end: as in walk.h. Loops ask at their end, and ties are decided behind the inner
+// one: some devices execute what is behind a condition whether a lane meets it or not (SPEC.md, Loops).
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint tet, uint first_exit, uint first_steps, real end)
 {
     bool is_endless = end >= real(NO_END);
