@@ -84,9 +84,8 @@ KERNEL_FN bool goes_on(Walker at, TraceParams params, bool is_endless, real reac
 }
 
 // The face by which the ray leaves the tet behind this one.
-KERNEL_FN Walker next_face(SceneView scene, Walker at, Carried apex, uint behind)
+KERNEL_FN Walker next_face(Walker at, Carried apex, uint4 exits, uint behind)
 {
-    uint4 exits = record_exits(scene, at.exit >> 2u);
     Walker next;
     next.p0 = behind == 0u ? apex : at.p0;
     next.p1 = behind == 1u ? apex : at.p1;
@@ -121,14 +120,16 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint tet, uint 
         for (;;) {
             for (;;) {
                 Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
+                uint4 exits = record_exits(scene, at.exit >> 2u);
                 uint behind = roughly_left_behind(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
                 if (behind == UNDECIDED) break;
-                at = next_face(scene, at, apex, behind);
+                at = next_face(at, apex, exits, behind);
                 if (!goes_on(at, params, is_endless, reach)) break;
             }
             if (!goes_on(at, params, is_endless, reach)) break;
             Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
-            at = next_face(scene, at, apex, left_behind(at.p0, at.p1, at.p2, apex));
+            uint4 exits = record_exits(scene, at.exit >> 2u);
+            at = next_face(at, apex, exits, left_behind(at.p0, at.p1, at.p2, apex));
             if (!goes_on(at, params, is_endless, reach)) break;
         }
     }
