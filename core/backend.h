@@ -27,10 +27,9 @@ struct Device {
     std::uint64_t memory_bytes = 0;
     std::uint64_t max_buffer_bytes = 0; ///< the largest that a kernel can be given at once; 0: memory is the limit
     unsigned max_group_items = 0;       ///< work items of a group; 0: does not apply
-    unsigned group_width =
-        0; ///< items that run in lockstep (warp, subgroup, rays of a packet); 0: unknown or does not apply
-    double timer_period_s = 0; ///< resolution of the clock that Session::wait reads; 0: unknown
-    unsigned threads = 1;      ///< hardware threads or compute units
+    unsigned group_width = 0;           ///< items or rays in lockstep (warp, subgroup, packet); 0: unknown, or none
+    double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
+    unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
     std::string reason; ///< why not, where not usable
 };
