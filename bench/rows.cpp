@@ -35,8 +35,9 @@ bool wanted_math(const Options& options, const KernelId& kernel)
 bool wanted_schedule(const Options& options, const KernelId& kernel)
 {
     if (!is_portable(kernel)) return true;
-    return options.schedules.empty() ? kernel.schedule != Schedule::persistent
-                                     : wanted(options.schedules, kernel.schedule);
+    if (!options.schedules.empty()) return wanted(options.schedules, kernel.schedule);
+    const bool has_packets = options.verb != Verb::reproduce; // the paper's tables are of one ray at a time
+    return kernel.schedule == Schedule::tiles || (has_packets && kernel.schedule == Schedule::packets);
 }
 
 std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kernel)

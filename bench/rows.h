@@ -34,12 +34,12 @@ struct RowKey {
 
 /// The rows that the options select, scene after scene, rows of one scene in the order of kernels, backends and
 /// devices. Math mode and schedule do not select among Embree's rows and drivers' (rt), order among those of the cdt
-/// only; without those options, exact, tiles and packets, and hilbert, and without methods only maria and project on
-/// half32 of the cdt's. Kinds of rays but primary have rows of the kernels that take rays. A backend has rows of its
-/// usable devices; one that has none, of its first where --backend or --require names it. A kernel that a backend has
-/// and a device cannot run is a row all the same: it will end as unsupported; but rows of layout rt only where --layout
-/// or --filter may mean them. Throws Error{usage} where nothing is selected: it names the options, and what there would
-/// be without them.
+/// only; without those options, exact, tiles and (but in `reproduce`) packets, and hilbert, and without methods only
+/// maria and project on half32 of the cdt's. Kinds of rays but primary have rows of the kernels that take rays. A
+/// backend has rows of its usable devices; one that has none, of its first where --backend or --require names it. A
+/// kernel that a backend has and a device cannot run is a row all the same: it will end as unsupported; but rows of
+/// layout rt only where --layout or --filter may mean them. Throws Error{usage} where nothing is selected: it names the
+/// options, and what there would be without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 

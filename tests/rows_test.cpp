@@ -164,6 +164,12 @@ TEST(rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
                                         "bvh/packet16/embree/bunny/primary/math:fast/api:embree"}));
 }
 
+TEST(rows, the_papers_tables_have_no_packets)
+{
+    const auto list = names({"reproduce", "table4", "--method", "project", "--layout", "half32"}, {"a"});
+    EXPECT_EQ(list, std::vector<std::string>{"cdt/project/half32/a/primary/math:exact/api:openmp"});
+}
+
 TEST(rows, every_method_has_rows_where_all_are_asked_for)
 {
     const auto list = names({"bench", "--method", "all", "--layout", "tet80,embree"}, {"a"});

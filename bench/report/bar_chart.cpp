@@ -11,7 +11,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr double top = 6, bar_height = 13, gap = 10, axis_room = 38, widest_labels = 190, widest_values = 160;
+constexpr double top = 6, bar_height = 13, gap = 10, axis_room = 38, widest_labels = 230, widest_values = 160;
 
 /// Labels on the left, one under the other; then the plot; then room for what is written behind each value.
 struct RowFrame {
