@@ -72,6 +72,10 @@ std::vector<PacketKernel> kernels_of_host()
 
 std::uint32_t* copy_of(const std::vector<Row>& rows)
 {
+    if (rows.size() > (std::uint64_t{1} << 32) / 4)
+        throw Error(ErrorKind::unsupported, "packets number the words of records with 32 bits, too few for " +
+                                                std::to_string(rows.size() * sizeof(Row)) +
+                                                " bytes; schedule tiles takes them");
     const std::size_t bytes = rows.size() * sizeof(Row);
     const std::size_t whole_pages = std::max(huge_page, (bytes + huge_page - 1) / huge_page * huge_page);
     void* const block = std::aligned_alloc(huge_page, whole_pages);
