@@ -47,9 +47,9 @@ struct Judged {
     std::string first;                                    ///< of the flawed rays
 };
 
-/// Whether Embree has that answer (NO_HIT: none) for one of many rays nearby: the start moved by the bound or less, and
-/// any point up to two units farther on by no more than that against it. The oracle looks for what explains an answer
-/// across one edge; of slivers and of triangles seen from their edges there may be several on the way.
+/// Whether Embree has that answer (NO_HIT: none) for one of many rays nearby, moved by the bound or less at the start
+/// and two units farther on, and so between. The oracle looks for what explains an answer across one edge; of slivers
+/// and of triangles seen from their edges there may be several on the way.
 bool is_that_of_a_ray_nearby(const Scene& scene, const embree::Accelerator& accelerator, const GivenRay& ray,
                              const Hit& hit)
 {
@@ -58,10 +58,10 @@ bool is_that_of_a_ray_nearby(const Scene& scene, const embree::Accelerator& acce
     const bool is_hit = hit.face_id < scene.mesh.triangles.size();
     if (!is_hit && hit.face_id != NO_HIT) return false;
     if (is_hit && !names_one_point(scene.mesh, {ray.origin, ray.direction}, hit, bound)) return false;
-    const double turn = bound * length(to_double(ray.direction)) / 2;
     for (std::uint32_t i = 0; i < rays_nearby; i++) {
         const Double3 shift = random_direction({stream, i, 0, 0}) * (bound * (i % 4 + 1) / 4);
-        const Double3 bend = random_direction({stream, i, 1, 0}) * (turn * (i / 4 % 4) / 3);
+        const Double3 far_shift = random_direction({stream, i, 1, 0}) * (bound * (i / 4 % 5) / 4);
+        const Double3 bend = (far_shift - shift) * (length(to_double(ray.direction)) / 2);
         RTCRayHit query = embree::query_of(to_float(to_double(ray.origin) + shift),
                                            to_float(to_double(ray.direction) + bend), 0, ray.end);
         accelerator.intersect(query, embree::Coherence::incoherent);
