@@ -51,18 +51,42 @@ KERNEL_FN uint rank_among(uint vertex, uint a, uint b, uint c, uint d)
     return (a < vertex ? 1u : 0u) + (b < vertex ? 1u : 0u) + (c < vertex ? 1u : 0u) + (d < vertex ? 1u : 0u);
 }
 
-// From a face through the tet behind it to the next. The two tests of maria: of the edges that end in the apex, that
-// from p2, then that from p0 or p1.
-KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
+// Which of a gate's vertices is replaced by the apex of the tet behind it. The two tests of maria: of the edges that
+// end in the apex, that from p2, then that from p0 or p1.
+KERNEL_FN uint replaced_by(Gate gate, Carried apex)
+{
+    bool left = carried_is_left(gate.p2, apex);
+    bool left_of_other = carried_is_left(left ? gate.p1 : gate.p0, apex);
+    return left_of_other ? (left ? 2u : 1u) : (left ? 0u : 2u);
+}
+
+// The same where float products decide; UNDECIDED at a tie.
+#define UNDECIDED 3u
+KERNEL_FN uint roughly_replaced_by(Gate gate, Sheared apex)
+{
+    PRECISE real plus = gate.p2.seen.x * apex.y;
+    PRECISE real minus = gate.p2.seen.y * apex.x;
+    if (plus == minus) return UNDECIDED;
+    bool left = plus > minus;
+    real other_x = left ? gate.p1.seen.x : gate.p0.seen.x;
+    real other_y = left ? gate.p1.seen.y : gate.p0.seen.y;
+    PRECISE real other_plus = other_x * apex.y;
+    PRECISE real other_minus = other_y * apex.x;
+    if (other_plus == other_minus) return UNDECIDED;
+    return other_plus > other_minus ? (left ? 2u : 1u) : (left ? 0u : 2u);
+}
+
+KERNEL_FN Carried apex_behind(SceneView scene, Ray ray, Shear shear, Gate gate, CompactTet tet)
+{
+    return carried(scene, ray, shear, tet.vertices ^ gate.p0.vertex ^ gate.p1.vertex ^ gate.p2.vertex);
+}
+
+// The face by which the ray leaves the tet behind a gate.
+KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, Carried apex, uint replaced)
 {
     uint v0 = gate.p0.vertex;
     uint v1 = gate.p1.vertex;
     uint v2 = gate.p2.vertex;
-    CompactTet tet = compact_tet(scene, gate.behind);
-    Carried apex = carried(scene, ray, shear, tet.vertices ^ v0 ^ v1 ^ v2);
-    bool left = carried_is_left(gate.p2, apex);
-    bool left_of_other = carried_is_left(left ? gate.p1 : gate.p0, apex);
-    uint replaced = left_of_other ? (left ? 2u : 1u) : (left ? 0u : 2u);
     uint gone = replaced == 0u ? v0 : replaced == 1u ? v1 : v2;
     uint rank = rank_among(gone, v0, v1, v2, apex.vertex);
     Gate next;
@@ -73,6 +97,14 @@ KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
     next.behind = NEIGHBOUR(scene, tet, rank, rank_among(apex.vertex, v0, v1, v2, apex.vertex), gate.before);
     next.before = gate.behind;
     return next;
+}
+
+// From a face through the tet behind it to the next.
+KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
+{
+    CompactTet tet = compact_tet(scene, gate.behind);
+    Carried apex = apex_behind(scene, ray, shear, gate, tet);
+    return gate_beyond(scene, gate, tet, apex, replaced_by(gate, apex));
 }
 
 // The boundary face of that number, from outside.
@@ -143,14 +175,28 @@ KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear sh
     return gate;
 }
 
-// From a face that the ray leaves a tet by to the ray's hit. first_steps: tets that it has left by then.
+// From a face that the ray leaves a tet by to the ray's hit. first_steps: tets that it has left by then. Loops ask at
+// their end, and ties are decided behind the inner one, as in carried_walk.h.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps)
 {
     Gate gate = first;
     uint steps = first_steps;
-    while (gate.behind < OCCLUSIVE && steps < params.max_steps) {
-        gate = next_gate(scene, ray, shear, gate);
-        steps++;
+    if (gate.behind < OCCLUSIVE && steps < params.max_steps) {
+        for (;;) {
+            for (;;) {
+                CompactTet tet = compact_tet(scene, gate.behind);
+                Carried apex = apex_behind(scene, ray, shear, gate, tet);
+                uint replaced = roughly_replaced_by(gate, apex.seen);
+                if (replaced == UNDECIDED) break;
+                gate = gate_beyond(scene, gate, tet, apex, replaced);
+                steps++;
+                if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+            }
+            if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+            gate = next_gate(scene, ray, shear, gate);
+            steps++;
+            if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+        }
     }
     if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);
     if (gate.behind < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);

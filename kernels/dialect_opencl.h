@@ -5,7 +5,7 @@
 #endif
 #include "kernels/layout.h"
 
-#define KERNEL_FN static inline
+#define KERNEL_FN static inline __attribute__((always_inline))
 #define PRECISE // contraction is switched off for the whole program
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \

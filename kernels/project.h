@@ -20,6 +20,24 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
     return other_face(entry, outcome);
 }
 
+// The same where float products decide, else TIE_AT | entry.
+#define HAS_TIES
+#define TIE_AT 4u
+KERNEL_FN uint rough_exit_face(SceneView scene, uint tet, uint entry, Ray ray)
+{
+    Shear shear = shear_of(ray);
+    Sheared apex = sheared(shear, sub3(vertex(scene, tet, entry), ray.origin));
+    Sheared p2 = sheared(shear, sub3(vertex(scene, tet, corner(entry, 2u)), ray.origin));
+    PRECISE real plus = p2.x * apex.y;
+    PRECISE real minus = p2.y * apex.x;
+    uint outcome = plus > minus ? 1u : 0u;
+    Sheared other = sheared(shear, sub3(vertex(scene, tet, corner(entry, outcome)), ray.origin));
+    PRECISE real other_plus = other.x * apex.y;
+    PRECISE real other_minus = other.y * apex.x;
+    outcome += other_plus > other_minus ? 0u : 1u;
+    return plus == minus || other_plus == other_minus ? TIE_AT | entry : other_face(entry, outcome);
+}
+
 KERNEL_FN uint start_face(SceneView scene, uint tet, Ray ray)
 {
     return face_left_by(ray, vertex(scene, tet, 0u), vertex(scene, tet, 1u), vertex(scene, tet, 2u),

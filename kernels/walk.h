@@ -1,12 +1,19 @@
-// The walk from tet to tet. A method brings exit_face() and start_face(), which return a face
-// of the tet, or NO_EXIT.
+// The walk from tet to tet. A method brings exit_face() and start_face(), which return a face of the tet, or NO_EXIT.
+// One that defines HAS_TIES always finds a face to go on by, and brings rough_exit_face(), which returns TIE_AT | entry
+// at a tie: exit_face() then decides behind the loop, so that the rare tie costs nothing where there is none, nor on
+// devices that execute what is behind a condition whether a lane meets it or not.
+#ifdef HAS_TIES
+#define EXIT_IN_LOOP rough_exit_face
+#else
+#define EXIT_IN_LOOP exit_face
+#endif
 
-// The link of a face, or NO_LINK where there is none to leave by. Such a walk reads face 0 instead: a load that all
-// lanes do, and no word behind the last tet.
+// The link of a face, or NO_LINK where there is none to leave by, or none yet. Such a walk reads another face instead:
+// a load that all lanes do, and no word behind the last tet.
 KERNEL_FN uint link_beyond(SceneView scene, uint tet, uint face)
 {
     uint link = face_link(scene, tet, face & 3u);
-    return face == NO_EXIT ? NO_LINK : link;
+    return face >= NO_EXIT ? NO_LINK : link;
 }
 
 // Whether the ray has ended before it enters the tet that the link names: all three vertices of the face lie beyond
@@ -32,14 +39,24 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     uint link = link_beyond(scene, tet, face);
     uint triangle = face_triangle(scene, tet, face & 3u);
     uint steps = 1u;
-    while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
-           (is_endless || !ends_before(scene, link, ray, end))) {
-        tet = link >> 2u;
-        face = exit_face(scene, tet, link & 3u, ray);
-        link = link_beyond(scene, tet, face);
-        triangle = face_triangle(scene, tet, face & 3u);
-        steps++;
+#ifdef HAS_TIES
+    for (;;) {
+#endif
+        while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
+               (is_endless || !ends_before(scene, link, ray, end))) {
+            tet = link >> 2u;
+            face = EXIT_IN_LOOP(scene, tet, link & 3u, ray);
+            link = link_beyond(scene, tet, face);
+            triangle = face_triangle(scene, tet, face & 3u);
+            steps++;
+        }
+#ifdef HAS_TIES
+        if (face < TIE_AT) break;
+        face = exit_face(scene, tet, face & 3u, ray);
+        link = face_link(scene, tet, face);
+        triangle = face_triangle(scene, tet, face);
     }
+#endif
     if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
     uint hit_triangle = face_triangle(scene, tet, face);
     if (hit_triangle != FREE_FACE) return hit_on(scene, ray, hit_triangle, tet, steps, end);
@@ -56,7 +73,7 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
         uint entry = entry_link(scene, ray);
         if (entry == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
         tet = entry >> 2u;
-        face = exit_face(scene, tet, entry & 3u, ray);
+        face = EXIT_IN_LOOP(scene, tet, entry & 3u, ray);
     } else {
         face = start_face(scene, tet, ray);
 #ifdef WALKS_PATHS
@@ -89,3 +106,5 @@ KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, 
 #endif
     return walk(scene, params, ray, link >> 2u, face, as_real(origin.w));
 }
+
+#undef EXIT_IN_LOOP
