@@ -1,7 +1,11 @@
 // The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
-// Macro from outside: MATH_FAST where the compiler may contract.
+// Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, where comparing two
+// numbers and selecting one is faster than their minimum (of NaNs, which nothing compares, it is another).
 #include "kernels/layout.h"
 
+#ifndef SELECTS_MINIMA
+#define SELECTS_MINIMA false
+#endif
 #define KERNEL_FN
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) Vec3(x, y, z)
@@ -31,11 +35,11 @@ KERNEL_FN real square_root(real value)
 }
 KERNEL_FN real minimum(real a, real b)
 {
-    return min(a, b);
+    return SELECTS_MINIMA ? (a < b ? a : b) : min(a, b);
 }
 KERNEL_FN real maximum(real a, real b)
 {
-    return max(a, b);
+    return SELECTS_MINIMA ? (a > b ? a : b) : max(a, b);
 }
 KERNEL_FN uint highest_bit(uint value)
 {

@@ -4,7 +4,9 @@
 #include "backends/vulkan/instance.h"
 #include "backends/vulkan/session.h"
 #include "backends/vulkan/ticks.h"
+#include "scenes/bvh_scene.h"
 #include "tests/device_rays.h"
+#include "tests/given_scene.h"
 #include "tests/temporary_folder.h"
 
 namespace tetrace {
@@ -77,6 +79,66 @@ TEST_F(Vulkan, hits_are_openmps_whether_the_scene_is_read_as_texels_or_from_stor
             const TraceJob job = rays.from_outside(61, 35);
             EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
         }
+    }
+}
+
+namespace {
+
+/// Calls expect_right with every usable device, told to be as emulated devices are and as others are.
+void with_devices_of_all_kinds(const std::function<void(const vulkan::FoundDevice&)>& expect_right)
+{
+    for (vulkan::FoundDevice found : vulkan::find_devices()) {
+        if (!found.facts.usable) continue;
+        for (const bool selects : {false, true})
+            for (const unsigned shares : {1u, 2u, 7u, 1000u}) {
+                found.selects_minima = selects;
+                found.shares = shares;
+                SCOPED_TRACE(found.facts.name + (selects ? ", selects, " : ", minima, ") + std::to_string(shares));
+                expect_right(found);
+            }
+    }
+}
+
+KernelId bvh_kernel(Layout layout, Task task)
+{
+    return {.structure = Structure::bvh, .method = Method::single, .layout = layout, .task = task};
+}
+
+} // namespace
+
+TEST_F(Vulkan, hits_of_walks_are_openmps_whatever_kind_of_device_it_is)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    with_devices_of_all_kinds([&](const vulkan::FoundDevice& found) {
+        vulkan::VulkanSession session(found, {}, rays.packed(), {});
+        for (const TraceJob& job : jobs_of_all_kinds(rays))
+            EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+    });
+}
+
+TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    const test::GivenScene cubes{40, false, 6};
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
+        const SceneData data{&cubes.scene.mesh, &packed};
+        const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::trace), data, {.threads = 2});
+        const auto given_on_host = openmp_backend().open(0, bvh_kernel(layout, Task::rays), data, {.threads = 2});
+        with_devices_of_all_kinds([&](const vulkan::FoundDevice& found) {
+            vulkan::VulkanSession session(found, bvh_kernel(layout, Task::trace), packed, {});
+            for (const TraceJob& job : {rays.from_outside(200, 150), rays.from_outside(61, 35, 2)})
+                EXPECT_EQ(different_rays(traced(session, job), traced(*on_host, job), 3), 0u);
+            vulkan::VulkanSession given(found, bvh_kernel(layout, Task::rays), packed, {});
+            for (const RayKind kind : {RayKind::ao, RayKind::diffuse}) {
+                const RaySet set = make_rays(kind, cubes.source());
+                const auto rows = given_rows_offset(set, cubes.scene.mesh);
+                const TraceJob job = given_job(set.rays.size(), 0, set.any_hit);
+                given_on_host->set_rays(rows);
+                given.set_rays(rows);
+                EXPECT_EQ(different_rays(traced(given, job), traced(*given_on_host, job), 3), 0u) << name_of(kind);
+            }
+        });
     }
 }
 

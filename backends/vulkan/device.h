@@ -43,6 +43,8 @@ struct FoundDevice {
     RayQueries ray_queries;
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
     bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
+    bool selects_minima = false;   ///< selects the smaller of two numbers faster than its minimum does
+    unsigned shares = 1;           ///< it cuts a dispatch into so many runs of successive groups, a thread each
     bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests
     std::string build_key;         ///< device and driver with versions: compiled pipelines are valid for these alone
 };

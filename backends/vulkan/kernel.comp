@@ -1,6 +1,8 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry round the shared text. A work group is a tile. TRACE, RAYS or
 // SEARCH: for that task.
+layout(constant_id = 2) const bool selects_minima = false; // the driver's own minimum is the dearer one
+#define SELECTS_MINIMA selects_minima
 #include "kernels/dialect_glsl.h"
 
 #ifdef SCENE_IN_TEXELS
@@ -35,9 +37,17 @@ layout(std430, set = 0, binding = RAYS_BINDING) readonly buffer Rays
 #endif
 #endif
 
+// lavapipe gives each of its threads one run of successive groups, x first, z last: with a z for each (session.cpp) and
+// tiles that change hands after every x all have about as much to do, whatever the image.
+uint tile_of_group()
+{
+    uint run = gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z;
+    return launch.first_tile + run * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+}
+
 void main()
 {
-    Pixel pixel = pixel_of(launch, launch.first_tile + gl_WorkGroupID.x, gl_LocalInvocationIndex);
+    Pixel pixel = pixel_of(launch, tile_of_group(), gl_LocalInvocationIndex);
     if (!is_in_image(launch, pixel)) return;
     SceneView scene = SceneView(launch.divisions, launch.part_log2);
 #ifdef SEARCH

@@ -51,7 +51,9 @@ Hit trace(Ray ray, real end)
 
 void main()
 {
-    Pixel pixel = pixel_of(launch, launch.first_tile + gl_WorkGroupID.x, gl_LocalInvocationIndex);
+    uint run = gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z; // as kernel.comp has it
+    uint tile = launch.first_tile + run * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    Pixel pixel = pixel_of(launch, tile, gl_LocalInvocationIndex);
     if (!is_in_image(launch, pixel)) return;
 #ifdef RAYS
     uint ray = ray_index(pixel);

@@ -10,8 +10,8 @@ namespace {
 
 std::uint64_t key_of(const FoundDevice& device, const ProgramId& id, std::span<const std::byte> code)
 {
-    return hash_bytes(
-        code, hash_of(device.build_key + ";" + std::to_string(id.tile_height) + (id.starts_outside ? ";outside" : "")));
+    return hash_bytes(code, hash_of(device.build_key + ";" + std::to_string(id.tile_height) +
+                                    (id.starts_outside ? ";outside" : "") + (id.selects_minima ? ";selects" : "")));
 }
 
 vk::raii::PipelineCache make_cache(const Context& context, const ProgramCache& cache, std::uint64_t key)
@@ -83,10 +83,11 @@ void Program::make_pipeline(const Context& context, const ProgramId& id, const P
         vk::ShaderModuleCreateInfo{}
             .setCodeSize(kernel->bytes.size())
             .setPCode(reinterpret_cast<const std::uint32_t*>(kernel->bytes.data())));
-    const std::array<std::uint32_t, 2> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE};
-    const std::array entries = {
-        vk::SpecializationMapEntry{}.setConstantID(0).setOffset(0).setSize(sizeof(values[0])),
-        vk::SpecializationMapEntry{}.setConstantID(1).setOffset(sizeof(values[0])).setSize(sizeof(values[1]))};
+    const std::array<std::uint32_t, 3> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE,
+                                                 id.selects_minima ? VK_TRUE : VK_FALSE};
+    std::array<vk::SpecializationMapEntry, values.size()> entries;
+    for (std::uint32_t i = 0; i < entries.size(); i++)
+        entries[i].setConstantID(i).setOffset(i * sizeof(values[0])).setSize(sizeof(values[0]));
     const auto constants =
         vk::SpecializationInfo{}.setMapEntries(entries).setDataSize(sizeof(values)).setPData(values.data());
     auto stage = vk::PipelineShaderStageCreateInfo{}

@@ -27,6 +27,7 @@ struct ProgramId {
     std::uint32_t push_constant_bytes = 0;       ///< 0: none
     unsigned tile_height = 0;                    ///< the height of its work groups; 0: as the module says
     bool starts_outside = false;                 ///< no ray starts in a tet
+    bool selects_minima = false;                 ///< as FoundDevice has it
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 

@@ -46,6 +46,8 @@ private:
     const vk::raii::CommandBuffer& commands_for(std::size_t index);
     /// The image's first launch poisons the output before its kernel.
     void enqueue(const LaunchParams& params, std::uint32_t tiles);
+    /// Records the dispatches of so many tiles, such that each of the device's shares has tiles from everywhere.
+    void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
     /// Waits for what is enqueued, and counts its times.
     void take_times();
 
