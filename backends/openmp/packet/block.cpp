@@ -27,15 +27,23 @@ using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/shaft.h"
 
+#include "backends/openmp/packet/beams.h"
+
 #include "backends/openmp/packet/given.h"
 
 constexpr uint packets_at_once = 4;
 
-// Lanes of several packets that have one deepest axis.
-template <int z, uint count>
-[[gnu::noinline]] void trace_lanes(const PacketJob& job, Packet* packets, const ByAxis* lanes)
+// Steps before those that packets count: that out of the tet that all rays start in.
+LANE_FN uint steps_before(const PacketJob& job)
 {
-    const bool is_outside = job.start_tet == NO_TET;
+    return job.start_tet == NO_TET ? 0 : 1;
+}
+
+// Lanes of several packets that have one deepest axis. records: that all rays of a packet stand in front of, or
+// NO_LINK.
+template <int z, uint count>
+[[gnu::noinline]] void trace_lanes(const PacketJob& job, Packet* packets, const ByAxis* lanes, const uint* records)
+{
     Walk<z> walks[count];
     for (uint i = 0; i < count; i++) {
         walks[i].shear = shear_of<z>(packets[i].direction);
@@ -44,63 +52,105 @@ template <int z, uint count>
             seen = Seen{Floats{}, Floats{}};
         walks[i].live = 0;
         if (lanes[i].of[z] == 0) continue;
-        if (is_outside)
+        if (records[i] != NO_LINK)
+            enter_record(job, packets[i], walks[i], lanes[i].of[z], records[i]);
+        else if (job.start_tet == NO_TET)
             enter_domain(job, packets[i], walks[i], lanes[i].of[z]);
         else
             leave_start(job, packets[i], walks[i], lanes[i].of[z]);
     }
-    walk_on<z, count>(job, packets, walks, is_outside ? 0 : 1);
+    walk_on<z, count>(job, packets, walks, steps_before(job));
 }
 
-// Packets whose first pixels are given.
+// The hits of a packet, but for rays that a beam has let take too many steps.
+LANE_FN void write_counted_hits(const PacketJob& job, Packet& packet)
+{
+    const Words most = all(job.max_steps);
+    packet.left_to_scalar |= ~lanes_of(equal(least(packet.steps, most), packet.steps));
+    write_hits(job, packet, packet.lanes);
+}
+
+// Packets of a block, by their numbers, from where their beams have come to.
 template <uint count>
-void trace_packets(const PacketJob& job, const uint* x, const uint* y)
+void trace_packets(const PacketJob& job, const Packets& block, const uint* numbers)
 {
     Packet packets[count];
     ByAxis lanes[count];
-    uint any[3] = {};
+    uint records[count], any[3] = {};
     for (uint i = 0; i < count; i++) {
-        make_rays(job, x[i], y[i], packets[i]);
+        make_rays(job, block.x[numbers[i]], block.y[numbers[i]], packets[i]);
+        records[i] = block.record[numbers[i]];
+        if (records[i] != NO_LINK) packets[i].steps = all(block.steps[numbers[i]] - steps_before(job));
         lanes[i] = by_deepest_axis(packets[i]);
         for (uint axis = 0; axis < 3; axis++)
             any[axis] |= lanes[i].of[axis];
     }
-    if (any[0] != 0) trace_lanes<0, count>(job, packets, lanes);
-    if (any[1] != 0) trace_lanes<1, count>(job, packets, lanes);
-    if (any[2] != 0) trace_lanes<2, count>(job, packets, lanes);
+    if (any[0] != 0) trace_lanes<0, count>(job, packets, lanes, records);
+    if (any[1] != 0) trace_lanes<1, count>(job, packets, lanes, records);
+    if (any[2] != 0) trace_lanes<2, count>(job, packets, lanes, records);
     for (Packet& packet : packets)
-        write_hits(job, packet, packet.lanes);
+        write_counted_hits(job, packet);
 }
 
-void trace_square(const PacketJob& job, const Square& square)
+// A packet whose beam has ended.
+void write_ended(const PacketJob& job, const Packets& block, uint number)
 {
-    uint x[packets_at_once], y[packets_at_once], count = 0;
-    for (uint row = square.y; row < square.y_end; row += packet_height)
-        for (uint column = square.x; column < square.x_end; column += packet_width) {
-            x[count] = column;
-            y[count] = row;
-            if (++count < packets_at_once) continue;
-            trace_packets<packets_at_once>(job, x, y);
-            count = 0;
-        }
-    for (uint i = 0; i < count; i++)
-        trace_packets<1>(job, x + i, y + i);
+    Packet packet;
+    make_rays(job, block.x[number], block.y[number], packet);
+    packet.exit = all(block.exit[number]);
+    packet.record = all(block.record[number]);
+    packet.steps = all(block.steps[number]);
+    write_counted_hits(job, packet);
 }
 
-// Squares of pixels down to a size of 8, those that see nothing of the domain left out together.
+// Asks for the lines that a packet's hits are written to, while there is other work.
+LANE_FN void prefetch_hits(const PacketJob& job, uint x, uint y)
+{
+    for (uint row = y; row < y + packet_height && row < job.height; row++) {
+        const uint* const to = job.hits + HIT_WORDS * (std::size_t{row} * job.width + x);
+        __builtin_prefetch(to, 1);
+        __builtin_prefetch(to + HIT_WORDS * packet_width - 1, 1);
+    }
+}
+
+void trace_block(const PacketJob& job, Packets& block)
+{
+    walk_beams(job, block);
+    uint waiting[packets_at_once], count = 0;
+    for (uint i = 0; i < block.count; i++) {
+        if (block.has_ended[i]) {
+            write_ended(job, block, i);
+            continue;
+        }
+        prefetch_hits(job, block.x[i], block.y[i]);
+        waiting[count++] = i;
+        if (count < packets_at_once) continue;
+        trace_packets<packets_at_once>(job, block, waiting);
+        count = 0;
+    }
+    for (uint i = 0; i < count; i++)
+        trace_packets<1>(job, block, waiting + i);
+}
+
+// Collects the packets of a square of pixels down to squares of 8, but for those of squares that see nothing of the
+// domain.
 template <uint size>
-void trace_squares(const PacketJob& job, uint x, uint y)
+void collect(const PacketJob& job, uint x, uint y, Packets& block)
 {
     if (x >= job.width || y >= job.height) return;
     const Square square = square_at(job, x, y, size);
     if (misses_domain(job, square)) {
         write_misses(job, square.x, square.y, square.x_end, square.y_end);
     } else if constexpr (size <= 8) {
-        trace_square(job, square);
+        for (uint row = square.y; row < square.y_end; row += packet_height)
+            for (uint column = square.x; column < square.x_end; column += packet_width) {
+                block.x[block.count] = column;
+                block.y[block.count++] = row;
+            }
     } else {
         constexpr uint half = size / 2;
         for (uint i = 0; i < 4; i++)
-            trace_squares<half>(job, x + i % 2 * half, y + i / 2 * half);
+            collect<half>(job, x + i % 2 * half, y + i / 2 * half, block);
     }
 }
 
@@ -120,5 +170,8 @@ extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_rays_, LANES)(const P
 extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job, std::uint32_t x,
                                                                           std::uint32_t y)
 {
-    trace_squares<tetrace::openmp::packet_block_size>(job, x, y);
+    Packets block;
+    block.count = 0;
+    collect<tetrace::openmp::packet_block_size>(job, x, y, block);
+    trace_block(job, block);
 }

@@ -124,6 +124,16 @@ LANE_FN Mask mask_of(uint lanes)
 }
 #endif
 
+// a * b + c, rounded once or twice: for what needs bounds alone.
+LANE_FN Floats fused(Floats a, Floats b, Floats c)
+{
+#if LANES == 16
+    return _mm512_fmadd_ps(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
+
 LANE_FN Words least(Words a, Words b)
 {
     return a < b ? a : b;

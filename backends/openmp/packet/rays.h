@@ -30,6 +30,20 @@ struct Packet {
     Words exit, record, steps;
 };
 
+// Rays through these places of the image, in pixels; which lanes have one is left open.
+LANE_FN void make_rays_through(const PacketJob& job, Floats column, Floats row, Packet& packet)
+{
+    for (uint axis = 0; axis < 3; axis++) {
+        const Floats d = all(job.corner[axis]) + all(job.step_x[axis]) * column + all(job.step_y[axis]) * row;
+        packet.direction[axis] = select(greater(all(0x1p-20f), magnitude(d)), Floats{}, d);
+        packet.origin[axis] = all(job.origin[axis]);
+    }
+    packet.end = all(__builtin_inff());
+    packet.left_to_scalar = 0;
+    packet.exit = packet.record = all(NO_LINK);
+    packet.steps = Words{};
+}
+
 LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
 {
     Ints column{}, row{};
@@ -41,16 +55,7 @@ LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
         packet.numbers.of[lane] = at_y * job.width + at_x;
         if (at_x < job.width && at_y < job.height) packet.lanes |= 1u << lane;
     }
-    const Floats px = __builtin_convertvector(column, Floats), py = __builtin_convertvector(row, Floats);
-    for (uint axis = 0; axis < 3; axis++) {
-        const Floats d = all(job.corner[axis]) + all(job.step_x[axis]) * px + all(job.step_y[axis]) * py;
-        packet.direction[axis] = select(greater(all(0x1p-20f), magnitude(d)), Floats{}, d);
-        packet.origin[axis] = all(job.origin[axis]);
-    }
-    packet.end = all(__builtin_inff());
-    packet.left_to_scalar = 0;
-    packet.exit = packet.record = all(NO_LINK);
-    packet.steps = Words{};
+    make_rays_through(job, __builtin_convertvector(column, Floats), __builtin_convertvector(row, Floats), packet);
 }
 
 // The lanes whose direction is longest along each axis.

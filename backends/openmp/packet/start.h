@@ -67,6 +67,14 @@ template <int z>
     }
 }
 
+// Corner i of the faces that lanes' links name.
+LANE_FN Quad corners_of(const PacketJob& job, Words links, uint i)
+{
+    LaneWords offsets;
+    store(offsets, ((links & all(~3u)) | corner(links & 3u, i)) * (4 * HALF32_ROWS));
+    return load_rows(job.records, offsets);
+}
+
 // The same where each lane may have a square of its own: the links of the faces, NO_LINK for lanes that miss the
 // domain.
 template <int z>
@@ -86,14 +94,10 @@ LANE_FN Words entry_links(const PacketJob& job, Packet& packet, const Walk<z>& w
                 packet.left_to_scalar |= 1u << lane; // which entry_anywhere() is for
         }
         lanes &= ~packet.left_to_scalar;
-        const Words candidates = *reinterpret_cast<const Words*>(link.of), faces = candidates & all(3u);
+        const Words candidates = *reinterpret_cast<const Words*>(link.of);
         Seen corners[3];
-        for (uint i = 0; i < 3; i++) {
-            const Words apex = (candidates & all(~3u)) | corner(faces, i);
-            LaneWords offsets;
-            store(offsets, apex * (4 * HALF32_ROWS));
-            corners[i] = seen_at(packet, walk.shear, load_rows(job.records, offsets).of);
-        }
+        for (uint i = 0; i < 3; i++)
+            corners[i] = seen_at(packet, walk.shear, corners_of(job, candidates, i).of);
         const uint entering = lanes_entering(packet, lanes, corners);
         links = select(mask_of(entering), candidates, links);
         lanes &= ~(entering | packet.left_to_scalar);

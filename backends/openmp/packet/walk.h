@@ -1,15 +1,19 @@
 // The walk of a packet's lanes, carried_walk.h lane by lane. A sign that is a tie is no lane's business: it hardly ever
 // occurs, and the scalar kernel then traces that ray anew.
 
-// The walk of lanes with one deepest axis.
-template <int z>
-struct Walk {
-    Shear<z> shear;
-    Seen carried[3];
-    Floats depths[3], reach; // of the carried vertices, and of the rays' ends: where rays have ends
+// Where lanes are: in front of the tet and face that their records are of.
+struct Way {
     Words turn, record;
     LaneWords offsets; // of the records, in words
     uint live;
+};
+
+// The walk of lanes with one deepest axis.
+template <int z>
+struct Walk : Way {
+    Shear<z> shear;
+    Seen carried[3];
+    Floats depths[3], reach; // of the carried vertices, and of the rays' ends: where rays have ends
 };
 
 LANE_FN uint corner(uint face, uint index)
@@ -64,6 +68,24 @@ LANE_FN Mask end_behind(const Walk<z>& walk, Mask is_end, Words& exit)
     return is_end | is_beyond;
 }
 
+// The exits that lanes take whose apex replaces the masks' carried vertices.
+LANE_FN Words exits_of(Way& way, const Mask* replaced, const Words* exits)
+{
+    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - way.turn;
+    const Words index = least(place, place + all(3u)); // of the corner that it is: one below 0 is a large number
+    const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
+    const Words turned = way.turn + (exit & all(3u));
+    way.turn = least(turned, turned - all(3u));
+    return exit;
+}
+
+// Lets live lanes enter the tets behind their exits; others stay where there is a record.
+LANE_FN void enter_tets(Way& way, Words exits)
+{
+    way.record = select(mask_of(way.live), exits >> 2, way.record);
+    store(way.offsets, way.record * (4 * HALF32_ROWS));
+}
+
 // A step of all live lanes, which is their packet's step of that number.
 template <int z, bool has_ends>
 LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint steps)
@@ -77,14 +99,9 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     const Mask replaced[3] = {without(s2.left, s1.left), without(s0.left, s2.left), without(s1.left, s0.left)};
     for (uint i = 0; i < 3; i++)
         walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
-    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - walk.turn;
-    const Words index = least(place, place + all(3u)); // of the corner that it is: one below 0 is a large number
-    const Words* exits = at.exits.of;
-    Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
-    const Words rotation = exit & all(3u), turned = walk.turn + rotation;
-    walk.turn = least(turned, turned - all(3u));
+    Words exit = exits_of(walk, replaced, at.exits.of);
     const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
-    Mask is_end = equal(rotation, all(HALF32_END));
+    Mask is_end = equal(exit & all(3u), all(HALF32_END));
     if constexpr (has_ends) {
         const Floats depth = depth_at(packet, at.apex.of);
         for (uint i = 0; i < 3; i++)
@@ -95,8 +112,7 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     end_lanes(packet, ended, exit, walk.record, steps); // always: hardly a branch would be foreseen
     packet.left_to_scalar |= ties;
     walk.live &= ~(ties | ended);
-    walk.record = select(mask_of(walk.live), exit >> 2, walk.record); // others stay where there is a record
-    store(walk.offsets, walk.record * (4 * HALF32_ROWS));
+    enter_tets(walk, exit);
 }
 
 // Walks several packets in turns until all lanes have ended: while one waits for its records, others compute.
