@@ -99,40 +99,66 @@ KERNEL_FN Walker next_face(Walker at, Carried apex, uint4 exits, uint behind)
     return next;
 }
 
-// From an exit of `tet`, left in so many steps, to the ray's hit. first_steps: 0 where the exit is the boundary face
-// that the ray enters by, else 1. end: as in walk.h. Loops ask at their end, and ties are decided behind the inner
-// one: some devices execute what is behind a condition whether a lane meets it or not (SPEC.md, Loops).
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint tet, uint first_exit, uint first_steps, real end)
+// At an exit of `tet`, left in so many steps.
+KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint exit, uint steps)
 {
-    bool is_endless = end >= real(NO_END);
-    PRECISE real reach = end * dot3(ray.direction, ray.direction);
-    Shear shear = shear_of(ray);
-    uint first = (first_exit & 3u) == HALF32_END ? tet << 2u : first_exit >> 2u;
+    uint first = (exit & 3u) == HALF32_END ? tet << 2u : exit >> 2u;
     Walker at;
     at.p0 = carried(ray, shear, record_apex(scene, record_of_corner(first, 0u)));
     at.p1 = carried(ray, shear, record_apex(scene, record_of_corner(first, 1u)));
     at.p2 = carried(ray, shear, record_apex(scene, record_of_corner(first, 2u)));
     at.turn = 0u;
-    at.exit = first_exit;
+    at.exit = exit;
     at.record = tet << 2u;
-    at.steps = first_steps;
-    if (goes_on(at, params, is_endless, reach)) {
-        for (;;) {
+    at.steps = steps;
+    return at;
+}
+
+// From a face of a tet to the ray's hit: that by which the ray leaves it, or enters it where start is FROM_OUTSIDE.
+// start, end, and where a walk begins by exit_ahead(): as in walk.h. Loops ask at their end, and ties are decided
+// behind the inner one: some devices execute what is behind a condition whether a lane meets it or not (SPEC.md,
+// Loops).
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint face, uint start, real end)
+{
+    bool is_endless = end >= real(NO_END);
+    PRECISE real reach = end * dot3(ray.direction, ray.direction);
+    Shear shear = shear_of(ray);
+    bool may_begin_anew = start != FROM_OUTSIDE;
+    uint own = face == NO_EXIT ? NO_LINK : (first_tet << 2u) | face;
+    uint tet = first_tet;
+    uint exit = own << 2u;
+    if (may_begin_anew) exit = own == NO_LINK ? NO_LINK : first_exit(scene, tet, face);
+    uint steps = may_begin_anew ? 1u : 0u;
+    Walker at;
+    for (;;) {
+        at = walker_at(scene, ray, shear, tet, exit, steps);
+        if (goes_on(at, params, is_endless, reach)) {
             for (;;) {
+                for (;;) {
+                    Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
+                    uint4 exits = record_exits(scene, at.exit >> 2u);
+                    uint behind = roughly_left_behind(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
+                    if (behind == UNDECIDED) break;
+                    at = next_face(at, apex, exits, behind);
+                    if (!goes_on(at, params, is_endless, reach)) break;
+                }
+                if (!goes_on(at, params, is_endless, reach)) break;
                 Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
                 uint4 exits = record_exits(scene, at.exit >> 2u);
-                uint behind = roughly_left_behind(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
-                if (behind == UNDECIDED) break;
-                at = next_face(at, apex, exits, behind);
+                at = next_face(at, apex, exits, left_behind(at.p0, at.p1, at.p2, apex));
                 if (!goes_on(at, params, is_endless, reach)) break;
             }
-            if (!goes_on(at, params, is_endless, reach)) break;
-            Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
-            uint4 exits = record_exits(scene, at.exit >> 2u);
-            at = next_face(at, apex, exits, left_behind(at.p0, at.p1, at.p2, apex));
-            if (!goes_on(at, params, is_endless, reach)) break;
         }
+        bool is_lost = (at.exit & 3u) != HALF32_END && at.steps >= params.max_steps;
+        if (!may_begin_anew || (own != NO_LINK && !is_lost)) break;
+        uint ahead = exit_ahead(scene, params, ray, start, own);
+        if (ahead == own && own != NO_LINK) break;
+        tet = ahead >> 2u;
+        if (ahead == NO_LINK) break;
+        exit = first_exit(scene, tet, ahead & 3u);
+        may_begin_anew = false;
     }
+    if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     tet = at.record >> 2u;
     if (at.exit == NO_LINK) return make_no_hit(NO_HIT, tet, at.steps);
     if ((at.exit & 3u) == HALF32_END) return hit_on(scene, ray, at.exit >> 2u, tet, at.steps, end);
@@ -142,22 +168,18 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint tet, uint 
 KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
     uint tet = params.start_tet;
-    uint exit = NO_LINK;
-    uint steps = 0u;
+    uint face = 0u;
+    uint start = FREE_FACE;
     if (tet == NO_TET) {
         uint entry = entry_link(scene, ray);
         if (entry == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
         tet = entry >> 2u;
-        exit = entry << 2u;
+        face = entry & 3u;
+        start = FROM_OUTSIDE;
     } else {
-        uint face = start_face(scene, tet, ray);
-        uint ahead = face == NO_EXIT ? exit_ahead(scene, params, ray, FREE_FACE) : (tet << 2u) | face;
-        if (ahead == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
-        tet = ahead >> 2u;
-        exit = first_exit(scene, tet, ahead & 3u);
-        steps = 1u;
+        face = start_face(scene, tet, ray);
     }
-    return walk(scene, params, ray, tet, exit, steps, real(NO_END));
+    return walk(scene, params, ray, tet, face, start, real(NO_END));
 }
 
 // As in walk.h.
@@ -166,8 +188,9 @@ KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, 
     Ray ray = given_ray(direction, origin);
     uint link = direction.w;
     if (link == NO_LINK) link = entry_link(scene, ray);
-    if (link != NO_LINK) link = exit_from_face(scene, params, ray, link);
     if (link == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
-    uint tet = link >> 2u;
-    return walk(scene, params, ray, tet, first_exit(scene, tet, link & 3u), 1u, as_real(origin.w));
+    Exit exit = exit_from_face(scene, ray, link);
+    if (exit.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint start = face_triangle(scene, link >> 2u, link & 3u);
+    return walk(scene, params, ray, exit.tet, exit.face, start, as_real(origin.w));
 }

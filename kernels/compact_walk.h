@@ -162,42 +162,61 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 }
 
 // The first face of the ray's path that it crosses in front of its origin, as path.h finds it; tet is NO_TET where the
-// ray has no path.
-KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear)
+// ray has no path. lost: the tet in which a walk began that was lost, or NO_TET; tet is `lost` where that is on the
+// path, or where the path's end is too far.
+KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint lost)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
     Gate gate = entry_gate(scene, ray, shear, entry == NO_ENTRY ? 0u : entry);
+    Gate found = gate;
     bool done = entry == NO_ENTRY;
+    bool ahead = false;
     for (uint steps = 0u; !done && steps < params.max_steps; steps++) {
         gate = next_gate(scene, ray, shear, opened(scene, gate));
-        done = gate.behind == NO_LINK || is_gate_ahead(scene, ray, gate);
+        if (!ahead) found = gate;
+        ahead = ahead || is_gate_ahead(scene, ray, gate);
+        done = gate.behind == NO_LINK || gate.tet == lost || (ahead && lost == NO_TET);
     }
-    return gate;
+    if (lost != NO_TET && (gate.tet == lost || !done)) found.tet = lost;
+    return found;
 }
 
-// From a face that the ray leaves a tet by to the ray's hit. first_steps: tets that it has left by then. Loops ask at
-// their end, and ties are decided behind the inner one, as in carried_walk.h.
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps)
+// From a face that the ray leaves a tet by to the ray's hit. first_steps: tets that it has left by then. has_exit: of a
+// ray that starts in a tet: whether any face of that holds it. Loops ask at their end, and ties are decided behind the
+// inner one, as in carried_walk.h; where a walk begins by gate_ahead(): as in walk.h.
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps,
+                   bool has_exit)
 {
     Gate gate = first;
     uint steps = first_steps;
-    if (gate.behind < OCCLUSIVE && steps < params.max_steps) {
-        for (;;) {
+    bool may_begin_anew = params.start_tet != NO_TET;
+    for (;;) {
+        if (gate.behind < OCCLUSIVE && steps < params.max_steps) {
             for (;;) {
-                CompactTet tet = compact_tet(scene, gate.behind);
-                Carried apex = apex_behind(scene, ray, shear, gate, tet);
-                uint replaced = roughly_replaced_by(gate, apex.seen);
-                if (replaced == UNDECIDED) break;
-                gate = gate_beyond(scene, gate, tet, apex, replaced);
+                for (;;) {
+                    CompactTet tet = compact_tet(scene, gate.behind);
+                    Carried apex = apex_behind(scene, ray, shear, gate, tet);
+                    uint replaced = roughly_replaced_by(gate, apex.seen);
+                    if (replaced == UNDECIDED) break;
+                    gate = gate_beyond(scene, gate, tet, apex, replaced);
+                    steps++;
+                    if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+                }
+                if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+                gate = next_gate(scene, ray, shear, gate);
                 steps++;
                 if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
             }
-            if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
-            gate = next_gate(scene, ray, shear, gate);
-            steps++;
-            if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
         }
+        if (!may_begin_anew || (has_exit && gate.behind >= OCCLUSIVE)) break;
+        Gate ahead = gate_ahead(scene, params, ray, shear, has_exit ? params.start_tet : NO_TET);
+        if (ahead.tet == params.start_tet) break;
+        gate = ahead;
+        if (gate.tet == NO_TET) break;
+        steps = 1u;
+        may_begin_anew = false;
     }
+    if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);
     if (gate.behind < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);
     uint face = (gate.behind ^ OCCLUSIVE) >> 1u;
@@ -210,14 +229,11 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     if (params.start_tet == NO_TET) {
         uint entry = entry_index(scene, ray);
         if (entry == NO_ENTRY) return make_no_hit(NO_HIT, NO_TET, 0u);
-        return walk(scene, params, ray, shear, entry_gate(scene, ray, shear, entry), 0u);
+        return walk(scene, params, ray, shear, entry_gate(scene, ray, shear, entry), 0u, true);
     }
     uint face = face_left_by(ray, position_of(scene, params.start_v0), position_of(scene, params.start_v1),
                              position_of(scene, params.start_v2), position_of(scene, params.start_v3));
     Gate gate = start_gate(scene, params, ray, shear, face & 3u);
-    if (face == NO_EXIT) {
-        gate = gate_ahead(scene, params, ray, shear);
-        if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
-    }
-    return walk(scene, params, ray, shear, gate, 1u);
+    if (face == NO_EXIT) gate.behind = NO_LINK;
+    return walk(scene, params, ray, shear, gate, 1u, face != NO_EXIT);
 }

@@ -21,7 +21,6 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 }
 
 // The same where float products decide, else TIE_AT | entry.
-#define HAS_TIES
 #define TIE_AT 4u
 KERNEL_FN uint rough_exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {

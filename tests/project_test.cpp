@@ -343,16 +343,105 @@ std::uint32_t cycle_length(const Grid& grid, const right::Ray& ray, std::uint32_
     return 0;
 }
 
+/// Whether a walk that leaves a tet goes in circles and meets no triangle there.
+bool is_lost_without_beginning_anew(const Grid& grid, const right::Ray& ray, std::uint32_t tet)
+{
+    const std::uint32_t length = cycle_length(grid, ray, tet);
+    std::uint32_t at = tet, face = right::start_face(grid.view, tet, ray);
+    for (std::uint32_t steps = 0; steps < length; steps++) {
+        if (right::face_triangle(grid.view, at, face) != FREE_FACE) return false;
+        const std::uint32_t link = right::face_link(grid.view, at, face);
+        at = link >> 2;
+        face = right::exit_face(grid.view, at, link & 3u, ray);
+    }
+    return length > 0;
+}
+
+/// A ray in a tet, as the mesh numbers it, from which it goes in circles.
+struct CyclicStart {
+    Line line;
+    std::uint32_t tet;
+};
+
+/// Of so many rays and all tets that they cross.
+std::vector<CyclicStart> cyclic_starts(const Grid& grid, std::uint64_t rays)
+{
+    const tetrace::test::HardRays hard(grid.scene);
+    std::vector<CyclicStart> starts;
+    for (std::uint64_t number = 0; number < rays; number++) {
+        const auto given = hard.ray(number);
+        const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
+        for (std::uint32_t tet = 0; tet < grid.packed.tet_count; tet++) {
+            const std::uint32_t packed = grid.packed.packed_of_mesh[tet];
+            if (right::start_face(grid.view, packed, ray) == NO_EXIT) continue;
+            if (is_lost_without_beginning_anew(grid, ray, packed))
+                starts.push_back({{given.origin, given.direction}, tet});
+        }
+    }
+    return starts;
+}
+
+bool is_usable(const tetrace::Backend& backend, std::size_t device)
+{
+    return backend.devices()[device].usable && backend.name() != "embree";
+}
+
+/// What rays from a cyclic start meet: its own, and others from the same tet towards pixels beside it.
+std::vector<tetrace::Hit> hits_from(tetrace::Session& session, const Grid& grid, const tetrace::PackedScene& packed,
+                                    const std::vector<CyclicStart>& starts)
+{
+    std::vector<tetrace::Hit> all;
+    for (const CyclicStart& start : starts) {
+        tetrace::TraceJob job;
+        job.view = {start.line.origin, start.line.direction, {0x1p-9f, 0, 0x1p-11f}, {0, 0x1p-9f, 0x1p-11f}};
+        job.width = 8;
+        job.height = 2;
+        job.max_steps = packed.tet_count + 1;
+        start_in(job, packed, grid.scene, start.tet);
+        const auto hits = traced(session, job);
+        all.insert(all.end(), hits.begin(), hits.end());
+    }
+    return all;
+}
+
+/// The same rays, given, each by a face of its tet, among others.
+tetrace::RaySet given_among_others(const Grid& grid, const std::vector<CyclicStart>& starts)
+{
+    const auto count = (3 * starts.size() + TILE_WIDTH - 1) / TILE_WIDTH * TILE_WIDTH;
+    tetrace::RaySet set = tetrace::test::hard_ray_set(grid.scene, 0, count);
+    for (std::size_t i = 0; i < starts.size(); i++) {
+        tetrace::GivenRay& ray = set.rays[3 * i];
+        ray.origin = starts[i].line.origin;
+        ray.direction = starts[i].line.direction;
+        ray.end = NO_END;
+        ray.link = tetrace::make_link(starts[i].tet, static_cast<std::uint32_t>(i % 4));
+    }
+    return set;
+}
+
+std::vector<tetrace::Hit> hits_of_given(tetrace::Session& session, const tetrace::PackedScene& packed,
+                                        const tetrace::RaySet& set)
+{
+    session.set_rays(given_rows(set, packed));
+    return traced(session, tetrace::given_job(set.rays.size(), packed.tet_count + 1, false));
+}
+
+bool any_is_lost(const std::vector<tetrace::Hit>& hits)
+{
+    return std::any_of(hits.begin(), hits.end(), [](const tetrace::Hit& hit) { return hit.face_id == LOST; });
+}
+
 } // namespace
 
-TEST(Project, goes_in_circles_only_from_tets_within_rounding_and_counts_that_as_lost)
+TEST(Project, goes_in_circles_only_from_tets_within_rounding_and_then_begins_anew)
 {
     const Grid grid("cluster", tetrace::test::cluster_of(0x1p-24f));
     EXPECT_FALSE(find_defect(grid.scene.tets, grid.scene.mesh.triangles.size()));
     const tetrace::test::HardRays rays(grid.scene);
-    std::uint32_t on_cycles = 0, lost = 0, longest = 0;
+    std::uint32_t on_cycles = 0, longest = 0, begun_anew = 0, hits = 0;
     for (std::uint64_t number = 0; number < 3000; number++) {
         const auto given = rays.ray(number);
+        const Line line{given.origin, given.direction};
         const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
         std::uint32_t crossed = 0, cyclic = 0;
         for (std::uint32_t tet = 0; tet < grid.packed.tet_count; tet++) {
@@ -362,18 +451,106 @@ TEST(Project, goes_in_circles_only_from_tets_within_rounding_and_counts_that_as_
             longest = std::max(longest, length);
             if (length == 0) continue;
             cyclic++;
-            const tetrace::Hit hit = traced(grid, {given.origin, given.direction}, tet);
-            if (hit.face_id != LOST) continue; // a triangle lies on the cycle
-            lost++;
-            ASSERT_EQ(hit.steps, grid.packed.tet_count + 1) << "ray " << number;
+            sought = {};
+            const tetrace::Hit hit = traced(grid, line, tet);
+            ASSERT_NE(hit.face_id, LOST) << "ray " << number;
+            const bool anew = is_lost_without_beginning_anew(grid, ray, tet); // else a triangle lies on the cycle
+            ASSERT_EQ(sought[1], anew ? 1u : 0u) << "ray " << number;
+            if (!anew) continue;
+            begun_anew++;
+            ASSERT_LE(hit.steps, tets_on_path(grid, ray)) << "ray " << number;
+            const std::uint32_t exact = nearest_triangle(grid.scene.mesh, line);
+            hits += exact != NO_HIT;
+            if (hit.face_id == exact) continue;
+            const auto settled =
+                grid.settler.settle({line.origin, line.direction}, hit.face_id, exact, tetrace::tie_bound(line.origin));
+            EXPECT_NE(settled.kind, tetrace::Settlement::Kind::wrong)
+                << "ray " << number << ": " << settled.reason << ", ours " << hit.face_id << ", exact " << exact;
         }
         ASSERT_EQ(crossed, tets_on_path(grid, ray) + cyclic) << "ray " << number;
         on_cycles += cyclic;
     }
     EXPECT_GT(on_cycles, 50u);
-    EXPECT_GT(lost, 0u);
+    EXPECT_GT(begun_anew, 20u);
+    EXPECT_GT(hits, 0u);
     RecordProperty("tets_on_cycles", std::to_string(on_cycles));
     RecordProperty("longest_cycle", std::to_string(longest));
+    RecordProperty("begun_anew", std::to_string(begun_anew));
+    RecordProperty("hits", std::to_string(hits));
+}
+
+TEST(Project, begins_anew_with_the_same_bits_on_every_layout_and_device)
+{
+    const Grid grid("cluster", tetrace::test::cluster_of(0x1p-24f));
+    const auto starts = cyclic_starts(grid, 1000);
+    ASSERT_GT(starts.size(), 10u);
+    using tetrace::Layout;
+    std::vector<tetrace::Hit> expected;
+    for (const Layout layout : {Layout::tet96, Layout::tet80, Layout::half32, Layout::tet20, Layout::tet16}) {
+        const auto packed = tetrace::pack(grid.scene, layout, tetrace::TetOrder::hilbert);
+        const tetrace::KernelId kernel{.method = tetrace::Method::project, .layout = layout};
+        for (tetrace::Backend* backend : tetrace::all_backends())
+            for (std::size_t device = 0; device < backend->devices().size(); device++) {
+                if (!is_usable(*backend, device)) continue;
+                const auto session = backend->open(device, kernel, {&grid.scene.mesh, &packed}, {.threads = 2});
+                const auto hits = hits_from(*session, grid, packed, starts);
+                EXPECT_FALSE(any_is_lost(hits)) << backend->name() << ' ' << name_of(layout);
+                if (expected.empty()) expected = hits;
+                EXPECT_EQ(different_rays(hits, expected, 3), 0u) << backend->name() << ' ' << name_of(layout);
+            }
+    }
+}
+
+TEST(Project, begins_given_rays_anew_with_the_same_bits_on_every_layout_and_device)
+{
+    const Grid grid("cluster", tetrace::test::cluster_of(0x1p-24f));
+    const auto starts = cyclic_starts(grid, 1000);
+    const tetrace::RaySet set = given_among_others(grid, starts);
+    using tetrace::Layout;
+    std::vector<tetrace::Hit> expected;
+    for (const Layout layout : {Layout::tet96, Layout::tet80, Layout::half32}) {
+        const auto packed = tetrace::pack(grid.scene, layout, tetrace::TetOrder::hilbert);
+        for (const tetrace::Schedule schedule : {tetrace::Schedule{}, tetrace::Schedule::packets}) {
+            const tetrace::KernelId kernel{.method = tetrace::Method::project,
+                                           .layout = layout,
+                                           .schedule = schedule,
+                                           .task = tetrace::Task::rays};
+            for (tetrace::Backend* backend : tetrace::all_backends())
+                for (std::size_t device = 0; device < backend->devices().size(); device++) {
+                    const bool has_packets = backend->name() == "openmp" && layout == Layout::half32;
+                    if (schedule == tetrace::Schedule::packets && !has_packets) continue;
+                    if (!is_usable(*backend, device)) continue;
+                    const auto session = backend->open(device, kernel, {&grid.scene.mesh, &packed}, {.threads = 2});
+                    const auto hits = hits_of_given(*session, packed, set);
+                    EXPECT_FALSE(any_is_lost(hits)) << backend->name() << ' ' << name_of(layout);
+                    if (expected.empty()) expected = hits;
+                    EXPECT_EQ(different_rays(hits, expected, 3), 0u) << backend->name() << ' ' << name_of(layout);
+                }
+        }
+    }
+}
+
+TEST(Project, stays_lost_at_a_small_cap_where_it_is_on_no_cycle)
+{
+    tetrace::test::Random random(66);
+    const Grid& grid = *grids().front();
+    int lost = 0;
+    for (int i = 0; i < 500; i++) {
+        const Line line = line_through(grid, special_point(grid, random), random);
+        const std::uint32_t tet = grid.packed.packed_of_mesh[locate(grid.scene.tets, line.origin)];
+        const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
+        if (right::start_face(grid.view, tet, ray) == NO_EXIT) continue;
+        const std::uint32_t steps = traced(grid, line, tet).steps;
+        for (std::uint32_t cap = 1; cap < steps; cap++) {
+            auto params = params_of(grid, tet);
+            params.max_steps = cap;
+            const tetrace::Hit hit = to_hit(right::trace(grid.view, params, ray));
+            ASSERT_EQ(hit.face_id, LOST) << "ray " << i << ", cap " << cap;
+            ASSERT_EQ(hit.steps, cap);
+            lost++;
+        }
+    }
+    EXPECT_GT(lost, 500);
 }
 
 TEST(Project, is_on_its_path_where_it_starts_in_a_tet_by_more_than_the_bound)
