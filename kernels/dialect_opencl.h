@@ -1,11 +1,17 @@
 // The kernels' language as OpenCL C 1.2; include it before kernel.h or probe.h.
 // Math mode fast contracts and approximates by the compiler's options; exact says so here and by its options.
+// CALLS_FUNCTIONS, from outside: for a device that must not inline them. PoCL leaves large ones as calls by itself, at
+// half the speed.
 #ifndef MATH_FAST
 #pragma OPENCL FP_CONTRACT OFF
 #endif
 #include "kernels/layout.h"
 
+#ifdef CALLS_FUNCTIONS
+#define KERNEL_FN static inline
+#else
 #define KERNEL_FN static inline __attribute__((always_inline))
+#endif
 #define PRECISE // contraction is switched off for the whole program
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \

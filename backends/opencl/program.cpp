@@ -12,7 +12,7 @@ std::string options_for(const FoundDevice& device, const ProgramId& id)
     std::string options = "-cl-std=CL1.2 " + id.defines;
     // Oclgrind 21.10 interprets what its optimiser makes, all but llvm.experimental.noalias.scope.decl, which inlined
     // functions bring that return structs.
-    if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable";
+    if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
     if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
     // No decision has denormals (kernels/SPEC.md, Numbers), but the lanes of a processor's vectors that nobody asked
     // for do, where compilers compute with all words of a row; some processors multiply those a hundred times slower.
