@@ -130,24 +130,14 @@ LANE_FN void enter_domain(const PacketJob& job, const Eye& eye, BeamWalk& walk, 
     make_rays_through(job, walk.column * eye.sense, walk.row, middle);
     const Words squares = entry_squares(job, middle);
     lanes &= ~lanes_of(equal(squares, all(6 * job.divisions * job.divisions)));
-    LaneWords square, link{};
-    store(square, select(mask_of(lanes), squares, Words{}));
-    for (uint face = 0; lanes != 0; face++) {
-        for (uint left = lanes; left != 0; left &= left - 1) {
-            const uint lane = first_of(left), index = job.entry_ranges[square.of[lane]] + face;
-            if (index < job.entry_ranges[square.of[lane] + 1])
-                link.of[lane] = job.entry_links[index];
-            else
-                lanes &= ~(1u << lane);
-        }
-        const Words links = *reinterpret_cast<const Words*>(link.of);
+    ask_faces(job, squares, lanes, [&](Words links, uint asking) {
         Imaged corners[3];
         see_corners(job, eye, walk, links, corners);
-        const Mask entering = mask_of(lanes) & sure_sides(corners[0], corners[1]).left &
+        const Mask entering = mask_of(asking) & sure_sides(corners[0], corners[1]).left &
                               sure_sides(corners[1], corners[2]).left & sure_sides(corners[2], corners[0]).left;
         enter_tets_by(walk, entering, links, corners);
-        lanes &= ~lanes_of(entering);
-    }
+        return lanes_of(entering);
+    });
 }
 
 // Lets beams leave the tet that they start in by a face that all their rays leave by.

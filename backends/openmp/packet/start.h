@@ -75,6 +75,28 @@ LANE_FN Quad corners_of(const PacketJob& job, Words links, uint i)
     return load_rows(job.records, offsets);
 }
 
+// Asks the faces of squares of the domain, one a lane at a time, until ask(links, lanes) has told that lanes are done;
+// tells those whose squares have no more.
+template <class Ask>
+LANE_FN uint ask_faces(const PacketJob& job, Words squares, uint lanes, const Ask& ask)
+{
+    LaneWords square, link{};
+    store(square, select(mask_of(lanes), squares, Words{}));
+    uint unanswered = 0;
+    for (uint face = 0; lanes != 0; face++) {
+        for (uint left = lanes; left != 0; left &= left - 1) {
+            const uint lane = first_of(left), index = job.entry_ranges[square.of[lane]] + face;
+            if (index < job.entry_ranges[square.of[lane] + 1])
+                link.of[lane] = job.entry_links[index];
+            else
+                unanswered |= 1u << lane;
+        }
+        lanes &= ~unanswered;
+        lanes &= ~ask(*reinterpret_cast<const Words*>(link.of), lanes);
+    }
+    return unanswered;
+}
+
 // The same where each lane may have a square of its own: the links of the faces, NO_LINK for lanes that miss the
 // domain.
 template <int z>
@@ -82,26 +104,15 @@ LANE_FN Words entry_links(const PacketJob& job, Packet& packet, const Walk<z>& w
 {
     const Words squares = entry_squares(job, packet);
     lanes &= ~lanes_of(equal(squares, all(6 * job.divisions * job.divisions)));
-    LaneWords square, link{};
-    store(square, select(mask_of(lanes), squares, Words{}));
     Words links = all(NO_LINK);
-    for (uint face = 0; lanes != 0; face++) {
-        for (uint left = lanes; left != 0; left &= left - 1) {
-            const uint lane = first_of(left), index = job.entry_ranges[square.of[lane]] + face;
-            if (index < job.entry_ranges[square.of[lane] + 1])
-                link.of[lane] = job.entry_links[index];
-            else
-                packet.left_to_scalar |= 1u << lane; // which entry_anywhere() is for
-        }
-        lanes &= ~packet.left_to_scalar;
-        const Words candidates = *reinterpret_cast<const Words*>(link.of);
+    packet.left_to_scalar |= ask_faces(job, squares, lanes, [&](Words candidates, uint asking) { // entry_anywhere()
         Seen corners[3];
         for (uint i = 0; i < 3; i++)
             corners[i] = seen_at(packet, walk.shear, corners_of(job, candidates, i).of);
-        const uint entering = lanes_entering(packet, lanes, corners);
+        const uint entering = lanes_entering(packet, asking, corners);
         links = select(mask_of(entering), candidates, links);
-        lanes &= ~(entering | packet.left_to_scalar);
-    }
+        return entering | packet.left_to_scalar;
+    });
     return links;
 }
 
