@@ -84,7 +84,7 @@ void ask(tetrace::test::Random& random, bool has_doubts, Asked& asked)
 {
     const PacketJob job = job_of(random_view(random));
     Eye eye = eye_of(job);
-    if (!has_doubts) eye.doubt = Floats{};
+    if (!has_doubts) eye.doubt = eye.least_doubt = Floats{};
     Packets packets;
     packets.count = LANES;
     for (std::uint32_t i = 0; i < LANES; i++) {
@@ -92,8 +92,7 @@ void ask(tetrace::test::Random& random, bool has_doubts, Asked& asked)
         packets.y[i] = packet_height * random.below(image_size / packet_height);
     }
     BeamWalk walk;
-    aim(job, eye, packets, 0, walk);
-    if (!has_doubts) walk.least_doubt = Floats{};
+    aim(eye, packets, 0, walk);
     for (std::uint32_t lane = 0; lane < LANES; lane++) {
         Packet rays;
         make_rays(job, packets.x[lane], packets.y[lane], rays);

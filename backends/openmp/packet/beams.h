@@ -53,8 +53,8 @@ LANE_FN Eye eye_of(const PacketJob& job)
     const double pixels =
         __builtin_fmax(greatest_of(rows[0]) + job.width * depth, greatest_of(rows[1]) + job.height * depth);
     const double step = __builtin_fmax(greatest_of(across), greatest_of(upwards));
-    const double relative = 0x1p-19 * distance * (pixels + step * extent * volume);
-    const double least = relative * distance * (8 * depth + 0x1p-20 * extent * size_of(rows[2]) / step);
+    const double relative = 0x1p-19 * distance * (pixels + step * (extent + 2) * volume);
+    const double least = relative * distance * (8 * depth + 0x1p-20 * (extent + 4) * size_of(rows[2]) / step);
     const bool is_usable = size_of(across) * size_of(upwards) * size_of(first) * volume < 0x1p16 &&
                            relative > 0x1p-60 && least > 0x1p-60 && least < 0x1p60;
     eye.doubt = all(static_cast<float>(relative));
@@ -76,7 +76,6 @@ LANE_FN Imaged select(Mask mask, const Imaged& a, const Imaged& b)
 struct BeamWalk : Way {
     Imaged carried[3];
     Floats column, row; // of their middle
-    Floats least_doubt;
     Words exit, steps;
     uint begun, ended;
 };
@@ -90,7 +89,7 @@ LANE_FN Imaged imaged(const PacketJob& job, const Eye& eye, const BeamWalk& walk
     };
     const Floats depth = along(eye.rows[2], Floats{});
     const Floats column = along(eye.rows[0], -(walk.column * depth)), row = along(eye.rows[1], -(walk.row * depth));
-    return {column, row, depth, fused(magnitude(column) + magnitude(row), eye.doubt, walk.least_doubt)};
+    return {column, row, depth, fused(magnitude(column) + magnitude(row), eye.doubt, eye.least_doubt)};
 }
 
 // The beams all of whose rays see q to the left of p, and those all of whose rays see it to the right.
@@ -183,7 +182,7 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
 }
 
 // Lets lanes be the beams of packets [first, first + LANES) of a block, and tells as many as there are.
-LANE_FN uint aim(const PacketJob& job, const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
+LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
 {
     const uint count = packets.count - first < LANES ? packets.count - first : LANES;
     Ints columns{}, rows{};
@@ -191,23 +190,15 @@ LANE_FN uint aim(const PacketJob& job, const Eye& eye, const Packets& packets, u
         columns[lane] = static_cast<int>(packets.x[first + lane]);
         rows[lane] = static_cast<int>(packets.y[first + lane]);
     }
-    const Floats column = __builtin_convertvector(columns, Floats) + all(reach_x);
+    walk.column = (__builtin_convertvector(columns, Floats) + all(reach_x)) * eye.sense;
     walk.row = __builtin_convertvector(rows, Floats) + all(reach_y);
-    walk.column = column * eye.sense;
-    walk.least_doubt = eye.least_doubt;
-    for (uint axis = 0; axis < 3; axis++) {
-        const float change = packet_width * (__builtin_fabsf(job.step_x[axis]) + __builtin_fabsf(job.step_y[axis]));
-        const Floats middle = all(job.corner[axis]) + all(job.step_x[axis]) * column + all(job.step_y[axis]) * walk.row;
-        const Mask may_be_none = greater(all(0x1p-18f + change), magnitude(middle)); // as ray.h drops what is tiny
-        walk.least_doubt = select(may_be_none, all(__builtin_inff()), walk.least_doubt);
-    }
     return count < LANES ? (1u << count) - 1u : every_lane;
 }
 
 // The beams of packets [first, first + LANES) of a block where they begin.
 [[gnu::noinline]] void begin(const PacketJob& job, const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
 {
-    const uint lanes = aim(job, eye, packets, first, walk);
+    const uint lanes = aim(eye, packets, first, walk);
     walk.turn = walk.record = walk.steps = Words{};
     walk.exit = all(NO_LINK);
     for (Imaged& vertex : walk.carried)
