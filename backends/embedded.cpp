@@ -1,6 +1,6 @@
 #include "backends/embedded.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <lzma.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel_id.h"
+#include "core/pack/kernel_id.h"
 
 #include <cstddef>
 #include <span>

@@ -1,7 +1,7 @@
 # Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
 
-# The kernels that every backend compiles in both math modes, as structure/method/layout: kernels/structure_<family>.h
-# with kernels/<method>.h and kernels/<layout>.h. Structure bvh has no methods of its own, nor have compact layouts.
+# The kernels that every backend compiles in both math modes, as structure/method/layout: structure_<family>.h with
+# <method>.h and <layout>.h. Structure bvh has no methods of its own, nor have compact layouts.
 set(TETRACE_KERNELS "")
 foreach(method plane plucker stp ms06 maria project)
   foreach(layout tet80 tet96)
@@ -12,8 +12,8 @@ list(APPEND TETRACE_KERNELS cdt/project/half32 cdt/project/tet20 cdt/project/tet
 set(TETRACE_COMPACT_LAYOUTS tet20 tet16)
 
 # tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, which is cdt, bvh, or compact of tets that share
-# their vertices, name, as embedded_name() has it without its math mode, tasks, those of core/kernel_id.h that the
-# kernel's text has, and definitions, what C++ needs to include it.
+# their vertices, name, as embedded_name() has it without its math mode, tasks, those of core/pack/kernel_id.h that the
+# kernel's text has, headers, the parts of the text, and definitions, which name them to C++.
 macro(tetrace_kernel_parts kernel)
   string(REPLACE "/" ";" parts ${kernel})
   list(GET parts 0 structure)
@@ -31,8 +31,14 @@ macro(tetrace_kernel_parts kernel)
   if(method MATCHES "^(maria|project|single)$" AND NOT family STREQUAL compact)
     list(APPEND tasks rays)
   endif()
-  set(definitions KERNEL_STRUCTURE_HEADER="kernels/structure_${family}.h" KERNEL_ARRAYS_HEADER="kernels/${family}_arrays.h"
-    KERNEL_METHOD_HEADER="kernels/${method}.h" KERNEL_LAYOUT_HEADER="kernels/${layout}.h")
+  set(headers METHOD=kernels/methods/${method}.h)
+  if(structure STREQUAL bvh)
+    list(APPEND headers STRUCTURE=kernels/bvh/structure_bvh.h ARRAYS=kernels/bvh/bvh_arrays.h LAYOUT=kernels/bvh/${layout}.h)
+  else()
+    list(APPEND headers STRUCTURE=kernels/walks/structure_${family}.h ARRAYS=kernels/layouts/${family}_arrays.h
+      LAYOUT=kernels/layouts/${layout}.h)
+  endif()
+  list(TRANSFORM headers REPLACE "(.*)=(.*)" "KERNEL_\\1_HEADER=\"\\2\"" OUTPUT_VARIABLE definitions)
 endmacro()
 
 # How kernels are compiled as host C++ in each math mode.
@@ -47,7 +53,7 @@ endif()
 
 find_program(TETRACE_XZ xz REQUIRED DOC "Packs the kernels that the program carries, and the bundle's scenes")
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
-file(GLOB TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
+file(GLOB_RECURSE TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
 
 # tetrace_flatten(<output> <entry> [<kernel>]): a text in which every #include "..." of the entry file is replaced by what
 # it names (once more wherever it stands: there are no guards but one), and every #include KERNEL_..._HEADER by the
@@ -57,7 +63,7 @@ function(tetrace_flatten output entry)
     tetrace_kernel_parts(${ARGV2})
   endif()
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR} -DKERNEL=${ARGV2} -DFAMILY=${family}
+    COMMAND ${CMAKE_COMMAND} -DENTRY=${entry} -DOUTPUT=${output} -DROOT=${PROJECT_SOURCE_DIR} "-DHEADERS=${headers}"
             -P ${tetrace_kernels_scripts}/flatten.cmake
     DEPENDS ${entry} ${TETRACE_KERNEL_HEADERS} ${tetrace_kernels_scripts}/flatten.cmake
     COMMENT "Flattening ${output}" VERBATIM)

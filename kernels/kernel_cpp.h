@@ -1,9 +1,11 @@
 // A whole kernel in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h): the including file says which
 // layout and method, see kernel.h.
-#include "kernels/dialect_cpp.h"
+#include "kernels/language/dialect_cpp.h"
 
-#include "kernels/scene_view_cpp.h"
+#include "kernels/language/scene_view_cpp.h"
 
 #include "kernels/kernel.h"
 
-#include "kernels/params_cpp.h"
+#include "kernels/language/view_cpp.h"
+
+#include "kernels/language/params_cpp.h"

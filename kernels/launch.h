@@ -1,6 +1,6 @@
 // How an image becomes work items: tiles of TILE_WIDTH x tile_height pixels, whose rays share most of their way; a tile
-// is a work group, an item of it a ray. A launch traces the tiles from first_tile on; core/launch.h has the host's
-// twin.
+// is a work group, an item of it a ray. A launch traces the tiles from first_tile on; core/device/launch.h has the
+// host's twin.
 STRUCT(LaunchParams)
 {
     TraceParams trace;

@@ -1,5 +1,5 @@
-// The self-test: one operation a work item, so that a device shows how it computes. core/self_test.h makes the inputs
-// and judges the outputs. A dialect brings as_real, as_bits, to_real and square_root.
+// The self-test: one operation a work item, so that a device shows how it computes. core/device/self_test.h makes the
+// inputs and judges the outputs. A dialect brings as_real, as_bits, to_real and square_root.
 KERNEL_FN uint probe(uint operation, uint a, uint b, uint c)
 {
     real x = as_real(a);

@@ -1,8 +1,8 @@
 // Vectors and primary rays in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h).
-#include "kernels/dialect_cpp.h"
+#include "kernels/language/dialect_cpp.h"
 
-#include "kernels/vector.h"
+#include "kernels/language/vector.h"
 
 #include "kernels/ray.h"
 
-#include "kernels/params_cpp.h"
+#include "kernels/language/view_cpp.h"

@@ -1,6 +1,6 @@
 #include "scenes/archive.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <archive.h>
 #include <archive_entry.h>

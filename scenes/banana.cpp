@@ -3,7 +3,7 @@
 // the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
 #include "scenes/procedural.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "scenes/catalogue.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "scenes/build_scene.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "scenes/builder_exit.h"
 #include "scenes/child_process.h"
 

@@ -1,7 +1,7 @@
 #include "scenes/cache.h"
 
-#include "core/error.h"
-#include "core/hash.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
 #include "scenes/file_lock.h"
 #include "scenes/scene_file.h"
 
@@ -101,7 +101,7 @@ std::optional<OwnEntry> scene_entry(const fs::path& path)
     return length > 0 ? std::optional(entry) : std::nullopt;
 }
 
-/// `<16 digits>.bin` of core/program_cache.h, or what a killed process left while it wrote that.
+/// `<16 digits>.bin` of core/device/program_cache.h, or what a killed process left while it wrote that.
 bool is_program(std::string_view name)
 {
     if (name.size() < 20 || !is_key(name.substr(0, 16)) || name.substr(16, 4) != ".bin") return false;

@@ -1,6 +1,6 @@
 #include "scenes/catalogue.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "scenes/build_scene.h"
 #include "scenes/mesh_files.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/domain.h"
+#include "core/mesh/domain.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "scenes/child_process.h"
 
-#include "core/elapsed.h"
-#include "core/error.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
 
 #include <array>
 #include <atomic>

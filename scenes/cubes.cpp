@@ -1,7 +1,7 @@
 // Each cube of the grid is cut into six tets round its main diagonal (Kuhn 1960; also Freudenthal's cut): one tet for
 // each order in which a path from the low corner to the high corner takes the three axes. The cut of all cubes is the
 // same, so squares between them are cut along the same diagonal on both sides, and every neighbour has a closed form.
-#include "core/error.h"
+#include "core/base/error.h"
 #include "scenes/procedural.h"
 
 #include <array>

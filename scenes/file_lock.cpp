@@ -1,6 +1,6 @@
 #include "scenes/file_lock.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <cerrno>
 #include <cstring>

@@ -1,9 +1,9 @@
 #include "scenes/load.h"
 
-#include "core/atomic_file.h"
-#include "core/elapsed.h"
-#include "core/error.h"
-#include "core/hash.h"
+#include "core/base/atomic_file.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
 #include "scenes/file_lock.h"

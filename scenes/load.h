@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/progress.h"
-#include "core/scene.h"
+#include "core/base/progress.h"
+#include "core/mesh/scene.h"
 #include "scenes/catalogue.h"
 
 namespace tetrace {

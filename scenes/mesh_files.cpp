@@ -1,8 +1,8 @@
 #include "scenes/mesh_files.h"
 
-#include "core/atomic_file.h"
-#include "core/error.h"
-#include "core/hash.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
 #include "scenes/archive.h"
 #include "scenes/cache.h"
 #include "scenes/procedural.h"

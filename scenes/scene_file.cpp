@@ -4,10 +4,10 @@
 // number.
 #include "scenes/scene_file.h"
 
-#include "core/atomic_file.h"
-#include "core/error.h"
-#include "core/exact.h"
-#include "core/hash.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/exact.h"
+#include "core/base/hash.h"
 #include "scenes/information.h"
 
 #include <array>

@@ -1,9 +1,9 @@
 # Each header of ours compiles alone. Where a source of the same name includes its header before all else, building that
-# shows it; the rest get a translation unit each, built with the tests. Of kernels/ that is layout.h; the others are parts
+# shows it; the rest get a translation unit each, built with the tests. Of kernels/ that is layouts/layout.h; the others are parts
 # of a kernel's source in several languages, which every backend compiles, as those of backends/openmp/packet/ are parts of
 # one source for vectors of several widths.
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/kernels/layout.h ${PROJECT_SOURCE_DIR}/backends/*.h
+  ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/kernels/layouts/layout.h ${PROJECT_SOURCE_DIR}/backends/*.h
   ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/bench/*.h)
 list(FILTER headers EXCLUDE REGEX "^backends/openmp/packet/")
 if(NOT TARGET tetrace_builder_lib)

@@ -1,7 +1,7 @@
 #include "backends/cuda/device.h"
 
-#include "core/device_facts.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/device/device_facts.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include "backends/cuda/session.h"
 #include "backends/cuda/yardstick.h"
-#include "core/error.h"
-#include "core/open_checks.h"
+#include "core/base/error.h"
+#include "core/device/open_checks.h"
 
 namespace tetrace::cuda {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/cuda/program.h"
-#include "core/backend.h"
+#include "core/device/backend.h"
 
 #include <functional>
 #include <mutex>

@@ -1,11 +1,11 @@
 // The entry points of one kernel, flattened (cmake/Kernels.cmake) and compiled once per math
 // mode, by nvcc, by NVRTC, and as host C++ (backends/cuda_host/kernel.cpp). KERNEL_NAME is method_layout_math: a driver
 // finds an entry by its name.
-#include "kernels/layout.h"
+#include "kernels/layouts/layout.h"
 
-#include "kernels/dialect_cuda.h"
+#include "kernels/language/dialect_cuda.h"
 
-#include "kernels/scene_view_cuda.h"
+#include "kernels/language/scene_view_cuda.h"
 
 #include "kernels/kernel.h"
 

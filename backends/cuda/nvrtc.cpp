@@ -1,6 +1,6 @@
 #include "backends/cuda/nvrtc.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // The self-test (kernels/probe.h), an operation a thread. KERNEL_NAME is probe_exact or probe_fast.
-#include "kernels/layout.h"
+#include "kernels/layouts/layout.h"
 
-#include "kernels/dialect_cuda.h"
+#include "kernels/language/dialect_cuda.h"
 
 #include "kernels/probe.h"
 

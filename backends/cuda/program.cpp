@@ -1,9 +1,9 @@
 #include "backends/cuda/program.h"
 
-#include "core/elapsed.h"
-#include "core/error.h"
-#include "core/hash.h"
-#include "core/program_cache.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/device/program_cache.h"
 
 #include <chrono>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "backends/cuda/session.h"
 
-#include "core/elapsed.h"
-#include "core/error.h"
-#include "core/scene_buffers.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
+#include "core/device/scene_buffers.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/cuda/device.h"
-#include "core/launch.h"
+#include "core/device/launch.h"
 
 #include <vector>
 
@@ -37,7 +37,8 @@ private:
     Schedule schedule_;
     FunctionHandle kernel_;
     std::vector<Memory> arrays_; ///< by binding
-    std::vector<Address> scene_; ///< what the kernels get: SceneView of kernels/scene_view_cuda.h, word for word
+    std::vector<Address>
+        scene_; ///< what the kernels get: SceneView of kernels/language/scene_view_cuda.h, word for word
     std::uint32_t divisions_;
     Memory output_, counter_, rays_;
     Stopwatch stopwatch_;

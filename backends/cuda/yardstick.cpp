@@ -1,5 +1,5 @@
 #include "backends/cuda/yardstick.h"
-#include "core/yardstick.h"
+#include "core/device/yardstick.h"
 
 #include <algorithm>
 

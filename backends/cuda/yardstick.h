@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/cuda/device.h"
-#include "core/backend.h"
+#include "core/device/backend.h"
 
 namespace tetrace::cuda {
 

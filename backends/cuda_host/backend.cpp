@@ -2,7 +2,7 @@
 
 #include "backends/cuda/driver_backend.h"
 #include "backends/cuda_host/driver.h"
-#include "core/host.h"
+#include "core/device/host.h"
 
 namespace tetrace {
 

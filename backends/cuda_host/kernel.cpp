@@ -2,8 +2,8 @@
 // KERNEL_STRUCTURE_HEADER and its like, and KERNEL_NAME.
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
-#include "core/launch.h"
-#include "kernels/layout.h"
+#include "core/device/launch.h"
+#include "kernels/layouts/layout.h"
 
 namespace {
 #include "backends/cuda/kernel.cu"

@@ -1,7 +1,7 @@
 // backends/cuda/probe.cu as host C++: compiled once per math mode (CMakeLists.txt), which arrives as KERNEL_NAME.
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
-#include "kernels/layout.h"
+#include "kernels/layouts/layout.h"
 
 namespace {
 #include "backends/cuda/probe.cu"

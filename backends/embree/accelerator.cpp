@@ -1,7 +1,7 @@
 #include "backends/embree/accelerator.h"
 
-#include "core/elapsed.h"
-#include "core/error.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,8 @@
 #include "backends/embree/backend.h"
 
 #include "backends/embree/session.h"
-#include "core/error.h"
-#include "core/host.h"
+#include "core/base/error.h"
+#include "core/device/host.h"
 
 #include <omp.h>
 

@@ -1,6 +1,6 @@
 #include "backends/embree/given_rays.h"
 
-#include "core/ray_set.h"
+#include "core/rays/ray_set.h"
 
 #include <bit>
 #include <cstddef>
@@ -29,7 +29,7 @@ Float3 vector_of(const Row& row)
     return {std::bit_cast<float>(row.x), std::bit_cast<float>(row.y), std::bit_cast<float>(row.z)};
 }
 
-/// Rows as two lists (kernels/layout.h), and what is asked of each ray.
+/// Rows as two lists (kernels/layouts/layout.h), and what is asked of each ray.
 struct Rays {
     std::span<const Row> directions, origins;
     bool any_hit;

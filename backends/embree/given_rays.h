@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/embree/accelerator.h"
-#include "core/backend.h"
+#include "core/device/backend.h"
 
 #include <span>
 

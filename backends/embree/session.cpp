@@ -88,7 +88,7 @@ void trace_tile(const Accelerator& accelerator, Method method, const TraceParams
 void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<tetrace::Hit> hits,
                  unsigned threads)
 {
-    const TraceParams params = params_of(job);
+    const TraceParams params = params_of(job.view);
     const std::uint32_t tiles_x = (job.width + tile_size - 1) / tile_size;
     const std::uint32_t tiles = tiles_x * ((job.height + tile_size - 1) / tile_size);
 #pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(threads))

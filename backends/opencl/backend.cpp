@@ -4,8 +4,8 @@
 #include "backends/opencl/probe.h"
 #include "backends/opencl/session.h"
 #include "backends/opencl/yardstick.h"
-#include "core/device_facts.h"
-#include "core/open_checks.h"
+#include "core/device/device_facts.h"
+#include "core/device/open_checks.h"
 
 namespace tetrace {
 namespace {

@@ -1,8 +1,8 @@
 #include "backends/opencl/device.h"
 
 #include "backends/opencl/errors.h"
-#include "core/device_facts.h"
-#include "core/launch.h"
+#include "core/device/device_facts.h"
+#include "core/device/launch.h"
 
 #include <CL/cl_ext.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/opencl/api.h"
-#include "core/backend.h"
+#include "core/device/backend.h"
 
 #include <string>
 #include <string_view>

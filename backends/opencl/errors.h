@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/opencl/api.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry round the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which has a tile at a time; PERSISTENT for that schedule; RAYS and SEARCH for
 // those tasks; MATH_FAST; TETS_IN_PARTS.
-#include "kernels/dialect_opencl.h"
+#include "kernels/language/dialect_opencl.h"
 
-#include "kernels/scene_view_opencl.h"
+#include "kernels/language/scene_view_opencl.h"
 
 #include "kernels/kernel.h"
 

@@ -1,5 +1,5 @@
 // The self-test as an OpenCL program, and a kernel that does nothing, whose launch is timed.
-#include "kernels/dialect_opencl.h"
+#include "kernels/language/dialect_opencl.h"
 
 #include "kernels/probe.h"
 

@@ -1,7 +1,7 @@
 #include "backends/opencl/program.h"
 
 #include "backends/opencl/kernels.h"
-#include "core/hash.h"
+#include "core/base/hash.h"
 
 namespace tetrace::opencl {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "backends/opencl/context.h"
-#include "core/kernel_id.h"
-#include "core/program_cache.h"
+#include "core/device/program_cache.h"
+#include "core/pack/kernel_id.h"
 
 #include <string>
 

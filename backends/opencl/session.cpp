@@ -1,7 +1,7 @@
 #include "backends/opencl/session.h"
 
-#include "core/elapsed.h"
-#include "core/open_checks.h"
+#include "core/base/elapsed.h"
+#include "core/device/open_checks.h"
 
 #include <algorithm>
 #include <chrono>

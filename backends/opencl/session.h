@@ -2,8 +2,8 @@
 
 #include "backends/opencl/context.h"
 #include "backends/opencl/program.h"
-#include "core/launch.h"
-#include "core/scene_buffers.h"
+#include "core/device/launch.h"
+#include "core/device/scene_buffers.h"
 
 #include <array>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "backends/opencl/yardstick.h"
 
 #include "backends/opencl/program.h"
-#include "core/yardstick.h"
+#include "core/device/yardstick.h"
 
 #include <algorithm>
 

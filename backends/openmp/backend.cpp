@@ -4,8 +4,8 @@
 #include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
 #include "backends/openmp/yardstick.h"
-#include "core/host.h"
-#include "core/open_checks.h"
+#include "core/device/host.h"
+#include "core/device/open_checks.h"
 
 #include <omp.h>
 

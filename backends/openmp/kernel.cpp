@@ -1,8 +1,8 @@
 // One kernel: compiled once per kernel and math mode (CMakeLists.txt), which arrive as KERNEL_STRUCTURE_HEADER and its
 // like, and KERNEL_NAME; of a BVH once more with COUNTS_VISITS, for the build that counts and is never timed.
 #include "backends/openmp/kernels.h"
-#include "core/host_session.h"
-#include "core/launch.h"
+#include "core/device/host_session.h"
+#include "core/device/launch.h"
 
 #include <bit>
 #include <cassert>

@@ -1,7 +1,7 @@
 #include "backends/openmp/packet_session.h"
 
-#include "core/elapsed.h"
-#include "core/error.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
 
 #include <sys/mman.h>
 
@@ -19,10 +19,10 @@ namespace tetrace::openmp {
 namespace {
 
 namespace scalar {
-#define KERNEL_STRUCTURE_HEADER "kernels/structure_cdt.h"
-#define KERNEL_ARRAYS_HEADER "kernels/cdt_arrays.h"
-#define KERNEL_METHOD_HEADER "kernels/project.h"
-#define KERNEL_LAYOUT_HEADER "kernels/half32.h"
+#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
+#define KERNEL_METHOD_HEADER "kernels/methods/project.h"
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
 #include "kernels/kernel_cpp.h"
 } // namespace scalar
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/openmp/packets.h"
-#include "core/host_session.h"
+#include "core/device/host_session.h"
 
 #include <memory>
 #include <vector>

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 namespace {
-#include "kernels/dialect_cpp.h"
+#include "kernels/language/dialect_cpp.h"
 
 #include "kernels/probe.h"
 } // namespace

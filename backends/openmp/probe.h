@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/packed_scene.h"
+#include "core/pack/packed_scene.h"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 #include "backends/openmp/yardstick.h"
 
-#include "core/elapsed.h"
-#include "core/yardstick.h"
+#include "core/base/elapsed.h"
+#include "core/device/yardstick.h"
 
 #include <algorithm>
 #include <chrono>

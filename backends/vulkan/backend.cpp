@@ -4,8 +4,8 @@
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
 #include "backends/vulkan/yardstick.h"
-#include "core/device_facts.h"
-#include "core/open_checks.h"
+#include "core/device/device_facts.h"
+#include "core/device/open_checks.h"
 
 namespace tetrace {
 namespace {

@@ -1,9 +1,9 @@
 #include "backends/vulkan/device.h"
 
 #include "backends/vulkan/instance.h"
-#include "core/device_facts.h"
-#include "core/error.h"
-#include "core/launch.h"
+#include "core/base/error.h"
+#include "core/device/device_facts.h"
+#include "core/device/launch.h"
 
 #include <algorithm>
 #include <thread>

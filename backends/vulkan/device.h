@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/vulkan/ray_queries.h"
-#include "core/backend.h"
+#include "core/device/backend.h"
 
 #include <cstdint>
 #include <optional>

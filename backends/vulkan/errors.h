@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/vulkan/api.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <cstdint>
 #include <string>

@@ -3,12 +3,12 @@
 // SEARCH: for that task.
 layout(constant_id = 2) const bool selects_minima = false; // the driver's own minimum is the dearer one
 #define SELECTS_MINIMA selects_minima
-#include "kernels/dialect_glsl.h"
+#include "kernels/language/dialect_glsl.h"
 
 #ifdef SCENE_IN_TEXELS
-#include "kernels/scene_view_texels_glsl.h"
+#include "kernels/language/scene_view_texels_glsl.h"
 #else
-#include "kernels/scene_view_glsl.h"
+#include "kernels/language/scene_view_glsl.h"
 #endif
 
 #include "kernels/kernel.h"

@@ -1,6 +1,6 @@
 #version 450
 // The self-test as a compute shader: an item a row of {operation, a, b, c}.
-#include "kernels/dialect_glsl.h"
+#include "kernels/language/dialect_glsl.h"
 
 #include "kernels/probe.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/vulkan/context.h"
-#include "core/packed_scene.h"
+#include "core/pack/packed_scene.h"
 
 #include <cstdint>
 #include <span>

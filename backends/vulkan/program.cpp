@@ -1,6 +1,6 @@
 #include "backends/vulkan/program.h"
 
-#include "core/hash.h"
+#include "core/base/hash.h"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 
 #include "backends/vulkan/buffer.h"
 #include "backends/vulkan/kernels.h"
-#include "core/program_cache.h"
+#include "core/device/program_cache.h"
 
 #include <cstdint>
 #include <map>

@@ -1,8 +1,8 @@
 #include "backends/vulkan/session.h"
 
 #include "backends/vulkan/kernels.h"
-#include "core/elapsed.h"
-#include "core/open_checks.h"
+#include "core/base/elapsed.h"
+#include "core/device/open_checks.h"
 
 #include <algorithm>
 #include <chrono>
@@ -20,7 +20,7 @@ void require_storage_buffers(const FoundDevice& found, const PackedScene& scene,
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-/// Every array as texels, those of rows apart from those of words: kernels/scene_view_texels_glsl.h.
+/// Every array as texels, those of rows apart from those of words: kernels/language/scene_view_texels_glsl.h.
 std::vector<TexelBinding> texel_bindings(Layout layout)
 {
     std::vector<TexelBinding> texels;

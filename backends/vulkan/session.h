@@ -1,9 +1,9 @@
 #pragma once
 
-#include "backends/vulkan/acceleration.h"
 #include "backends/vulkan/program.h"
-#include "core/launch.h"
-#include "core/scene_buffers.h"
+#include "backends/vulkan/rt/acceleration.h"
+#include "core/device/launch.h"
+#include "core/device/scene_buffers.h"
 
 #include <optional>
 #include <vector>

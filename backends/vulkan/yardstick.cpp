@@ -1,7 +1,7 @@
 #include "backends/vulkan/yardstick.h"
 
 #include "backends/vulkan/program.h"
-#include "core/yardstick.h"
+#include "core/device/yardstick.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-#include "bench/report/axis.h"
+#include "bench/report/charts/axis.h"
 #include "bench/report/sections.h"
-#include "bench/text.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>

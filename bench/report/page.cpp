@@ -1,6 +1,6 @@
 #include "bench/report/page.h"
 
-#include "bench/identity.h"
+#include "bench/options/identity.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-#include "bench/report/axis.h"
-#include "bench/report/line_chart.h"
+#include "bench/report/charts/axis.h"
+#include "bench/report/charts/line_chart.h"
 #include "bench/report/png.h"
 #include "bench/report/sections.h"
 

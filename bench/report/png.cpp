@@ -1,8 +1,8 @@
 #include "bench/report/png.h"
 
-#include "bench/report/html_table.h"
+#include "bench/report/html/html_table.h"
 #include "bench/report/png_encoder.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <cctype>
 #include <cerrno>

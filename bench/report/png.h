@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/report/html.h"
+#include "bench/report/html/html.h"
 
 #include <cstdint>
 #include <filesystem>

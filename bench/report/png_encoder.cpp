@@ -1,6 +1,6 @@
 #include "bench/report/png_encoder.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <zlib.h>
 

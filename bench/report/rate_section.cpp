@@ -1,7 +1,7 @@
-#include "bench/report/axis.h"
-#include "bench/report/bar_chart.h"
+#include "bench/report/charts/axis.h"
+#include "bench/report/charts/bar_chart.h"
 #include "bench/report/sections.h"
-#include "bench/text.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <array>

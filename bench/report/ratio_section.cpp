@@ -1,4 +1,4 @@
-#include "bench/report/bar_chart.h"
+#include "bench/report/charts/bar_chart.h"
 #include "bench/report/sections.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "bench/report/report_rows.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/result_file.h"
+#include "bench/results/result_file.h"
 
 #include <optional>
 #include <span>

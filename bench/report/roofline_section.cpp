@@ -1,5 +1,5 @@
-#include "bench/report/axis.h"
-#include "bench/report/roofline_chart.h"
+#include "bench/report/charts/axis.h"
+#include "bench/report/charts/roofline_chart.h"
 #include "bench/report/sections.h"
 
 #include <algorithm>

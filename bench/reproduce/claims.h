@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/reproduce/interval.h"
+#include "bench/statistics/interval.h"
 
 #include <nlohmann/json.hpp>
 #include <string>

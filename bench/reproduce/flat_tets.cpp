@@ -1,7 +1,7 @@
 #include "bench/reproduce/flat_tets.h"
 
 #include "backends/openmp/backend.h"
-#include "bench/walk_path.h"
+#include "bench/truth/walk_path.h"
 
 #include <algorithm>
 #include <numeric>

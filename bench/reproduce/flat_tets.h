@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/reproduce/image_record.h"
-#include "bench/scene_work.h"
+#include "bench/rows/scene_work.h"
 
 #include <map>
 #include <memory>

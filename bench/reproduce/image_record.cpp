@@ -1,7 +1,7 @@
 #include "bench/reproduce/image_record.h"
 
-#include "bench/row_json.h"
-#include "core/hash.h"
+#include "bench/output/row_json.h"
+#include "core/base/hash.h"
 
 #include <stdexcept>
 

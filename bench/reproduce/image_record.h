@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/row_run.h"
+#include "bench/rows/row_run.h"
 
 #include <nlohmann/json.hpp>
 #include <variant>

@@ -1,6 +1,6 @@
 #include "bench/reproduce/journal.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <algorithm>
 #include <cerrno>

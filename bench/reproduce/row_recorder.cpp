@@ -1,7 +1,7 @@
 #include "bench/reproduce/row_recorder.h"
 
-#include "bench/progress.h"
-#include "bench/rows.h"
+#include "bench/rows/rows.h"
+#include "bench/terminal/progress.h"
 
 #include <algorithm>
 #include <cmath>

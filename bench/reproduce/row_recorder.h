@@ -1,9 +1,9 @@
 #pragma once
 
 #include "bench/reproduce/image_record.h"
-#include "bench/reproduce/interval.h"
 #include "bench/reproduce/journal.h"
-#include "bench/stopwatch.h"
+#include "bench/statistics/interval.h"
+#include "bench/terminal/stopwatch.h"
 
 #include <string>
 #include <vector>

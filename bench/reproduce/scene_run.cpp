@@ -1,9 +1,9 @@
 #include "bench/reproduce/scene_run.h"
 
+#include "bench/output/row_json.h"
 #include "bench/reproduce/paper.h"
-#include "bench/row_json.h"
-#include "bench/rows.h"
-#include "core/hash.h"
+#include "bench/rows/rows.h"
+#include "core/base/hash.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "bench/measuring/verify.h"
 #include "bench/reproduce/flat_tets.h"
 #include "bench/reproduce/row_recorder.h"
 #include "bench/reproduce/setup_costs.h"
-#include "bench/verify.h"
 
 #include <memory>
 #include <string>

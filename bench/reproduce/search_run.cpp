@@ -1,9 +1,9 @@
 #include "bench/reproduce/search_run.h"
 
 #include "backends/openmp/backend.h"
-#include "bench/rows.h"
-#include "core/hash.h"
-#include "core/search_set.h"
+#include "bench/rows/rows.h"
+#include "core/base/hash.h"
+#include "core/rays/search_set.h"
 
 #include <algorithm>
 #include <bit>

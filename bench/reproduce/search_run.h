@@ -6,7 +6,8 @@
 
 namespace tetrace {
 
-/// Exit searches alone: random tets, random rays that stab each (core/search_set.h), cut into batches of whole tets.
+/// Exit searches alone: random tets, random rays that stab each (core/rays/search_set.h), cut into batches of whole
+/// tets.
 struct SearchRun : RecordedRows {
     SearchSize size;
     std::uint32_t batch_tets = 0;  ///< of each batch but the last, which may have fewer

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/reproduce/journal.h"
-#include "bench/row_run.h"
+#include "bench/rows/row_run.h"
 
 #include <cstdint>
 #include <map>

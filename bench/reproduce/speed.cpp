@@ -1,6 +1,6 @@
 #include "bench/reproduce/speed.h"
 
-#include "bench/figures.h"
+#include "bench/measuring/figures.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bench/measuring/row_devices.h"
 #include "bench/reproduce/journal.h"
-#include "bench/row_devices.h"
 
 namespace tetrace {
 

@@ -1,7 +1,7 @@
 #include "scenes/builder/build.h"
 
-#include "core/elapsed.h"
-#include "core/error.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"

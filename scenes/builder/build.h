@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/scene.h"
+#include "core/mesh/scene.h"
 #include "scenes/builder/clean.h"
 #include "scenes/builder/convert_tets.h"
 #include "scenes/builder/run_tetgen.h"

@@ -1,6 +1,6 @@
 #include "scenes/builder/convert_tets.h"
 
-#include "core/exact.h"
+#include "core/base/exact.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/steiner_rounding.h"
 #include "scenes/builder/triple_hash.h"

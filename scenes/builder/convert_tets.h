@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/domain.h"
-#include "core/tet_mesh.h"
+#include "core/mesh/domain.h"
+#include "core/mesh/tet_mesh.h"
 #include "scenes/builder/run_tetgen.h"
 
 namespace tetrace {
@@ -16,10 +16,10 @@ struct Rounding {
 };
 
 /// Makes a tet mesh of TetGen's output: links from its neighbours, input triangles from its surface faces, the
-/// orientation of core/tet_mesh.h. Steiner points are rounded to float and grid; those on a side of the domain stay in
-/// its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of the input
-/// never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} where an
-/// index, a neighbour or a surface face makes no sense.
+/// orientation of core/mesh/tet_mesh.h. Steiner points are rounded to float and grid; those on a side of the domain
+/// stay in its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of
+/// the input never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT}
+/// where an index, a neighbour or a surface face makes no sense.
 [[nodiscard]] TetMesh convert_tets(const TetgenOutput& output, const TriangleMesh& triangles, const Domain& domain,
                                    Rounding& rounding);
 

@@ -1,4 +1,4 @@
-#include "core/error.h"
+#include "core/base/error.h"
 #include "scenes/builder/build.h"
 #include "scenes/builder/failure.h"
 #include "scenes/scene_file.h"

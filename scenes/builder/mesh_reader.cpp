@@ -1,6 +1,6 @@
 #include "scenes/builder/mesh_reader.h"
 
-#include "core/hash.h"
+#include "core/base/hash.h"
 #include "scenes/builder/mesh_source.h"
 
 #include <cerrno>

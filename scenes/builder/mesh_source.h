@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/error.h"
-#include "core/triangle_mesh.h"
+#include "core/base/error.h"
+#include "core/mesh/triangle_mesh.h"
 #include "scenes/builder/mesh_reader.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "scenes/builder/place.h"
 
-#include "core/exact.h"
+#include "core/base/exact.h"
 
 #include <algorithm>
 #include <cmath>

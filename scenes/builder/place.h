@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/domain.h"
-#include "core/triangle_mesh.h"
+#include "core/mesh/domain.h"
+#include "core/mesh/triangle_mesh.h"
 
 #include <cstdint>
 
@@ -14,7 +14,7 @@ struct Placement {
 };
 
 /// Scales a mesh by a power of two, so that its domain lies in [-1, 1]^3 and reaches beyond 1/2, and rounds coordinates
-/// to the grid of core/exact.h. No translation. The mesh has at least one vertex, all finite.
+/// to the grid of core/base/exact.h. No translation. The mesh has at least one vertex, all finite.
 Placement place(TriangleMesh& mesh, DomainKind kind);
 
 } // namespace tetrace

@@ -1,6 +1,6 @@
 #include "scenes/builder/run_tetgen.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "scenes/builder_exit.h"
 
 #define TETLIBRARY

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/triangle_mesh.h"
+#include "core/mesh/triangle_mesh.h"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 #include "scenes/builder/steiner_rounding.h"
 
-#include "core/exact.h"
+#include "core/base/exact.h"
 
 #include <algorithm>
 #include <limits>

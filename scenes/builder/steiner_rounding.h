@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/tet_mesh.h"
+#include "core/mesh/tet_mesh.h"
 
 #include <array>
 #include <cstdint>

@@ -3,7 +3,7 @@
 // linkage but the entry point, and no inline function of a library may be called: the linker keeps one of all copies of
 // such a one, and might keep this.
 #include "backends/openmp/packets.h"
-#include "kernels/layout.h"
+#include "kernels/layouts/layout.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "backends/vulkan/buffer.h"
+#include "core/mesh/triangle_mesh.h"
+
+#include <cstdint>
+
+namespace tetrace::vulkan {
+
+/// A triangle mesh as the driver's own BVH: a bottom level of its triangles, built to be traced fast and then
+/// compacted, and a top level that has it once, as it stands.
+class Acceleration {
+public:
+    /// context: of Uses::ray_queries. Throws Error{unsupported} with both numbers where the device's structures hold
+    /// fewer triangles, or its memory does not suffice.
+    Acceleration(const Context& context, const TriangleMesh& mesh);
+
+    /// The top level, for shaders.
+    [[nodiscard]] vk::AccelerationStructureKHR handle() const { return *top_.handle; }
+    /// Of both levels, compacted.
+    [[nodiscard]] std::uint64_t bytes() const { return bottom_.memory.bytes() + top_.memory.bytes(); }
+    /// Copying vertices and indices to the device, on the host's clock.
+    [[nodiscard]] double upload_s() const { return upload_s_; }
+    /// Building both levels and compacting, by timestamps.
+    [[nodiscard]] double build_s() const { return build_s_; }
+
+private:
+    struct Level {
+        Buffer memory; // outlives the handle
+        vk::raii::AccelerationStructureKHR handle{nullptr};
+    };
+    [[nodiscard]] Level make_level(vk::AccelerationStructureTypeKHR type, std::uint64_t bytes) const;
+    /// Builds a level of so many triangles or instances.
+    [[nodiscard]] Level build(vk::AccelerationStructureTypeKHR type,
+                              const vk::AccelerationStructureGeometryKHR& geometry, std::uint32_t count);
+    [[nodiscard]] Level build_bottom(const TriangleMesh& mesh);
+    [[nodiscard]] Level build_top();
+    [[nodiscard]] Level compacted(const Level& level);
+    [[nodiscard]] std::uint64_t compacted_bytes(const Level& level) const;
+    [[nodiscard]] Buffer uploaded(std::span<const std::byte> bytes);
+    /// Submits what `record` records, waits, and counts its time as building.
+    template <class Record>
+    void run_timed(const Record& record);
+
+    const Context* context_; ///< the session's, which outlives this
+    double upload_s_ = 0, build_s_ = 0;
+    Level bottom_, top_;
+};
+
+} // namespace tetrace::vulkan

@@ -1,0 +1,89 @@
+#include "bench/measuring/conformity.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+Conformity compared_conformity(const RowRun& row, const Traced& result)
+{
+    if (result.different > 0) return Conformity::wrong;
+    if (row.self_test && !row.self_test->is_exact()) return Conformity::not_exact;
+    return result.inexact == 0 ? Conformity::bit_exact : Conformity::within_ulps;
+}
+
+/// Of rows that are no device's answer to openmp's.
+Conformity own_conformity(const RowRun& row)
+{
+    const KernelId& kernel = row.key.kernel;
+    const bool is_reference = is_portable(kernel) && kernel.math == MathMode::exact;
+    if (is_reference && row.self_test && !row.self_test->is_exact()) return Conformity::not_exact;
+    return is_reference ? Conformity::reference : Conformity::uncompared;
+}
+
+std::string rays_text(std::uint64_t rays)
+{
+    return fmt::format("{} {}", rays, rays == 1 ? "ray" : "rays");
+}
+
+/// "contracts" of "contracts; division correctly rounded, denormals kept".
+std::string defects(const SelfTest& test)
+{
+    const std::string text = test.text();
+    return text.substr(0, text.find(';'));
+}
+
+std::string oracle_text(const RowRun& row)
+{
+    const Verdicts& verdicts = traced(row)->verdicts;
+    if (verdicts.clean()) return "ok";
+    return fmt::format("{}: {}", name_of(status_of(row)), rays_text(verdicts.wrong + verdicts.lost));
+}
+
+} // namespace
+
+Conformity conformity_of(const RowRun& row)
+{
+    if (const Traced* result = traced(row))
+        return result->compared ? compared_conformity(row, *result) : own_conformity(row);
+    switch (status_of(row)) {
+    case Status::wrong: return Conformity::wrong;
+    case Status::unsupported: return Conformity::unsupported;
+    case Status::skipped: return Conformity::skipped;
+    default: return Conformity::error;
+    }
+}
+
+std::string_view name_of(Conformity conformity)
+{
+    switch (conformity) {
+    case Conformity::reference: return "reference";
+    case Conformity::bit_exact: return "bit-exact";
+    case Conformity::within_ulps: return "within ulps";
+    case Conformity::uncompared: return "not compared";
+    case Conformity::not_exact: return "not exact";
+    case Conformity::wrong: return "wrong";
+    case Conformity::unsupported: return "unsupported";
+    case Conformity::skipped: return "skipped";
+    case Conformity::error: return "error";
+    }
+    throw Error(ErrorKind::internal, "name_of(Conformity): no such conformity");
+}
+
+std::string conformity_text(const RowRun& row)
+{
+    const Conformity conformity = conformity_of(row);
+    const Traced* result = traced(row);
+    switch (conformity) {
+    case Conformity::within_ulps: return fmt::format("within {} ulp", result->largest_ulps);
+    case Conformity::not_exact: return "not exact: " + defects(*row.self_test);
+    case Conformity::wrong: return result != nullptr ? "wrong: " + rays_text(result->different) : "wrong";
+    case Conformity::uncompared: return oracle_text(row);
+    default: return std::string(name_of(conformity));
+    }
+}
+
+} // namespace tetrace

@@ -1,0 +1,225 @@
+#include "bench/measuring/measure.h"
+
+#include "bench/measuring/reporters.h"
+#include "bench/rows/row_tracing.h"
+#include "bench/terminal/progress.h"
+#include "bench/terminal/stopwatch.h"
+#include "core/base/hash.h"
+
+#include <algorithm>
+#include <functional>
+#include <iostream>
+#include <span>
+#include <sstream>
+
+namespace tetrace {
+
+namespace {
+
+constexpr unsigned fewest_samples = 5; // with fewer, intervals of ratios are too narrow (results/README.md)
+
+bool is_timed(const RowRun& row)
+{
+    const Status status = status_of(row);
+    return row.session != nullptr && (status == Status::ok || status == Status::flawed);
+}
+
+/// The same counters for every row: Google Benchmark's CSV ends the program otherwise. Steps are in our own section.
+void set_counters(benchmark::State& state, const RowRun& row)
+{
+    state.counters["Mrays/s"] =
+        benchmark::Counter(1e-6 * static_cast<double>(traced(row)->totals.rays), benchmark::Counter::kIsRate);
+}
+
+/// Counts the repetitions of all rows, for the progress line.
+struct Sweep {
+    double done = 0, all = 1;
+};
+
+/// Seconds of a pass over all views.
+struct Pass {
+    double kernel_s = 0, wall_s = 0, download_s = 0;
+};
+
+/// hits: where to read each view's back to, if at all.
+Pass trace_views(RowRun& row, std::vector<Hit>* hits, const std::function<void(double)>& tell_progress)
+{
+    const std::size_t views = row.scene->views().size();
+    Pass pass;
+    for (std::size_t view = 0; view < views; ++view) {
+        // Between the clocks: a sample may take minutes, and what is drawn costs no row anything.
+        tell_progress(static_cast<double>(view) / static_cast<double>(views));
+        const std::size_t rays = ray_count(row, view);
+        if (rays == 0) continue; // rays that are given, and none is
+        const TraceJob job = prepare_view(row, view);
+        const Stopwatch watch;
+        row.session->launch(job);
+        pass.kernel_s += row.session->wait();
+        pass.wall_s += watch.seconds();
+        if (hits == nullptr) continue;
+        hits->resize(rays);
+        row.session->read_back(*hits);
+        pass.download_s += row.session->download_s();
+    }
+    return pass;
+}
+
+/// What a row's first passes pay once, its verification has paid: compiling at the first launch, finding the size of
+/// launches, touching memory. One more pass just before the samples wakes the device up, tells what a sample costs, and
+/// times the download.
+double warm_up(RowRun& row)
+{
+    double wall_s = 0;
+    guarded(row, [&] {
+        std::vector<Hit> hits;
+        const Pass pass = trace_views(row, &hits, [](double done) { progress_line().show("warming up", done); });
+        std::get<Traced>(row.outcome).download_s = pass.download_s;
+        wall_s = pass.wall_s;
+    });
+    return wall_s;
+}
+
+/// Seconds of one sample of every row.
+double warm_up_rows(std::vector<RowRun>& rows)
+{
+    double sweep_s = 0;
+    for (RowRun& row : rows)
+        if (is_timed(row)) sweep_s += warm_up(row);
+    return sweep_s;
+}
+
+double take_sample(RowRun& row, const Sweep& sweep)
+{
+    const Pass pass = trace_views(row, nullptr, [&](double done) {
+        progress_line().show("measuring, rows interleaved", (sweep.done + done) / sweep.all);
+    });
+    row.wall_samples_s.push_back(pass.wall_s);
+    return pass.kernel_s;
+}
+
+void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
+{
+    for ([[maybe_unused]] const auto iteration : state) {
+        double seconds = 0;
+        if (traced(row) != nullptr) guarded(row, [&] { seconds = take_sample(row, sweep); });
+        if (traced(row) == nullptr) {
+            state.SkipWithError(reason_of(row).c_str());
+            return;
+        }
+        state.SetIterationTime(seconds);
+        // Taken here: reporters see aggregates only, where Google Benchmark is asked for them.
+        row.samples_s.push_back(seconds);
+        sweep.done += 1;
+    }
+    set_counters(state, row);
+}
+
+void register_rows(std::vector<RowRun>& rows, unsigned samples, Sweep& sweep)
+{
+    benchmark::ClearRegisteredBenchmarks();
+    for (RowRun& row : rows)
+        if (is_timed(row))
+            benchmark::RegisterBenchmark(row_name(row.key).c_str(),
+                                         [&row, &sweep](benchmark::State& state) { run_row(state, row, sweep); })
+                ->Iterations(1)
+                ->Repetitions(static_cast<int>(samples))
+                ->UseManualTime()
+                ->Unit(benchmark::kMillisecond);
+}
+
+std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& json)
+{
+    std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
+    receivers.push_back(make_reporter("json", json));
+    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout));
+    return std::make_unique<RowReporter>(std::move(receivers));
+}
+
+/// Google Benchmark opens --benchmark_out itself and gives its stream to the file reporter alone: the inner reporter
+/// writes to a text first.
+class FileReporter : public RowReporter {
+public:
+    explicit FileReporter(const std::string& format) : FileReporter(format, std::make_unique<std::ostringstream>()) {}
+    void Finalize() override
+    {
+        RowReporter::Finalize();
+        GetOutputStream() << text_->str();
+    }
+
+private:
+    FileReporter(const std::string& format, std::unique_ptr<std::ostringstream> text)
+        : RowReporter(one(make_reporter(format, *text))), text_(std::move(text))
+    {
+    }
+    static std::vector<std::unique_ptr<benchmark::BenchmarkReporter>>
+    one(std::unique_ptr<benchmark::BenchmarkReporter> reporter)
+    {
+        std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> list;
+        list.push_back(std::move(reporter));
+        return list;
+    }
+
+    std::unique_ptr<std::ostringstream> text_;
+};
+
+/// Precondition: a view of the row has rays.
+std::size_t last_view_with_rays(const RowRun& row)
+{
+    std::size_t view = row.scene->views().size() - 1;
+    while (ray_count(row, view) == 0)
+        --view;
+    return view;
+}
+
+/// A device that answers differently under repetition must not keep its rate.
+void check_last_view(RowRun& row)
+{
+    std::vector<Hit> hits(ray_count(row, last_view_with_rays(row)), Hit{POISON, POISON, 0, 0, 0, 0});
+    row.session->read_back(hits);
+    if (hash_of(hits) != traced(row)->last_view_hash)
+        throw Error(ErrorKind::internal, "the hits of the last view changed between verifying and measuring");
+}
+
+void check_rows_after(std::vector<RowRun>& rows)
+{
+    for (RowRun& row : rows)
+        if (is_timed(row))
+            guarded(row, [&] {
+                if (row.samples_s.empty()) throw Error(ErrorKind::internal, "Google Benchmark took no sample of it");
+                check_last_view(row);
+            });
+}
+
+} // namespace
+
+unsigned affordable_samples(unsigned asked, double sweep_s, double budget_s)
+{
+    if (sweep_s * asked <= budget_s) return asked;
+    const auto fitting = static_cast<unsigned>(budget_s / sweep_s);
+    return std::clamp(fitting, std::min(asked, fewest_samples), asked);
+}
+
+Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags)
+{
+    Measurement result;
+    const double sweep_s = warm_up_rows(rows);
+    result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, options.budget_s));
+    result.lowered = !flags.repetitions && result.samples < options.samples;
+    const auto timed = std::count_if(rows.begin(), rows.end(), is_timed);
+    if (timed == 0) return result;
+    const Stopwatch watch;
+    Sweep sweep{0, static_cast<double>(timed) * result.samples};
+    register_rows(rows, result.samples, sweep);
+    std::ostringstream json;
+    const auto display = make_display(flags, json);
+    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
+    // The filter was applied to the rows themselves, under the names that are reported.
+    benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    progress_line().clear();
+    check_rows_after(rows);
+    result.google_benchmark = nlohmann::json::parse(json.str());
+    result.wall_s = watch.seconds();
+    return result;
+}
+
+} // namespace tetrace

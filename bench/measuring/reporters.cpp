@@ -1,0 +1,49 @@
+#include "bench/measuring/reporters.h"
+
+#include "core/base/error.h"
+
+namespace tetrace {
+
+bool RowReporter::ReportContext(const Context& context)
+{
+    bool go_on = true;
+    for (const auto& receiver : receivers_)
+        go_on = receiver->ReportContext(context) && go_on;
+    return go_on;
+}
+
+void RowReporter::ReportRuns(const std::vector<Run>& runs)
+{
+    std::vector<Run> renamed = runs;
+    for (Run& run : renamed) {
+        run.run_name.iterations.clear();
+        run.run_name.repetitions.clear();
+        run.run_name.time_type.clear();
+    }
+    for (const auto& receiver : receivers_)
+        receiver->ReportRuns(renamed);
+}
+
+void RowReporter::Finalize()
+{
+    for (const auto& receiver : receivers_)
+        receiver->Finalize();
+}
+
+std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& format, std::ostream& stream)
+{
+    std::unique_ptr<benchmark::BenchmarkReporter> reporter;
+    if (format == "console") reporter = std::make_unique<benchmark::ConsoleReporter>();
+    if (format == "json") reporter = std::make_unique<benchmark::JSONReporter>();
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations" // of the console's CSV; its flag still offers it
+    if (format == "csv") reporter = std::make_unique<benchmark::CSVReporter>();
+#pragma GCC diagnostic pop
+    if (reporter == nullptr)
+        throw Error(ErrorKind::usage,
+                    "Google Benchmark has no format '" + format + "'; accepted: console, json or csv");
+    reporter->SetOutputStream(&stream);
+    return reporter;
+}
+
+} // namespace tetrace

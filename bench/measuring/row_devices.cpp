@@ -1,0 +1,103 @@
+#include "bench/measuring/row_devices.h"
+
+#include "backends/openmp/backend.h"
+#include "bench/measuring/figures.h"
+#include "bench/rows/device_facts.h"
+#include "bench/rows/physical_device.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <tuple>
+
+namespace tetrace {
+
+namespace {
+
+void number_hardware(std::vector<RowDevice>& devices)
+{
+    std::vector<Device> plain;
+    for (const RowDevice& device : devices)
+        plain.push_back(device.device);
+    const auto hardware = physical_devices(plain);
+    for (std::size_t i = 0; i < devices.size(); i++)
+        devices[i].hardware = hardware[i];
+}
+
+void add_problem(RowDevice& device, const char* what, const std::exception& error)
+{
+    device.problem += fmt::format("{}{}: {}", device.problem.empty() ? "" : "; ", what, error.what());
+}
+
+/// Does a part of the work on a device; a failure becomes its problem.
+template <class Work>
+void attempt(RowDevice& device, const char* what, const Work& work)
+{
+    try {
+        work();
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
+        add_problem(device, what, error);
+    } catch (const std::exception& error) { // out of memory: the samples of all rows must not be lost for it
+        add_problem(device, what, error);
+    }
+}
+
+void measure_device(RowDevice& device, const SessionOptions& options)
+{
+    attempt(device, "yardstick", [&] {
+        if (device.yardstick) return;
+        device.yardstick = yardstick_of(*device.backend, device.index, options);
+        if (!device.yardstick && runs_on_host(device.device))
+            device.yardstick = yardstick_of(openmp_backend(), 0, options);
+    });
+    for (const MathMode math : device.math)
+        attempt(device, "self-test", [&] {
+            if (const auto& test = self_test_of(*device.backend, device.index, math)) device.self_tests[math] = *test;
+        });
+}
+
+} // namespace
+
+std::optional<std::size_t> device_of(const RowRun& row, const std::vector<RowDevice>& devices)
+{
+    for (std::size_t i = 0; i < devices.size(); i++)
+        if (devices[i].backend == row.backend && devices[i].index == row.key.device) return i;
+    return std::nullopt;
+}
+
+std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows)
+{
+    std::vector<RowDevice> devices;
+    for (const RowRun& row : rows) {
+        if (row.backend == nullptr || !row.device.usable) continue;
+        auto found = device_of(row, devices);
+        if (!found) {
+            found = devices.size();
+            devices.push_back({row.backend, row.key.device, row.device, 0, {}, {}, {}, {}});
+        }
+        auto& math = devices[*found].math;
+        if (std::find(math.begin(), math.end(), row.key.kernel.math) == math.end()) math.push_back(row.key.kernel.math);
+    }
+    number_hardware(devices);
+    std::stable_sort(devices.begin(), devices.end(), [](const RowDevice& a, const RowDevice& b) {
+        return std::tuple(a.hardware, a.device.type == "emulated") <
+               std::tuple(b.hardware, b.device.type == "emulated");
+    });
+    return devices;
+}
+
+void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options)
+{
+    for (RowDevice& device : devices)
+        measure_device(device, options);
+}
+
+std::optional<double> share_of_copy(const RowRun& row, const std::vector<RowDevice>& devices)
+{
+    const auto figures = figures_of(row);
+    const auto place = device_of(row, devices);
+    if (!figures || !figures->gb_per_s || !place || !devices[*place].yardstick) return std::nullopt;
+    return 1e9 * *figures->gb_per_s / devices[*place].yardstick->copy_bytes_per_s;
+}
+
+} // namespace tetrace

@@ -1,0 +1,93 @@
+#include "bench/measuring/scene_rows.h"
+
+#include "bench/terminal/progress.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+std::vector<RowKey> rows_of(const std::string& label, const std::vector<RowKey>& keys)
+{
+    std::vector<RowKey> rows;
+    std::copy_if(keys.begin(), keys.end(), std::back_inserter(rows),
+                 [&](const RowKey& key) { return key.scene == label; });
+    return rows;
+}
+
+std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& scene, const Options& options,
+                                  const ImageSeen& image_seen)
+{
+    std::vector<RowRun> rows;
+    for (const RowKey& key : keys) {
+        progress_line().show(fmt::format("opening {}, {}", scene.label(), kernel_title(key)), -1);
+        rows.push_back(open_row(key, scene, options));
+    }
+    std::vector<RowRun*> pointers;
+    for (RowRun& row : rows)
+        pointers.push_back(&row);
+    verify_rows(pointers, scene, options, image_seen);
+    return rows;
+}
+
+/// Two files of one stem would give two rows of one name.
+void check_labels(const std::vector<SceneRequest>& requests)
+{
+    for (std::size_t i = 0; i < requests.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (scene_label(requests[i].name) == scene_label(requests[j].name))
+                throw Error(ErrorKind::usage,
+                            fmt::format("--scene: '{}' and '{}' would both be called '{}' in the results; name each "
+                                        "scene once, and rename one of the files",
+                                        requests[j].name, requests[i].name, scene_label(requests[i].name)));
+}
+
+} // namespace
+
+std::vector<RowKey> selected_rows(const Options& options, const std::function<bool(const std::string&)>& keeps)
+{
+    const auto requests = scene_requests(options);
+    check_labels(requests);
+    std::vector<std::string> labels;
+    for (const SceneRequest& request : requests)
+        labels.push_back(scene_label(request.name));
+    std::vector<RowKey> rows;
+    for (RowKey& key : select_rows(options, labels))
+        if (keeps(row_name(key))) rows.push_back(std::move(key));
+    if (rows.empty())
+        throw Error(ErrorKind::usage,
+                    "--benchmark_filter matches none of the selected rows; --list prints their names");
+    return rows;
+}
+
+SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options, const ImageSeen& image_seen)
+{
+    SceneRows result;
+    for (const SceneRequest& request : scene_requests(options)) {
+        const auto scene_keys = rows_of(scene_label(request.name), keys);
+        if (scene_keys.empty()) continue;
+        try {
+            auto scene = std::make_unique<SceneWork>(load_work(request, options));
+            for (RowRun& row : verified_rows(scene_keys, *scene, options, image_seen))
+                result.rows.push_back(std::move(row));
+            result.scenes.push_back(std::move(scene));
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::interrupted) throw;
+            for (const RowKey& key : scene_keys)
+                result.rows.push_back(failed_row(key, error));
+        }
+    }
+    return result;
+}
+
+Verdicts all_verdicts(const std::vector<RowRun>& rows)
+{
+    Verdicts sum;
+    for (const RowRun& row : rows)
+        if (const Traced* result = traced(row)) sum.add(result->verdicts);
+    return sum;
+}
+
+} // namespace tetrace

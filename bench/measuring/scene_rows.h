@@ -1,0 +1,30 @@
+#pragma once
+
+#include "bench/measuring/verify.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace tetrace {
+
+/// The scenes of a run, and its rows, scene after scene. Scenes keep their addresses.
+struct SceneRows {
+    std::vector<std::unique_ptr<SceneWork>> scenes;
+    std::vector<RowRun> rows;
+};
+
+/// The rows that the options select among all scenes asked for; --filter and the given predicate on names apply.
+/// Throws Error{usage} where nothing is left.
+[[nodiscard]] std::vector<RowKey> selected_rows(const Options& options,
+                                                const std::function<bool(const std::string&)>& keeps);
+
+/// Loads each scene, opens its rows and verifies them (see verify.h). A scene that cannot be loaded ends its rows with
+/// the reason; a name that means no scene throws Error{usage}.
+[[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
+                                        const ImageSeen& image_seen = {});
+
+/// What the verification of all rows came to.
+[[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);
+
+} // namespace tetrace

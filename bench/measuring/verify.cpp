@@ -1,0 +1,272 @@
+#include "bench/measuring/verify.h"
+
+#include "bench/measuring/visits.h"
+#include "bench/rows/row_tracing.h"
+#include "bench/terminal/progress.h"
+#include "bench/terminal/stopwatch.h"
+#include "bench/truth/given_oracle.h"
+#include "core/base/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <tuple>
+
+namespace tetrace {
+
+namespace {
+
+bool needs_reference(const RowKey& key)
+{
+    const bool is_reference = key.backend == reference_backend && key.kernel.schedule == Schedule::tiles;
+    return is_portable(key.kernel) && key.kernel.math == MathMode::exact && !is_reference;
+}
+
+void poison(std::vector<Hit>& hits)
+{
+    std::fill(hits.begin(), hits.end(), Hit{POISON, POISON, 0, 0, 0, 0});
+}
+
+/// openmp's hits for the kernels of other backends' rows, traced for the comparison alone.
+class References {
+public:
+    References(SceneWork& scene, const Options& options) : scene_(&scene), options_(&options) {}
+
+    const std::vector<Hit>& hits(const RowKey& key, std::size_t view)
+    {
+        Reference& reference = find(key);
+        if (reference.view == view) return reference.hits;
+        RowRun& row = reference.row;
+        if (row.session == nullptr)
+            throw Error(ErrorKind::internal, "openmp, which the row is compared with, failed: " + reason_of(row));
+        reference.hits.resize(ray_count(row, view));
+        poison(reference.hits);
+        static_cast<void>(trace_view(row, view, reference.hits));
+        reference.view = view;
+        return reference.hits;
+    }
+
+private:
+    struct Reference {
+        RowRun row;
+        std::optional<std::size_t> view;
+        std::vector<Hit> hits;
+    };
+
+    Reference& find(RowKey key)
+    {
+        key.backend = reference_backend;
+        key.device = 0;
+        key.kernel.schedule = Schedule::tiles;
+        for (const auto& reference : references_)
+            if (reference->row.key == key) return *reference;
+        references_.push_back(
+            std::make_unique<Reference>(Reference{open_row(key, *scene_, *options_), std::nullopt, {}}));
+        return *references_.back();
+    }
+
+    SceneWork* scene_;
+    const Options* options_;
+    std::vector<std::unique_ptr<Reference>> references_;
+};
+
+} // namespace
+
+/// The same steps for each row and view.
+class Verifier::Parts {
+public:
+    Parts(SceneWork& scene, const Options& options)
+        : scene_(&scene), threads_(resolved_threads(options)), oracle_(scene.loaded().scene.mesh, threads_),
+          references_(scene, options)
+    {
+    }
+
+    ImageVerdict verify(RowRun& row, std::size_t view)
+    {
+        ImageVerdict image;
+        reference = {};
+        hits.resize(ray_count(row, view));
+        image.hit_hash = hash_of(hits);
+        if (hits.empty()) return image; // rays that are given, and none is
+        trace_timed(row, image, view);
+        image.totals = checked_totals(row, view);
+        image.visits = count_visits(row, view, hits, threads_);
+        image.hit_hash = hash_of(hits);
+        if (needs_reference(row.key)) compare(row, image, view);
+        image.verdicts = judge(row.key, view, image.hit_hash);
+        return image;
+    }
+
+    std::uint64_t trace(RowRun& row, std::size_t view)
+    {
+        hits.resize(ray_count(row, view));
+        poison(hits);
+        if (!hits.empty()) static_cast<void>(trace_view(row, view, hits));
+        return hash_of(hits);
+    }
+
+private:
+    void trace_timed(RowRun& row, ImageVerdict& image, std::size_t view)
+    {
+        poison(hits);
+        const TraceJob job = prepare_view(row, view);
+        const Stopwatch watch;
+        row.session->launch(job);
+        image.kernel_s = row.session->wait();
+        image.wall_s = watch.seconds();
+        const Stopwatch download;
+        row.session->read_back(hits);
+        image.download_s = download.seconds();
+    }
+
+    [[nodiscard]] RayTotals checked_totals(const RowRun& row, std::size_t view) const
+    {
+        const RayTotals totals = count_rays(hits);
+        if (totals.unwritten > 0) {
+            const auto first = static_cast<std::size_t>(
+                std::find_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }) -
+                hits.begin());
+            const std::uint32_t pixel = pixel_of_ray(row, view, first);
+            throw Error(ErrorKind::wrong_result,
+                        fmt::format("{} of {} rays were never written, the first at view {}, pixel ({}, {})",
+                                    totals.unwritten, totals.rays, scene_->view_numbers()[view],
+                                    pixel % scene_->width(), pixel / scene_->width()));
+        }
+        return totals;
+    }
+
+    /// The oracle's verdict on hits. Hits of one hash are the same bytes but with a probability of 2^-64 a pair: what
+    /// was judged once in a view holds for all rows that trace the same rays from the same points.
+    Verdicts judge(const RowKey& key, std::size_t view, std::uint64_t hash)
+    {
+        if (judged_view_ != view) judged_.clear();
+        judged_view_ = view;
+        const auto rays = std::tuple(key.rays, key.ray_order, key.kernel.structure, hash);
+        if (const auto found = judged_.find(rays); found != judged_.end()) return found->second;
+        return judged_.emplace(rays, judge_anew(key, view)).first->second;
+    }
+
+    Verdicts judge_anew(const RowKey& key, std::size_t view)
+    {
+        if (key.kernel.task == Task::rays)
+            return given_oracle().judge(scene_->given_rays().set(*scene_, key.rays, key.ray_order, view), hits,
+                                        key.kernel.structure == Structure::bvh ? Origins::offset : Origins::own);
+        return oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(), scene_->height(),
+                             hits);
+    }
+
+    void compare(const RowRun& row, ImageVerdict& image, std::size_t view)
+    {
+        reference = references_.hits(row.key, view);
+        const Differences differences = compare_hits(hits, reference, allowance_of(row));
+        image.compared = true;
+        image.different = differences.count;
+        image.inexact = differences.inexact;
+        image.largest_ulps = differences.largest_ulps;
+        if (!differences.first) return;
+        const std::size_t ray = *differences.first;
+        const std::uint32_t pixel = pixel_of_ray(row, view, ray);
+        image.first_different = DifferingRay{scene_->view_numbers()[view], pixel % scene_->width(),
+                                             pixel / scene_->width(), hits[ray], reference[ray]};
+    }
+
+    /// Made where a row needs it: it has a BVH of its own.
+    GivenOracle& given_oracle()
+    {
+        if (!given_oracle_) given_oracle_.emplace(scene_->loaded().scene.mesh, threads_);
+        return *given_oracle_;
+    }
+
+    SceneWork* scene_;
+    unsigned threads_;
+    Oracle oracle_;
+    std::optional<GivenOracle> given_oracle_;
+    References references_;
+    std::size_t judged_view_ = 0;
+    std::map<std::tuple<RayKind, RayOrder, Structure, std::uint64_t>, Verdicts> judged_; ///< of judged_view_, by hits
+
+public:
+    std::vector<Hit> hits;
+    std::span<const Hit> reference;
+};
+
+Verifier::Verifier(SceneWork& scene, const Options& options) : parts_(std::make_unique<Parts>(scene, options)) {}
+
+Verifier::~Verifier() = default;
+
+ImageVerdict Verifier::verify(RowRun& row, std::size_t view)
+{
+    return parts_->verify(row, view);
+}
+
+std::uint64_t Verifier::trace(RowRun& row, std::size_t view)
+{
+    return parts_->trace(row, view);
+}
+
+std::span<const Hit> Verifier::hits() const
+{
+    return parts_->hits;
+}
+
+std::span<const Hit> Verifier::reference() const
+{
+    return parts_->reference;
+}
+
+namespace {
+
+void verify_view(Verifier& verifier, RowRun& row, std::size_t view)
+{
+    const ImageVerdict image = verifier.verify(row, view);
+    Traced& result = std::get<Traced>(row.outcome);
+    result.add(image);
+    if (image.totals.rays > 0) result.last_view_hash = image.hit_hash;
+    if (view == 0) result.first_view_hash = image.hit_hash;
+    result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
+}
+
+/// A device that answers differently under repetition is caught here, after everything else that it was given.
+void verify_again(Verifier& verifier, RowRun& row)
+{
+    if (traced(row)->totals.rays == 0)
+        throw Error(ErrorKind::unsupported,
+                    fmt::format("no primary ray hits, so that there is no ray of kind {}", name_of(row.key.rays)));
+    if (verifier.trace(row, 0) != traced(row)->first_view_hash)
+        throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
+                                                         row.scene->view_numbers().front()));
+}
+
+} // namespace
+
+Allowance allowance_of(const RowRun& row)
+{
+    const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
+    const bool any_hit = row.key.rays == RayKind::shadow || row.key.rays == RayKind::ao;
+    // Boxes are culled by quotients: where these differ, another of several triangles may be found first.
+    return {ulps, ulps > 0 && any_hit && row.key.kernel.structure == Structure::bvh};
+}
+
+void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
+                 const ImageSeen& image_seen)
+{
+    // Views outside, rows inside: the oracle traces each view once for all rows.
+    Verifier verifier(scene, options);
+    const double images = static_cast<double>(scene.views().size() * rows.size());
+    double done = 0;
+    for (std::size_t view = 0; view < scene.views().size(); ++view)
+        for (RowRun* row : rows) {
+            progress_line().show("verifying " + scene.label(), done / images);
+            done += 1;
+            if (row->session == nullptr) continue;
+            guarded(*row, [&] {
+                verify_view(verifier, *row, view);
+                if (image_seen) image_seen({*row, view, verifier.hits(), verifier.reference()});
+            });
+        }
+    for (RowRun* row : rows)
+        if (row->session != nullptr) guarded(*row, [&] { verify_again(verifier, *row); });
+    progress_line().clear();
+}
+
+} // namespace tetrace

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "bench/rows/row_run.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace tetrace {
+
+/// An image that was verified.
+struct SeenImage {
+    const RowRun& row;
+    std::size_t view; ///< index in SceneWork::views()
+    std::span<const Hit> hits;
+    std::span<const Hit> reference; ///< openmp's; empty where there was nothing to compare
+};
+/// Told after each image.
+using ImageSeen = std::function<void(const SeenImage&)>;
+
+/// How far the row's answers may be from openmp's: what its device's self-test allows.
+[[nodiscard]] Allowance allowance_of(const RowRun& row);
+
+/// One scene's verification, image by image, for whoever goes through them in an order of its own.
+class Verifier {
+public:
+    Verifier(SceneWork& scene, const Options& options);
+    ~Verifier();
+
+    /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray, as verify_rows() does;
+    /// changes nothing of the row. Goes fastest where all rows of a view come before the next view.
+    /// Throws what the session throws, and Error{wrong_result} where a ray was never written.
+    [[nodiscard]] ImageVerdict verify(RowRun& row, std::size_t view);
+    /// Traces a view without judging; returns the hash of its hits.
+    [[nodiscard]] std::uint64_t trace(RowRun& row, std::size_t view);
+    [[nodiscard]] std::span<const Hit> hits() const; ///< of the last verify() or trace()
+    [[nodiscard]] std::span<const Hit>
+    reference() const; ///< openmp's, of the last verify(); empty where there was nothing to compare
+
+private:
+    class Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+/// Traces every view of a scene once with each of its rows, and judges each ray in two questions: does the device
+/// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then the
+/// first view once more: its hits must be the same. Rows that cannot be traced end with their reason.
+/// rows: all of one scene, opened.
+void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
+                 const ImageSeen& image_seen = {});
+
+} // namespace tetrace

@@ -1,0 +1,53 @@
+#include "bench/measuring/visits.h"
+
+#include "backends/openmp/kernels.h"
+#include "bench/rows/ray_store.h"
+#include "bench/rows/row_tracing.h"
+#include "core/device/host_session.h"
+
+#include <fmt/format.h>
+#include <vector>
+
+namespace tetrace {
+
+namespace {
+
+constexpr unsigned tile_height = 8;
+
+bool is_answer_of(const Hit& counted, const Hit& hit)
+{
+    return counted.face_id == hit.face_id && counted.t == hit.t && counted.u == hit.u && counted.v == hit.v;
+}
+
+openmp::RunFunction* counting_function(const RowKey& key)
+{
+    return key.backend == reference_backend ? openmp::find_function(openmp::counting_kernels(), key.kernel) : nullptr;
+}
+
+} // namespace
+
+Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hits, unsigned threads)
+{
+    openmp::RunFunction* const count = counting_function(row.key);
+    if (count == nullptr) return {};
+    SceneWork& scene = *row.scene;
+    const PackedScene& packed = row.packed->scene;
+    std::vector<std::uint32_t> output(hits.size() * HIT_WORDS, POISON);
+    const auto rays = row.key.kernel.task == Task::rays
+                          ? std::span<const Row>(scene.given_rays().rows(scene, row.key, &packed, view))
+                          : std::span<const Row>();
+    count(packed, rays, job_of(row, view), output, threads, tile_height);
+    Visits visits;
+    const std::span<const Hit> counted = as_hits(output);
+    for (std::size_t ray = 0; ray < hits.size(); ++ray) {
+        if (!is_answer_of(counted[ray], hits[ray]))
+            throw Error(ErrorKind::internal,
+                        fmt::format("ray {} has another answer where its visits are counted", ray));
+        visits.nodes += counted[ray].tet;
+        visits.triangles += counted[ray].steps;
+    }
+    visits.rays = hits.size();
+    return visits;
+}
+
+} // namespace tetrace

@@ -1,0 +1,262 @@
+#include "bench/options/help.h"
+
+#include "bench/options/identity.h"
+#include "bench/options/option_table.h"
+#include "bench/terminal/text.h"
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+struct VerbHelp {
+    Verb verb;
+    const char* summary;
+    const char* description;
+    const char* examples;
+};
+
+const VerbHelp verb_help[] = {
+    {Verb::devices, "list the devices of every backend",
+     "Lists the devices of every backend of this build, grouped by the hardware that they are (whatever computes on "
+     "the "
+     "processor is one), with the limits that matter here and the outcome of a self-test of their arithmetic in exact "
+     "mode; then what cannot be used, with the reason, and the optional parts of this build with what would bring a "
+     "missing one.",
+     "  tetrace devices\n"
+     "  tetrace devices --require openmp,vulkan   exit with 3 unless both are usable\n"},
+    {Verb::scenes, "list the catalogue and the cache of built scenes",
+     "Lists the catalogue, where each scene comes from, and whether its mesh can be had here; then the cache of built "
+     "scenes with sizes. The cache lies in $XDG_CACHE_HOME/tetrace, else in ~/.cache/tetrace.",
+     "  tetrace scenes\n"
+     "  tetrace scenes --clear                    empty the cache\n"},
+    {Verb::build, "build scenes and tell what came out",
+     "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
+     "the rays of a camera set. --domain, --divisions and --switches take lists: every combination is built. One that "
+     "fails is a row with its reason; the others go on, and the exit code is 1.",
+     "  tetrace build --scene bunny\n"
+     "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
+     "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"},
+    {Verb::bench, "verify rows, then measure them",
+     "Loads the scenes, traces every selected view once with every row and judges each ray; then warms every row up "
+     "and "
+     "takes samples with Google Benchmark, rows interleaved at random; then measures each device's copy bandwidth and "
+     "launch latency. Rows of one piece of hardware are compared, with the 95 % interval of each ratio; emulations of "
+     "GPUs' APIs on the processor are told apart and never ranked with GPUs. A row is a combination of scene, "
+     "structure, method, layout, kind of rays, math mode, backend and device. Defaults: maria on tet80 and tet96, "
+     "project on half32 and both BVHs with every usable device of every backend, project's packets on openmp, and "
+     "Embree with single rays and packets of 16; --method all brings the other exit-face searches too.\n\n"
+     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong or lost: its walk found no exit face, "
+     "or "
+     "reached its cap of steps (their numbers are told, the rate stands; lost rays of maria and project, which claim "
+     "to have none, give exit code 1); 'wrong', it differs from openmp's answers (no rate, exit code 1); "
+     "'unsupported', the host or "
+     "the device cannot run this kernel, and 'skipped', there is no "
+     "usable device here, with the reason; 'error', with the reason. 'noisy' is added where the interquartile range "
+     "exceeds 5 % of the median.\n\n"
+     "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
+     "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
+     "sample.",
+     "  tetrace bench\n"
+     "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
+     "  tetrace bench --scene bunny --method all\n"
+     "  tetrace bench --scene cubes --method maria --math exact,fast --format csv\n"
+     "  tetrace bench --filter 'tet96|embree' --list\n"
+     "  tetrace bench --scene bunny --threads 1 --benchmark_repetitions=30\n"},
+    {Verb::check, "judge every ray on every device, without timing",
+     "Traces every selected view with every row on every device and judges each ray in two questions.\n\n"
+     "Does the device conform? In exact mode all bits of all hits are compared with openmp's for the same method and "
+     "layout. A cell of the matrix says 'bit-exact'; 'within N ulp', where t, u and v differ by no more than what the "
+     "device's self-test allows (nothing, where its division is correctly rounded); 'not exact', where the hits are "
+     "openmp's but the self-test shows that the device contracts or rounds otherwise; 'wrong', with the number of "
+     "rays, "
+     "also where rays were never written, words outside the hits were, or a second run gave other hits; "
+     "'unsupported', 'skipped' or 'error', with the reason. Equal hits have equal hashes.\n\n"
+     "Is the method right? Each different answer is compared with Embree in robust mode, and each disagreement is "
+     "settled in exact arithmetic on the original triangles. Both answers right within rounding of a shared edge are a "
+     "tie; Embree's being the inexact one is settled; else the ray is wrong.\n\n"
+     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 where a device is wrong "
+     "or "
+     "not exact, or where maria or project, which claim to be robust, has wrong or lost rays; --allow-flawed lets its "
+     "wrong ones pass. Those of plane, plucker, stp, ms06 and Embree are counted and fail nothing. The rows of maria, "
+     "of project on half32 and of both BVHs are judged by default; other exit-face searches' where --method names "
+     "them, Embree's where --structure, --method, "
+     "--layout, --backend, --filter or --require does.",
+     "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
+     "  tetrace check --scene bunny --backend vulkan --picture differences\n"
+     "  tetrace check --scene bunny --method all\n"
+     "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
+    {Verb::render, "write pictures",
+     "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
+     "ray in false colour with a scale bar. The first selected row of each scene makes them.",
+     "  tetrace render --scene bunny --views 0 --out bunny.png\n"
+     "  tetrace render --scene armadillo --picture normals,steps --size 512\n"},
+    {Verb::reproduce, "make the paper's tables and figures anew",
+     "Makes the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
+     "Tetrahedralization\" (GRAPP 2017), anew on every device at hand, its own numbers beside ours, with a verdict on "
+     "each claim that is computed from intervals: 'holds', 'does not hold' or 'not testable here'.\n\n"
+     "table3: tets, faces, memory and rates of each scene, built as the options say, and banana, bunny and armadillo "
+     "also as near to the paper's counts as known.\n\n"
+     "table4: rays with a wrong result per image, by method, scene and device, as the exact oracle of 'check' judges "
+     "them, and where they are; project, which is ours, beside the paper's methods.\n\n"
+     "table5: the exit search alone, without the walk around it: random tets, random rays that enter each by a known "
+     "face, on one thread of the CPU and on every device. Every face that is found is compared with exact arithmetic. "
+     "It needs no scene; --searches takes fewer. A row takes about 80 MB for its rays.\n\n"
+     "table6: the CDT against BVHs: maria beside bvh2, which is the paper's kind of BVH, and cwbvh on every device, "
+     "and "
+     "beside Embree on the host. Frames a second, build time and memory; the ratio of their times, paired view by "
+     "view; "
+     "and after how many rays a slower build is paid. Of --method and --layout, what is a BVH's selects among the BVHs "
+     "alone, and what is the CDT's among its own.\n\n"
+     "growth: how cost grows with the mesh: banana in several sizes (--sizes), traced as table6 traces its scenes; "
+     "what a "
+     "ray visits, its time, build and memory, and the exponents of power laws of the number of occlusive faces that "
+     "fit "
+     "them. Not in the paper, and made where it is named; it traces every 64th view unless --views is given.\n\n"
+     "figure6: time and tets traversed, a point a view, their correlation, and pictures of the two extreme views.\n\n"
+     "The views are those of the camera set 'flight'; --views takes a sample of them, and numbers then have 95 % "
+     "intervals. Default scenes: banana, bunny and armadillo, as far as they can be had. With --out FILE, each "
+     "finished view or batch of searches is kept in FILE.journal: a run that was stopped goes on with --resume, and "
+     "pictures lie beside FILE. CSV has a row for each number, text, verdict and point of a figure; Markdown leaves "
+     "the points out. Exits with 1 where a row differs from openmp's.",
+     "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
+     "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
+     "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
+     "  tetrace reproduce growth --sizes 1500,25000,400000,1000000 --backend openmp,embree\n"
+     "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
+    {Verb::compare, "compare two results of bench, row by row",
+     "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "
+     "commit, driver, compiler or machine, as the head of the output tells. For each row it prints the ratio of the "
+     "rates (of the medians; above 1 B is faster) with its interval, and a verdict: 'SAME', the interval lies within "
+     "--tolerance; 'FASTER' and 'SLOWER', it does not hold 1; 'UNSURE', it does, and reaches beyond the tolerance, or "
+     "there are too few samples for an interval: more would tell. Rows that only one of them timed are 'FAILED' (wrong "
+     "or in error in B), 'MISSING' (not "
+     "in B, skipped or unsupported there) or 'NEW'; they have no part in the geometric mean.\n\n"
+     "The intervals come from ranks and make no assumption on the noise but that samples are independent: where "
+     "nothing changed, the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from "
+     "10 samples a row on; with fewer, down to 5, that is so for each row. What differs between two runs apart from "
+     "noise is not in their samples: it is what the tolerance is for.\n\n"
+     "Exits with 1 where a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing); with 2, "
+     "naming the rows, where scenes, views or hit hashes differ, since times of different work do not compare.",
+     "  tetrace compare before.json after.json\n"
+     "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
+     "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},
+    {Verb::report, "write one HTML page from results",
+     "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
+     "APIs beside each other with intervals, each device's roofline with its rows on it, the matrix of check, and "
+     "pictures. The page loads nothing and runs no script; it follows the reader's choice of light or dark, and "
+     "prints. Rows of several results stand in one chart where they traced the same rays through the same scene; "
+     "emulated "
+     "devices and GPUs never do.",
+     "  tetrace report bench.json check.json --out report.html\n"
+     "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
+    {Verb::help, "describe the program or a verb",
+     "Describes the program, or a verb; 'tetrace help options' prints a Markdown table of all options.",
+     "  tetrace help bench\n"},
+};
+
+const char* const exit_codes = "Exit codes\n"
+                               "  0  good\n"
+                               "  1  a wrong result, a scene that could not be built, or a regression\n"
+                               "  2  a command line or an input that is not accepted\n"
+                               "  3  something required is missing or not supported here\n"
+                               "  4  an internal error\n";
+
+constexpr std::size_t page_width = 100;
+
+std::string option_entry(const OptionRow& row)
+{
+    const std::string head = row.value.empty() ? row.name : row.name + " " + row.value;
+    return fmt::format("  {}\n{}", head, wrapped(row.help, page_width, 6));
+}
+
+std::string option_entries(Verb verb)
+{
+    std::string text, group;
+    for (const OptionRow& row : option_table()) {
+        if (!takes(verb, row)) continue;
+        if (row.group != group) text += fmt::format("{}{}\n", text.empty() ? "" : "\n", row.group);
+        group = row.group;
+        text += option_entry(row);
+    }
+    return text;
+}
+
+std::string verb_text(const VerbHelp& entry)
+{
+    const std::string_view name = name_of(entry.verb);
+    const FileArguments files = file_arguments(entry.verb);
+    std::string text =
+        fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}{}{}\n\n{}\n", name, entry.summary, name, files.names,
+                    files.most > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
+                    wrapped(entry.description, page_width, 0));
+    if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
+    text += fmt::format("Examples\n{}\n", entry.examples);
+    return text + exit_codes;
+}
+
+std::string program_text()
+{
+    std::string text =
+        "tetrace: ray traversal through constrained Delaunay tetrahedralizations, measured and verified\n\n"
+        "Usage: tetrace VERB [OPTION]...\n\n";
+    for (const VerbHelp& entry : verb_help)
+        text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
+    text += "\n'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options.\n"
+            "Results go to standard output or to --out FILE; messages and progress to standard error. NO_COLOR is "
+            "honoured.\n\n"
+            "Examples\n"
+            "  tetrace bench                             the main job: bunny and armadillo beside Embree\n"
+            "  tetrace check --scene cubes               is everything right on this machine?\n"
+            "  tetrace build --scene dragon.ply          your own mesh\n\n";
+    return text + exit_codes;
+}
+
+std::string verbs_of(const OptionRow& row)
+{
+    std::string text;
+    for (const VerbHelp& entry : verb_help)
+        if (takes(entry.verb, row)) text += fmt::format("{}{}", text.empty() ? "" : ", ", name_of(entry.verb));
+    return text;
+}
+
+std::string in_markdown(const std::string& text)
+{
+    std::string result;
+    for (const char c : text) {
+        if (c == '|') result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+std::string options_markdown()
+{
+    std::string text = "| option | verbs | meaning |\n|---|---|---|\n";
+    for (const OptionRow& row : option_table())
+        text += fmt::format("| `{}{}{}` | {} | {} |\n", row.name, row.value.empty() ? "" : " ", in_markdown(row.value),
+                            verbs_of(row), in_markdown(row.help));
+    return text;
+}
+
+} // namespace
+
+std::string help_text(const std::string& topic)
+{
+    if (topic.empty()) return program_text();
+    if (topic == "options") return options_markdown();
+    for (const VerbHelp& entry : verb_help)
+        if (name_of(entry.verb) == topic) return verb_text(entry);
+    throw Error(ErrorKind::internal, "help_text: no help for '" + topic + "'");
+}
+
+std::string version_text()
+{
+    const BuildIdentity build = build_identity();
+    return fmt::format("tetrace {} ({})\n{}, {}\nApache License 2.0\n", build.version, build.commit, build.compiler,
+                       build.flags);
+}
+
+} // namespace tetrace

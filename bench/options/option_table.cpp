@@ -1,0 +1,397 @@
+#include "bench/options/option_table.h"
+
+#include "bench/options/option_values.h"
+#include "core/device/backend.h"
+
+#include <algorithm>
+#include <regex>
+
+namespace tetrace {
+
+namespace {
+
+constexpr unsigned bit(Verb verb)
+{
+    return 1u << static_cast<unsigned>(verb);
+}
+
+constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
+constexpr unsigned tracing = measuring | bit(Verb::render);
+constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
+constexpr unsigned building = bit(Verb::build) | reproducing;
+constexpr unsigned reporting =
+    measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) | bit(Verb::reproduce) | bit(Verb::compare);
+
+/// What all kernels have at one place of their id, each once: the accepted values of an option.
+template <class T>
+std::vector<T> kernels_have(T KernelId::*member)
+{
+    std::vector<T> values;
+    for (const KernelId& kernel : all_kernels())
+        if (std::find(values.begin(), values.end(), kernel.*member) == values.end()) values.push_back(kernel.*member);
+    return values;
+}
+
+template <class T>
+std::function<void(Options&, const std::string&)> append(std::string option, std::vector<T> Options::*list,
+                                                         std::vector<T> accepted)
+{
+    return
+        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
+}
+
+/// "all" stands for every value.
+template <class T>
+std::function<void(Options&, const std::string&)> append_or_all(std::string option, std::vector<T> Options::*list,
+                                                                std::vector<T> accepted)
+{
+    return [=](Options& options, const std::string& text) {
+        std::vector<std::string> names = {"all"};
+        for (const T& value : accepted) {
+            names.emplace_back(name_of(value));
+            if (text == "all" || text == names.back()) (options.*list).push_back(value);
+        }
+        if (std::find(names.begin(), names.end(), text) == names.end())
+            reject_value(option, text, join_alternatives(names));
+    };
+}
+
+std::vector<std::string> backend_names()
+{
+    std::vector<std::string> names;
+    for (const Backend* backend : all_backends())
+        names.push_back(backend->name());
+    return names;
+}
+
+std::function<void(Options&, const std::string&)> append_backend(const std::string& option,
+                                                                 std::vector<std::string> Options::*list)
+{
+    return [=](Options& options, const std::string& text) {
+        const auto names = backend_names();
+        if (std::find(names.begin(), names.end(), text) == names.end())
+            reject_value(option, text, join_alternatives(names));
+        (options.*list).push_back(text);
+    };
+}
+
+void set_filter(Options& options, const std::string& text)
+{
+    try {
+        const std::regex check(text);
+    } catch (const std::regex_error& problem) {
+        throw Error(ErrorKind::usage,
+                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
+    }
+    options.filter = text;
+}
+
+std::string target_names()
+{
+    std::vector<std::string> names;
+    for (const PaperTarget target : all_targets())
+        names.emplace_back(name_of(target));
+    return join_alternatives(names);
+}
+
+std::function<void(Options&, const std::string&)> set_path(const std::string& option,
+                                                           std::optional<std::filesystem::path> Options::*path)
+{
+    return [=](Options& options, const std::string& text) {
+        if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
+        options.*path = text;
+    };
+}
+
+void set_tile(Options& options, const std::string& text)
+{
+    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
+    options.tile_height = text == "8x4" ? 4 : 8;
+}
+
+void set_samples(Options& options, const std::string& text)
+{
+    options.samples = static_cast<unsigned>(parse_count("--samples", text, 3, 10000));
+}
+
+void add_target(Options& options, const std::string& text)
+{
+    options.targets.push_back(choose("reproduce", text, all_targets()));
+}
+
+std::vector<OptionRow> reproduce_options()
+{
+    return {
+        {"Tables", "TABLE", "LIST",
+         "What of the paper to make anew: " + target_names() + ". Default: all but growth, which is not the paper's.",
+         bit(Verb::reproduce), true, add_target},
+        {"Tables", "--searches", "TETSxRAYS",
+         "Exit searches of table5: random tets, and the rays that stab each, a multiple of 8. Default: 10000x16384, as "
+         "the paper has it.",
+         bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.searches = parse_searches(v); }},
+        {"Tables", "--sizes", "N",
+         "Sizes of growth: triangles of banana, or cubes along an axis where --scene is cubes. Default: 1500, 6000, "
+         "25000, 100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
+         bit(Verb::reproduce), true,
+         [](Options& o, const std::string& v) {
+             o.sizes.push_back(static_cast<std::uint32_t>(parse_count("--sizes", v, 2, most_banana)));
+         }},
+    };
+}
+
+std::vector<OptionRow> scene_options()
+{
+    return {
+        {"Scenes", "--scene", "SCENE",
+         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana of about N triangles), a mesh file "
+         "(PLY, OBJ, OFF, STL) or a .tet file. "
+         "May be repeated; several with commas between. Default: bunny and armadillo, or the embedded scenes where "
+         "those cannot be had.",
+         building, true, [](Options& o, const std::string& v) { o.scenes.push_back(v); }},
+        {"Scenes", "--domain", "KIND",
+         "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
+         "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
+         building, true, append("--domain", &Options::domains, {DomainKind::tight, DomainKind::wide})},
+        {"Scenes", "--divisions", "N",
+         "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
+             std::to_string(BuildOptions{}.divisions) + ".",
+         building, true,
+         [](Options& o, const std::string& v) {
+             o.divisions.push_back(static_cast<std::uint32_t>(parse_count("--divisions", v, 1, 64)));
+         }},
+        {"Scenes", "--switches", "SWITCHES",
+         "TetGen's switches, as its manual has them. 'build' takes a list. Default: " + BuildOptions{}.switches + ".",
+         building, true, [](Options& o, const std::string& v) { o.switches.push_back(v); }},
+        {"Scenes", "--resolution", "N",
+         "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
+             ".",
+         building, false,
+         [](Options& o, const std::string& v) {
+             o.resolution = static_cast<std::uint32_t>(parse_count("--resolution", v, 2, 128));
+         }},
+        {"Scenes", "--time-limit", "TIME",
+         "End the scene builder after this long: seconds, or with s, m or h behind it. Default: 10m.", building, false,
+         [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
+        {"Scenes", "--memory-limit", "SIZE",
+         "Memory that the scene builder may use: bytes, or with K, M, G or T behind it. Default: 8G.", building, false,
+         [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
+        {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false,
+         [](Options& o, const std::string&) { o.clear = true; }},
+    };
+}
+
+std::vector<OptionRow> row_options()
+{
+    const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::reached, TetOrder::input};
+    const std::vector<Schedule> schedules = {Schedule::tiles, Schedule::persistent, Schedule::packets};
+    const std::vector<RayKind> kinds = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse,
+                                        RayKind::random};
+    const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
+    return {
+        {"Rows", "--structure", "NAME",
+         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves the rows of Embree's and a "
+         "driver's own BVHs out unless "
+         "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
+         tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
+        {"Rows", "--method", "NAME",
+         "Keep the rows of this method: plane, plucker, stp, ms06, maria or project (exit-face searches of the cdt), "
+         "single or "
+         "packet16 (how many rays at once a BVH is asked), or 'all'. Default: maria, project on half32, and those "
+         "of the BVHs where these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
+         reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
+        {"Rows", "--layout", "NAME",
+         "Keep the rows of this packed form: tet80 or tet96 of the cdt, of project also half32, tet20 or tet16; bvh2 "
+         "or "
+         "cwbvh of our BVHs; embree, what Embree "
+         "builds for itself; rt, what Vulkan's driver builds for its ray queries. Default: all of the structures kept, "
+         "rt where a device has it.",
+         reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
+        {"Rows", "--backend", "NAME",
+         "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "
+         "where "
+         "it is named here or by --require; they are skipped with the reason. Default: all that have a usable device "
+         "and a kernel of the structures kept.",
+         reproducing, true, append_backend("--backend", &Options::backends)},
+        {"Rows", "--device", "TEXT",
+         "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, in whatever case, for "
+         "example 'gpu', 'llvmpipe' or 'vulkan:1', the second one of vulkan. Default: all.",
+         reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
+        {"Rows", "--rays", "KIND",
+         "Trace rays of this kind: 'primary', the image's own, made by the kernels; and, made on the host from the "
+         "primary hits, 'shadow', towards a light; 'ao', short ones round the normal (of both, any hit answers); "
+         "'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
+         measuring, true, append("--rays", &Options::rays, kinds)},
+        {"Rows", "--ray-order", "ORDER",
+         "Order in which rays of other kinds than primary are given: 'tiles', as their pixels lie; 'morton', sorted by "
+         "origin and direction; 'shuffled'. Each is a row of its own. Default: tiles.",
+         measuring, true, append("--ray-order", &Options::ray_orders, ray_orders)},
+        {"Rows", "--math", "MODE",
+         "'exact': no contraction, the same bits everywhere; 'fast': what the compiler likes. Embree has "
+         "one build, and rows of it whatever the mode. Default: exact.",
+         tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
+        {"Rows", "--order", "ORDER",
+         "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same with the tets that "
+         "no ray from outside reaches behind all others; 'input', as TetGen wrote them. Rows of structure cdt only. "
+         "Default: hilbert.",
+         tracing, true, append("--order", &Options::orders, orders)},
+        {"Rows", "--schedule", "NAME",
+         "How rays come to work items: 'tiles', one each; 'persistent', items that stay and fetch rays until none is "
+         "left, on the backends that have such kernels; 'packets', many rays in the lanes of openmp's vectors, of "
+         "project and half32. Embree has a schedule of its own. Default: tiles, and packets.",
+         tracing, true, append("--schedule", &Options::schedules, schedules)},
+        {"Rows", "--filter", "REGEX",
+         "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.",
+         measuring | bit(Verb::compare), false, set_filter},
+        {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false,
+         [](Options& o, const std::string&) { o.list = true; }},
+    };
+}
+
+std::vector<OptionRow> ray_options()
+{
+    const unsigned with_rays = reproducing | bit(Verb::build);
+    return {
+        {"Rays", "--camera-set", "SET",
+         "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii. "
+         "Default: smoke.",
+         tracing | bit(Verb::build), false,
+         [](Options& o, const std::string& v) {
+             o.camera_set =
+                 choose<CameraSet>("--camera-set", v, {CameraSet::smoke, CameraSet::orbit, CameraSet::flight});
+         }},
+        {"Rays", "--views", "LIST",
+         "Views of the camera set, counted from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
+         "Default: all.",
+         with_rays, true, [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
+        {"Rays", "--size", "WxH", "Image size in pixels, a ray each; N is NxN. Default: 1024x1024.", with_rays, false,
+         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
+        {"Rays", "--threads", "N",
+         "Host threads; 0 for OMP_NUM_THREADS, where it is set, else all that the process may use. Default: 0.",
+         with_rays, false,
+         [](Options& o, const std::string& v) {
+             o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
+         }},
+        {"Rays", "--tile", "WxH",
+         "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
+         false, set_tile},
+        {"Rays", "--buffer-limit", "SIZE",
+         "Treat every device's largest buffer as this small: bytes, or with K, M, G or T behind it. The array of tets "
+         "is bound in parts that fit; where they do not suffice, the row is unsupported. Default: what each device "
+         "says.",
+         reproducing, false,
+         [](Options& o, const std::string& v) { o.buffer_limit = parse_bytes("--buffer-limit", v); }},
+    };
+}
+
+std::vector<OptionRow> judging_options()
+{
+    return {
+        {"Measuring", "--samples", "N",
+         "Samples a row, 3 to 10000; a sample traces all selected views once. Default: 10.", bit(Verb::bench), false,
+         set_samples},
+        {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
+         bit(Verb::reproduce), false, set_samples},
+        {"Measuring", "--budget", "TIME",
+         "Wall clock for the timed part: where it would take longer, fewer samples are taken, and the result says so; "
+         "but no fewer than 5, below which intervals are too narrow, where as many are asked for. Default: 2m.",
+         bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
+        {"Judging", "--require", "BACKEND",
+         "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
+         "none is "
+         "skipped or unsupported.",
+         bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
+        {"Judging", "--allow-flawed", "",
+         "Exit with 0 where maria itself has wrong rays; lost ones, and rows that differ from openmp, still fail. "
+         "Wrong "
+         "and lost rays of the other methods never do: those do not claim to have none.",
+         bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
+        {"Judging", "--tolerance", "PERCENT",
+         "Differences in time up to so many percent do not matter: a row that is SLOWER by more is a regression, one "
+         "whose whole interval lies within is the SAME. 0 to 100. Default: 3.",
+         bit(Verb::compare), false,
+         [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
+        {"Judging", "--allow-missing", "",
+         "Exit with 0 where rows that A timed are missing, skipped or unsupported in B; failed ones still count.",
+         bit(Verb::compare), false, [](Options& o, const std::string&) { o.allow_missing = true; }},
+        {"Pictures", "--picture", "KIND",
+         "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
+         "bar. Default: normals.",
+         bit(Verb::render), true, append("--picture", &Options::pictures, {Picture::normals, Picture::steps})},
+        {"Pictures", "--picture", "FOLDER",
+         "Write a picture of each view on which a row differs from openmp, the differing pixels marked: PNG, or PPM "
+         "where "
+         "OpenImageIO is missing. Default: none.",
+         bit(Verb::check), false, set_path("--picture", &Options::picture_folder)},
+    };
+}
+
+std::vector<OptionRow> report_options()
+{
+    return {
+        {"Pictures", "--picture", "FILE",
+         "Put this picture into the page, a PNG or PPM file as 'tetrace render' writes it. May be repeated; several "
+         "with "
+         "commas between. Default: none but those that a figure of a result names.",
+         bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
+    };
+}
+
+std::vector<OptionRow> output_options()
+{
+    return {
+        {"Output", "--format", "FORMAT",
+         "Form of the result: table, json, csv or markdown. Any but table goes to FILE where --out names one, else to "
+         "standard output in place of the table. Default: table.",
+         reporting, false,
+         [](Options& o, const std::string& v) {
+             o.format = choose<Format>("--format", v, {Format::table, Format::json, Format::csv, Format::markdown});
+         }},
+        {"Output", "--out", "FILE",
+         "Also write the result to FILE; without --format, its ending chooses the form: .json, .csv, .md, or .txt for "
+         "the table. The table is printed on standard output all the same.",
+         reporting, false, set_path("--out", &Options::out)},
+        {"Output", "--anonymous", "",
+         "Leave out of the result what tells whose machine it comes from: the host's name, and the folders of files.",
+         reporting, false, [](Options& o, const std::string&) { o.anonymous = true; }},
+        {"Output", "--resume", "",
+         "Go on with the run whose journal lies beside FILE of --out, as FILE.journal: views and batches of "
+         "searches that it has are not done again. Where there is none, begin one.",
+         bit(Verb::reproduce), false, [](Options& o, const std::string&) { o.resume = true; }},
+        {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
+         bit(Verb::check), false, set_path("--junit", &Options::junit)},
+        {"Output", "--out", "FILE",
+         "Write the picture to FILE, which ends in .png, .exr or .ppm; with several pictures, scene, view and kind go "
+         "in front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png, or "
+         ".ppm, which needs no library, where OpenImageIO is missing.",
+         bit(Verb::render), false, set_path("--out", &Options::out)},
+        {"Output", "--out", "FILE", "Write the page to FILE. Default: report.html.", bit(Verb::report), false,
+         set_path("--out", &Options::out)},
+    };
+}
+
+std::vector<OptionRow> make_table()
+{
+    std::vector<OptionRow> table;
+    for (auto part :
+         {reproduce_options, scene_options, row_options, ray_options, judging_options, report_options, output_options})
+        for (OptionRow& row : part())
+            table.push_back(std::move(row));
+    return table;
+}
+
+} // namespace
+
+FileArguments file_arguments(Verb verb)
+{
+    if (verb == Verb::compare) return {"A.json B.json", 2, 2};
+    if (verb == Verb::report) return {"RESULT...", 1, 1000};
+    return {};
+}
+
+const std::vector<OptionRow>& option_table()
+{
+    static const std::vector<OptionRow> table = make_table();
+    return table;
+}
+
+} // namespace tetrace

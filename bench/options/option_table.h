@@ -1,0 +1,36 @@
+#pragma once
+
+#include "bench/options/options.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// One option of the program: what parsing, every --help and the README's table are made from.
+struct OptionRow {
+    std::string group; ///< heading in help
+    std::string name;  ///< with its dashes
+    std::string value; ///< placeholder of its value; empty for a flag
+    std::string help;  ///< sentences, the default in the last
+    unsigned verbs;    ///< bit 1 << verb for each verb that takes it
+    bool list;         ///< may be repeated, and takes several values with commas between
+    std::function<void(Options&, const std::string&)> apply; ///< takes one value; throws Error{usage}
+};
+
+[[nodiscard]] const std::vector<OptionRow>& option_table();
+
+/// The files that a verb reads, named without an option: how help writes them, and how many there may be.
+struct FileArguments {
+    std::string_view names = "";
+    std::size_t least = 0, most = 0;
+};
+[[nodiscard]] FileArguments file_arguments(Verb verb);
+
+[[nodiscard]] inline bool takes(Verb verb, const OptionRow& row)
+{
+    return (row.verbs >> static_cast<unsigned>(verb) & 1u) != 0;
+}
+
+} // namespace tetrace

@@ -1,0 +1,167 @@
+#include "bench/options/option_values.h"
+
+#include "kernels/layouts/layout.h"
+
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+template <class T>
+bool read_whole(std::string_view text, T& value)
+{
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return problem == std::errc() && end == text.data() + text.size();
+}
+
+struct ViewRange {
+    std::uint32_t first = 0, last = 0, stride = 1;
+};
+
+bool read_range(std::string_view text, ViewRange& range)
+{
+    if (const auto colon = text.find(':'); colon != std::string_view::npos) {
+        if (!read_whole(text.substr(colon + 1), range.stride) || range.stride == 0) return false;
+        text = text.substr(0, colon);
+    }
+    const auto dash = text.find('-');
+    if (!read_whole(text.substr(0, dash), range.first)) return false;
+    if (dash == std::string_view::npos) {
+        range.last = range.first;
+        return true;
+    }
+    return read_whole(text.substr(dash + 1), range.last) && range.first <= range.last;
+}
+
+} // namespace
+
+std::string join_alternatives(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+        text += names[i];
+    }
+    return text;
+}
+
+std::vector<std::string> split_list(const std::string& option, const std::string& text)
+{
+    std::vector<std::string> parts(1);
+    for (const char c : text) {
+        if (c == ',')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    for (const std::string& part : parts)
+        if (part.empty())
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: empty value in '{}'; write values with one comma between", option, text));
+    return parts;
+}
+
+void reject_value(const std::string& option, const std::string& value, const std::string& accepted)
+{
+    throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not accepted; accepted: {}", option, value, accepted));
+}
+
+std::uint64_t parse_count(const std::string& option, const std::string& text, std::uint64_t low, std::uint64_t high)
+{
+    std::uint64_t value = 0;
+    if (!read_whole(text, value) || value < low || value > high)
+        reject_value(option, text, fmt::format("a whole number from {} to {}", low, high));
+    return value;
+}
+
+double parse_seconds(const std::string& option, const std::string& text)
+{
+    std::string_view digits = text;
+    double unit = 1;
+    if (!digits.empty() && std::string_view("smh").find(digits.back()) != std::string_view::npos) {
+        unit = digits.back() == 'h' ? 3600 : digits.back() == 'm' ? 60 : 1;
+        digits.remove_suffix(1);
+    }
+    double value = 0;
+    if (!read_whole(digits, value) || !std::isfinite(value) || value <= 0)
+        reject_value(option, text, "a positive number of seconds, or with s, m or h behind it");
+    return value * unit;
+}
+
+double parse_percent(const std::string& option, const std::string& text)
+{
+    std::string_view digits = text;
+    if (!digits.empty() && digits.back() == '%') digits.remove_suffix(1);
+    double value = 0;
+    if (!read_whole(digits, value) || !(value >= 0 && value <= 100))
+        reject_value(option, text, "a percentage from 0 to 100, as 3 or 2.5%");
+    return value;
+}
+
+std::uint64_t parse_bytes(const std::string& option, const std::string& text)
+{
+    constexpr std::string_view units = "KMGT";
+    std::string_view digits = text;
+    unsigned shift = 0;
+    if (!digits.empty())
+        if (const auto unit = units.find(digits.back()); unit != std::string_view::npos) {
+            shift = 10 * (static_cast<unsigned>(unit) + 1);
+            digits.remove_suffix(1);
+        }
+    std::uint64_t value = 0;
+    if (!read_whole(digits, value) || value == 0 || value > std::numeric_limits<std::uint64_t>::max() >> shift)
+        reject_value(option, text, "a whole number of bytes, or with K, M, G or T behind it (powers of 1024)");
+    return value << shift;
+}
+
+std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, const std::string& text)
+{
+    constexpr std::uint32_t largest = 16384;
+    const auto cross = text.find('x');
+    std::uint32_t width = 0, height = 0;
+    const bool read = read_whole(std::string_view(text).substr(0, cross), width) &&
+                      (cross == std::string::npos || read_whole(std::string_view(text).substr(cross + 1), height));
+    if (cross == std::string::npos) height = width;
+    if (!read || width < 1 || height < 1 || width > largest || height > largest)
+        reject_value(option, text, fmt::format("WxH or N, each from 1 to {}", largest));
+    return {width, height};
+}
+
+SearchSize parse_searches(const std::string& text)
+{
+    constexpr std::uint32_t most_tets = 1'000'000, most_rays = 1u << 20;
+    const auto cross = text.find('x');
+    SearchSize size;
+    const bool read = cross != std::string::npos && read_whole(std::string_view(text).substr(0, cross), size.tets) &&
+                      read_whole(std::string_view(text).substr(cross + 1), size.rays);
+    const bool in_range = size.tets >= 1 && size.tets <= most_tets && size.rays >= 1 && size.rays <= most_rays;
+    if (!read || !in_range || size.rays % TILE_WIDTH != 0)
+        reject_value("--searches", text,
+                     fmt::format("TETSxRAYS, 1 to {} tets with {} to {} rays each, a multiple of {}", most_tets,
+                                 TILE_WIDTH, most_rays, TILE_WIDTH));
+    return size;
+}
+
+std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count)
+{
+    std::set<std::uint32_t> numbers;
+    const std::string all = fmt::format("0-{}", view_count - 1);
+    for (const std::string& part : split_list("--views", text.empty() ? all : text)) {
+        ViewRange range;
+        if (!read_range(part, range))
+            reject_value("--views", part, "numbers (3), ranges (10-20) and strides (0-1281:64), commas between");
+        if (range.last >= view_count)
+            throw Error(ErrorKind::usage, fmt::format("--views: there is no view {}; this camera set has views 0 to {}",
+                                                      range.last, view_count - 1));
+        for (std::uint64_t number = range.first; number <= range.last; number += range.stride)
+            numbers.insert(static_cast<std::uint32_t>(number));
+    }
+    return {numbers.begin(), numbers.end()};
+}
+
+} // namespace tetrace

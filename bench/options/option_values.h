@@ -1,0 +1,58 @@
+#pragma once
+
+#include "bench/options/options.h"
+#include "core/base/error.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// "a, b or c".
+[[nodiscard]] std::string join_alternatives(const std::vector<std::string>& names);
+
+/// Splits at commas. Throws Error{usage} naming the option where a part is empty.
+[[nodiscard]] std::vector<std::string> split_list(const std::string& option, const std::string& text);
+
+/// Throws Error{usage}: the value is not accepted, these are.
+[[noreturn]] void reject_value(const std::string& option, const std::string& value, const std::string& accepted);
+
+/// The value of that name. Throws Error{usage} listing the names otherwise.
+template <class T>
+[[nodiscard]] T choose(const std::string& option, const std::string& text, const std::vector<T>& values)
+{
+    std::vector<std::string> names;
+    for (const T& value : values) {
+        if (name_of(value) == text) return value;
+        names.emplace_back(name_of(value));
+    }
+    reject_value(option, text, join_alternatives(names));
+}
+
+/// A whole number in [low, high]. Throws Error{usage} naming the bounds.
+[[nodiscard]] std::uint64_t parse_count(const std::string& option, const std::string& text, std::uint64_t low,
+                                        std::uint64_t high);
+
+/// Seconds, positive and finite: "90", "1.5", "10m", "2h". Throws Error{usage}.
+[[nodiscard]] double parse_seconds(const std::string& option, const std::string& text);
+
+/// A percentage from 0 to 100: "3", "2.5" or "3%". Throws Error{usage}.
+[[nodiscard]] double parse_percent(const std::string& option, const std::string& text);
+
+/// Bytes: a whole number with K, M, G or T (powers of 1024). Throws Error{usage}.
+[[nodiscard]] std::uint64_t parse_bytes(const std::string& option, const std::string& text);
+
+/// "WxH", or "N" for N x N; each from 1 to 16384. Throws Error{usage}.
+[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, const std::string& text);
+
+/// "TETSxRAYS" for --searches: at most 1,000,000 tets of 1,048,576 rays, a multiple of 8. Throws Error{usage}.
+[[nodiscard]] SearchSize parse_searches(const std::string& text);
+
+/// View numbers: commas between numbers, ranges "10-20" and strides "0-1281:64"; empty is all. Ascending, each once.
+/// Throws Error{usage} naming the part that cannot be read, or the number that is not below view_count.
+[[nodiscard]] std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count);
+
+} // namespace tetrace

@@ -1,0 +1,273 @@
+#include "bench/options/options.h"
+
+#include "bench/options/option_table.h"
+#include "bench/options/option_values.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+const std::vector<Verb>& all_verbs()
+{
+    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes,    Verb::build,   Verb::bench,  Verb::check,
+                                            Verb::render,  Verb::reproduce, Verb::compare, Verb::report, Verb::help};
+    return verbs;
+}
+
+bool is_google_benchmark_flag(const std::string& argument)
+{
+    return argument.rfind("--benchmark_", 0) == 0;
+}
+
+/// Google Benchmark reads its own flags; all else is ours.
+std::vector<std::string> without_benchmark_flags(const std::vector<std::string>& arguments, Options& options)
+{
+    std::vector<std::string> ours;
+    for (const std::string& argument : arguments)
+        (options.verb == Verb::bench && is_google_benchmark_flag(argument) ? options.benchmark_flags : ours)
+            .push_back(argument);
+    return ours;
+}
+
+std::vector<std::string> accepted_options(Verb verb)
+{
+    std::vector<std::string> names;
+    for (const OptionRow& row : option_table())
+        if (takes(verb, row)) names.push_back(row.name);
+    names.emplace_back("--help");
+    if (verb == Verb::bench) names.emplace_back("--benchmark_* (Google Benchmark's own)");
+    return names;
+}
+
+[[noreturn]] void reject_command_line(Verb verb, const std::string& reason)
+{
+    throw Error(ErrorKind::usage, fmt::format("{0}: {1}\naccepted options: {2}\n'tetrace {0} --help' describes them",
+                                              name_of(verb), reason, join_alternatives(accepted_options(verb))));
+}
+
+std::string counted_files(std::size_t count)
+{
+    return count == 0 ? "no file is" : count == 1 ? "one file is" : fmt::format("{} files are", count);
+}
+
+void add_row(CLI::App& app, const OptionRow& row)
+{
+    if (row.value.empty()) {
+        app.add_flag(row.name);
+        return;
+    }
+    // Each occurrence takes one value; how many occurrences there may be is checked after parsing, in our own words.
+    app.add_option(row.name, [](const CLI::results_t&) { return true; })
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void apply_values(Options& options, const OptionRow& row, const std::vector<std::string>& occurrences)
+{
+    if (occurrences.size() > 1 && !row.list)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} is given {} times; it takes one value", row.name, occurrences.size()));
+    for (const std::string& text : occurrences)
+        for (const std::string& value : row.list ? split_list(row.name, text) : std::vector{text})
+            row.apply(options, value);
+}
+
+/// Lists that start with a default: the first value given replaces it.
+void clear_default(Options& options, const std::string& name)
+{
+    if (name == "--domain") options.domains.clear();
+    if (name == "--divisions") options.divisions.clear();
+    if (name == "--switches") options.switches.clear();
+}
+
+void apply_row(Options& options, const OptionRow& row, CLI::App& app)
+{
+    const CLI::Option* given = app.get_option(row.name);
+    if (given->count() == 0) return;
+    if (row.value.empty())
+        row.apply(options, "");
+    else {
+        clear_default(options, row.name);
+        apply_values(options, row, given->results());
+    }
+}
+
+void set_files(Options& options, const std::vector<std::string>& given)
+{
+    const FileArguments files = file_arguments(options.verb);
+    if (given.size() < files.least || given.size() > files.most)
+        throw Error(ErrorKind::usage, fmt::format("{0}: {1} given; usage: tetrace {0} {2} [OPTION]...",
+                                                  name_of(options.verb), counted_files(given.size()), files.names));
+    options.files.assign(given.begin(), given.end());
+}
+
+void check_single(const Options& options, const char* name, std::size_t count)
+{
+    if (options.verb != Verb::build && count > 1)
+        throw Error(ErrorKind::usage, fmt::format("{} takes one value for '{}'; lists are for 'tetrace build'", name,
+                                                  name_of(options.verb)));
+}
+
+void check_together(const Options& options)
+{
+    check_single(options, "--domain", options.domains.size());
+    check_single(options, "--divisions", options.divisions.size());
+    check_single(options, "--switches", options.switches.size());
+    static_cast<void>(selected_views(options));
+}
+
+/// What a verb does unless it is told otherwise.
+Options defaults_of(Verb verb)
+{
+    Options options;
+    options.verb = verb;
+    if (verb != Verb::reproduce) return options;
+    options.camera_set = CameraSet::flight; // as many views as the paper has, over its range of steps
+    options.structures = {Structure::cdt};
+    options.samples = 5;
+    return options;
+}
+
+Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
+{
+    Options options = defaults_of(verb);
+    CLI::App app;
+    app.set_help_flag("--help,-h");
+    for (const OptionRow& row : option_table())
+        if (takes(verb, row)) add_row(app, row);
+    std::vector<std::string> files;
+    if (file_arguments(verb).most > 0) app.add_option("FILE", files);
+    auto ours = without_benchmark_flags(arguments, options);
+    std::reverse(ours.begin(), ours.end()); // CLI11 takes them from the back
+    try {
+        app.parse(std::move(ours));
+    } catch (const CLI::CallForHelp&) {
+        options.verb = Verb::help;
+        options.help_topic = name_of(verb);
+        return options;
+    } catch (const CLI::ParseError& problem) {
+        reject_command_line(verb, problem.what());
+    }
+    for (const OptionRow& row : option_table())
+        if (takes(verb, row)) apply_row(options, row, app);
+    set_files(options, files);
+    check_together(options);
+    return options;
+}
+
+Options parse_help(const std::vector<std::string>& topics)
+{
+    Options options;
+    if (topics.empty()) return options;
+    if (topics.front() != "options") static_cast<void>(choose("help", topics.front(), all_verbs()));
+    if (topics.size() > 1) throw Error(ErrorKind::usage, "help: one verb at a time");
+    options.help_topic = topics.front();
+    return options;
+}
+
+std::string verb_names()
+{
+    std::vector<std::string> names;
+    for (const Verb verb : all_verbs())
+        names.emplace_back(name_of(verb));
+    return join_alternatives(names);
+}
+
+} // namespace
+
+std::string_view name_of(Verb verb)
+{
+    switch (verb) {
+    case Verb::devices: return "devices";
+    case Verb::scenes: return "scenes";
+    case Verb::build: return "build";
+    case Verb::bench: return "bench";
+    case Verb::check: return "check";
+    case Verb::render: return "render";
+    case Verb::reproduce: return "reproduce";
+    case Verb::compare: return "compare";
+    case Verb::report: return "report";
+    case Verb::help: return "help";
+    case Verb::version: return "version";
+    }
+    throw Error(ErrorKind::internal, "name_of(Verb): no such verb");
+}
+
+std::string_view name_of(Format format)
+{
+    switch (format) {
+    case Format::table: return "table";
+    case Format::json: return "json";
+    case Format::csv: return "csv";
+    case Format::markdown: return "markdown";
+    }
+    throw Error(ErrorKind::internal, "name_of(Format): no such format");
+}
+
+std::string_view name_of(Picture picture)
+{
+    return picture == Picture::normals ? "normals" : "steps";
+}
+
+std::string_view name_of(PaperTarget target)
+{
+    switch (target) {
+    case PaperTarget::table3: return "table3";
+    case PaperTarget::table4: return "table4";
+    case PaperTarget::table5: return "table5";
+    case PaperTarget::table6: return "table6";
+    case PaperTarget::growth: return "growth";
+    case PaperTarget::figure6: return "figure6";
+    }
+    throw Error(ErrorKind::internal, "name_of(PaperTarget): no such target");
+}
+
+const std::vector<PaperTarget>& all_targets()
+{
+    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4,  PaperTarget::table5,
+                                                     PaperTarget::table6, PaperTarget::figure6, PaperTarget::growth};
+    return targets;
+}
+
+Options parse_options(const std::vector<std::string>& arguments)
+{
+    if (arguments.empty()) return {};
+    const std::string& first = arguments.front();
+    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    Options options;
+    if (first == "--version") {
+        options.verb = Verb::version;
+        return options;
+    }
+    if (first == "--help" || first == "-h" || first == "help") return parse_help(rest);
+    for (const Verb verb : all_verbs())
+        if (name_of(verb) == first) return parse_verb(verb, rest);
+    throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb; accepted: {}, --help or --version\n"
+                                              "'tetrace help' describes them",
+                                              first, verb_names()));
+}
+
+std::vector<SceneRequest> scene_requests(const Options& options)
+{
+    BuildOptions build;
+    build.domain = options.domains.front();
+    build.divisions = options.divisions.front();
+    build.switches = options.switches.front();
+    build.resolution = options.resolution;
+    build.time_limit_s = options.time_limit_s;
+    build.memory_limit_bytes = options.memory_limit_bytes;
+    std::vector<SceneRequest> requests;
+    for (const std::string& name : options.scenes.empty() ? default_scenes() : options.scenes)
+        requests.push_back({name, build});
+    return requests;
+}
+
+std::vector<std::uint32_t> selected_views(const Options& options)
+{
+    return parse_views(options.views, view_count(options.camera_set));
+}
+
+} // namespace tetrace

@@ -1,0 +1,115 @@
+#pragma once
+
+#include "core/pack/kernel_id.h"
+#include "core/rays/camera.h"
+#include "scenes/catalogue.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+/// What the program is asked to do; the first word of its command line.
+enum class Verb { devices, scenes, build, bench, check, render, reproduce, compare, report, help, version };
+
+/// The form of a result.
+enum class Format { table, json, csv, markdown };
+
+/// A picture that `render` makes.
+enum class Picture { normals, steps };
+
+/// A table or a figure of the paper that `reproduce` makes anew.
+/// Growth, how cost grows with the mesh, is not in the paper.
+enum class PaperTarget { table3, table4, table5, table6, figure6, growth };
+
+/// How many exit searches Table 5 is made from. Default: the paper's.
+struct SearchSize {
+    std::uint32_t tets = 10'000;
+    std::uint32_t rays = 16'384; ///< of each tet; a multiple of TILE_WIDTH
+
+    [[nodiscard]] std::uint64_t count() const { return std::uint64_t{tets} * rays; }
+    friend bool operator==(const SearchSize&, const SearchSize&) = default;
+};
+
+/// A command line, checked. Empty lists select by default (see rows.h); all else holds its default.
+struct Options {
+    Verb verb = Verb::help;
+    std::string help_topic; ///< verb that help is about; empty: the program
+
+    std::vector<std::filesystem::path> files; ///< result files that the verb reads, as many as file_arguments() says
+
+    std::vector<std::string> scenes; ///< catalogue names or paths, as given
+    std::vector<DomainKind> domains = {BuildOptions{}.domain};
+    std::vector<std::uint32_t> divisions = {BuildOptions{}.divisions};
+    std::vector<std::string> switches = {BuildOptions{}.switches};
+    std::uint32_t resolution = BuildOptions{}.resolution;
+    double time_limit_s = BuildOptions{}.time_limit_s;
+    std::uint64_t memory_limit_bytes = BuildOptions{}.memory_limit_bytes;
+
+    std::vector<Structure> structures;
+    std::vector<Method> methods;
+    std::vector<Layout> layouts;
+    std::vector<std::string> backends;
+    std::vector<RayKind> rays;
+    std::vector<RayOrder> ray_orders; ///< of rays that are given
+    std::vector<MathMode> math;
+    std::vector<TetOrder> orders;
+    std::vector<Schedule> schedules;
+    std::vector<std::string> devices; ///< texts, one of which a device's name, driver, type or id holds; empty: all
+    std::string filter;               ///< ECMAScript regular expression on row names; empty: all
+    bool list = false;
+
+    CameraSet camera_set = CameraSet::smoke;
+    std::string views; ///< as parse_views() takes it; empty: all of the set
+    std::uint32_t width = 1024, height = 1024;
+
+    unsigned threads = 0;           ///< 0: all that the process may use
+    unsigned tile_height = 0;       ///< 4 or 8; 0: tile_height_for() each device
+    std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
+    unsigned samples = 10;
+    double budget_s = 120; ///< for the timed part
+
+    std::vector<PaperTarget> targets; ///< of `reproduce`; empty: those of the paper
+    SearchSize searches;              ///< of `reproduce`
+    std::vector<std::uint32_t> sizes; ///< of `reproduce growth`; empty: growth_sizes()
+    bool resume = false;              ///< of `reproduce`: go on from the journal
+
+    std::vector<std::string> required; ///< backends that must have a usable device
+    bool allow_flawed = false;
+    double tolerance = 0.03;    ///< of `compare`, a share: slower by more is a regression
+    bool allow_missing = false; ///< of `compare`
+    bool clear = false;
+    std::vector<Picture> pictures;
+    std::optional<std::filesystem::path> junit;          ///< of `check`
+    std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of what differs
+
+    std::vector<std::filesystem::path> report_pictures; ///< of `report`: PNG files
+
+    std::optional<std::filesystem::path> out;
+    std::optional<Format> format;
+    bool anonymous = false;                   ///< no host's name and no folders in results
+    std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
+};
+
+[[nodiscard]] std::string_view name_of(Verb verb);
+[[nodiscard]] std::string_view name_of(Format format);
+[[nodiscard]] std::string_view name_of(Picture picture);
+[[nodiscard]] std::string_view name_of(PaperTarget target);
+[[nodiscard]] const std::vector<PaperTarget>& all_targets();
+
+/// Reads a command line, the program's name left out.
+/// Throws Error{usage} naming what is not accepted, and what is.
+[[nodiscard]] Options parse_options(const std::vector<std::string>& arguments);
+
+/// The scenes asked for with their one set of build options; the default scenes where none was named.
+/// Precondition: one domain, one number of divisions, one set of switches (parse_options sees to it but for `build`).
+[[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
+
+/// The numbers of the views asked for, ascending. Throws Error{usage} as parse_views() does.
+[[nodiscard]] std::vector<std::uint32_t> selected_views(const Options& options);
+
+} // namespace tetrace

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "bench/output/bench_report.h"
+#include "bench/terminal/table.h"
+
+#include <string>
+
+namespace tetrace {
+
+/// What the rows of a scene come to, by device, headed by what they run on.
+[[nodiscard]] Table rate_table(const std::string& scene, const BenchResult& result);
+
+/// Where the time of all rows goes, in milliseconds, by scene and device.
+[[nodiscard]] Table time_table(const BenchResult& result);
+
+/// What the rows' devices are, and what they can do at best.
+[[nodiscard]] Table device_table(const std::vector<RowDevice>& devices);
+
+/// Every row with every figure, flat.
+[[nodiscard]] Table flat_table(const BenchResult& result);
+
+} // namespace tetrace

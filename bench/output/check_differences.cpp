@@ -1,0 +1,130 @@
+#include "bench/output/check_differences.h"
+
+#include "bench/terminal/text.h"
+#include "bench/truth/walk_path.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using Path = std::vector<std::uint32_t>;
+
+constexpr std::uint32_t shown_tets = 200;
+
+std::string face_text(std::uint32_t face)
+{
+    if (face == NO_HIT) return "no hit";
+    if (face == LOST) return "lost";
+    return fmt::format("triangle {}", face);
+}
+
+std::string hit_text(const Hit& hit)
+{
+    const std::string tet = hit.tet == NO_TET ? "no tet" : fmt::format("tet {}", hit.tet);
+    return fmt::format("{}, t {:.9g}, u {:.9g}, v {:.9g}, {}, {} steps", face_text(hit.face_id), hit.t, hit.u, hit.v,
+                       tet, hit.steps);
+}
+
+TraceJob job_of(const RowRun& row, std::uint32_t view)
+{
+    const auto& numbers = row.scene->view_numbers();
+    const auto index = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), view) - numbers.begin());
+    return row.scene->job(index, &row.packed->scene);
+}
+
+/// Whether a ray of the row can be walked again by its pixel: BVHs leave no tets, and rays that are given are not told
+/// by their pixels alone.
+bool leaves_tets(const RowRun& row)
+{
+    return row.key.kernel.structure == Structure::cdt && row.key.kernel.task == Task::trace;
+}
+
+/// openmp's walk.
+Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    if (row.packed == nullptr || !leaves_tets(row)) return {};
+    KernelId kernel = row.key.kernel;
+    kernel.schedule = Schedule::tiles;
+    return walk_path(row.packed->scene, kernel, job_of(row, view), x, y);
+}
+
+/// The device's own walk; empty where the device cannot tell any more.
+Path own_path(const RowRun& row, const DifferingRay& ray)
+{
+    if (row.packed == nullptr || row.session == nullptr || !leaves_tets(row)) return {};
+    try {
+        return walk_path(*row.session, job_of(row, ray.view), ray.x, ray.y, shown_tets);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
+        return {};
+    }
+}
+
+std::string path_text(const char* title, const Path& path)
+{
+    if (path.empty()) return {};
+    std::string text = fmt::format("  {}:", title);
+    for (std::size_t i = 0; i < std::min<std::size_t>(path.size(), shown_tets); ++i)
+        text += fmt::format(" {}", path[i]);
+    if (path.size() > shown_tets) text += fmt::format(" ... ({} in all)", path.size());
+    return wrapped(text, 110, 2);
+}
+
+/// Where two walks part; empty where they do not.
+std::string parting_text(const Path& ours, const Path& openmps)
+{
+    if (ours.empty() || openmps.empty()) return {};
+    const auto [own, other] = std::mismatch(ours.begin(), ours.end(), openmps.begin(), openmps.end());
+    if (own == ours.end() || other == openmps.end()) return {};
+    return fmt::format("  The walks part at step {}: tet {} here, tet {} with openmp.\n", own - ours.begin() + 1, *own,
+                       *other);
+}
+
+std::string different_text(const RowRun& row, const DifferingRay& ray)
+{
+    const Path ours = own_path(row, ray), openmps = path_of(row, ray.view, ray.x, ray.y);
+    return fmt::format("{}: {} rays differ from openmp's, the first at view {}, pixel ({}, {})\n  this row: {}\n"
+                       "  openmp:   {}\n{}{}{}\n",
+                       row_name(row.key), traced(row)->different, ray.view, ray.x, ray.y, hit_text(ray.ours),
+                       hit_text(ray.openmp), path_text("tets of this row", ours), path_text("tets of openmp", openmps),
+                       parting_text(ours, openmps));
+}
+
+std::string wrong_text(const RowRun& row, const WrongRay& ray)
+{
+    return fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:      {}\n  Embree robust: "
+                       "{}, t {:.9g}\n{}\n",
+                       row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours),
+                       face_text(ray.reference_face), ray.reference_t,
+                       path_text("tets of openmp", path_of(row, ray.view, ray.x, ray.y)));
+}
+
+} // namespace
+
+std::string differences_text(const RowRun& row)
+{
+    const Traced* result = traced(row);
+    if (result == nullptr) return {};
+    std::string text;
+    if (const auto& ray = result->first_different) text += different_text(row, *ray);
+    if (const auto& ray = result->verdicts.first_wrong) text += wrong_text(row, *ray);
+    return text;
+}
+
+void add_paths(nlohmann::json& row_json, const RowRun& row)
+{
+    const Traced* result = traced(row);
+    if (result == nullptr || !leaves_tets(row)) return;
+    auto& verification = row_json["verification"];
+    if (const auto& ray = result->verdicts.first_wrong)
+        verification["first_wrong"]["path"] = path_of(row, ray->view, ray->x, ray->y);
+    if (const auto& ray = result->first_different) {
+        verification["first_different"]["path"] = path_of(row, ray->view, ray->x, ray->y);
+        verification["first_different"]["own_path"] = own_path(row, *ray);
+    }
+}
+
+} // namespace tetrace

@@ -1,0 +1,146 @@
+#include "bench/output/check_matrix.h"
+
+#include "bench/measuring/conformity.h"
+#include "bench/terminal/table.h"
+#include "core/base/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using Pointers = std::vector<const RowRun*>;
+
+Pointers rows_of(const std::string& scene, const std::vector<RowRun>& rows)
+{
+    Pointers found;
+    for (const RowRun& row : rows)
+        if (row.key.scene == scene) found.push_back(&row);
+    return found;
+}
+
+/// What `name` says of each row, each text once, in the order of their first appearance.
+template <class Name>
+std::vector<std::string> names_of(const Pointers& rows, const Name& name)
+{
+    std::vector<std::string> names;
+    for (const RowRun* row : rows)
+        if (std::find(names.begin(), names.end(), name(row->key)) == names.end()) names.push_back(name(row->key));
+    return names;
+}
+
+const RowRun* row_at(const Pointers& rows, const std::string& kernel, const std::string& device)
+{
+    for (const RowRun* row : rows)
+        if (kernel_title(row->key) == kernel && device_label(row->key) == device) return row;
+    return nullptr;
+}
+
+/// Rows of one kernel that gave the same hits.
+struct Answer {
+    std::string kernel, devices;
+    const RowRun* first = nullptr;
+    std::size_t rows = 1;
+};
+
+std::vector<Answer> answers_of(const Pointers& rows)
+{
+    std::vector<Answer> answers;
+    for (const RowRun* row : rows) {
+        if (traced(*row) == nullptr) continue;
+        const auto known = std::find_if(answers.begin(), answers.end(), [&](const Answer& answer) {
+            return answer.kernel == kernel_title(row->key) && traced(*answer.first)->hit_hash == traced(*row)->hit_hash;
+        });
+        if (known != answers.end()) {
+            known->devices += ", " + device_label(row->key);
+            ++known->rows;
+        } else
+            answers.push_back({kernel_title(row->key), device_label(row->key), row});
+    }
+    return answers;
+}
+
+/// The devices by name, or their number where all that traced the kernel agree: the line stays short.
+std::string devices_of(const Answer& answer, const Pointers& rows)
+{
+    const auto all = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const RowRun* row) {
+        return traced(*row) != nullptr && kernel_title(row->key) == answer.kernel;
+    }));
+    return answer.rows == all && all > 2 ? fmt::format("all {} devices", all) : answer.devices;
+}
+
+} // namespace
+
+std::string matrix_text(const std::string& scene, const std::vector<RowRun>& all)
+{
+    const Pointers rows = rows_of(scene, all);
+    const auto devices = names_of(rows, device_label);
+    std::vector<Column> columns = {{"row", "row"}};
+    for (const std::string& device : devices)
+        columns.push_back({device, device});
+    Table table(columns);
+    for (const std::string& kernel : names_of(rows, kernel_title)) {
+        std::vector<Cell> cells = {kernel};
+        for (const std::string& device : devices) {
+            const RowRun* row = row_at(rows, kernel, device);
+            cells.push_back(row != nullptr ? Cell(conformity_text(*row)) : Cell());
+        }
+        table.add(std::move(cells));
+    }
+    return table.text(2);
+}
+
+std::string answers_text(const std::string& scene, const std::vector<RowRun>& all)
+{
+    Table table({{"row", "row"},
+                 {"hits", "hit hash"},
+                 {"rays", "rays"},
+                 {"agreed", "agreed"},
+                 {"ties", "ties"},
+                 {"largest", "largest"},
+                 {"settled", "settled"},
+                 {"offset", "offset"},
+                 {"wrong", "wrong"},
+                 {"lost", "lost"},
+                 {"devices", "from"}});
+    const Pointers rows = rows_of(scene, all);
+    for (const Answer& answer : answers_of(rows)) {
+        const Traced& result = *traced(*answer.first);
+        const Verdicts& verdicts = result.verdicts;
+        table.add({answer.kernel, hash_text(result.hit_hash), verdicts.rays, verdicts.agreed, verdicts.ties,
+                   verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
+                   verdicts.settled, verdicts.offset, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
+    }
+    return table.rows().empty() ? "" : table.text(2);
+}
+
+std::string devices_text(const std::vector<RowRun>& rows)
+{
+    Table table({{"label", "device"}, {"name", "name"}, {"type", "type"}, {"self_test", "self-test, exact mode"}});
+    std::vector<std::string> told;
+    for (const RowRun& row : rows) {
+        const std::string label = device_label(row.key);
+        if (!row.device.usable || row.key.kernel.math != MathMode::exact ||
+            std::find(told.begin(), told.end(), label) != told.end())
+            continue;
+        told.push_back(label);
+        table.add({label, row.device.name, row.device.type, row.self_test ? Cell(row.self_test->brief()) : Cell()});
+    }
+    return told.empty() ? "" : table.text(2);
+}
+
+nlohmann::json matrix_json(const std::vector<RowRun>& rows)
+{
+    nlohmann::json matrix = nlohmann::json::object();
+    for (const RowRun& row : rows) {
+        auto& cell = matrix[row.key.scene][kernel_title(row.key)][device_label(row.key)];
+        cell["cell"] = conformity_text(row);
+        cell["conformity"] = name_of(conformity_of(row));
+        if (const Traced* result = traced(row)) cell["hit_hash"] = hash_text(result->hit_hash);
+    }
+    return matrix;
+}
+
+} // namespace tetrace

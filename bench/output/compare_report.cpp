@@ -1,0 +1,264 @@
+#include "bench/output/compare_report.h"
+
+#include "bench/output/bench_report.h"
+#include "bench/statistics/statistics.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+template <class Value>
+Cell cell_if(bool is, const Value& value)
+{
+    return is ? Cell(value) : Cell();
+}
+
+Cell median_of(const ResultRow* row)
+{
+    const bool timed = row != nullptr && !row->samples_s.empty();
+    return timed ? Cell(statistics_of(row->samples_s).median) : Cell();
+}
+
+Cell rate_of(const ResultRow* row)
+{
+    return row != nullptr ? cell_of(row->mrays_per_s) : Cell();
+}
+
+std::string ratio_text(const SpeedChange& change)
+{
+    if (!change.interval) return fmt::format("{:.3f}", change.ratio);
+    return fmt::format("{:.3f} [{:.3f}, {:.3f}]", change.ratio, change.interval->low, change.interval->high);
+}
+
+Table rows_table(const ResultComparison& comparison)
+{
+    Table table({{"name", "row"},
+                 {"before", "A", "Mrays/s"},
+                 {"after", "B", "Mrays/s"},
+                 {"ratio", "B / A"},
+                 {"verdict", "verdict"}});
+    for (const ComparedRow& row : comparison.rows)
+        table.add({row.name(), rate_of(row.before), rate_of(row.after),
+                   row.change ? Cell(ratio_text(*row.change)) : Cell(), row.verdict()});
+    return table;
+}
+
+Table flat_rows(const ResultComparison& comparison)
+{
+    Table table({{"name", "name"},
+                 {"verdict", "verdict"},
+                 {"ratio", "B / A", "", 3},
+                 {"low", "low", "", 3},
+                 {"high", "high", "", 3},
+                 {"confidence", "confidence", "", 5},
+                 {"before_median_s", "A", "s", 6},
+                 {"after_median_s", "B", "s", 6},
+                 {"before_mrays_per_s", "A", "Mrays/s"},
+                 {"after_mrays_per_s", "B", "Mrays/s"},
+                 {"note", "note"}});
+    for (const ComparedRow& row : comparison.rows) {
+        const SpeedChange change = row.change.value_or(SpeedChange{});
+        const FactorInterval interval = change.interval.value_or(FactorInterval{});
+        const bool has_interval = change.interval.has_value();
+        table.add({row.name(), row.verdict(), cell_if(row.change.has_value(), change.ratio),
+                   cell_if(has_interval, interval.low), cell_if(has_interval, interval.high),
+                   cell_if(has_interval, 1 - change.error), median_of(row.before), median_of(row.after),
+                   rate_of(row.before), rate_of(row.after), cell_if(!row.note().empty(), row.note())});
+    }
+    return table;
+}
+
+std::string source_text(const ResultFile& file)
+{
+    return fmt::format("{}: {} by tetrace {} ({}) on {}, {}", file.path.string(), file.head.date, file.head.version,
+                       file.head.commit, file.head.cpu, file.head.system);
+}
+
+std::string device_text(const ResultRow& row)
+{
+    return row.driver.empty() ? row.device : row.device + ", " + row.driver;
+}
+
+/// The API and the device's number in it, as the row's name ends.
+std::string device_label(const ResultRow& row)
+{
+    const std::size_t place = row.name.rfind("/api:");
+    return place == std::string::npos ? row.backend : row.name.substr(place + 5);
+}
+
+/// A sentence for each device that compared rows ran on, in their order.
+std::vector<std::string> device_sentences(const ResultComparison& comparison)
+{
+    std::vector<std::string> sentences;
+    for (const ComparedRow& row : comparison.rows) {
+        if (row.outcome != RowOutcome::compared) continue;
+        const std::string a = device_text(*row.before), b = device_text(*row.after);
+        const std::string devices = a == b ? a + " in both" : fmt::format("{} in A; {} in B", a, b);
+        std::string sentence = fmt::format("{}: {}.", device_label(*row.before), devices);
+        if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end())
+            sentences.push_back(std::move(sentence));
+    }
+    return sentences;
+}
+
+/// A value of the section `tetrace`; null where the result has none there.
+nlohmann::json recorded(const ResultFile& file, const char* pointer)
+{
+    const nlohmann::json::json_pointer place(pointer);
+    const nlohmann::json& section = file.json.at("tetrace");
+    return section.contains(place) ? section.at(place) : nlohmann::json();
+}
+
+/// What the two results do not share, besides their date: a ratio tells of all of it together.
+std::string differences_text(const ResultComparison& comparison)
+{
+    struct Fact {
+        const char *pointer, *name;
+    };
+    constexpr Fact facts[] = {{"/version", "the version"},
+                              {"/commit", "the commit"},
+                              {"/compiler", "the compiler"},
+                              {"/flags", "the compiler's flags"},
+                              {"/host/cpu", "the processor"},
+                              {"/host/system", "the system"},
+                              {"/host/threads", "the threads that the process may use"},
+                              {"/threads", "the threads that it used"}};
+    std::vector<std::string> differences;
+    for (const Fact& fact : facts)
+        if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))
+            differences.emplace_back(fact.name);
+    for (const ComparedRow& row : comparison.rows)
+        if (row.outcome == RowOutcome::compared && device_text(*row.before) != device_text(*row.after)) {
+            differences.emplace_back("devices or their drivers");
+            break;
+        }
+    return differences.empty() ? "nothing of version, commit, compiler, flags, processor, system, threads, devices and "
+                                 "drivers."
+                               : fmt::format("{}.", fmt::join(differences, ", "));
+}
+
+std::string head_text(const ResultComparison& comparison)
+{
+    std::string text = labelled("A", source_text(*comparison.before)) + labelled("B", source_text(*comparison.after)) +
+                       labelled("Differ in", differences_text(comparison));
+    for (const std::string& sentence : device_sentences(comparison))
+        text += labelled("Device", sentence);
+    return text;
+}
+
+std::string notes_text(const ResultComparison& comparison)
+{
+    std::string text;
+    for (const ComparedRow& row : comparison.rows)
+        if (!row.note().empty()) text += fmt::format("{}: {}: {}\n", row.name(), row.verdict(), row.note());
+    return text.empty() ? text : text + "\n";
+}
+
+std::size_t count_of(const ResultComparison& comparison, SpeedVerdict verdict)
+{
+    std::size_t count = 0;
+    for (const ComparedRow& row : comparison.rows)
+        count += row.change && row.change->verdict == verdict ? 1 : 0;
+    return count;
+}
+
+std::size_t too_few_count(const ResultComparison& comparison)
+{
+    return static_cast<std::size_t>(std::count_if(comparison.rows.begin(), comparison.rows.end(),
+                                                  [](const ComparedRow& row) { return row.has_too_few_samples(); }));
+}
+
+std::string summary_text(const ResultComparison& comparison)
+{
+    const std::size_t compared = comparison.count(RowOutcome::compared);
+    std::string text = fmt::format("{} of {} rows", compared, comparison.rows.size());
+    const char* separator = ": ";
+    for (const SpeedVerdict verdict :
+         {SpeedVerdict::same, SpeedVerdict::faster, SpeedVerdict::slower, SpeedVerdict::unsure})
+        if (const std::size_t count = count_of(comparison, verdict); count > 0) {
+            text += fmt::format("{}{} {}", separator, count, name_of(verdict));
+            separator = ", ";
+        }
+    if (const std::size_t count = too_few_count(comparison); count > 0)
+        text += fmt::format("; {} with too few samples for an interval", count);
+    if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);
+    return text + ".";
+}
+
+std::string regression_text(const ComparedRow& row, double tolerance)
+{
+    if (!row.change) return fmt::format("{}: {}, and A has its rate.", row.name(), row.verdict());
+    return fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row.name(),
+                       100 * (1 / row.change->ratio - 1), 100 * tolerance);
+}
+
+std::string promise_text(const ResultComparison& comparison)
+{
+    const std::size_t compared = comparison.count(RowOutcome::compared);
+    const double error = comparison.error();
+    std::string text = fmt::format("rates of B over those of A, by medians: above 1, B is faster; in brackets the "
+                                   "interval. Where nothing changed, "
+                                   "the chance that any of these rows is called FASTER or SLOWER is at most {:.2g} %",
+                                   100 * error);
+    if (error > 1.000001 * comparison_error || error == 0)
+        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %, fewer than 5 tell nothing",
+                            samples_needed(compared), compared);
+    return text + ". What differs between runs, apart from noise, no interval knows: the tolerance is for that.";
+}
+
+std::string verdicts_text(double tolerance)
+{
+    return fmt::format(
+        "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
+        "1. UNSURE: it does, and reaches beyond the tolerance, or there are too few samples for an interval; more "
+        "would tell.",
+        1 / (1 + tolerance), 1 + tolerance);
+}
+
+std::string closing_text(const ResultComparison& comparison, const Options& options)
+{
+    std::string text = labelled("Compared", summary_text(comparison));
+    for (const ComparedRow* row : comparison.regressions(options.allow_missing))
+        text += labelled("Regressed", regression_text(*row, comparison.tolerance));
+    if (comparison.count(RowOutcome::compared) > 0)
+        text += labelled("B / A", promise_text(comparison)) + labelled("Verdicts", verdicts_text(comparison.tolerance));
+    if (options.out) text += labelled("Result", options.out->string());
+    return text;
+}
+
+nlohmann::json source_json(const ResultFile& file)
+{
+    return {{"file", file.path.filename().string()},
+            {"date", file.head.date},
+            {"version", file.head.version},
+            {"commit", file.head.commit},
+            {"host", {{"cpu", file.head.cpu}, {"system", file.head.system}}}};
+}
+
+nlohmann::json comparison_json(const ResultComparison& comparison, const Options& options)
+{
+    nlohmann::json json = {{"before", source_json(*comparison.before)}, {"after", source_json(*comparison.after)},
+                           {"tolerance", comparison.tolerance},         {"error", comparison.error()},
+                           {"rows", to_json(flat_rows(comparison))},    {"regressions", nlohmann::json::array()}};
+    for (const ComparedRow* row : comparison.regressions(options.allow_missing))
+        json["regressions"].push_back(row->name());
+    if (const auto mean = comparison.geometric_mean()) json["geometric_mean"] = *mean;
+    return json;
+}
+
+} // namespace
+
+Report compare_report(const ResultComparison& comparison, const Options& options)
+{
+    nlohmann::json section = result_head(options);
+    section["comparison"] = comparison_json(comparison, options);
+    return {head_text(comparison) + "\n" + rows_table(comparison).text(2) + "\n" + notes_text(comparison) +
+                closing_text(comparison, options),
+            flat_rows(comparison),
+            {{"tetrace", std::move(section)}}};
+}
+
+} // namespace tetrace

@@ -1,0 +1,55 @@
+#include "bench/output/device_json.h"
+
+#include "bench/output/self_test_json.h"
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+void set_known(json& object, const char* key, const std::string& text)
+{
+    if (!text.empty()) object[key] = text;
+}
+
+template <class Number>
+void set_known(json& object, const char* key, Number number)
+{
+    if (number > 0) object[key] = number;
+}
+
+} // namespace
+
+json device_json(const Device& device)
+{
+    json object = {{"name", device.name}, {"type", device.type}, {"driver", device.driver}, {"id", device.id}};
+    set_known(object, "implementation", device.implementation);
+    set_known(object, "uuid", device.uuid);
+    set_known(object, "pci", device.pci);
+    set_known(object, "memory_bytes", device.memory_bytes);
+    set_known(object, "max_buffer_bytes", device.max_buffer_bytes);
+    set_known(object, "max_group_items", device.max_group_items);
+    set_known(object, "group_width", device.group_width);
+    set_known(object, "timer_period_s", device.timer_period_s);
+    set_known(object, "threads", device.threads);
+    return object;
+}
+
+json row_device_json(const RowDevice& device)
+{
+    json object = device_json(device.device);
+    object["backend"] = device.backend->name();
+    object["index"] = device.index;
+    object["hardware"] = device.hardware;
+    if (device.yardstick) {
+        set_known(object, "copy_bytes_per_s", device.yardstick->copy_bytes_per_s);
+        set_known(object, "launch_s", device.yardstick->launch_s);
+    }
+    for (const auto& [math, test] : device.self_tests)
+        object["self_test"][std::string(name_of(math))] = self_test_json(test);
+    set_known(object, "problem", device.problem);
+    return object;
+}
+
+} // namespace tetrace

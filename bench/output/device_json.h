@@ -1,0 +1,15 @@
+#pragma once
+
+#include "bench/measuring/row_devices.h"
+
+#include <nlohmann/json.hpp>
+
+namespace tetrace {
+
+/// A device as results record it (results/README.md); what is unknown is left out.
+[[nodiscard]] nlohmann::json device_json(const Device& device);
+
+/// A device that rows ran on, with its yardstick and self-tests.
+[[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
+
+} // namespace tetrace

@@ -1,0 +1,130 @@
+#include "bench/output/report.h"
+
+#include "bench/options/anonymous.h"
+#include "bench/options/identity.h"
+#include "bench/results/result_file.h"
+#include "bench/terminal/progress.h"
+#include "core/base/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+
+namespace tetrace {
+
+namespace {
+
+Format format_of_file(const Options& options)
+{
+    if (options.format && *options.format != Format::table) return *options.format;
+    const std::string ending = options.out->extension().string();
+    if (ending == ".json") return Format::json;
+    if (ending == ".csv") return Format::csv;
+    if (ending == ".md") return Format::markdown;
+    if (ending == ".txt") return Format::table;
+    throw Error(ErrorKind::usage,
+                fmt::format("--out: the form of '{}' cannot be told from its ending; use .json, .csv, .md or .txt, or "
+                            "add --format",
+                            options.out->string()));
+}
+
+std::string in_format(const Report& report, Format format, const Options& options)
+{
+    const auto shown = [&](const std::string& text) {
+        return options.anonymous ? anonymous_text(text, options) : text;
+    };
+    switch (format) {
+    case Format::table: return shown(report.text);
+    case Format::json: return (options.anonymous ? anonymous_json(report.json, options) : report.json).dump(2) + "\n";
+    case Format::csv: return shown(report.table.csv());
+    case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
+    }
+    throw Error(ErrorKind::internal, "in_format: no such format");
+}
+
+[[noreturn]] void reject_file(const char* option, const std::filesystem::path& path)
+{
+    throw Error(ErrorKind::invalid_input, fmt::format("writing the result to '{}': {}; name another file with {}",
+                                                      path.string(), std::strerror(errno), option));
+}
+
+} // namespace
+
+void check_output(const Options& options)
+{
+    if (!options.out) return;
+    static_cast<void>(format_of_file(options));
+    check_writable("--out", *options.out);
+}
+
+void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs)
+{
+    for (const std::filesystem::path& input : inputs) {
+        std::error_code not_there; // then they are not the same
+        if (std::filesystem::equivalent(out, input, not_there))
+            throw Error(ErrorKind::usage, fmt::format("--out: writing '{}' would replace the input '{}'; name another "
+                                                      "file",
+                                                      out.string(), input.string()));
+    }
+}
+
+void check_writable(const char* option, const std::filesystem::path& path)
+{
+    const bool existed = std::filesystem::exists(path);
+    if (!std::ofstream(path, std::ios::app)) reject_file(option, path);
+    if (!existed) std::filesystem::remove(path);
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text)
+{
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file << text;
+    file.close();
+    if (!file) reject_file("--out", path);
+}
+
+void deliver_to_file(const Options& options, const Report& report)
+{
+    write_text(*options.out, in_format(report, format_of_file(options), options));
+}
+
+void deliver(const Options& options, const Report& report)
+{
+    if (options.out) deliver_to_file(options, report);
+    const Format format = options.format.value_or(Format::table);
+    if (format == Format::table || !options.out) print(in_format(report, format, options));
+}
+
+nlohmann::json to_json(const Table& table)
+{
+    nlohmann::json rows = nlohmann::json::array();
+    for (const auto& row : table.rows()) {
+        nlohmann::json object = nlohmann::json::object();
+        for (std::size_t c = 0; c < row.size(); ++c)
+            std::visit(
+                [&](const auto& value) {
+                    if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+                        object[table.columns()[c].key] = value;
+                },
+                row[c]);
+        rows.push_back(std::move(object));
+    }
+    return rows;
+}
+
+nlohmann::json result_head(const Options& options)
+{
+    const BuildIdentity build = build_identity();
+    const HostIdentity host = host_identity();
+    return {{"schema_version", schema_version},
+            {"verb", name_of(options.verb)},
+            {"date", utc_now()},
+            {"version", build.version},
+            {"commit", build.commit},
+            {"compiler", build.compiler},
+            {"flags", build.flags},
+            {"host", {{"cpu", host.cpu}, {"system", host.system}, {"threads", host.threads}}}};
+}
+
+} // namespace tetrace

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/device/self_test.h"
+
+#include <nlohmann/json.hpp>
+
+namespace tetrace {
+
+/// A self-test as results record it: its fields under their names, "exact", and its line of text.
+[[nodiscard]] nlohmann::json self_test_json(const SelfTest& test);
+
+} // namespace tetrace

@@ -1,0 +1,157 @@
+#include "bench/pictures/false_colour.h"
+
+#include "bench/pictures/lettering.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace tetrace {
+
+namespace {
+
+/// OKLab to linear sRGB: Ottosson, "A perceptual color space for image processing", 2020.
+Colour from_oklab(double lightness, double a, double b)
+{
+    const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+    const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+    const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+    return {static_cast<float>(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+            static_cast<float>(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+            static_cast<float>(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+constexpr std::uint32_t margin = 10; ///< of title and scale bar, at lettering scale 1
+constexpr std::uint32_t footer_height = 58;
+
+/// Where the scale bar of a picture lies, and what it means.
+struct ScaleBar {
+    std::uint32_t scale; ///< of the lettering
+    std::uint32_t left, top, width, height;
+    std::uint32_t end; ///< steps at the right end
+
+    [[nodiscard]] std::uint32_t column_of(std::uint32_t steps) const
+    {
+        return left + static_cast<std::uint32_t>(std::lround(static_cast<double>(steps) * (width - 1) / end));
+    }
+};
+
+Colour colour_of(const Hit& hit, std::uint32_t end)
+{
+    if (hit.face_id == LOST) {
+        return lost_colour();
+    }
+    return hit.steps == 0 ? Colour{} : false_colour(static_cast<double>(hit.steps) / end);
+}
+
+std::string title_of(const std::string& subject, const StepSummary& summary)
+{
+    std::string title = fmt::format("steps per ray, {}, mean {:.1f}, max {}", subject, summary.mean, summary.most);
+    if (summary.lost > 0) {
+        title += fmt::format(", lost {} (magenta)", summary.lost);
+    }
+    return title;
+}
+
+std::uint32_t text_width(const std::string& text, std::uint32_t scale)
+{
+    return static_cast<std::uint32_t>(text.size()) * letter_width * scale;
+}
+
+void draw_bar(Pixmap& pixmap, const ScaleBar& bar)
+{
+    for (std::uint32_t x = 0; x < bar.width; ++x) {
+        for (std::uint32_t y = 0; y < bar.height; ++y) {
+            pixmap.at(bar.left + x, bar.top + y) = false_colour(x / (bar.width - 1.0));
+        }
+    }
+}
+
+void draw_ticks(Pixmap& pixmap, const ScaleBar& bar, Colour ink)
+{
+    const std::uint32_t below = bar.top + bar.height;
+    for (const std::uint32_t tick : scale_ticks(bar.end)) {
+        for (std::uint32_t y = 0; y < 3 * bar.scale; ++y) {
+            pixmap.at(bar.column_of(tick), below + y) = ink;
+        }
+        const std::string label = std::to_string(tick);
+        draw_text(pixmap, std::int64_t{bar.column_of(tick)} - text_width(label, bar.scale) / 2, below + 4 * bar.scale,
+                  label, ink, bar.scale);
+    }
+}
+
+} // namespace
+
+// A path of nearly constant speed in OKLab, from violet to yellow; chroma dips where sRGB has little of it (teal).
+Colour false_colour(double value)
+{
+    const double t = std::clamp(value, 0.0, 1.0);
+    const double hue = (305.0 - 200.0 * t) * std::numbers::pi / 180.0;
+    const double chroma = 0.10 + 0.03 * t - 0.10 * t * (1.0 - t);
+    const Colour colour = from_oklab(0.22 + 0.70 * t, chroma * std::cos(hue), chroma * std::sin(hue));
+    return {std::clamp(colour.r, 0.0f, 1.0f), std::clamp(colour.g, 0.0f, 1.0f), std::clamp(colour.b, 0.0f, 1.0f)};
+}
+
+std::vector<std::uint32_t> scale_ticks(std::uint32_t top)
+{
+    std::uint64_t step = 1;
+    for (unsigned i = 0; top / step > 6; ++i) {
+        step = i % 3 == 1 ? step / 2 * 5 : step * 2; // 1, 2, 5, 10, ...
+    }
+    std::vector<std::uint32_t> ticks;
+    for (std::uint64_t tick = 0; tick <= top; tick += step) {
+        ticks.push_back(static_cast<std::uint32_t>(tick));
+    }
+    return ticks;
+}
+
+StepSummary summarize_steps(std::span<const Hit> hits)
+{
+    std::vector<std::uint32_t> steps;
+    StepSummary summary;
+    for (const Hit& hit : hits) {
+        if (hit.face_id == LOST) {
+            ++summary.lost;
+        } else {
+            steps.push_back(hit.steps);
+        }
+    }
+    if (steps.empty()) {
+        return summary;
+    }
+    std::sort(steps.begin(), steps.end());
+    double sum = 0;
+    for (const std::uint32_t count : steps) {
+        sum += count;
+    }
+    summary.mean = sum / static_cast<double>(steps.size());
+    summary.most = steps.back();
+    summary.top = std::max(1u, steps[(steps.size() - 1) * 999 / 1000]);
+    return summary;
+}
+
+Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height, const std::string& subject)
+{
+    const StepSummary summary = summarize_steps(hits);
+    const std::uint32_t scale = std::max(1u, width / 448);
+    const std::string title = title_of(subject, summary);
+    const std::uint32_t full_width = std::max(width, text_width(title, scale) + 2 * margin * scale);
+    const Colour paper = from_srgb(0x16181C), ink = from_srgb(0xE8EAED);
+
+    Pixmap pixmap(full_width, height + footer_height * scale, paper);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            pixmap.at(x, y) = colour_of(hits[std::size_t{y} * width + x], summary.top);
+        }
+    }
+    draw_text(pixmap, std::int64_t{margin} * scale, std::int64_t{height} + std::int64_t{margin} * scale, title, ink,
+              scale);
+    const ScaleBar bar{scale,      margin * scale, height + 24 * scale, full_width - 2 * margin * scale,
+                       14 * scale, summary.top};
+    draw_bar(pixmap, bar);
+    draw_ticks(pixmap, bar, ink);
+    return pixmap;
+}
+
+} // namespace tetrace

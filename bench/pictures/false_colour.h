@@ -1,0 +1,36 @@
+#pragma once
+
+#include "bench/pictures/pixmap.h"
+#include "core/rays/hit.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// The colour of a value in [0, 1]: from dark violet over teal to light yellow. Lightness rises evenly (in OKLab), so
+/// that equal differences look equal, in grey and to colour-blind eyes too. Values outside are clamped.
+[[nodiscard]] Colour false_colour(double value);
+
+/// Round numbers from 0 to at most `top`, in steps of 1, 2 or 5 times a power of ten; at most seven. top >= 1.
+[[nodiscard]] std::vector<std::uint32_t> scale_ticks(std::uint32_t top);
+
+/// Steps per ray as they are told below a picture.
+struct StepSummary {
+    double mean = 0;        ///< over all rays, those that never met the domain included
+    std::uint32_t most = 0; ///< of any ray
+    std::uint32_t top = 1;  ///< where the scale ends: all rays but one in a thousand are at or below it
+    std::uint64_t lost = 0;
+};
+[[nodiscard]] StepSummary summarize_steps(std::span<const Hit> hits);
+
+/// The picture of a view in false colour, a pixel per ray, with a title and a scale bar below it. Rays without a step
+/// are black, lost rays magenta, rays beyond the scale's end have the colour of its end.
+/// subject: the scene and view, for the title. hits: width * height, row after row. The picture is `width` wide, or
+/// wider where the title needs it.
+[[nodiscard]] Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height,
+                                const std::string& subject);
+
+} // namespace tetrace

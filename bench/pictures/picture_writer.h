@@ -1,0 +1,23 @@
+#pragma once
+
+#include "bench/pictures/images.h"
+
+#include <optional>
+
+namespace tetrace {
+
+/// Writes pictures of one ending, which it is made for: it loads what that needs.
+class PictureWriter {
+public:
+    /// ending: .ppm, which needs nothing; .png or .exr, which load the images module.
+    /// Throws Error{missing} where it is needed and is not there.
+    explicit PictureWriter(const std::string& ending);
+
+    /// Throws Error{invalid_input} naming the file and the reason.
+    void write(const std::filesystem::path& path, const Pixmap& pixmap) const;
+
+private:
+    std::optional<ImageWriter> images_; ///< of all forms but .ppm
+};
+
+} // namespace tetrace

@@ -1,0 +1,186 @@
+#include "bench/report/charts/axis.h"
+
+#include "bench/terminal/text.h"
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace tetrace {
+
+namespace {
+
+void check_range(double low, double high)
+{
+    if (!std::isfinite(low) || !std::isfinite(high) || !std::isfinite(high - low) || low > high)
+        throw Error(ErrorKind::internal, fmt::format("Axis: [{}, {}] is no range", low, high));
+}
+
+void check_logarithm(double low)
+{
+    if (low < std::numeric_limits<double>::min())
+        throw Error(ErrorKind::internal, fmt::format("Axis: {} has no place on a logarithmic one", low));
+}
+
+/// 1, 2 or 5 times a power of ten that is not below `value`, but for rounding.
+double round_step(double value)
+{
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (value <= factor * power * (1 + 1e-9)) return factor * power;
+    return 10 * power;
+}
+
+/// The n-th of the series ..., 0.5, 1, 2, 5, 10, 20, ...: 0 is 1.
+double one_two_five(int n)
+{
+    const int decade = static_cast<int>(std::floor(n / 3.0));
+    const double factors[] = {1, 2, 5};
+    return factors[n - 3 * decade] * std::pow(10.0, decade);
+}
+
+std::string with_decimals(double value, int decimals)
+{
+    std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
+    const std::size_t point = std::min(digits.find('.'), digits.size());
+    return fmt::format("{}{}{}", value < 0 ? "-" : "", with_commas(std::stoull(digits.substr(0, point))),
+                       digits.substr(point));
+}
+
+constexpr double largest_plain = 1e15;
+
+} // namespace
+
+Axis Axis::between(bool logarithmic, std::vector<double> ticks)
+{
+    const double low = ticks.front(), high = ticks.back();
+    return {logarithmic, low, high, std::move(ticks)};
+}
+
+Axis Axis::linear(double low, double high, int intervals)
+{
+    check_range(low, high);
+    // Ticks of a range that rounding all but closes could not be counted.
+    if (const double size = std::max(std::abs(low), std::abs(high)); high - low <= 1e-9 * size) {
+        const double room = size == 0 ? 1 : size / 2;
+        low -= size == 0 ? 0 : room;
+        high += room;
+    }
+    const double step = round_step((high - low) / std::max(intervals, 1));
+    const double first = std::floor(low / step + 1e-9), last = std::ceil(high / step - 1e-9);
+    std::vector<double> ticks;
+    for (double i = first; i <= last; ++i)
+        ticks.push_back(i * step);
+    return between(false, std::move(ticks));
+}
+
+Axis Axis::from_zero(double high, int intervals)
+{
+    Axis axis = linear(0, high, intervals);
+    if (high > 0) axis.high_ = high;
+    while (axis.ticks_.back() > axis.high_ * (1 + 1e-9))
+        axis.ticks_.pop_back();
+    return axis;
+}
+
+Axis Axis::logarithmic_at(std::vector<double> values, double room)
+{
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    if (values.empty()) throw Error(ErrorKind::internal, "Axis: no values");
+    const double low = values.front() / room, high = values.back() * room;
+    check_range(low, high);
+    check_logarithm(low);
+    return {true, low, high, std::move(values)};
+}
+
+Axis Axis::logarithmic(double low, double high)
+{
+    check_range(low, high);
+    check_logarithm(low);
+    const bool fine = high <= 1000 * low;
+    const int stride = fine ? 1 : 3;
+    int n = 3 * static_cast<int>(std::floor(std::log10(low) + 1e-9));
+    while (fine && one_two_five(n + 1) <= low * (1 + 1e-9))
+        ++n;
+    std::vector<double> ticks;
+    do
+        ticks.push_back(one_two_five(n));
+    while (one_two_five(std::exchange(n, n + stride)) < high * (1 - 1e-9) || ticks.size() < 2);
+    return between(true, std::move(ticks));
+}
+
+double Axis::place(double value, double begin, double end) const
+{
+    if (!std::isfinite(value)) throw Error(ErrorKind::internal, "Axis: a value that is not finite has no place");
+    const double inside = std::clamp(value, low(), high());
+    const double share = logarithmic_ ? (std::log(inside) - std::log(low())) / (std::log(high()) - std::log(low()))
+                                      : (inside - low()) / (high() - low());
+    return begin + share * (end - begin);
+}
+
+std::string Axis::label(double tick) const
+{
+    const double step = logarithmic_ || ticks_.size() < 2 ? std::abs(tick) : ticks_[1] - ticks_[0];
+    if (std::abs(tick) >= largest_plain || (step > 0 && step < 1e-6)) return fmt::format("{:.3g}", tick);
+    const int decimals = step == 0 ? 0 : std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+    return with_decimals(tick, decimals);
+}
+
+std::string short_number(double value)
+{
+    const double size = std::abs(value);
+    if (value == 0) return "0";
+    if (!std::isfinite(value) || size < 1e-6 || size >= largest_plain) return fmt::format("{:.3g}", value);
+    const int magnitude = static_cast<int>(std::floor(std::log10(size) + 1e-12));
+    return with_decimals(value, std::max(0, 2 - magnitude));
+}
+
+std::string fixed_number(double value, int decimals)
+{
+    const double size = std::abs(value), last_place = std::pow(10.0, -decimals);
+    const bool is_plain = size >= last_place * (1 - 1e-9) && size < largest_plain;
+    return is_plain ? with_decimals(value, decimals) : short_number(value);
+}
+
+std::string short_percent(double share)
+{
+    return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 ? 1 : 0);
+}
+
+std::vector<double> spread_apart(const std::vector<double>& positions, double gap, double low, double high)
+{
+    struct Block {
+        double sum;        // of (wanted position - offset in the block)
+        std::size_t count; // of positions in it
+        [[nodiscard]] double mean() const { return sum / static_cast<double>(count); }
+    };
+    std::vector<std::size_t> order(positions.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return positions[a] < positions[b]; });
+    // With each rank's share of the gaps taken off, "at least a gap apart" becomes "not descending".
+    std::vector<Block> blocks;
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        blocks.push_back({positions[order[rank]] - gap * static_cast<double>(rank), 1});
+        while (blocks.size() > 1 && blocks[blocks.size() - 2].mean() > blocks.back().mean()) {
+            const Block last = blocks.back();
+            blocks.pop_back();
+            blocks.back().sum += last.sum;
+            blocks.back().count += last.count;
+        }
+    }
+    const double room = std::max(low, high - gap * (static_cast<double>(order.size()) - 1));
+    std::vector<double> placed(positions.size());
+    std::size_t rank = 0;
+    for (const Block& block : blocks)
+        for (std::size_t i = 0; i < block.count; ++i, ++rank)
+            placed[order[rank]] = std::clamp(block.mean(), low, room) + gap * static_cast<double>(rank);
+    return placed;
+}
+
+} // namespace tetrace

@@ -1,0 +1,117 @@
+#include "bench/report/charts/line_chart.h"
+
+#include "bench/report/charts/axis.h"
+#include "bench/report/charts/side_labels.h"
+#include "bench/report/charts/ticks.h"
+#include "bench/report/html/svg.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace tetrace {
+
+namespace {
+
+constexpr double top = 24, least_bottom = 264, left = 62, axis_room = 40;
+
+/// Between the first and the last label and the plot's ends.
+constexpr double above_labels = 6, below_labels = 4;
+
+/// Points of a line are marked with their shape up to this number.
+constexpr std::size_t most_marked = 24;
+
+struct Range {
+    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+
+    void hold(double value)
+    {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    /// A range of values that are not negative begins at zero where that leaves them half of it.
+    [[nodiscard]] Axis axis(int intervals, bool logarithmic) const
+    {
+        if (logarithmic) return Axis::logarithmic(low, high);
+        return Axis::linear(low >= 0 && low <= high / 2 ? 0 : low, high, intervals);
+    }
+};
+
+struct LineFrame {
+    Axis x_axis, y_axis;
+    double right, bottom;
+
+    [[nodiscard]] double x(double value) const { return x_axis.place(value, left, right); }
+    [[nodiscard]] double y(double value) const { return y_axis.place(value, bottom, top); }
+};
+
+/// As low as a column of so many labels reaches.
+double bottom_of(std::size_t labels)
+{
+    const double column = side_label_pitch * static_cast<double>(std::max<std::size_t>(labels, 1) - 1);
+    return std::max(least_bottom, top + above_labels + column + below_labels);
+}
+
+LineFrame frame_of(const LineChart& chart)
+{
+    Range x, y;
+    double names = 0;
+    for (const Series& series : chart.series) {
+        for (const auto& point : series.points) {
+            x.hold(point.first);
+            y.hold(point.second);
+        }
+        names = std::max(names, text_width(series.name, label_size));
+    }
+    return {x.axis(4, chart.x_logarithmic), y.axis(5, chart.y_logarithmic), side_labels_left(names),
+            bottom_of(chart.series.size())};
+}
+
+Html grid(const LineChart& chart, const LineFrame& frame)
+{
+    return horizontal_ticks(frame.x_axis, left, frame.right, top, frame.bottom) +
+           vertical_ticks(frame.y_axis, left, frame.right, top, frame.bottom) +
+           svg_text(0, 11, "small", chart.y_title) +
+           svg_text((left + frame.right) / 2, frame.bottom + 32, "small middle", chart.x_title);
+}
+
+bool ascends(const Series& series)
+{
+    return std::is_sorted(series.points.begin(), series.points.end(),
+                          [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+Html points_of(const Series& series, std::size_t number, const LineFrame& frame)
+{
+    std::string line;
+    Html shapes;
+    const bool is_line = ascends(series), marked = !is_line || series.points.size() <= most_marked;
+    for (const auto& [x, y] : series.points) {
+        line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", frame.x(x), frame.y(y));
+        if (marked) shapes += svg_shape(frame.x(x), frame.y(y), number, is_line ? "solid" : "cloud");
+    }
+    return (is_line ? svg_path(line, "line") : Html()) + shapes;
+}
+
+} // namespace
+
+Html draw(const LineChart& chart)
+{
+    const LineFrame frame = frame_of(chart);
+    std::vector<double> wanted;
+    for (const Series& series : chart.series)
+        wanted.push_back(series.points.empty() ? frame.bottom : frame.y(series.points.back().second));
+    const auto places = spread_apart(wanted, side_label_pitch, top + above_labels, frame.bottom - below_labels);
+    Html content = grid(chart, frame);
+    for (std::size_t i = 0; i < chart.series.size(); ++i) {
+        const Series& series = chart.series[i];
+        if (series.points.empty()) continue;
+        content +=
+            svg_mark(series_class(i), series.name, fmt::format("{}: {} points", series.name, series.points.size()),
+                     side_label(frame.x(series.points.back().first), wanted[i], frame.right, places[i], series.name) +
+                         points_of(series, i, frame));
+    }
+    return svg_drawing(frame.bottom + axis_room, chart.label, content);
+}
+
+} // namespace tetrace

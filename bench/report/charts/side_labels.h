@@ -1,0 +1,17 @@
+#pragma once
+
+#include "bench/report/html/html.h"
+
+namespace tetrace {
+
+/// Least distance between the labels in the column right of a plot.
+inline constexpr double side_label_pitch = 17;
+
+/// Where a plot has to end so that labels of that width fit right of it; at least half the drawing remains.
+[[nodiscard]] double side_labels_left(double widest_label);
+
+/// A label right of a plot that ends at plot_right, at height label_y, with a thin line from the point that it names.
+[[nodiscard]] Html side_label(double point_x, double point_y, double plot_right, double label_y,
+                              const std::string& label);
+
+} // namespace tetrace

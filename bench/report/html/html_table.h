@@ -1,0 +1,52 @@
+#pragma once
+
+#include "bench/report/html/html.h"
+
+#include <vector>
+
+namespace tetrace {
+
+/// A column of a table on the page: numbers stand right-aligned.
+struct HtmlColumn {
+    std::string title, unit = {};
+    bool number = false;
+};
+
+/// A table on the page; a column without anything in it is left out.
+class HtmlTable {
+public:
+    explicit HtmlTable(std::vector<HtmlColumn> columns) : columns_(std::move(columns)) {}
+
+    /// Throws Error{internal} where the number of cells is not that of the columns.
+    void add(std::vector<Html> cells);
+    [[nodiscard]] bool empty() const { return rows_.empty(); }
+    /// Nothing where there is no row. It scrolls sideways by itself where the page is too narrow for it.
+    [[nodiscard]] Html html() const;
+
+private:
+    [[nodiscard]] Html row_html(std::string_view tag, const std::vector<Html>& cells,
+                                const std::vector<bool>& used) const;
+
+    std::vector<HtmlColumn> columns_;
+    std::vector<std::vector<Html>> rows_;
+};
+
+/// A part of the page: anchor, heading, content.
+struct Section {
+    std::string id, title;
+    Html content;
+};
+
+[[nodiscard]] Html paragraph(std::string_view plain);
+/// A note in small letters.
+[[nodiscard]] Html note(std::string_view plain);
+[[nodiscard]] Html heading(std::string_view plain);
+/// A picture or drawing with its caption under a title; both may be empty.
+[[nodiscard]] Html figure(std::string_view title, const Html& content, std::string_view caption);
+/// Things that stand side by side where there is room.
+[[nodiscard]] Html side_by_side(const Html& content);
+
+/// A status, verdict or conformity with a sign in front of it, so that colour is not all that tells.
+[[nodiscard]] Html badge(std::string_view word);
+
+} // namespace tetrace

@@ -1,0 +1,200 @@
+#include "bench/reproduce/tables/figure6.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/reproduce/paper.h"
+#include "bench/reproduce/speed.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+/// Calls visit(row index) for each of the cdt's rows with a rate.
+template <class Visit>
+void for_rated(const SceneRun& run, const Visit& visit)
+{
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+        if (is_cdt(run.rows[i]) && !view_seconds(run, i).empty()) visit(i);
+}
+
+std::string source()
+{
+    return fmt::format("{}, Figure 6", paper::citation);
+}
+
+std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
+{
+    const RowRun& row = run.rows[i];
+    const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
+    const auto [fewest, most] = std::minmax_element(steps.begin(), steps.end());
+    const auto [shortest, longest] = std::minmax_element(seconds.begin(), seconds.end());
+    const auto r = correlation(steps, seconds, run.sampling);
+    const auto rays = static_cast<double>(run.scene->rays_per_view());
+    const auto beside_ours = [&](double number) {
+        return paper::has_scene(run.build.scene) ? std::optional(number) : std::nullopt;
+    };
+    const Line line = r ? fit_line(steps, seconds) : Line{};
+    return {run.build.scene,
+            std::string(name_of(row.key.kernel.method)),
+            std::string(name_of(row.key.kernel.layout)),
+            device_label(row.key),
+            row.device.type,
+            exact_cell(static_cast<double>(steps.size())),
+            exact_cell(*fewest, beside_ours(paper::least_tets_a_ray)),
+            exact_cell(*most, beside_ours(paper::most_tets_a_ray)),
+            exact_cell(1e3 * *shortest),
+            exact_cell(1e3 * *longest),
+            exact_cell(figures_of(row)->msteps_per_s.value_or(0)),
+            r ? PaperCell(Quantity{*r, {}}) : PaperCell(),
+            r ? exact_cell(1e9 * line.slope / rays) : PaperCell(),
+            r ? exact_cell(1e3 * line.intercept) : PaperCell()};
+}
+
+std::vector<Claim> claims_of(const RecordedRuns& runs)
+{
+    auto claims = speed_claims(runs);
+    claims.insert(claims.begin(), {proportional_claim(runs, "cpu"), proportional_claim(runs, "gpu")});
+    return claims;
+}
+
+/// The types of the devices that rated rows ran on, in the rows' order.
+std::vector<std::string> rated_types(const SceneRun& run)
+{
+    std::vector<std::string> types;
+    for_rated(run, [&](std::size_t i) {
+        const std::string& type = run.rows[i].device.type;
+        if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
+    });
+    return types;
+}
+
+std::vector<std::size_t> rated_rows(const SceneRun& run, const std::string& type)
+{
+    std::vector<std::size_t> rows;
+    for_rated(run, [&](std::size_t i) {
+        if (run.rows[i].device.type == type) rows.push_back(i);
+    });
+    return rows;
+}
+
+/// "maria tet96 opencl", without the layout where all rows have the same, and without the device likewise.
+std::vector<std::string> distinct_names(const SceneRun& run, const std::vector<std::size_t>& rows)
+{
+    std::set<std::string_view> layouts;
+    std::set<std::string> devices;
+    for (const std::size_t i : rows) {
+        layouts.insert(name_of(run.rows[i].key.kernel.layout));
+        devices.insert(device_label(run.rows[i].key));
+    }
+    std::vector<std::string> names;
+    for (const std::size_t i : rows) {
+        const RowKey& key = run.rows[i].key;
+        std::string name(name_of(key.kernel.method));
+        if (layouts.size() > 1) name.append(" ").append(name_of(key.kernel.layout));
+        if (devices.size() > 1) name.append(" ").append(device_label(key));
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+PaperFigure::Series series_of(const SceneRun& run, std::size_t i, const std::string& name)
+{
+    PaperFigure::Series series{name, {}};
+    const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
+    for (std::size_t view = 0; view < steps.size(); ++view)
+        series.points.emplace_back(steps[view], 1e3 * seconds[view]);
+    return series;
+}
+
+/// The scene's rows on the devices of one type: emulations of GPUs share no figure with GPUs, nor either with a CPU.
+PaperFigure figure_of(const SceneRun& run, const std::string& type)
+{
+    PaperFigure figure{
+        fmt::format("figure6-{}{}{}", run.build.scene, type.empty() ? "" : "-", type),
+        fmt::format("Time and tets traversed, a point a view: {}{}{}", run.build.scene, type.empty() ? "" : ", ", type),
+        source(),
+        {"tets traversed", "a ray"},
+        {"time of an image", "ms"},
+        {},
+        {},
+        {},
+        {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
+         "interleaved."}};
+    const auto rows = rated_rows(run, type);
+    const auto names = distinct_names(run, rows);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        figure.series.push_back(series_of(run, rows[i], names[i]));
+    return figure;
+}
+
+void add_pictures(PaperFigure& figure, const SceneRun& run)
+{
+    figure.pictures = run.extreme_pictures;
+    if (!figure.pictures.empty())
+        figure.notes.emplace_back("Pictures: the views with the fewest and the most tets a ray, surface and steps.");
+    figure.notes.insert(figure.notes.end(), run.picture_problems.begin(), run.picture_problems.end());
+}
+
+} // namespace
+
+std::vector<PaperFigure> figure6(const SceneRuns& runs)
+{
+    std::vector<PaperFigure> figures;
+    for (const SceneRun* run : runs) {
+        const std::size_t first = figures.size();
+        for (const std::string& type : rated_types(*run))
+            figures.push_back(figure_of(*run, type));
+        if (figures.size() == first) figures.push_back(figure_of(*run, {}));
+        add_pictures(figures[first], *run);
+    }
+    return figures;
+}
+
+PaperTable figure6_table(const SceneRuns& runs)
+{
+    PaperTable table{"figure6",
+                     "Time and tets traversed over the views",
+                     source(),
+                     {{"scene", "scene"},
+                      {"method", "method"},
+                      {"layout", "layout"},
+                      {"device", "device"},
+                      {"type", "type"},
+                      {"views", "views", "", 0},
+                      {"fewest_tets", "fewest tets", "a ray", 1},
+                      {"most_tets", "most tets", "a ray", 1},
+                      {"shortest_ms", "shortest", "ms"},
+                      {"longest_ms", "longest", "ms"},
+                      {"msteps_per_s", "Msteps/s", "", 1},
+                      {"correlation", "r", "", 3},
+                      {"slope_ns", "slope", "ns a tet and ray"},
+                      {"intercept_ms", "intercept", "ms"}},
+                     {},
+                     claims_of({runs.begin(), runs.end()}),
+                     {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
+                      "views. Emulations of GPUs are in no claim.",
+                      fmt::format("The paper: {} to {} tets a ray over its 1,282 views, of cameras that it does not "
+                                  "give, and {} to {} Msteps/s on its CPU. {}",
+                                  paper::least_tets_a_ray, paper::most_tets_a_ray, paper::least_cpu_msteps,
+                                  paper::most_cpu_msteps, paper::rest_is_there)}};
+    for (const SceneRun* run : runs) {
+        for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
+        for (std::size_t i = 0; i < run->rows.size(); ++i)
+            if (const RowRun& row = run->rows[i]; is_cdt(row) && view_seconds(*run, i).empty())
+                table.notes.push_back(
+                    fmt::format("{} has no rate: {}: {}.", series_name(row), name_of(status_of(row)), reason_of(row)));
+    }
+    return table;
+}
+
+std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row)
+{
+    const auto steps = view_steps(run, row);
+    const auto [fewest, most] = std::minmax_element(steps.begin(), steps.end());
+    return {static_cast<std::size_t>(fewest - steps.begin()), static_cast<std::size_t>(most - steps.begin())};
+}
+
+} // namespace tetrace

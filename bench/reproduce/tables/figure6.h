@@ -1,0 +1,23 @@
+#pragma once
+
+#include "bench/reproduce/scene_run.h"
+#include "bench/reproduce/tables/paper_table.h"
+
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// Figure 6: time and tets traversed, a point a view. One figure a scene and type of device ("figure6-bunny-gpu"), the
+/// scene's pictures in its first; a scene without a rated row has one without points.
+/// runs: timed.
+[[nodiscard]] std::vector<PaperFigure> figure6(const SceneRuns& runs);
+
+/// The same as a table: range of tets and of times, correlation and line of each row; and the claims, which are of all
+/// scenes and devices.
+[[nodiscard]] PaperTable figure6_table(const SceneRuns& runs);
+
+/// The views (indices) in which a row's rays leave the fewest and the most tets.
+[[nodiscard]] std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row);
+
+} // namespace tetrace

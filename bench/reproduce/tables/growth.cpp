@@ -1,0 +1,309 @@
+#include "bench/reproduce/tables/growth.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/reproduce/speed.h"
+#include "bench/rows/rows.h"
+#include "bench/statistics/power_law.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+/// What a row comes to at one size; nothing where it is not known, or does not apply.
+struct Growing {
+    double faces = 0;
+    std::optional<double> ns_a_ray, steps, nodes, triangles, build_s, memory_mb;
+};
+
+/// A row through all sizes at which it is there.
+struct GrowthLine {
+    const RowRun* row = nullptr; ///< at the first of them
+    std::string family;          ///< the scene's name without its size
+    std::vector<Growing> points;
+};
+
+std::string family_of(const SceneRun& run)
+{
+    return run.build.label.substr(0, run.build.label.find('@'));
+}
+
+std::optional<double> a_ray(std::uint64_t count, std::uint64_t rays)
+{
+    if (count == 0 || rays == 0) return std::nullopt;
+    return static_cast<double>(count) / static_cast<double>(rays);
+}
+
+Growing growing(const SceneRun& run, std::size_t i)
+{
+    const RowRun& row = run.rows[i];
+    Growing point;
+    point.faces = static_cast<double>(run.scene->counts().occlusive_faces);
+    if (const auto figures = figures_of(row)) point.ns_a_ray = 1e3 / figures->mrays_per_s;
+    if (const Traced* result = traced(row)) {
+        if (is_cdt(row)) point.steps = a_ray(result->totals.steps(), result->totals.rays);
+        point.nodes = a_ray(result->visits.nodes, result->visits.rays);
+        point.triangles = a_ray(result->visits.triangles, result->visits.rays);
+    }
+    if (i < run.costs.size() && run.costs[i]) {
+        point.build_s = run.costs[i]->once_s();
+        point.memory_mb = 1e-6 * static_cast<double>(run.costs[i]->bytes);
+    }
+    return point;
+}
+
+bool is_one_kernel(const RowRun& a, const RowRun& b)
+{
+    RowKey key = a.key;
+    key.scene = b.key.scene;
+    return key == b.key;
+}
+
+/// Lines in the order of rows; points in that of runs.
+std::vector<GrowthLine> lines_of(const SceneRuns& runs)
+{
+    std::vector<GrowthLine> lines;
+    for (const SceneRun* run : runs) {
+        if (run->scene == nullptr) continue;
+        for (std::size_t i = 0; i < run->rows.size(); ++i) {
+            const auto same = [&](const GrowthLine& line) {
+                return line.family == family_of(*run) && is_one_kernel(*line.row, run->rows[i]);
+            };
+            auto line = std::find_if(lines.begin(), lines.end(), same);
+            if (line == lines.end()) line = lines.insert(line, {&run->rows[i], family_of(*run), {}});
+            line->points.push_back(growing(*run, i));
+        }
+    }
+    return lines;
+}
+
+PaperCell cell_of(const std::optional<double>& value)
+{
+    return value ? exact_cell(*value) : PaperCell();
+}
+
+std::vector<PaperCell> size_cells(const SceneRun& run, std::size_t i)
+{
+    const RowRun& row = run.rows[i];
+    const std::string status(name_of(status_of(row))), reason = reason_of(row);
+    std::vector<PaperCell> cells = {run.build.label, std::string(name_of(row.key.kernel.method)),
+                                    std::string(name_of(row.key.kernel.layout)), device_label(row.key),
+                                    row.device.type.empty() ? PaperCell() : PaperCell(row.device.type)};
+    if (run.scene != nullptr) {
+        const Growing point = growing(run, i);
+        const auto figures = figures_of(row);
+        cells.push_back(exact_cell(point.faces));
+        cells.push_back(exact_cell(static_cast<double>(run.scene->counts().tets)));
+        for (const auto& value : {point.steps, point.nodes, point.triangles})
+            cells.push_back(cell_of(value));
+        cells.push_back(figures ? exact_cell(figures->mrays_per_s) : PaperCell());
+        for (const auto& value : {point.ns_a_ray, point.build_s, point.memory_mb})
+            cells.push_back(cell_of(value));
+        cells.push_back(figures ? exact_cell(100 * figures->kernel_s.spread()) : PaperCell());
+    } else
+        cells.resize(cells.size() + 10);
+    cells.emplace_back(reason.empty() ? status : fmt::format("{}: {}", status, reason));
+    return cells;
+}
+
+/// The exponent of what a line has at the sizes at which it has it.
+PaperCell exponent_cell(const GrowthLine& line, std::optional<double> Growing::*member)
+{
+    std::vector<double> faces, values;
+    for (const Growing& point : line.points)
+        if (const auto& value = point.*member) {
+            faces.push_back(point.faces);
+            values.push_back(*value);
+        }
+    const auto law = fit_power_law(faces, values);
+    return law ? PaperCell(Quantity{law->exponent, {}}) : PaperCell();
+}
+
+std::vector<PaperCell> exponent_cells(const GrowthLine& line)
+{
+    const KernelId& kernel = line.row->key.kernel;
+    std::vector<PaperCell> cells = {line.family, std::string(name_of(kernel.method)),
+                                    std::string(name_of(kernel.layout)), device_label(line.row->key),
+                                    exact_cell(static_cast<double>(line.points.size()))};
+    for (const auto member : {&Growing::ns_a_ray, &Growing::steps, &Growing::nodes, &Growing::triangles,
+                              &Growing::build_s, &Growing::memory_mb})
+        cells.push_back(exponent_cell(line, member));
+    return cells;
+}
+
+/// "maria tet80 openmp"; Embree's device goes without saying.
+std::string line_name(const GrowthLine& line)
+{
+    const KernelId& kernel = line.row->key.kernel;
+    if (kernel.layout == Layout::embree) return fmt::format("Embree {}", name_of(kernel.method));
+    const std::string name = kernel.structure == Structure::cdt ? fmt::format("CDT {}", name_of(kernel.layout))
+                                                                : std::string(name_of(kernel.layout));
+    return name + ' ' + device_label(line.row->key);
+}
+
+/// The series of what a line has; without points where it has nothing.
+PaperFigure::Series series_of(const GrowthLine& line, const std::string& name, std::optional<double> Growing::*member)
+{
+    PaperFigure::Series series{name, {}};
+    for (const Growing& point : line.points)
+        if (const auto& value = point.*member) series.points.emplace_back(point.faces, *value);
+    return series;
+}
+
+PaperFigure empty_figure(const std::string& id, const std::string& title, const std::string& y, const std::string& unit)
+{
+    PaperFigure figure{id,
+                       title,
+                       "not in the paper",
+                       {"occlusive faces", "", true},
+                       {y, unit, true},
+                       {},
+                       {},
+                       {},
+                       {"Both axes are logarithmic: a power law is a straight line, its exponent the slope."}};
+    return figure;
+}
+
+void add_series(PaperFigure& figure, PaperFigure::Series series)
+{
+    if (!series.points.empty()) figure.series.push_back(std::move(series));
+}
+
+PaperFigure time_figure(const std::vector<GrowthLine>& lines, const std::string& family, const std::string& type)
+{
+    PaperFigure figure =
+        empty_figure(fmt::format("growth-{}-time-{}", family, type),
+                     fmt::format("Time of a ray as {} is refined, {}", family, type), "time", "ns a ray");
+    for (const GrowthLine& line : lines)
+        if (line.family == family && line.row->device.type == type)
+            add_series(figure, series_of(line, line_name(line), &Growing::ns_a_ray));
+    return figure;
+}
+
+/// What rays visit is the same on every device: openmp's rows tell it.
+PaperFigure visits_figure(const std::vector<GrowthLine>& lines, const std::string& family)
+{
+    PaperFigure figure = empty_figure(fmt::format("growth-{}-visits", family),
+                                      fmt::format("What a ray visits as {} is refined", family), "visits", "a ray");
+    bool has_cdt = false;
+    for (const GrowthLine& line : lines) {
+        if (line.family != family || line.row->key.backend != reference_backend) continue;
+        const std::string layout(name_of(line.row->key.kernel.layout));
+        if (!has_cdt) add_series(figure, series_of(line, "CDT, tets", &Growing::steps));
+        has_cdt = has_cdt || is_cdt(*line.row);
+        add_series(figure, series_of(line, layout + ", nodes", &Growing::nodes));
+        add_series(figure, series_of(line, layout + ", triangles", &Growing::triangles));
+    }
+    return figure;
+}
+
+std::vector<std::string> families_of(const std::vector<GrowthLine>& lines)
+{
+    std::vector<std::string> families;
+    for (const GrowthLine& line : lines)
+        if (std::find(families.begin(), families.end(), line.family) == families.end()) families.push_back(line.family);
+    return families;
+}
+
+constexpr const char* growth_source = "not in the paper";
+
+} // namespace
+
+const std::vector<std::uint32_t>& growth_sizes()
+{
+    static const std::vector<std::uint32_t> sizes = {1'500, 6'000, 25'000, 100'000, 400'000};
+    return sizes;
+}
+
+std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes)
+{
+    std::sort(sizes.begin(), sizes.end());
+    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+    std::vector<SceneBuild> builds;
+    for (const std::uint32_t size : sizes) {
+        SceneRequest sized = request;
+        const std::string label = fmt::format("{}@{}", request.name, size);
+        if (request.name == "cubes")
+            sized.build.resolution = size;
+        else
+            sized.name = label;
+        builds.push_back({sized, label, growth_build, label, false, true, false, true});
+    }
+    return builds;
+}
+
+PaperTable growth_table(const SceneRuns& runs)
+{
+    PaperTable table{"growth",
+                     "One scene in several sizes: what a ray visits, and what tracing takes",
+                     growth_source,
+                     {{"scene", "scene"},
+                      {"method", "method"},
+                      {"layout", "layout"},
+                      {"device", "device"},
+                      {"type", "type"},
+                      {"occlusive_faces", "occlusive faces", "", 0},
+                      {"tets", "tets", "", 0},
+                      {"steps", "tets", "a ray", 1},
+                      {"nodes", "nodes", "a ray", 1},
+                      {"triangles", "triangles", "a ray", 1},
+                      {"mrays_per_s", "Mrays/s"},
+                      {"ns_a_ray", "time", "ns a ray", 1},
+                      {"build_s", "built and packed in", "s"},
+                      {"memory_mb", "memory", "MB", 1},
+                      {"spread_percent", "spread", "%", 1},
+                      {"status", "status"}},
+                     {},
+                     {},
+                     {"A size is the number of triangles of banana@N, of cubes@N the cubes along an axis. Times are of "
+                      "the median sample of all views, device seconds of the kernel alone. Nodes and triangles are "
+                      "counted by openmp's counting build, outside the timing."}};
+    for (const SceneRun* run : runs)
+        for (std::size_t i = 0; i < run->rows.size(); ++i)
+            table.rows.push_back(size_cells(*run, i));
+    return table;
+}
+
+PaperTable growth_exponents(const SceneRuns& runs)
+{
+    PaperTable table{
+        "growth-exponents",
+        "How cost grows with the number of occlusive faces: the exponents of power laws",
+        growth_source,
+        {{"scene", "scene"},
+         {"method", "method"},
+         {"layout", "layout"},
+         {"device", "device"},
+         {"sizes", "sizes", "", 0},
+         {"time", "time of a ray"},
+         {"steps", "tets a ray"},
+         {"nodes", "nodes a ray"},
+         {"triangles", "triangles a ray"},
+         {"build", "build and packing"},
+         {"memory", "memory"}},
+        {},
+        {},
+        {"cost ~ faces^x, x by least squares on logarithms, from 3 sizes on, with Student's 95 % interval: "
+         "it tells how well a power fits these sizes, whose deviations it takes as independent. A cost "
+         "that grows as a logarithm has a small x, which falls with the sizes."}};
+    for (const GrowthLine& line : lines_of(runs))
+        table.rows.push_back(exponent_cells(line));
+    return table;
+}
+
+std::vector<PaperFigure> growth_figures(const SceneRuns& runs)
+{
+    const auto lines = lines_of(runs);
+    std::vector<PaperFigure> figures;
+    for (const std::string& family : families_of(lines)) {
+        for (const char* const type : {"gpu", "cpu", "emulated"})
+            figures.push_back(time_figure(lines, family, type));
+        figures.push_back(visits_figure(lines, family));
+    }
+    std::erase_if(figures, [](const PaperFigure& figure) { return figure.series.empty(); });
+    return figures;
+}
+
+} // namespace tetrace

@@ -1,0 +1,364 @@
+#include "bench/reproduce/tables/paper_table.h"
+
+#include "bench/terminal/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array label_keys = {"scene", "build", "method", "layout", "device"};
+
+const Quantity* quantity(const PaperCell& cell)
+{
+    return std::get_if<Quantity>(&cell);
+}
+
+void set_finite(json& object, const char* key, std::optional<double> value)
+{
+    if (value && std::isfinite(*value)) object[key] = *value;
+}
+
+json quantity_json(const Quantity& number)
+{
+    json object = json::object();
+    set_finite(object, "value", number.ours.value);
+    set_finite(object, "low", number.ours.low);
+    set_finite(object, "high", number.ours.high);
+    set_finite(object, "paper", number.paper);
+    set_finite(object, "ratio", number.ratio());
+    return object;
+}
+
+json columns_json(const PaperTable& table)
+{
+    json columns = json::array();
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const Column& column = table.columns[c];
+        columns.push_back({{"key", column.key}, {"title", column.title}});
+        if (!column.unit.empty()) columns.back()["unit"] = column.unit;
+        const auto is_number = [&](const auto& row) { return quantity(row[c]) != nullptr; };
+        if (std::any_of(table.rows.begin(), table.rows.end(), is_number)) columns.back()["decimals"] = column.decimals;
+    }
+    return columns;
+}
+
+json rows_json(const PaperTable& table)
+{
+    json rows = json::array();
+    for (const auto& cells : table.rows) {
+        json row = json::object();
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const std::string& key = table.columns[c].key;
+            if (const auto* text = std::get_if<std::string>(&cells[c])) row[key] = *text;
+            if (const auto* number = quantity(cells[c])) row[key] = quantity_json(*number);
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+json axis_json(const PaperFigure::Axis& axis)
+{
+    json object = {{"title", axis.title}, {"unit", axis.unit}};
+    if (axis.logarithmic) object["scale"] = "logarithmic";
+    return object;
+}
+
+json claims_json(const std::vector<Claim>& claims)
+{
+    json list = json::array();
+    for (const Claim& claim : claims)
+        list.push_back(claim_json(claim));
+    return list;
+}
+
+/// Whole numbers without decimals.
+Cell number_cell(double value, const Column& column)
+{
+    if (column.decimals == 0 && value >= 0) return static_cast<std::uint64_t>(std::llround(value));
+    return value;
+}
+
+Cell plain_cell(const PaperCell& cell, const Column& column)
+{
+    if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+    if (const auto* number = quantity(cell)) return number_cell(number->ours.value, column);
+    return {};
+}
+
+bool has_interval(const PaperCell& cell)
+{
+    const Quantity* number = quantity(cell);
+    return number != nullptr && number->ours.low && number->ours.high;
+}
+
+/// "1.25 [1.10, 1.40]"; plain where there is no interval.
+Cell interval_cell(const PaperCell& cell, const Column& column)
+{
+    if (!has_interval(cell)) return plain_cell(cell, column);
+    const Estimate& ours = quantity(cell)->ours;
+    return fmt::format("{0:.{3}f} [{1:.{3}f}, {2:.{3}f}]", ours.value, *ours.low, *ours.high, column.decimals);
+}
+
+Cell paper_cell(const PaperCell& cell, const Column& column)
+{
+    const Quantity* number = quantity(cell);
+    return number != nullptr && number->paper ? number_cell(*number->paper, column) : Cell();
+}
+
+Cell ratio_cell(const PaperCell& cell, const Column&)
+{
+    const Quantity* number = quantity(cell);
+    return number != nullptr ? cell_of(number->ratio()) : Cell();
+}
+
+std::string claims_text(const std::vector<Claim>& claims)
+{
+    std::string text;
+    for (const Claim& claim : claims)
+        text += wrapped(fmt::format("{}: {}. {}", claim.text, name_of(claim.verdict), claim.evidence), 110, 2);
+    return text.empty() ? text : "\n" + text;
+}
+
+std::string notes_text(const std::vector<std::string>& notes)
+{
+    std::string text;
+    for (const std::string& note : notes)
+        text += wrapped(note, 110, 2);
+    return text.empty() ? text : "\n" + text;
+}
+
+std::string claims_markdown(const std::vector<Claim>& claims)
+{
+    if (claims.empty()) return {};
+    Table table({{"claim", "claim"}, {"verdict", "verdict"}, {"evidence", "evidence"}});
+    for (const Claim& claim : claims)
+        table.add({claim.text, std::string(name_of(claim.verdict)), claim.evidence});
+    return std::string("\n").append(table.markdown());
+}
+
+std::string notes_markdown(const std::vector<std::string>& notes)
+{
+    std::string text;
+    for (const std::string& note : notes)
+        text += fmt::format("{}- {}\n", text.empty() ? "\n" : "", note);
+    return text;
+}
+
+/// What a tidy row tells, behind its labels.
+struct Fact {
+    std::string quantity, unit = {};
+    Cell value = {}, low = {}, high = {}, paper = {}, ratio = {}, x = {};
+    std::string verdict = {}, text = {};
+};
+
+Cell text_or_none(const std::string& text)
+{
+    return text.empty() ? Cell() : Cell(text);
+}
+
+void add_fact(Table& tidy, std::vector<Cell> labels, const Fact& fact)
+{
+    labels.resize(1 + label_keys.size());
+    labels.insert(labels.end(), {fact.quantity, text_or_none(fact.unit), fact.value, fact.low, fact.high, fact.paper,
+                                 fact.ratio, fact.x, text_or_none(fact.verdict), text_or_none(fact.text)});
+    tidy.add(std::move(labels));
+}
+
+std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell>& row)
+{
+    std::vector<Cell> labels = {table.id};
+    for (const char* key : label_keys) {
+        const auto column =
+            std::find_if(table.columns.begin(), table.columns.end(), [&](const Column& one) { return one.key == key; });
+        const bool has = column != table.columns.end();
+        labels.push_back(has ? plain_cell(row[static_cast<std::size_t>(column - table.columns.begin())], *column)
+                             : Cell());
+    }
+    return labels;
+}
+
+bool is_label(const Column& column)
+{
+    return std::find(label_keys.begin(), label_keys.end(), column.key) != label_keys.end();
+}
+
+void add_row_facts(Table& tidy, const PaperTable& table, const std::vector<PaperCell>& row)
+{
+    for (std::size_t c = 0; c < row.size(); ++c) {
+        const Column& column = table.columns[c];
+        if (const Quantity* number = quantity(row[c]))
+            add_fact(tidy, labels_of(table, row),
+                     {column.key, column.unit, number->ours.value, cell_of(number->ours.low),
+                      cell_of(number->ours.high), cell_of(number->paper), cell_of(number->ratio())});
+        else if (const auto* text = std::get_if<std::string>(&row[c]); text != nullptr && !is_label(column))
+            add_fact(tidy, labels_of(table, row), {.quantity = column.key, .text = *text});
+    }
+}
+
+void add_points(Table& tidy, const PaperFigure& figure)
+{
+    for (const PaperFigure::Series& series : figure.series)
+        for (const auto& [x, y] : series.points)
+            add_fact(tidy, {figure.id},
+                     {.quantity = figure.y.title, .unit = figure.y.unit, .value = y, .x = x, .text = series.name});
+}
+
+/// What tables and figures have alike.
+template <class Part>
+void add_sentences(Table& tidy, const Part& part)
+{
+    for (const Claim& claim : part.claims)
+        add_fact(tidy, {part.id},
+                 {.quantity = claim.id, .verdict = std::string(name_of(claim.verdict)), .text = claim.evidence});
+    for (const std::string& note : part.notes)
+        add_fact(tidy, {part.id}, {.quantity = "note", .text = note});
+}
+
+/// The figure's notes, and where its points are: no text has them.
+std::vector<std::string> notes_of(const PaperFigure& figure)
+{
+    std::vector<std::string> notes = figure.notes;
+    std::size_t points = 0;
+    for (const PaperFigure::Series& series : figure.series)
+        points += series.points.size();
+    if (points > 0)
+        notes.push_back(fmt::format("The {} points are in the result's CSV and JSON.", with_commas(points)));
+    return notes;
+}
+
+std::string headline(const std::string& id, const std::string& title, const std::string& source)
+{
+    return fmt::format("{}: {} ({})", id, title, source);
+}
+
+} // namespace
+
+std::optional<double> Quantity::ratio() const
+{
+    if (!paper || *paper == 0) return std::nullopt;
+    return ours.value / *paper;
+}
+
+PaperCell exact_cell(double value, std::optional<double> paper)
+{
+    return Quantity{{value, {}, {}, true}, paper};
+}
+
+nlohmann::json table_json(const PaperTable& table)
+{
+    return {{"id", table.id},           {"title", table.title},
+            {"source", table.source},   {"columns", columns_json(table)},
+            {"rows", rows_json(table)}, {"claims", claims_json(table.claims)},
+            {"notes", table.notes}};
+}
+
+nlohmann::json figure_json(const PaperFigure& figure)
+{
+    json series = json::array();
+    for (const PaperFigure::Series& one : figure.series) {
+        json points = json::array();
+        for (const auto& [x, y] : one.points)
+            points.push_back({x, y});
+        series.push_back({{"name", one.name}, {"points", std::move(points)}});
+    }
+    return {{"id", figure.id},
+            {"title", figure.title},
+            {"source", figure.source},
+            {"x", axis_json(figure.x)},
+            {"y", axis_json(figure.y)},
+            {"series", std::move(series)},
+            {"claims", claims_json(figure.claims)},
+            {"pictures", figure.pictures},
+            {"notes", figure.notes}};
+}
+
+Table with_paper_columns(const PaperTable& table)
+{
+    std::vector<Column> columns;
+    std::vector<std::vector<Cell>> rows(table.rows.size());
+    const auto add = [&](const Column& column, const std::vector<Cell>& cells, bool even_empty) {
+        const auto is_empty = [](const Cell& cell) { return std::holds_alternative<std::monostate>(cell); };
+        if (!even_empty && std::all_of(cells.begin(), cells.end(), is_empty)) return;
+        columns.push_back(column);
+        for (std::size_t r = 0; r < rows.size(); ++r)
+            rows[r].push_back(cells[r]);
+    };
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const Column& column = table.columns[c];
+        const auto cells = [&](const auto& make) {
+            std::vector<Cell> list;
+            for (const auto& row : table.rows)
+                list.push_back(make(row.at(c), column));
+            return list;
+        };
+        const bool intervals =
+            std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return has_interval(row.at(c)); });
+        add(column, intervals ? cells(interval_cell) : cells(plain_cell), true);
+        add({column.key + "_paper", "paper", {}, column.decimals}, cells(paper_cell), false);
+        add({column.key + "_ratio", "ratio"}, cells(ratio_cell), false);
+    }
+    Table result(std::move(columns));
+    for (auto& row : rows)
+        result.add(std::move(row));
+    return result;
+}
+
+Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperFigure>& figures)
+{
+    std::vector<Column> columns = {{"table", "table"}};
+    for (const char* key : label_keys)
+        columns.push_back({key, key});
+    for (const char* key : {"quantity", "unit", "value", "low", "high", "paper", "ratio", "x", "verdict", "text"})
+        columns.push_back({key, key});
+    Table tidy(std::move(columns));
+    for (const PaperTable& table : tables) {
+        for (const auto& row : table.rows)
+            add_row_facts(tidy, table, row);
+        add_sentences(tidy, table);
+    }
+    for (const PaperFigure& figure : figures) {
+        add_points(tidy, figure);
+        add_sentences(tidy, figure);
+    }
+    return tidy;
+}
+
+std::string table_text(const PaperTable& table)
+{
+    return headline(table.id, table.title, table.source) + "\n\n" + with_paper_columns(table).text(2) +
+           claims_text(table.claims) + notes_text(table.notes) + "\n";
+}
+
+std::string table_markdown(const PaperTable& table)
+{
+    return "## " + headline(table.id, table.title, table.source) + "\n\n" + with_paper_columns(table).markdown() +
+           claims_markdown(table.claims) + notes_markdown(table.notes) + "\n";
+}
+
+std::string figure_text(const PaperFigure& figure)
+{
+    std::string text = headline(figure.id, figure.title, figure.source) + "\n" + claims_text(figure.claims) +
+                       notes_text(notes_of(figure));
+    for (const std::string& picture : figure.pictures)
+        text += "  picture: " + picture + "\n";
+    return text + "\n";
+}
+
+std::string figure_markdown(const PaperFigure& figure)
+{
+    std::string text = "## " + headline(figure.id, figure.title, figure.source) + "\n" +
+                       claims_markdown(figure.claims) + notes_markdown(notes_of(figure));
+    for (const std::string& picture : figure.pictures)
+        text += fmt::format("\n![{0}]({0})\n", picture);
+    return text + "\n";
+}
+
+} // namespace tetrace

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "bench/reproduce/claims.h"
+#include "bench/terminal/table.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tetrace {
+
+/// A number of ours, and the paper's where it is known.
+struct Quantity {
+    Estimate ours;
+    std::optional<double> paper;
+
+    /// Ours over the paper's; empty without one, or where it is 0.
+    [[nodiscard]] std::optional<double> ratio() const;
+};
+/// A cell: nothing, a text or a number.
+using PaperCell = std::variant<std::monostate, std::string, Quantity>;
+
+[[nodiscard]] PaperCell exact_cell(double value, std::optional<double> paper = {});
+
+/// A table of the paper, made anew.
+struct PaperTable {
+    std::string id, title, source;
+    std::vector<Column> columns;
+    std::vector<std::vector<PaperCell>> rows; ///< a cell a column
+    std::vector<Claim> claims;
+    std::vector<std::string> notes;
+};
+
+/// A figure of the paper, made anew.
+struct PaperFigure {
+    struct Axis {
+        std::string title, unit;
+        bool logarithmic = false;
+    };
+    struct Series {
+        std::string name;
+        std::vector<std::pair<double, double>> points;
+    };
+    std::string id, title, source;
+    Axis x, y;
+    std::vector<Series> series;
+    std::vector<Claim> claims;
+    std::vector<std::string> pictures; ///< file names, relative to the result's file
+    std::vector<std::string> notes;
+};
+
+/// As results/README.md describes them. Numbers that are not finite are left out.
+[[nodiscard]] nlohmann::json table_json(const PaperTable& table);
+[[nodiscard]] nlohmann::json figure_json(const PaperFigure& figure);
+
+/// The rows, numbers with their 95 % intervals, where there are any, and columns of their own for the paper's numbers
+/// and ratios.
+[[nodiscard]] Table with_paper_columns(const PaperTable& table);
+
+/// All that tables and figures tell, one fact a row: which table and row it is of, and a number with its interval, the
+/// paper's and the ratio; a text, such as a status; a point (x beside the value); a claim, its verdict and evidence; or
+/// a note.
+[[nodiscard]] Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperFigure>& figures);
+
+/// Title, rows, claims and notes, for people.
+[[nodiscard]] std::string table_text(const PaperTable& table);
+[[nodiscard]] std::string table_markdown(const PaperTable& table);
+[[nodiscard]] std::string figure_text(const PaperFigure& figure);
+[[nodiscard]] std::string figure_markdown(const PaperFigure& figure);
+
+} // namespace tetrace

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "bench/pictures/picture_writer.h"
+#include "bench/reproduce/scene_run.h"
+
+#include <filesystem>
+#include <string>
+
+namespace tetrace {
+
+/// The picture of a view, darkened, with the pixels of its wrong and lost rays marked, larger than they are.
+/// flawed: pixels (y * width + x). Throws as shade_hits() does.
+[[nodiscard]] Pixmap draw_flawed(std::span<const Hit> hits, std::span<const std::uint32_t> flawed,
+                                 const SceneWork& scene, std::size_t view);
+
+/// Writes the pictures of a result beside its file, with its stem in front of their names.
+class ResultPictures {
+public:
+    /// result: the result's file.
+    explicit ResultPictures(std::filesystem::path result);
+
+    /// Draws what tables and figures show of a scene whose views are traced: of each method the view with the most
+    /// wrong and lost rays, and, of the first, surface and steps of the views with the fewest and the most tets. A
+    /// picture that cannot be made is told in the run.
+    void draw(SceneRun& run, bool flawed, bool extremes) const;
+
+private:
+    /// Nothing where the row has no such ray in any view.
+    void draw_worst(SceneRun& run, std::size_t row) const;
+    void draw_view(SceneRun& run, std::size_t row, std::size_t view) const;
+    [[nodiscard]] std::string write(const SceneRun& run, std::size_t view, const std::string& kind,
+                                    const Pixmap& pixmap) const;
+
+    std::filesystem::path result_;
+    std::string ending_;
+    PictureWriter writer_;
+};
+
+} // namespace tetrace

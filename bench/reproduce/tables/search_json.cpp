@@ -1,0 +1,69 @@
+#include "bench/reproduce/tables/search_json.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/output/row_json.h"
+#include "bench/reproduce/speed.h"
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+/// A search, and what was found instead of the other's face; NO_EXIT is left out.
+json search_json(std::uint32_t tet, std::uint32_t ray, std::uint32_t face, const char* other, std::uint32_t other_face)
+{
+    json object = {{"tet", tet}, {"ray", ray}};
+    if (face != NO_EXIT) object["face"] = face;
+    if (other_face != NO_EXIT) object[other] = other_face;
+    return object;
+}
+
+json search_verification(const Traced& result)
+{
+    const Verdicts& verdicts = result.verdicts;
+    json object = {{"searches", verdicts.rays}, {"right", verdicts.agreed}, {"ties", verdicts.ties},
+                   {"wrong", verdicts.wrong},   {"lost", verdicts.lost},    {"compared_with_openmp", result.compared}};
+    if (result.compared) object["different_from_openmp"] = result.different;
+    if (const auto& first = verdicts.first_wrong)
+        object["first_wrong"] =
+            search_json(first->view, first->x, first->ours.face_id, "exact_face", first->reference_face);
+    if (const auto& first = result.first_different)
+        object["first_different"] =
+            search_json(first->view, first->x, first->ours.face_id, "openmp_face", first->openmp.face_id);
+    return object;
+}
+
+/// As of a row of a scene, but for what it says of rays that walk.
+json search_row_json(const SearchRun& run, std::size_t i)
+{
+    const RowRun& row = run.rows[i];
+    json object = row_json(row);
+    for (const char* key : {"scene", "structure", "rays", "ray_order", "order", "counts", "rates"})
+        object.erase(key);
+    object["host_threads"] = row.key.threads == 0 ? run.threads : row.key.threads;
+    const Traced* result = traced(row);
+    if (result == nullptr) return object;
+    object["face_hash"] = object["hit_hash"];
+    object.erase("hit_hash");
+    object["verification"] = search_verification(*result);
+    if (const auto seconds = view_seconds(run, i); !seconds.empty()) object["batch_medians_s"] = seconds;
+    if (const auto figures = figures_of(row)) object["msearches_per_s"] = figures->mrays_per_s;
+    return object;
+}
+
+} // namespace
+
+nlohmann::json searches_json(const SearchRun& run)
+{
+    json object = {{"tets", run.size.tets},
+                   {"rays_a_tet", run.size.rays},
+                   {"batch_tets", run.batch_tets},
+                   {"batches", batch_count(run.size)},
+                   {"rows", json::array()}};
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+        object["rows"].push_back(search_row_json(run, i));
+    return object;
+}
+
+} // namespace tetrace

@@ -1,0 +1,184 @@
+#include "bench/reproduce/tables/table5.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/reproduce/paper.h"
+#include "bench/reproduce/speed.h"
+#include "bench/terminal/text.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+const std::vector<Column>& search_columns()
+{
+    static const std::vector<Column> list = {{"method", "method"},
+                                             {"layout", "layout"},
+                                             {"device", "device"},
+                                             {"type", "type"},
+                                             {"threads", "host threads", "", 0},
+                                             {"searches", "searches", "", 0},
+                                             {"msearches_per_s", "Msearches/s", "", 1},
+                                             {"ns_a_search", "time", "ns a search"},
+                                             {"spread_percent", "spread", "%", 1},
+                                             {"copy_percent", "of copy", "%", 1},
+                                             {"wrong", "wrong", "a million", 3},
+                                             {"lost", "lost", "a million", 3},
+                                             {"ties", "ties", "a million", 3},
+                                             {"faces", "faces beside openmp's"},
+                                             {"status", "status"}};
+    return list;
+}
+
+std::string face_agreement(const RowRun& row)
+{
+    const Traced& result = *traced(row);
+    if (is_reference(row.key)) return "reference";
+    return result.different == 0 ? "the same" : fmt::format("{} differ", with_commas(result.different));
+}
+
+PaperCell threads_cell(const SearchRun& run, const RowKey& key)
+{
+    if (key.backend != reference_backend) return {};
+    return exact_cell(key.threads == 0 ? run.threads : key.threads);
+}
+
+/// Of the bandwidth that the device's copies reach: with all of its threads.
+PaperCell copy_cell(const SearchRun& run, const RowRun& row, double searches_per_s,
+                    const std::vector<RowDevice>& devices)
+{
+    const auto place = device_of(row, devices);
+    const bool on_all_threads = row.key.threads == 0 || row.key.threads == run.threads;
+    if (!on_all_threads || !place || !devices[*place].yardstick) return {};
+    return exact_cell(100 * bytes_per_search * searches_per_s / devices[*place].yardstick->copy_bytes_per_s);
+}
+
+std::vector<PaperCell> rate_cells(const SearchRun& run, const RowRun& row, const std::vector<RowDevice>& devices)
+{
+    const auto figures = figures_of(row);
+    if (!figures) return std::vector<PaperCell>(4);
+    return {exact_cell(figures->mrays_per_s), exact_cell(1e3 / figures->mrays_per_s),
+            exact_cell(100 * figures->kernel_s.spread()), copy_cell(run, row, 1e6 * figures->mrays_per_s, devices)};
+}
+
+std::vector<PaperCell> count_cells(const RowRun& row)
+{
+    if (!is_whole(row)) return std::vector<PaperCell>(4);
+    const Verdicts& verdicts = traced(row)->verdicts;
+    const auto a_million = [&](std::uint64_t count) {
+        return exact_cell(1e6 * static_cast<double>(count) / static_cast<double>(verdicts.rays));
+    };
+    return {a_million(verdicts.wrong), a_million(verdicts.lost), a_million(verdicts.ties), face_agreement(row)};
+}
+
+std::vector<PaperCell> cells_of(const SearchRun& run, const RowRun& row, const std::vector<RowDevice>& devices)
+{
+    const std::string status(name_of(status_of(row))), reason = reason_of(row);
+    std::vector<PaperCell> cells = {std::string(name_of(row.key.kernel.method)),
+                                    std::string(name_of(row.key.kernel.layout)),
+                                    device_label(row.key),
+                                    row.device.type.empty() ? PaperCell() : PaperCell(row.device.type),
+                                    threads_cell(run, row.key),
+                                    is_whole(row) ? exact_cell(static_cast<double>(traced(row)->totals.rays))
+                                                  : PaperCell()};
+    for (const auto& part : {rate_cells(run, row, devices), count_cells(row)})
+        cells.insert(cells.end(), part.begin(), part.end());
+    cells.emplace_back(reason.empty() ? status : fmt::format("{}: {}", status, reason));
+    return cells;
+}
+
+Claim exact_claim(const SearchRun& run)
+{
+    Claim claim{
+        "table5-maria-exact", "maria has no wrong result but ties", {}, "No row of maria came through all searches."};
+    std::uint64_t rows = 0, searches = 0, wrong = 0, lost = 0, ties = 0;
+    for (const RowRun& row : run.rows) {
+        if (row.key.kernel.method != Method::maria || !is_whole(row) || traced(row)->different > 0) continue;
+        const Verdicts& verdicts = traced(row)->verdicts;
+        rows += 1, searches += verdicts.rays, wrong += verdicts.wrong, lost += verdicts.lost, ties += verdicts.ties;
+    }
+    if (rows == 0) return claim;
+    const bool is_whole_set = run.size.count() >= SearchSize{}.count();
+    claim.verdict = judge_none({static_cast<double>(wrong + lost), {}, {}, is_whole_set});
+    claim.evidence = fmt::format("{} searches by {} {}: {} wrong, {} lost, {} ties.", with_commas(searches), rows,
+                                 rows == 1 ? "row" : "rows", with_commas(wrong), with_commas(lost), with_commas(ties));
+    if (claim.verdict == ClaimVerdict::not_testable)
+        claim.evidence +=
+            fmt::format(" Fewer than the paper's {} of a row decide nothing.", with_commas(SearchSize{}.count()));
+    return claim;
+}
+
+std::vector<Claim> claims_of(const SearchRun& run)
+{
+    const RecordedRuns runs = {&run};
+    return {fastest_claim({"table5-maria-fastest-cpu",
+                           "maria is the fastest of the five methods on a CPU, one thread, exit search alone",
+                           {},
+                           ""},
+                          runs, [](const RowRun& row) { return row.key.threads == 1; }),
+            overtaking_claim(
+                {"table5-plucker-overtakes-stp-gpu", "on a GPU plucker is faster than stp, exit search alone", {}, ""},
+                runs),
+            exact_claim(run)};
+}
+
+std::string face_text(std::uint32_t face)
+{
+    return face == NO_EXIT ? "no face" : fmt::format("face {}", face);
+}
+
+/// Which search to look at where a row's faces are not the exact ones, or not openmp's; empty where all are.
+std::string first_flaw(const RowRun& row)
+{
+    const Traced* result = traced(row);
+    if (result == nullptr) return {};
+    const std::string name = row_name(row.key);
+    if (const auto& ray = result->first_different)
+        return fmt::format("{} differs first on ray {} of tet {}: {}, where openmp finds {}.", name, ray->x, ray->view,
+                           face_text(ray->ours.face_id), face_text(ray->openmp.face_id));
+    if (const auto& ray = result->verdicts.first_wrong; ray && is_reference(row.key))
+        return fmt::format("{} errs first on ray {} of tet {}: {}, where the exact one is {}.", name, ray->x, ray->view,
+                           face_text(ray->ours.face_id), face_text(ray->reference_face));
+    return {};
+}
+
+std::vector<std::string> notes_of(const SearchRun& run)
+{
+    std::vector<std::string> notes = {
+        fmt::format("{} random tets, {} random rays through each, entering by a known face: the same on every device, "
+                    "from a counter-based generator, on a grid of 2^-16, so that integers decide exactly by which face "
+                    "a ray leaves. Every face that was found is compared with that, and with openmp's, outside the "
+                    "timing. Tie: another face, and the ray passes all edges that exclude it within the rounding "
+                    "bound; wrong: another face; lost: none.",
+                    with_commas(run.size.tets), with_commas(run.size.rays)),
+        fmt::format("A sample is all searches once, {} tets a launch, device seconds of the kernel alone; rates are of "
+                    "the median sample, spread is its interquartile range over the median. Intervals of ratios are by "
+                    "percentile bootstrap over these batches.",
+                    with_commas(run.batch_tets)),
+        fmt::format("A search moves {} bytes, its ray and its face (its tet stays in the caches): of copy is the share "
+                    "of the device's copy bandwidth that this comes to. Fast devices measure their memory here.",
+                    bytes_per_search),
+        std::string(paper::rest_is_there)};
+    for (const RowRun& row : run.rows)
+        if (const std::string flaw = first_flaw(row); !flaw.empty()) notes.push_back(flaw);
+    return notes;
+}
+
+} // namespace
+
+PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices)
+{
+    PaperTable table{"table5",
+                     "Exit search alone, on random tets and rays",
+                     fmt::format("{}, Table 5", paper::citation),
+                     search_columns(),
+                     {},
+                     claims_of(run),
+                     notes_of(run)};
+    for (const RowRun& row : run.rows)
+        table.rows.push_back(cells_of(run, row, devices));
+    return table;
+}
+
+} // namespace tetrace

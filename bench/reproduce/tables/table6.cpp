@@ -1,0 +1,405 @@
+#include "bench/reproduce/tables/table6.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/reproduce/paper.h"
+#include "bench/reproduce/speed.h"
+#include "bench/rows/rows.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tetrace {
+
+namespace {
+
+std::string source()
+{
+    return fmt::format("{}, Table 6", paper::citation);
+}
+
+bool is_compared(const RowRun& row)
+{
+    return !is_cdt(row) || row.key.kernel.method == Method::maria;
+}
+
+bool is_embree(const RowRun& row)
+{
+    return row.key.kernel.layout == Layout::embree;
+}
+
+bool run_beside(const RowRun& cdt, const RowRun& bvh)
+{
+    if (is_embree(bvh)) return cdt.key.backend == reference_backend;
+    return cdt.key.backend == bvh.key.backend && cdt.key.device == bvh.key.device;
+}
+
+double total_s(const SceneRun& run, std::size_t row)
+{
+    const auto seconds = view_seconds(run, row);
+    return std::accumulate(seconds.begin(), seconds.end(), 0.0);
+}
+
+double rays_of(const SceneRun& run, std::size_t row)
+{
+    return static_cast<double>(run.images[row].size()) * static_cast<double>(run.scene->rays_per_view());
+}
+
+std::optional<SetupCost> cost_of(const SceneRun& run, std::size_t row)
+{
+    return row < run.costs.size() ? run.costs[row] : std::nullopt;
+}
+
+/// "single bvh2": a BVH's row without its device.
+std::string rival_name(const RowRun& row)
+{
+    return fmt::format("{} {}", name_of(row.key.kernel.method), name_of(row.key.kernel.layout));
+}
+
+/// Frames of the paper's size a second, view by view.
+std::vector<double> view_frames(const SceneRun& run, std::size_t row)
+{
+    const double share = static_cast<double>(run.scene->rays_per_view()) / double{paper::image_pixels};
+    std::vector<double> frames;
+    for (const double seconds : view_seconds(run, row))
+        frames.push_back(share / seconds);
+    return frames;
+}
+
+/// The paper's range for the row's structure on its GPU; bvh2 is its BVH.
+std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, const RowRun& row)
+{
+    const auto frames = paper::frames_of(run.build.scene);
+    if (!frames || (!is_cdt(row) && row.key.kernel.layout != Layout::bvh2)) return std::nullopt;
+    return is_cdt(row) ? std::pair(frames->least_cdt, frames->most_cdt)
+                       : std::pair(frames->least_bvh, frames->most_bvh);
+}
+
+std::string papers_frames_text(const SceneRun& run, const RowRun& row)
+{
+    if (!paper::has_scene(run.build.scene)) return "not its scene";
+    if (!is_cdt(row) && row.key.kernel.layout != Layout::bvh2) return "not its BVH";
+    const auto frames = papers_frames(run, row);
+    return frames ? fmt::format("{} to {}, a GPU", frames->first, frames->second) : "not known here";
+}
+
+const std::vector<Column>& frame_columns()
+{
+    static const std::vector<Column> list = {{"scene", "scene"},
+                                             {"method", "method"},
+                                             {"layout", "layout"},
+                                             {"device", "device"},
+                                             {"type", "type"},
+                                             {"views", "views", "", 0},
+                                             {"frames_per_s", "median", "frames/s"},
+                                             {"least_frames_per_s", "least", "frames/s"},
+                                             {"most_frames_per_s", "most", "frames/s"},
+                                             {"papers_frames_per_s", "the paper's", "frames/s"},
+                                             {"mrays_per_s", "Mrays/s"},
+                                             {"build_s", "built in", "s"},
+                                             {"pack_s", "packed in", "s", 3},
+                                             {"memory_mb", "memory", "MB", 1},
+                                             {"spread_percent", "spread", "%", 1},
+                                             {"status", "status"}};
+    return list;
+}
+
+std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
+{
+    const RowRun& row = run.rows[i];
+    const auto figures = figures_of(row);
+    const auto cost = cost_of(run, i);
+    const std::string status(name_of(status_of(row))), reason = reason_of(row);
+    std::vector<PaperCell> cells = {run.build.scene, std::string(name_of(row.key.kernel.method)),
+                                    std::string(name_of(row.key.kernel.layout)), device_label(row.key),
+                                    row.device.type.empty() ? PaperCell() : PaperCell(row.device.type)};
+    if (figures) {
+        const auto frames = view_frames(run, i);
+        const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
+        const auto papers = row.device.type == "gpu" ? papers_frames(run, row) : std::nullopt;
+        cells.push_back(exact_cell(static_cast<double>(frames.size())));
+        cells.push_back(Quantity{median_of_views(frames, run.sampling), {}});
+        cells.push_back(exact_cell(*least, papers ? std::optional(papers->first) : std::nullopt));
+        cells.push_back(exact_cell(*most, papers ? std::optional(papers->second) : std::nullopt));
+    } else
+        cells.resize(cells.size() + 4);
+    cells.emplace_back(papers_frames_text(run, row));
+    cells.push_back(figures ? exact_cell(figures->mrays_per_s) : PaperCell());
+    cells.push_back(cost ? exact_cell(cost->build_s) : PaperCell());
+    cells.push_back(cost ? exact_cell(cost->pack_s) : PaperCell());
+    cells.push_back(cost ? exact_cell(1e-6 * static_cast<double>(cost->bytes)) : PaperCell());
+    cells.push_back(figures ? exact_cell(100 * figures->kernel_s.spread()) : PaperCell());
+    cells.emplace_back(reason.empty() ? status : fmt::format("{}: {}", status, reason));
+    return cells;
+}
+
+const std::vector<Column>& pair_columns()
+{
+    static const std::vector<Column> list = {{"scene", "scene"},
+                                             {"layout", "CDT"},
+                                             {"rival", "BVH"},
+                                             {"device", "device"},
+                                             {"type", "type"},
+                                             {"ratio", "time BVH / CDT"},
+                                             {"least_ratio", "least"},
+                                             {"most_ratio", "most"},
+                                             {"won_percent", "CDT faster in", "% of views", 1},
+                                             {"break_even_mrays", "builds paid after", "Mrays", 1},
+                                             {"ahead", "ahead"}};
+    return list;
+}
+
+/// Who takes less time, and from when on.
+std::string ahead_text(const RowPair& pair)
+{
+    const auto even = break_even(pair);
+    if (!even) return "not to be told";
+    const std::string_view who = even->ahead == BreakEven::Ahead::first    ? "the CDT"
+                                 : even->ahead == BreakEven::Ahead::second ? "the BVH"
+                                                                           : "neither";
+    return fmt::format("{}, {}", who, even->rays ? "from there on" : "always");
+}
+
+PaperCell break_even_cell(const RowPair& pair)
+{
+    const auto even = break_even(pair);
+    if (!even) return {};
+    return even->rays ? exact_cell(1e-6 * *even->rays) : PaperCell("never");
+}
+
+std::vector<PaperCell> pair_cells(const RowPair& pair)
+{
+    const RowRun &cdt = pair.run->rows[pair.cdt], &bvh = pair.run->rows[pair.bvh];
+    return {pair.run->build.scene,
+            std::string(name_of(cdt.key.kernel.layout)),
+            rival_name(bvh),
+            device_label(cdt.key),
+            cdt.device.type,
+            Quantity{pair.ratio.median, {}},
+            exact_cell(pair.ratio.lowest),
+            exact_cell(pair.ratio.highest),
+            exact_cell(100 * pair.ratio.won),
+            break_even_cell(pair),
+            ahead_text(pair)};
+}
+
+Estimate inverse(const Estimate& estimate)
+{
+    const auto over = [](const std::optional<double>& bound) {
+        return bound ? std::optional(1 / *bound) : std::nullopt;
+    };
+    return {1 / estimate.value, over(estimate.high), over(estimate.low), estimate.exact};
+}
+
+/// The pairs that the paper has: bvh2 and the device's fastest layout of the CDT, on devices of a type.
+std::vector<RowPair> papers_pairs(const SceneRuns& runs, std::string_view scene, const std::string& type)
+{
+    std::vector<RowPair> pairs;
+    for (const SceneRun* run : runs)
+        if (run->build.scene == scene)
+            for (RowPair& pair : fastest_pairs(*run))
+                if (const RowRun& bvh = run->rows[pair.bvh];
+                    bvh.key.kernel.layout == Layout::bvh2 && bvh.device.type == type)
+                    pairs.push_back(std::move(pair));
+    return pairs;
+}
+
+std::string pair_evidence(const RowPair& pair)
+{
+    const RowRun& cdt = pair.run->rows[pair.cdt];
+    const auto cdt_frames = view_frames(*pair.run, pair.cdt), bvh_frames = view_frames(*pair.run, pair.bvh);
+    const auto range = [](const std::vector<double>& frames) {
+        const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
+        return fmt::format("{:.4g} to {:.4g}", *least, *most);
+    };
+    return fmt::format("{} {}: the time of bvh2 is {} of the CDT's, median of {} views, {:.3g} to {:.3g}; {:.1f} % of "
+                       "the views are the CDT's; {} against {} frames/s.",
+                       name_of(cdt.key.kernel.layout), device_label(cdt.key), estimate_text(pair.ratio.median),
+                       pair.ratio.views.size(), pair.ratio.lowest, pair.ratio.highest, 100 * pair.ratio.won,
+                       range(cdt_frames), range(bvh_frames));
+}
+
+Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, const std::string& type)
+{
+    const bool is_gpu = type == "gpu";
+    Claim claim{fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene, type),
+                fmt::format("on {}, the {} is faster than the {} on {}",
+                            is_gpu ? "a GPU"
+                                   : "this CPU (the paper's claim is of "
+                                     "a GPU)",
+                            outcome.cdt_is_faster ? "CDT" : "BVH", outcome.cdt_is_faster ? "BVH" : "CDT",
+                            outcome.scene),
+                {},
+                ""};
+    std::vector<Estimate> ratios;
+    bool noisy = false;
+    for (const RowPair& pair : papers_pairs(runs, outcome.scene, type)) {
+        ratios.push_back(outcome.cdt_is_faster ? pair.ratio.median : inverse(pair.ratio.median));
+        noisy = noisy || is_noisy(pair.run->rows[pair.cdt]) || is_noisy(pair.run->rows[pair.bvh]);
+        claim.evidence += (claim.evidence.empty() ? "" : " ") + pair_evidence(pair);
+    }
+    claim.verdict = judge_above(ratios, 1);
+    if (ratios.empty())
+        claim.evidence =
+            fmt::format("No {} has rates of the CDT and of bvh2 on {}.", is_gpu ? "GPU" : "CPU", outcome.scene);
+    else
+        withdraw_if_noisy(claim, noisy);
+    return claim;
+}
+
+std::vector<Claim> pair_claims(const SceneRuns& runs)
+{
+    std::vector<Claim> claims;
+    for (const char* const type : {"gpu", "cpu"})
+        for (const paper::PairOutcome& outcome : paper::outcomes())
+            claims.push_back(pair_claim(runs, outcome, type));
+    return claims;
+}
+
+/// "cwbvh opencl:1", with "single" or "packet16" before Embree's; without the device where all have one.
+std::string curve_name(const RowPair& pair, bool with_device)
+{
+    const RowRun& bvh = pair.run->rows[pair.bvh];
+    std::string name = is_embree(bvh) ? fmt::format("Embree {}", name_of(bvh.key.kernel.method))
+                                      : std::string(name_of(bvh.key.kernel.layout));
+    if (with_device) name += ' ' + device_label(pair.run->rows[pair.cdt].key);
+    return name;
+}
+
+/// Ascending ratios over the share of the views that have at most so much.
+PaperFigure::Series curve_of(const RowPair& pair, bool with_device)
+{
+    PaperFigure::Series series{curve_name(pair, with_device), {}};
+    auto ratios = pair.ratio.views;
+    std::sort(ratios.begin(), ratios.end());
+    for (std::size_t i = 0; i < ratios.size(); ++i)
+        series.points.emplace_back(100 * static_cast<double>(i + 1) / static_cast<double>(ratios.size()), ratios[i]);
+    return series;
+}
+
+PaperFigure ratio_figure(const SceneRun& run, const std::string& type, const std::vector<RowPair>& pairs)
+{
+    PaperFigure figure{fmt::format("table6-{}-{}", run.build.scene, type),
+                       fmt::format("Time of a BVH over the CDT's, view by view: {}, {}", run.build.scene, type),
+                       source(),
+                       {"views that have at most this ratio", "%"},
+                       {"time of the BVH over the CDT's", "", true},
+                       {},
+                       {},
+                       {},
+                       {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
+                        "the share of the "
+                        "views in which the BVH is faster. The CDT has its device's fastest layout."}};
+    const std::string first = device_label(pairs.front().run->rows[pairs.front().cdt].key);
+    const bool one_device = std::all_of(pairs.begin(), pairs.end(), [&](const RowPair& pair) {
+        return device_label(pair.run->rows[pair.cdt].key) == first;
+    });
+    for (const RowPair& pair : pairs)
+        figure.series.push_back(curve_of(pair, !one_device));
+    figure.series.push_back({"equal", {{0, 1}, {100, 1}}});
+    return figure;
+}
+
+} // namespace
+
+std::vector<RowPair> row_pairs(const SceneRun& run)
+{
+    std::vector<RowPair> pairs;
+    for (std::size_t cdt = 0; cdt < run.rows.size(); ++cdt) {
+        const auto cdt_s = view_seconds(run, cdt);
+        if (!is_cdt(run.rows[cdt]) || !is_compared(run.rows[cdt]) || cdt_s.empty()) continue;
+        for (std::size_t bvh = 0; bvh < run.rows.size(); ++bvh)
+            if (!is_cdt(run.rows[bvh]) && run_beside(run.rows[cdt], run.rows[bvh]))
+                if (const auto bvh_s = view_seconds(run, bvh); !bvh_s.empty())
+                    pairs.push_back({&run, cdt, bvh, paired_ratio(cdt_s, bvh_s, run.sampling)});
+    }
+    return pairs;
+}
+
+std::vector<RowPair> fastest_pairs(const SceneRun& run)
+{
+    auto pairs = row_pairs(run);
+    const auto is_beaten = [&](const RowPair& pair) {
+        const RowRun& row = run.rows[pair.cdt];
+        for (std::size_t i = 0; i < run.rows.size(); ++i) {
+            const RowRun& other = run.rows[i];
+            if (i == pair.cdt || !is_cdt(other) || !is_compared(other) || view_seconds(run, i).empty() ||
+                device_label(other.key) != device_label(row.key))
+                continue;
+            const double theirs = total_s(run, i), ours = total_s(run, pair.cdt);
+            if (theirs < ours || (theirs == ours && i < pair.cdt)) return true;
+        }
+        return false;
+    };
+    std::erase_if(pairs, is_beaten);
+    return pairs;
+}
+
+std::optional<BreakEven> break_even(const RowPair& pair)
+{
+    const SceneRun& run = *pair.run;
+    const auto cdt = cost_of(run, pair.cdt), bvh = cost_of(run, pair.bvh);
+    if (!cdt || !bvh) return std::nullopt;
+    const auto ratio = ratio_of_sums(view_seconds(run, pair.bvh), view_seconds(run, pair.cdt), run.sampling);
+    if (ratio.low && *ratio.low <= 1 && *ratio.high >= 1) return std::nullopt;
+    return break_even(TotalCost{cdt->once_s(), total_s(run, pair.cdt) / rays_of(run, pair.cdt)},
+                      TotalCost{bvh->once_s(), total_s(run, pair.bvh) / rays_of(run, pair.bvh)});
+}
+
+PaperTable table6(const SceneRuns& runs)
+{
+    PaperTable table{"table6",
+                     "CDT and BVHs: frames a second, build time and memory",
+                     source(),
+                     frame_columns(),
+                     {},
+                     {},
+                     {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
+                      "alone: the median over the views with its interval (order statistics), the least and the most.",
+                      "Built in: TetGen for the CDT, the builder of the BVH, which is Embree's, for bvh2 and cwbvh, "
+                      "Embree itself for its own rows; TetGen uses one thread, the others all. Memory: all that a "
+                      "session holds of the scene.",
+                      fmt::format("The paper's frames are of its GPU, its own cameras and its own meshes; they have a "
+                                  "ratio beside GPUs alone. {}",
+                                  paper::rest_is_there)}};
+    for (const SceneRun* run : runs)
+        for (std::size_t i = 0; i < run->rows.size(); ++i)
+            if (is_compared(run->rows[i])) table.rows.push_back(frame_cells(*run, i));
+    return table;
+}
+
+PaperTable table6_pairs(const SceneRuns& runs)
+{
+    PaperTable table{"table6-pairs",
+                     "CDT against BVHs, paired view by view",
+                     source(),
+                     pair_columns(),
+                     {},
+                     pair_claims(runs),
+                     {"A ratio is of the same view on the same device, above 1 the CDT is faster; the interval is that "
+                      "of the median over the views (order statistics). Embree stands beside openmp.",
+                      "Ahead: who takes less time, builds and rays together. Builds paid after: the rays, of these "
+                      "views, after which the one with the faster rays has made "
+                      "up for a slower build (built and packed as table6 has it); never: there is nothing to make up "
+                      "for. Not to be told: the interval of the ratio of all views' times holds 1.",
+                      "Claims are of bvh2, the paper's kind of BVH, and of the fastest layout of the CDT on each "
+                      "device. Emulations of GPUs are in none."}};
+    for (const SceneRun* run : runs)
+        for (const RowPair& pair : row_pairs(*run))
+            table.rows.push_back(pair_cells(pair));
+    return table;
+}
+
+std::vector<PaperFigure> table6_figures(const SceneRuns& runs)
+{
+    std::vector<PaperFigure> figures;
+    for (const SceneRun* run : runs)
+        for (const char* const type : {"gpu", "cpu", "emulated"}) {
+            auto pairs = fastest_pairs(*run);
+            std::erase_if(pairs, [&](const RowPair& pair) { return run->rows[pair.cdt].device.type != type; });
+            if (!pairs.empty()) figures.push_back(ratio_figure(*run, type, pairs));
+        }
+    return figures;
+}
+
+} // namespace tetrace

@@ -1,0 +1,192 @@
+#include "bench/results/result_comparison.h"
+
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <regex>
+
+namespace tetrace {
+
+namespace {
+
+bool is_timed(const ResultRow* row)
+{
+    return row != nullptr && (row->status == "ok" || row->status == "flawed") && !row->samples_s.empty();
+}
+
+bool has_failed(const ResultRow* row)
+{
+    return row != nullptr && (row->status == "wrong" || row->status == "error");
+}
+
+RowOutcome outcome_of(const ComparedRow& row)
+{
+    if (is_timed(row.before) && is_timed(row.after)) return RowOutcome::compared;
+    if (is_timed(row.before)) return has_failed(row.after) ? RowOutcome::failed : RowOutcome::missing;
+    return is_timed(row.after) ? RowOutcome::added : RowOutcome::untimed;
+}
+
+std::string why_untimed(const char* label, const ResultRow* row)
+{
+    if (is_timed(row)) return {};
+    if (row == nullptr) return fmt::format("{}: no such row", label);
+    if (!row->reason.empty()) return fmt::format("{}: {}: {}", label, row->status, row->reason);
+    const bool has_rate = row->status == "ok" || row->status == "flawed";
+    return fmt::format("{}: {}", label, has_rate ? "no samples" : row->status);
+}
+
+std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile& after, const std::string& filter)
+{
+    const std::regex expression(filter);
+    const auto kept = [&](const ResultRow& row) { return std::regex_search(row.name, expression); };
+    std::vector<ComparedRow> rows;
+    for (const ResultRow& row : before.rows)
+        if (kept(row)) rows.push_back({&row, after.find_row(row.name), {}, {}});
+    for (const ResultRow& row : after.rows)
+        if (kept(row) && before.find_row(row.name) == nullptr) rows.push_back({nullptr, &row, {}, {}});
+    for (ComparedRow& row : rows)
+        row.outcome = outcome_of(row);
+    return rows;
+}
+
+const ResultScene& scene_of(const ResultFile& file, const ResultRow& row)
+{
+    if (const ResultScene* scene = file.find_scene(row.scene)) return *scene;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("reading the result '{}': the row {} was timed on the scene '{}', which is not among "
+                            "tetrace.scenes",
+                            file.path.string(), row.name, row.scene));
+}
+
+std::string rays_text(const ResultScene& scene)
+{
+    return fmt::format("{} views of {} at {}x{}", scene.views.size(), scene.camera_set, scene.width, scene.height);
+}
+
+/// Why the row's samples in the two results are not of the same work; empty where they are.
+std::string different_work(const ResultFile& before, const ResultFile& after, const ComparedRow& row)
+{
+    const ResultScene& a = scene_of(before, *row.before);
+    const ResultScene& b = scene_of(after, *row.after);
+    if (a.hash != b.hash) return fmt::format("the scene {} has hash {} in A and {} in B", a.name, a.hash, b.hash);
+    if (rays_text(a) != rays_text(b)) return fmt::format("{} in A, {} in B", rays_text(a), rays_text(b));
+    if (a.views != b.views) return fmt::format("other views of {} in A than in B", a.camera_set);
+    const auto& hits_a = row.before->hit_hash;
+    const auto& hits_b = row.after->hit_hash;
+    if (hits_a.empty() || hits_b.empty()) return fmt::format("no hit hash in {}", hits_a.empty() ? "A" : "B");
+    if (hits_a != hits_b) return fmt::format("hit hash {} in A and {} in B", hits_a, hits_b);
+    return {};
+}
+
+void require_same_work(const ResultFile& before, const ResultFile& after, const std::vector<ComparedRow>& rows)
+{
+    std::string lines;
+    for (const ComparedRow& row : rows)
+        if (row.outcome == RowOutcome::compared)
+            if (const std::string why = different_work(before, after, row); !why.empty())
+                lines += fmt::format("\n  {}: {}", row.name(), why);
+    if (lines.empty()) return;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("comparing A, '{}', with B, '{}': these rows did not do the same work, so that their times "
+                            "do not compare:{}\nmeasure both on the same scenes and views; rows whose answers may "
+                            "differ, as those of Embree or of math mode fast on another processor, are left out by "
+                            "--filter, for example --filter math:exact",
+                            before.path.string(), after.path.string(), lines));
+}
+
+[[noreturn]] void reject_pair(const ResultFile& before, const ResultFile& after, const std::string& why)
+{
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("comparing A, '{}' (of 'tetrace {}'), with B, '{}' (of 'tetrace {}'): {}",
+                            before.path.string(), before.head.verb, after.path.string(), after.head.verb, why));
+}
+
+void require_rows(const ResultFile& before, const ResultFile& after, const std::vector<ComparedRow>& rows,
+                  const std::string& filter)
+{
+    if (rows.empty())
+        reject_pair(before, after,
+                    filter.empty() ? "neither has a row" : fmt::format("--filter '{}' matches no row", filter));
+    if (std::none_of(rows.begin(), rows.end(), [](const ComparedRow& row) { return is_timed(row.before); }))
+        reject_pair(before, after,
+                    "A has no row with samples to compare with; 'tetrace bench --out FILE.json' times rows");
+    const auto is_common = [](const ComparedRow& row) { return row.before != nullptr && row.after != nullptr; };
+    if (std::none_of(rows.begin(), rows.end(), is_common))
+        reject_pair(before, after,
+                    fmt::format("they have no row in common; A has {} and its like, B {}", rows.front().name(),
+                                after.rows.empty() ? "none" : after.rows.front().name + " and its like"));
+}
+
+} // namespace
+
+std::string ComparedRow::verdict() const
+{
+    switch (outcome) {
+    case RowOutcome::compared: return std::string(name_of(change->verdict));
+    case RowOutcome::failed: return "FAILED";
+    case RowOutcome::missing: return "MISSING";
+    case RowOutcome::added: return "NEW";
+    case RowOutcome::untimed: return "NOT TIMED";
+    }
+    throw Error(ErrorKind::internal, "ComparedRow::verdict: no such outcome");
+}
+
+std::string ComparedRow::note() const
+{
+    if (has_too_few_samples())
+        return fmt::format("too few samples for an interval: {} in A and {} in B", before->samples_s.size(),
+                           after->samples_s.size());
+    const std::string a = why_untimed("A", before), b = why_untimed("B", after);
+    return a + (a.empty() || b.empty() ? "" : "; ") + b;
+}
+
+std::size_t ResultComparison::count(RowOutcome outcome) const
+{
+    return static_cast<std::size_t>(
+        std::count_if(rows.begin(), rows.end(), [&](const ComparedRow& row) { return row.outcome == outcome; }));
+}
+
+std::optional<double> ResultComparison::geometric_mean() const
+{
+    const std::size_t compared = count(RowOutcome::compared);
+    if (compared == 0) return std::nullopt;
+    double sum = 0;
+    for (const ComparedRow& row : rows)
+        if (row.change) sum += std::log(row.change->ratio);
+    return std::exp(sum / static_cast<double>(compared));
+}
+
+double ResultComparison::error() const
+{
+    double sum = 0;
+    for (const ComparedRow& row : rows)
+        if (row.change && row.change->interval) sum += row.change->error;
+    return std::min(1.0, sum);
+}
+
+std::vector<const ComparedRow*> ResultComparison::regressions(bool allow_missing) const
+{
+    std::vector<const ComparedRow*> found;
+    for (const ComparedRow& row : rows)
+        if (row.outcome == RowOutcome::failed || (row.outcome == RowOutcome::missing && !allow_missing) ||
+            (row.change && row.change->is_regression(tolerance)))
+            found.push_back(&row);
+    return found;
+}
+
+ResultComparison compare_results(const ResultFile& before, const ResultFile& after, const std::string& filter,
+                                 double tolerance)
+{
+    ResultComparison comparison{&before, &after, tolerance, paired_rows(before, after, filter)};
+    require_rows(before, after, comparison.rows, filter);
+    require_same_work(before, after, comparison.rows);
+    const std::size_t compared = comparison.count(RowOutcome::compared);
+    for (ComparedRow& row : comparison.rows)
+        if (row.outcome == RowOutcome::compared)
+            row.change = compare_speed(row.before->samples_s, row.after->samples_s, compared, tolerance);
+    return comparison;
+}
+
+} // namespace tetrace

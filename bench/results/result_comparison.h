@@ -1,0 +1,64 @@
+#pragma once
+
+#include "bench/results/result_file.h"
+#include "bench/statistics/speed_verdict.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// What can be said of a row that stands in one of two results, or in both.
+enum class RowOutcome {
+    compared, ///< timed in both
+    failed,   ///< timed before; wrong or in error after
+    missing,  ///< timed before; after it is not there, skipped, unsupported or without samples
+    added,    ///< timed after alone
+    untimed,  ///< timed in neither
+};
+
+/// A row of two results. Refers to them.
+struct ComparedRow {
+    const ResultRow* before = nullptr; ///< null where the result has no such row
+    const ResultRow* after = nullptr;  ///< the same; one of the two is there
+    RowOutcome outcome = RowOutcome::untimed;
+    std::optional<SpeedChange> change; ///< of compared rows
+
+    [[nodiscard]] const std::string& name() const { return (before != nullptr ? before : after)->name; }
+    /// "SAME", "FASTER", "SLOWER" and "UNSURE" of compared rows; else "FAILED", "MISSING", "NEW" or "NOT TIMED".
+    [[nodiscard]] std::string verdict() const;
+    /// Compared by its medians alone: the samples allow no interval, so that its verdict is "UNSURE" however far the
+    /// medians lie apart.
+    [[nodiscard]] bool has_too_few_samples() const { return change && !change->interval; }
+    /// Why the row is not compared, "B: skipped: no device", with B for after and A for before; that a compared row has
+    /// too few samples; else empty.
+    [[nodiscard]] std::string note() const;
+};
+
+/// Two results, row by row. Refers to them.
+struct ResultComparison {
+    const ResultFile* before = nullptr;
+    const ResultFile* after = nullptr;
+    double tolerance = 0;
+    std::vector<ComparedRow> rows; ///< in the order of before, then those that only after has
+
+    [[nodiscard]] std::size_t count(RowOutcome outcome) const;
+    /// Of the ratios of compared rows; empty where there is none. Rows that failed or are missing have no part in it.
+    [[nodiscard]] std::optional<double> geometric_mean() const;
+    /// The chance, at most, that any compared row is called faster or slower where nothing changed: comparison_error,
+    /// or more where rows have few samples.
+    [[nodiscard]] double error() const;
+    /// What speaks against `after`: compared rows that are slower by more than the tolerance, failed ones, and, unless
+    /// they may be, missing ones.
+    [[nodiscard]] std::vector<const ComparedRow*> regressions(bool allow_missing) const;
+};
+
+/// Compares rows of equal names, of those whose name the regular expression matches (ECMAScript; empty: all).
+/// Throws Error{invalid_input} where the results are not of the same work: a row timed in both whose scenes' hashes,
+/// views, sizes or hit hashes differ, each with its name; and where there is nothing to compare: before has no timed
+/// row, or the two have no row in common.
+[[nodiscard]] ResultComparison compare_results(const ResultFile& before, const ResultFile& after,
+                                               const std::string& filter, double tolerance);
+
+} // namespace tetrace

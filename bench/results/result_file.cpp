@@ -1,0 +1,209 @@
+#include "bench/results/result_file.h"
+
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::uint64_t oldest_schema_version = 1;
+constexpr std::size_t largest_file = std::size_t{256} << 20;
+constexpr std::size_t longest_name = 1000; // of a row, in bytes: regular expressions are matched with it
+
+[[noreturn]] void reject_file(const std::filesystem::path& path, ErrorKind kind, const std::string& why)
+{
+    throw Error(kind, fmt::format("reading the result '{}': {}", path.string(), why));
+}
+
+/// In pieces, not by its size: a pipe has none.
+std::string read_bytes(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) reject_file(path, ErrorKind::missing, "there is no such file");
+    if (std::filesystem::is_directory(path, ignored)) reject_file(path, ErrorKind::invalid_input, "it is a folder");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) reject_file(path, ErrorKind::invalid_input, std::strerror(errno));
+    std::string bytes;
+    std::vector<char> piece(1 << 16);
+    while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())), file.gcount() > 0) {
+        bytes.append(piece.data(), static_cast<std::size_t>(file.gcount()));
+        if (bytes.size() > largest_file)
+            reject_file(path, ErrorKind::invalid_input, "it is larger than 256 MiB, which no result is");
+    }
+    if (file.bad()) reject_file(path, ErrorKind::invalid_input, std::strerror(errno));
+    return bytes;
+}
+
+/// The library's message from its place on; what it says before is its own bookkeeping.
+std::string parse_message(const std::string& what)
+{
+    const std::size_t place = what.find("] ");
+    return place == std::string::npos ? what : what.substr(place + 2);
+}
+
+nlohmann::json parse(const std::filesystem::path& path)
+{
+    const std::string bytes = read_bytes(path);
+    if (bytes.empty()) reject_file(path, ErrorKind::invalid_input, "it is empty");
+    try {
+        return nlohmann::json::parse(bytes);
+    } catch (const nlohmann::json::exception& problem) {
+        reject_file(path, ErrorKind::invalid_input,
+                    fmt::format("it is not JSON, or was cut off: {}", parse_message(problem.what())));
+    }
+}
+
+std::string line_or_nothing(const ResultValue& object, const char* key)
+{
+    const auto value = object.find(key);
+    return value ? value->line() : std::string();
+}
+
+ResultHead read_head(const ResultValue& section)
+{
+    ResultHead head;
+    const ResultValue version = section.at("schema_version");
+    head.schema_version = version.count();
+    if (head.schema_version < oldest_schema_version || head.schema_version > schema_version)
+        version.reject(fmt::format("is {}, and this tetrace reads {} to {}: use the tetrace that wrote the file, or a "
+                                   "newer one",
+                                   head.schema_version, oldest_schema_version, schema_version));
+    head.verb = section.at("verb").line();
+    head.date = section.at("date").line();
+    head.version = section.at("version").line();
+    head.commit = section.at("commit").line();
+    head.cpu = section.at("host").at("cpu").line();
+    head.system = section.at("host").at("system").line();
+    return head;
+}
+
+ResultScene read_scene(const ResultValue& value)
+{
+    ResultScene scene;
+    scene.name = value.at("name").line();
+    scene.hash = value.at("hash").hash();
+    scene.camera_set = value.at("camera_set").line();
+    for (const ResultValue& view : value.at("views").items())
+        scene.views.push_back(view.count());
+    scene.width = value.at("width").count();
+    scene.height = value.at("height").count();
+    return scene;
+}
+
+std::vector<double> read_samples(const ResultValue& row)
+{
+    std::vector<double> samples;
+    const auto times = row.find("times");
+    const auto array = times ? times->find("samples_s") : std::nullopt;
+    if (!array) return samples;
+    for (const ResultValue& sample : array->items()) {
+        samples.push_back(sample.number());
+        if (samples.back() < 1e-12 || samples.back() > 1e12) sample.reject("is no duration: 1e-12 to 1e12 s are");
+    }
+    return samples;
+}
+
+std::string read_status(const ResultValue& value)
+{
+    constexpr std::array known = {"ok", "flawed", "wrong", "unsupported", "skipped", "error"};
+    std::string status = value.line();
+    if (std::find(known.begin(), known.end(), status) == known.end())
+        value.reject(fmt::format("is '{}', and a row is {}", status, fmt::join(known, ", ")));
+    return status;
+}
+
+/// With a '?' for each character that would do something to a terminal; lines stay.
+std::string printable(std::string text)
+{
+    for (char& c : text)
+        if ((static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f) c = '?';
+    return text;
+}
+
+ResultRow read_row(const ResultValue& value)
+{
+    ResultRow row;
+    row.name = value.at("name").line();
+    if (row.name.size() > longest_name) value.at("name").reject("is longer than 1,000 bytes, which no row's name is");
+    row.scene = value.at("scene").line();
+    row.backend = value.at("backend").line();
+    row.status = read_status(value.at("status"));
+    if (const auto reason = value.find("reason")) row.reason = printable(reason->text());
+    if (const auto device = value.find("device")) {
+        row.device = device->at("name").line();
+        row.device_type = device->at("type").line();
+        row.driver = line_or_nothing(*device, "driver");
+    }
+    if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
+    row.samples_s = read_samples(value);
+    if (const auto rates = value.find("rates"))
+        if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();
+    return row;
+}
+
+/// The items of an array that a result of some verbs has, each with a name of its own.
+template <class T, class Read>
+std::vector<T> read_named(const ResultValue& section, const char* key, const Read& read)
+{
+    std::vector<T> items;
+    std::set<std::string> names;
+    const auto array = section.find(key);
+    if (!array) return items;
+    for (const ResultValue& value : array->items()) {
+        items.push_back(read(value));
+        if (!names.insert(items.back().name).second)
+            value.reject(fmt::format("has the name '{}', which one before it has", items.back().name));
+    }
+    return items;
+}
+
+template <class T>
+const T* find_named(const std::vector<T>& items, const std::string& name)
+{
+    const auto found = std::find_if(items.begin(), items.end(), [&](const T& item) { return item.name == name; });
+    return found == items.end() ? nullptr : &*found;
+}
+
+} // namespace
+
+ResultValue ResultFile::section() const
+{
+    return ResultValue(json, path.string()).at("tetrace");
+}
+
+const ResultScene* ResultFile::find_scene(const std::string& name) const
+{
+    return find_named(scenes, name);
+}
+
+const ResultRow* ResultFile::find_row(const std::string& name) const
+{
+    return find_named(rows, name);
+}
+
+ResultFile read_result(const std::filesystem::path& path)
+{
+    ResultFile result;
+    result.path = path;
+    result.json = parse(path);
+    const auto section = ResultValue(result.json, path.string()).find("tetrace");
+    if (!section)
+        reject_file(path, ErrorKind::invalid_input,
+                    "it has no section 'tetrace', so it is no result; 'tetrace bench --out FILE.json' writes one");
+    result.head = read_head(*section);
+    // `tetrace scenes` lists other things under the same key.
+    if (result.head.verb == "scenes") return result;
+    result.scenes = read_named<ResultScene>(*section, "scenes", read_scene);
+    result.rows = read_named<ResultRow>(*section, "rows", read_row);
+    return result;
+}
+
+} // namespace tetrace

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "bench/results/result_value.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// Of the results that this program writes; raised when a key changes its meaning or goes.
+inline constexpr int schema_version = 2;
+
+/// What made a result, on what, when.
+struct ResultHead {
+    std::uint64_t schema_version = 0;
+    std::string verb, date, version, commit, cpu, system;
+};
+
+/// A scene of a result with the rays that were traced through it.
+struct ResultScene {
+    std::string name;
+    std::string hash; ///< of all that decides a ray's answer
+    std::string camera_set;
+    std::vector<std::uint64_t> views;
+    std::uint64_t width = 0, height = 0;
+};
+
+/// A row of a result; texts are empty where the file has none.
+struct ResultRow {
+    std::string name;
+    std::string scene, backend, status;
+    std::string reason; ///< several lines perhaps; no other control characters
+    std::string device, device_type, driver;
+    std::string hit_hash;              ///< empty where no rays were traced
+    std::optional<double> mrays_per_s; ///< of the median sample
+    std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
+};
+
+/// A result file that has been read and checked as far as these members go; the rest is reached by section(), whose
+/// values check themselves as they are asked for.
+struct ResultFile {
+    std::filesystem::path path;
+    nlohmann::json json;
+    ResultHead head;
+    std::vector<ResultScene> scenes; ///< names are unique
+    std::vector<ResultRow> rows; ///< names are unique, in the file's order: row i is section().at("rows").items()[i]
+
+    /// The section `tetrace`. Refers to this object, which has to outlive it.
+    [[nodiscard]] ResultValue section() const;
+    /// Null where there is none of that name.
+    [[nodiscard]] const ResultScene* find_scene(const std::string& name) const;
+    [[nodiscard]] const ResultRow* find_row(const std::string& name) const;
+};
+
+/// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
+/// ResultFile's members hold.
+/// Throws Error{missing} for a file that is not there; Error{invalid_input} naming file and key for one that cannot be
+/// read, exceeds 256 MiB, is no JSON, no result, of another schema version, lacks a key or has one of another type.
+[[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
+
+} // namespace tetrace

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/device/backend.h"
+#include "core/device/self_test.h"
+
+#include <optional>
+
+namespace tetrace {
+
+/// The self-test of a device in a math mode, run at the first call and kept; empty where the API runs none of our
+/// kernels. Throws Error where the device fails.
+[[nodiscard]] const std::optional<SelfTest>& self_test_of(Backend& backend, std::size_t device, MathMode math);
+
+/// The device's yardstick, measured at the first call and kept; empty where the API has none of its own.
+/// options: those of the rows. Throws Error where the device fails.
+[[nodiscard]] const std::optional<Yardstick>& yardstick_of(Backend& backend, std::size_t device,
+                                                           const SessionOptions& options);
+
+} // namespace tetrace

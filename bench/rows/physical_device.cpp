@@ -1,0 +1,49 @@
+#include "bench/rows/physical_device.h"
+
+#include <algorithm>
+#include <map>
+
+namespace tetrace {
+
+namespace {
+
+bool are_one(const Device& a, const Device& b)
+{
+    if (runs_on_host(a) || runs_on_host(b)) return runs_on_host(a) && runs_on_host(b) && a.usable && b.usable;
+    // Instances of one divided GPU have one PCI address and UUIDs of their own.
+    if (!a.uuid.empty() && !b.uuid.empty()) return a.uuid == b.uuid;
+    return !a.pci.empty() && a.pci == b.pci;
+}
+
+/// The same numbering without gaps.
+std::vector<std::size_t> numbered_by_appearance(const std::vector<std::size_t>& numbers)
+{
+    std::map<std::size_t, std::size_t> seen;
+    std::vector<std::size_t> result;
+    for (const std::size_t number : numbers)
+        result.push_back(seen.emplace(number, seen.size()).first->second);
+    return result;
+}
+
+} // namespace
+
+bool runs_on_host(const Device& device)
+{
+    return device.type == "cpu" || device.type == "emulated";
+}
+
+std::vector<std::size_t> physical_devices(std::span<const Device> devices)
+{
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < devices.size(); i++) {
+        numbers.push_back(i);
+        // A device that knows both its UUID and its PCI address can join two that know one each.
+        for (std::size_t j = 0; j < i; j++) {
+            const auto mine = numbers[i], earlier = numbers[j];
+            if (are_one(devices[i], devices[j])) std::replace(numbers.begin(), numbers.end(), mine, earlier);
+        }
+    }
+    return numbered_by_appearance(numbers);
+}
+
+} // namespace tetrace

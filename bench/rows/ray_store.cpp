@@ -1,0 +1,72 @@
+#include "bench/rows/ray_store.h"
+
+#include "backends/openmp/backend.h"
+#include "bench/rows/scene_work.h"
+#include "core/base/error.h"
+#include "core/rays/ray_offset.h"
+#include "core/rays/ray_order.h"
+
+#include <string>
+
+namespace tetrace {
+
+namespace {
+
+/// The packed form and the kernel whose primary hits other rays are made from.
+const PackedScene& reference_scene(SceneWork& scene)
+{
+    return scene.packed(KernelId{}.layout, TetOrder::hilbert).scene;
+}
+
+} // namespace
+
+const std::vector<Hit>& RayStore::primary_hits(SceneWork& scene, std::size_t view)
+{
+    const auto [entry, is_new] = primary_hits_.try_emplace(view);
+    if (!is_new) return entry->second;
+    const PackedScene& packed = reference_scene(scene);
+    const auto session =
+        openmp_backend().open(0, {}, {&scene.loaded().scene.mesh, &packed}, {.threads = scene.threads()});
+    entry->second.resize(scene.rays_per_view());
+    session->launch(scene.job(view, &packed));
+    static_cast<void>(session->wait());
+    session->read_back(entry->second);
+    return entry->second;
+}
+
+const RaySet& RayStore::set(SceneWork& scene, RayKind kind, RayOrder order, std::size_t view)
+{
+    const auto [entry, is_new] = sets_.try_emplace({kind, order, view});
+    if (!is_new) return entry->second;
+    if (order != RayOrder::tiles) {
+        entry->second = set(scene, kind, RayOrder::tiles, view);
+        arrange(entry->second, order);
+        return entry->second;
+    }
+    const bool needs_hits = kind != RayKind::primary && kind != RayKind::random;
+    const auto mesh_of_packed =
+        needs_hits ? inverse_of(reference_scene(scene).packed_of_mesh) : std::vector<std::uint32_t>();
+    const RaySource source{scene.loaded().scene,
+                           scene.view_numbers()[view],
+                           scene.views()[view],
+                           scene.width(),
+                           scene.height(),
+                           scene.start_tet(view),
+                           needs_hits ? std::span<const Hit>(primary_hits(scene, view)) : std::span<const Hit>(),
+                           mesh_of_packed};
+    entry->second = make_rays(kind, source);
+    return entry->second;
+}
+
+const std::vector<Row>& RayStore::rows(SceneWork& scene, const RowKey& key, const PackedScene* packed, std::size_t view)
+{
+    const SetKey set_key{key.rays, key.ray_order, view};
+    const auto [entry, is_new] = rows_.try_emplace({set_key, key.kernel.structure, key.order});
+    if (!is_new) return entry->second;
+    const RaySet& rays = set(scene, key.rays, key.ray_order, view);
+    entry->second = key.kernel.structure == Structure::cdt ? given_rows(rays, *packed)
+                                                           : given_rows_offset(rays, scene.loaded().scene.mesh);
+    return entry->second;
+}
+
+} // namespace tetrace

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "bench/rows/rows.h"
+#include "core/rays/ray_set.h"
+
+#include <cstddef>
+#include <map>
+#include <tuple>
+#include <vector>
+
+namespace tetrace {
+
+class SceneWork;
+
+/// The rays that are given to the rows of a scene, made when they are first asked for, and kept.
+class RayStore {
+public:
+    /// The rays of a view (an index in SceneWork::views()); not of kind primary, which kernels make themselves.
+    /// Throws Error{internal} where openmp cannot trace the primary rays that they are made from.
+    [[nodiscard]] const RaySet& set(SceneWork& scene, RayKind kind, RayOrder order, std::size_t view);
+
+    /// The same as a kernel's session takes them: from a tet of the packed scene for the cdt; for BVHs, whose rays
+    /// start off the surface, packed may be null.
+    [[nodiscard]] const std::vector<Row>& rows(SceneWork& scene, const RowKey& key, const PackedScene* packed,
+                                               std::size_t view);
+
+private:
+    using SetKey = std::tuple<RayKind, RayOrder, std::size_t>;
+
+    [[nodiscard]] const std::vector<Hit>& primary_hits(SceneWork& scene, std::size_t view);
+
+    std::map<std::size_t, std::vector<Hit>> primary_hits_; ///< by view
+    std::map<SetKey, RaySet> sets_;
+    std::map<std::tuple<SetKey, Structure, TetOrder>, std::vector<Row>> rows_; ///< layouts of a structure share them
+};
+
+} // namespace tetrace

@@ -1,0 +1,206 @@
+#include "bench/rows/row_run.h"
+
+#include "bench/rows/device_facts.h"
+#include "scenes/cache.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <new>
+
+namespace tetrace {
+
+namespace {
+
+Backend& backend_named(const std::string& name, const std::vector<Backend*>& backends)
+{
+    for (Backend* backend : backends)
+        if (backend->name() == name) return *backend;
+    throw Error(ErrorKind::internal, "no backend is named " + name);
+}
+
+/// Finds the row's device; whether a session can be opened there.
+bool find_device(RowRun& row, const std::vector<Backend*>& backends)
+{
+    row.backend = &backend_named(row.key.backend, backends);
+    row.device = row.backend->devices().at(row.key.device);
+    if (!row.device.usable) {
+        row.outcome = Skipped{Status::skipped, fmt::format("{}: {}", row.device.name, row.device.reason)};
+        return false;
+    }
+    if (row.backend->why_not(row.key.device, row.key.kernel).empty())
+        row.self_test = self_test_of(*row.backend, row.key.device, row.key.kernel.math);
+    return true;
+}
+
+void open_session(RowRun& row, const SceneData& data, const Options& options)
+{
+    SessionOptions session = session_options(options);
+    if (row.key.threads != 0) session.threads = row.key.threads;
+    row.session = row.backend->open(row.key.device, row.key.kernel, data, session);
+}
+
+void open_on_scene(RowRun& row, const Options& options)
+{
+    if (!find_device(row, all_backends())) return;
+    if (is_portable(row.key.kernel)) row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
+    open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr}, options);
+}
+
+std::string traced_reason(const Traced& traced)
+{
+    std::string text;
+    const auto add = [&](std::uint64_t count, const char* what) {
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+    };
+    add(traced.different, "different from openmp's");
+    add(traced.verdicts.lost, "lost");
+    add(traced.verdicts.wrong, "wrong");
+    return text;
+}
+
+} // namespace
+
+void Visits::add(const Visits& other)
+{
+    rays += other.rays;
+    nodes += other.nodes;
+    triangles += other.triangles;
+}
+
+void Traced::add(const ImageVerdict& image)
+{
+    totals.add(image.totals);
+    visits.add(image.visits);
+    verdicts.add(image.verdicts);
+    compared = compared || image.compared;
+    different += image.different;
+    inexact += image.inexact;
+    largest_ulps = std::max(largest_ulps, image.largest_ulps);
+    if (!first_different) first_different = image.first_different;
+    kernel_s += image.kernel_s;
+    wall_s += image.wall_s;
+    download_s += image.download_s;
+}
+
+std::string_view name_of(Status status)
+{
+    switch (status) {
+    case Status::ok: return "ok";
+    case Status::flawed: return "flawed";
+    case Status::wrong: return "wrong";
+    case Status::unsupported: return "unsupported";
+    case Status::skipped: return "skipped";
+    case Status::error: return "error";
+    }
+    throw Error(ErrorKind::internal, "name_of(Status): no such status");
+}
+
+const Traced* traced(const RowRun& row)
+{
+    return std::get_if<Traced>(&row.outcome);
+}
+
+Status status_of(const RowRun& row)
+{
+    if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->status;
+    if (const auto* failed = std::get_if<Failed>(&row.outcome))
+        return failed->kind == ErrorKind::wrong_result ? Status::wrong : Status::error;
+    const Traced* result = traced(row);
+    if (result->different > 0) return Status::wrong;
+    return result->verdicts.wrong + result->verdicts.lost > 0 ? Status::flawed : Status::ok;
+}
+
+std::string reason_of(const RowRun& row)
+{
+    if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->reason;
+    if (const auto* failed = std::get_if<Failed>(&row.outcome)) return failed->what;
+    return traced_reason(std::get<Traced>(row.outcome));
+}
+
+void guarded(RowRun& row, const std::function<void()>& work)
+{
+    try {
+        work();
+        return;
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
+        if (error.kind() == ErrorKind::unsupported)
+            row.outcome = Skipped{Status::unsupported, error.what()};
+        else
+            row.outcome = Failed{error.kind(), error.what()};
+    } catch (const std::bad_alloc&) {
+        row.outcome = Skipped{Status::unsupported, "out of memory; use a smaller --size or fewer rows"};
+    } catch (const std::exception& error) {
+        row.outcome = Failed{ErrorKind::internal, error.what()};
+    }
+    row.session.reset();
+}
+
+namespace {
+
+/// Empty, so that no program is kept, where the environment names no folder for caches.
+std::filesystem::path program_cache()
+{
+    try {
+        return cache_directory() / "programs";
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+} // namespace
+
+SessionOptions session_options(const Options& options)
+{
+    SessionOptions session;
+    session.threads = resolved_threads(options);
+    session.tile_height = options.tile_height;
+    session.max_buffer_bytes = options.buffer_limit;
+    session.program_cache = program_cache();
+    return session;
+}
+
+RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options)
+{
+    RowRun row;
+    row.key = key;
+    row.scene = &scene;
+    guarded(row, [&] { open_on_scene(row, options); });
+    return row;
+}
+
+RowRun open_row(const RowKey& key, const Packed& tets, const Options& options, const std::vector<Backend*>& backends)
+{
+    RowRun row;
+    row.key = key;
+    row.packed = &tets;
+    guarded(row, [&] {
+        if (find_device(row, backends)) open_session(row, {nullptr, &tets.scene}, options);
+    });
+    return row;
+}
+
+RowRun failed_row(const RowKey& key, const Error& error)
+{
+    RowRun row;
+    row.key = key;
+    guarded(row, [&] { throw error; });
+    return row;
+}
+
+bool fails(const RowRun& row, bool flawed_passes)
+{
+    const Status status = status_of(row);
+    if (status != Status::flawed) return status == Status::wrong;
+    return claims_robustness(row.key.kernel) && (traced(row)->verdicts.lost > 0 || !flawed_passes);
+}
+
+int exit_code(const std::vector<RowRun>& rows, bool flawed_passes)
+{
+    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails(row, flawed_passes); })) return 1;
+    for (const RowRun& row : rows)
+        if (const auto* failed = std::get_if<Failed>(&row.outcome)) return exit_code(failed->kind);
+    return 0;
+}
+
+} // namespace tetrace

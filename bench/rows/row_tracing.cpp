@@ -1,0 +1,60 @@
+#include "bench/rows/row_tracing.h"
+
+#include "bench/rows/ray_store.h"
+#include "core/base/hash.h"
+
+namespace tetrace {
+
+std::size_t ray_count(const RowRun& row, std::size_t view)
+{
+    SceneWork& scene = *row.scene;
+    if (row.key.kernel.task == Task::trace) return scene.rays_per_view();
+    return scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view).rays.size();
+}
+
+std::uint64_t hash_of_rays(const RowRun& row)
+{
+    SceneWork& scene = *row.scene;
+    std::vector<std::uint64_t> hashes;
+    for (std::size_t view = 0; view < scene.views().size(); ++view)
+        hashes.push_back(ray_hash(scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view)));
+    return hash_of(hashes);
+}
+
+std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray)
+{
+    SceneWork& scene = *row.scene;
+    if (row.key.kernel.task == Task::trace) return static_cast<std::uint32_t>(ray);
+    return scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view).rays[ray].pixel;
+}
+
+TraceJob job_of(const RowRun& row, std::size_t view)
+{
+    SceneWork& scene = *row.scene;
+    if (row.key.kernel.task == Task::trace)
+        return scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr);
+    const RaySet& set = scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view);
+    return given_job(set.rays.size(), scene.max_steps(), set.any_hit);
+}
+
+TraceJob prepare_view(RowRun& row, std::size_t view)
+{
+    if (row.key.kernel.task == Task::rays && row.view_of_rays != view) {
+        SceneWork& scene = *row.scene;
+        row.view_of_rays.reset();
+        row.session->set_rays(
+            scene.given_rays().rows(scene, row.key, row.packed != nullptr ? &row.packed->scene : nullptr, view));
+        row.view_of_rays = view;
+    }
+    return job_of(row, view);
+}
+
+double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits)
+{
+    row.session->launch(prepare_view(row, view));
+    const double seconds = row.session->wait();
+    row.session->read_back(hits);
+    return seconds;
+}
+
+} // namespace tetrace

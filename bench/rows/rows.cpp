@@ -1,0 +1,281 @@
+#include "bench/rows/rows.h"
+
+#include "bench/rows/scene_work.h"
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <regex>
+
+namespace tetrace {
+
+namespace {
+
+template <class T>
+bool wanted(const std::vector<T>& list, const T& value)
+{
+    return list.empty() || std::find(list.begin(), list.end(), value) != list.end();
+}
+
+/// Where no method is named, two stand for the cdt: the paper's, and the fastest on the layout made for it. Many more
+/// rows are for those who compare methods.
+bool wanted_method(const Options& options, const KernelId& kernel)
+{
+    if (kernel.structure != Structure::cdt || !options.methods.empty()) return wanted(options.methods, kernel.method);
+    return kernel.method == Method::maria || kernel.layout == Layout::half32;
+}
+
+bool wanted_math(const Options& options, const KernelId& kernel)
+{
+    if (!is_portable(kernel)) return true;
+    return options.math.empty() ? kernel.math == MathMode::exact : wanted(options.math, kernel.math);
+}
+
+bool wanted_schedule(const Options& options, const KernelId& kernel)
+{
+    if (!is_portable(kernel)) return true;
+    if (!options.schedules.empty()) return wanted(options.schedules, kernel.schedule);
+    const bool has_packets = options.verb != Verb::reproduce; // the paper's tables are of one ray at a time
+    return kernel.schedule == Schedule::tiles || (has_packets && kernel.schedule == Schedule::packets);
+}
+
+std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kernel)
+{
+    if (kernel.structure != Structure::cdt || options.orders.empty()) return {TetOrder::hilbert};
+    return options.orders;
+}
+
+bool wanted_kernel(const Options& options, const KernelId& kernel)
+{
+    return wanted(options.structures, kernel.structure) && wanted_method(options, kernel) &&
+           wanted(options.layouts, kernel.layout) && wanted_math(options, kernel) && wanted_schedule(options, kernel);
+}
+
+bool is_named(const Options& options, const Backend& backend)
+{
+    for (const auto* list : {&options.backends, &options.required})
+        if (std::find(list->begin(), list->end(), backend.name()) != list->end()) return true;
+    return false;
+}
+
+bool has_usable_device(const Backend& backend)
+{
+    const auto& devices = backend.devices();
+    return std::any_of(devices.begin(), devices.end(), [](const Device& device) { return device.usable; });
+}
+
+bool has_any_kernel(const Backend& backend)
+{
+    const auto& kernels = all_kernels();
+    return std::any_of(kernels.begin(), kernels.end(), [&](const KernelId& k) { return backend.has_kernel(k); });
+}
+
+std::string in_lower_case(std::string text)
+{
+    for (char& c : text)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
+{
+    const Device& device = backend.devices()[index];
+    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver, device.type,
+                                                       device.id, backend.name(), index));
+    const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
+    return options.devices.empty() || std::any_of(options.devices.begin(), options.devices.end(), holds);
+}
+
+/// Indices of the devices that have rows.
+std::vector<std::size_t> devices_with_rows(const Options& options, const Backend& backend)
+{
+    if (!has_usable_device(backend) && is_named(options, backend)) return {0};
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < backend.devices().size(); ++i)
+        if (backend.devices()[i].usable && wanted_device(options, backend, i)) indices.push_back(i);
+    return indices;
+}
+
+/// What most devices cannot run is a row there only where it is asked for.
+bool wanted_there(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
+{
+    if (kernel.layout != Layout::rt || !options.layouts.empty() || !options.filter.empty()) return true;
+    return backend.why_not(device, kernel).empty();
+}
+
+bool filter_keeps(const std::string& filter, const std::string& name)
+{
+    return filter.empty() || std::regex_search(name, std::regex(filter));
+}
+
+void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
+{
+    key.backend = backend.name();
+    for (const std::size_t device : devices_with_rows(options, backend)) {
+        if (!wanted_there(options, backend, device, key.kernel)) continue;
+        for (const TetOrder order : wanted_orders(options, key.kernel)) {
+            key.device = device;
+            key.order = order;
+            if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
+        }
+    }
+}
+
+std::vector<RowKey> rows_of_scene(const Options& options, const std::string& scene,
+                                  const std::vector<Backend*>& backends, const std::vector<KernelId>& kernels)
+{
+    std::vector<RowKey> rows;
+    for (const KernelId& kernel : kernels)
+        for (const Backend* backend : backends)
+            if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()) &&
+                backend->has_kernel(kernel))
+                add_rows(rows, options, {scene, {}, kernel}, *backend);
+    return rows;
+}
+
+/// Rows of primary rays, and of those that are given in each order that is wanted, kind after kind.
+std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& scene,
+                                  const std::vector<Backend*>& backends)
+{
+    static const std::vector<KernelId> given_kernels = kernels_of(Task::rays);
+    std::vector<RowKey> rows;
+    for (const RayKind kind : options.rays.empty() ? std::vector{RayKind::primary} : options.rays) {
+        const bool is_given = kind != RayKind::primary;
+        const auto orders = is_given && !options.ray_orders.empty() ? options.ray_orders : std::vector{RayOrder::tiles};
+        for (const RayOrder order : orders)
+            for (RowKey key : rows_of_scene(options, scene, backends, is_given ? given_kernels : all_kernels())) {
+                key.rays = kind;
+                key.ray_order = order;
+                rows.push_back(std::move(key));
+            }
+    }
+    return rows;
+}
+
+std::string device_names(const Options& options, const Backend& backend)
+{
+    std::string text;
+    if (!options.devices.empty())
+        for (std::size_t i = 0; i < backend.devices().size(); ++i)
+            if (const Device& device = backend.devices()[i]; device.usable)
+                text += fmt::format("\n  a device is {}:{}: {}, {}, {}", backend.name(), i, device.name, device.type,
+                                    device.driver);
+    return text;
+}
+
+/// Reasons of the backends asked for, so that an empty selection explains itself.
+std::string reasons(const Options& options)
+{
+    std::string text;
+    for (const KernelId& kernel : all_kernels())
+        for (const Backend* backend : all_backends())
+            if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()))
+                if (const std::string reason = backend->why_not(0, kernel); !reason.empty())
+                    text += fmt::format("\n  {} on {}: {}", name_of(kernel), backend->name(), reason);
+    for (const Backend* backend : all_backends())
+        if (wanted(options.backends, backend->name())) text += device_names(options, *backend);
+    return text;
+}
+
+[[noreturn]] void reject_selection(const Options& options, const std::vector<RowKey>& unfiltered)
+{
+    if (unfiltered.empty())
+        throw Error(ErrorKind::usage,
+                    "no row has this combination of --structure, --method, --layout, --rays, --backend, --device, "
+                    "--schedule and --math" +
+                        reasons(options) +
+                        fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
+                                    options.verb == Verb::check ? "check" : "bench"));
+    std::string text =
+        fmt::format("--filter '{}' matches none of the {} rows selected otherwise:", options.filter, unfiltered.size());
+    for (const RowKey& key : unfiltered)
+        text += "\n  " + row_name(key);
+    throw Error(ErrorKind::usage, text);
+}
+
+std::string numbered_backend(const RowKey& key)
+{
+    return key.device == 0 ? key.backend : fmt::format("{}:{}", key.backend, key.device);
+}
+
+} // namespace
+
+std::string row_name(const RowKey& key)
+{
+    const std::string rays =
+        key.kernel.task == Task::search ? std::string() : std::string("/").append(name_of(key.rays));
+    const std::string order =
+        key.ray_order == RayOrder::tiles ? std::string() : std::string("/rays:").append(name_of(key.ray_order));
+    const std::string schedule = key.kernel.schedule == Schedule::tiles
+                                     ? std::string()
+                                     : std::string("/schedule:").append(name_of(key.kernel.schedule));
+    return fmt::format(
+        "{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
+        key.order == TetOrder::hilbert ? std::string() : std::string("/order:").append(name_of(key.order)), schedule,
+        order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
+}
+
+std::string device_label(const RowKey& key)
+{
+    const std::string device = numbered_backend(key);
+    if (key.threads == 0) return device;
+    return fmt::format("{}, {} {}", device, key.threads, key.threads == 1 ? "thread" : "threads");
+}
+
+std::vector<std::string> missing_devices(const Options& options, const std::vector<Backend*>& backends)
+{
+    std::vector<std::string> sentences;
+    for (const Backend* backend : backends) {
+        const bool has_rows = has_usable_device(*backend) || (is_named(options, *backend) && has_any_kernel(*backend));
+        if (wanted(options.backends, backend->name()) && !has_rows)
+            sentences.push_back(fmt::format("{}: no device: {}", backend->name(), backend->devices().front().reason));
+    }
+    return sentences;
+}
+
+std::string kernel_title(const RowKey& key)
+{
+    const KernelId& kernel = key.kernel;
+    std::string title(name_of(kernel.structure));
+    const bool is_embree = kernel.layout == Layout::embree;
+    if (kernel.structure == Structure::cdt || is_embree) title.append(" ").append(name_of(kernel.method));
+    if (!is_embree) title.append(" ").append(name_of(kernel.layout));
+    if (is_portable(kernel) && kernel.math == MathMode::fast) title += " fast";
+    if (key.order != TetOrder::hilbert) title.append(" ").append(name_of(key.order)).append(" order");
+    if (kernel.schedule != Schedule::tiles) title.append(" ").append(name_of(kernel.schedule));
+    if (key.rays != RayKind::primary) title.append(", ").append(name_of(key.rays));
+    if (key.ray_order != RayOrder::tiles) title.append(" ").append(name_of(key.ray_order));
+    return title;
+}
+
+std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
+                                const std::vector<Backend*>& backends)
+{
+    std::vector<RowKey> unfiltered, rows;
+    for (const std::string& scene : scene_labels)
+        for (const RowKey& key : rows_of_kinds(options, scene, backends))
+            unfiltered.push_back(key);
+    for (const RowKey& key : unfiltered)
+        if (filter_keeps(options.filter, row_name(key))) rows.push_back(key);
+    if (rows.empty()) reject_selection(options, unfiltered);
+    return rows;
+}
+
+std::vector<RowKey> select_search_rows(const Options& options, const std::vector<Backend*>& backends)
+{
+    std::vector<RowKey> rows;
+    for (RowKey key : rows_of_scene(options, search_scene, backends, kernels_of(Task::search))) {
+        if (key.backend == reference_backend) {
+            key.threads = 1;
+            rows.push_back(key);
+            key.threads = 0;
+            if (resolved_threads(options) == 1) continue;
+        }
+        rows.push_back(key);
+    }
+    if (rows.empty()) reject_selection(options, rows);
+    return rows;
+}
+
+} // namespace tetrace

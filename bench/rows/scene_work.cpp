@@ -1,0 +1,100 @@
+#include "bench/rows/scene_work.h"
+
+#include "bench/terminal/progress.h"
+#include "bench/terminal/stopwatch.h"
+#include "core/mesh/locate.h"
+#include "core/pack/pack_bvh.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <omp.h>
+
+namespace tetrace {
+
+namespace {
+
+/// Some devices end loops silently at 65,535 iterations (lavapipe of Mesa 22.3): the cap stays below, everywhere alike.
+constexpr std::uint32_t largest_step_cap = 60'000;
+
+} // namespace
+
+SceneWork::SceneWork(LoadedScene loaded, const Options& options)
+    : loaded_(std::move(loaded)), counts_(count_faces(loaded_.scene.tets)), width_(options.width),
+      height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
+{
+    const auto cameras = make_cameras(options.camera_set, bounding_sphere(loaded_.scene.mesh));
+    const Stopwatch watch;
+    for (const std::uint32_t number : view_numbers_) {
+        View view = make_view(cameras.at(number), width_, height_);
+        const Start start = find_start(loaded_.scene, view.origin);
+        view.origin = start.origin; // every structure traces from there
+        views_.push_back(view);
+        start_tets_.push_back(start.tet);
+    }
+    locate_s_ = watch.seconds();
+}
+
+const Packed& SceneWork::packed(Layout layout, TetOrder order)
+{
+    const std::pair key{layout, order};
+    if (const auto found = packed_.find(key); found != packed_.end()) return found->second;
+    const bool is_bvh = structure_of(layout) == Structure::bvh;
+    const BuiltBvh* const built = is_bvh ? &bvh() : nullptr;
+    const Stopwatch watch;
+    Packed made;
+    made.scene = is_bvh ? pack_bvh(loaded_.scene.mesh, built->bvh, layout) : pack(loaded_.scene, layout, order);
+    made.pack_s = watch.seconds();
+    if (is_bvh) made.bvh_build_s = built->build_s;
+    return packed_.emplace(key, std::move(made)).first->second;
+}
+
+const BuiltBvh& SceneWork::bvh()
+{
+    if (!bvh_) bvh_ = build_bvh(loaded_.scene.mesh, threads_);
+    return *bvh_;
+}
+
+std::uint32_t SceneWork::max_steps() const
+{
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(counts_.tets + 1, largest_step_cap));
+}
+
+TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
+{
+    TraceJob job;
+    job.view = views_.at(index);
+    job.width = width_;
+    job.height = height_;
+    if (packed != nullptr && structure_of(packed->layout) == Structure::cdt)
+        start_in(job, *packed, loaded_.scene, start_tets_[index]);
+    job.max_steps = max_steps();
+    return job;
+}
+
+SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label)
+{
+    LoadedScene loaded = load_scene(request, progress_line().callback());
+    progress_line().clear();
+    loaded.scene.name = label.empty() ? scene_label(request.name) : label;
+    for (const std::string& message : loaded.messages)
+        say(fmt::format("{}: {}", loaded.scene.name, message));
+    progress_line().show("preparing " + loaded.scene.name, -1);
+    return {std::move(loaded), options};
+}
+
+std::vector<std::string> missing_default_scenes(const Options& options)
+{
+    std::vector<std::string> reasons;
+    if (!options.scenes.empty()) return reasons;
+    for (const char* const name : {"bunny", "armadillo"})
+        if (const std::string reason = why_not_available(name); !reason.empty())
+            reasons.push_back(fmt::format("{} is left out: {}", name, reason));
+    return reasons;
+}
+
+unsigned resolved_threads(const Options& options)
+{
+    return options.threads != 0 ? options.threads : static_cast<unsigned>(omp_get_max_threads());
+}
+
+} // namespace tetrace

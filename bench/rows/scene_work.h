@@ -1,0 +1,86 @@
+#pragma once
+
+#include "backends/embree/bvh_builder.h"
+#include "bench/options/options.h"
+#include "bench/rows/ray_store.h"
+#include "core/device/backend.h"
+#include "scenes/load.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// A scene in packed form, and what packing it took.
+struct Packed {
+    PackedScene scene;
+    double pack_s = 0;
+    std::optional<double> bvh_build_s; ///< of a BVH, which is built for all its layouts once
+};
+
+/// A loaded scene with all that its rows share: packed forms, views, start tets.
+class SceneWork {
+public:
+    /// Takes the views that the options select, and finds where their rays start.
+    SceneWork(LoadedScene loaded, const Options& options);
+
+    [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
+    [[nodiscard]] const std::string& label() const { return loaded_.scene.name; }
+    [[nodiscard]] const TetMeshCounts& counts() const { return counts_; }
+    [[nodiscard]] const std::vector<std::uint32_t>& view_numbers() const { return view_numbers_; }
+    [[nodiscard]] const std::vector<View>& views() const { return views_; }
+    [[nodiscard]] std::uint32_t width() const { return width_; }
+    [[nodiscard]] std::uint32_t height() const { return height_; }
+    [[nodiscard]] std::size_t rays_per_view() const { return std::size_t{width_} * height_; }
+    /// Seconds that locating the origins of all views took.
+    [[nodiscard]] double locate_s() const { return locate_s_; }
+
+    /// Packs at the first call; later calls return the same. Throws Error{unsupported} as pack() and pack_bvh() do.
+    [[nodiscard]] const Packed& packed(Layout layout, TetOrder order);
+
+    /// The BVH of the scene's mesh, built at the first call.
+    [[nodiscard]] const BuiltBvh& bvh();
+
+    /// The rays that rows of other kinds than primary are given.
+    [[nodiscard]] RayStore& given_rays() { return given_rays_; }
+
+    /// The tet of the scene that holds a view's origin, NO_TET where it lies outside the domain.
+    [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
+
+    /// A walk that long is lost.
+    [[nodiscard]] std::uint32_t max_steps() const;
+
+    /// Host threads that all work uses.
+    [[nodiscard]] unsigned threads() const { return threads_; }
+
+    /// The job of the view at `index` of views(). packed: null for kernels that are not portable.
+    [[nodiscard]] TraceJob job(std::size_t index, const PackedScene* packed) const;
+
+private:
+    LoadedScene loaded_;
+    TetMeshCounts counts_;
+    std::uint32_t width_, height_;
+    std::vector<std::uint32_t> view_numbers_;
+    std::vector<View> views_;
+    std::vector<std::uint32_t> start_tets_; ///< as the tet mesh numbers them
+    double locate_s_ = 0;
+    unsigned threads_;
+    std::optional<BuiltBvh> bvh_;
+    std::map<std::pair<Layout, TetOrder>, Packed> packed_;
+    RayStore given_rays_;
+};
+
+/// Loads a scene, says its messages, and makes it ready. label: what rows call it; empty: its scene_label().
+/// Throws what load_scene() throws.
+[[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label = {});
+
+/// Which defaults cannot be had here, and how to get them, a sentence each; empty where scenes were named.
+[[nodiscard]] std::vector<std::string> missing_default_scenes(const Options& options);
+
+/// Host threads that all work uses: those asked for, else OpenMP's number (OMP_NUM_THREADS, else all that the process
+/// may use).
+[[nodiscard]] unsigned resolved_threads(const Options& options);
+
+} // namespace tetrace

@@ -1,0 +1,120 @@
+#include "bench/statistics/rank_interval.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::size_t most_counted = 50; // samples; counting takes n * m * n * m / 2 steps
+
+/// The lower half of the distribution of U, the number of pairs in which the one set has the larger value, where both
+/// sets are drawn from one distribution: P(U = u) for u up to n * m / 2, by the recursion of Mann and Whitney.
+std::vector<double> pair_count_distribution(std::size_t n, std::size_t m)
+{
+    const std::size_t size = n * m / 2 + 1;
+    std::vector<std::vector<double>> of(m + 1, std::vector<double>(size, 0)); // for i and j samples: of[j][u]
+    for (auto& probabilities : of)
+        probabilities[0] = 1;
+    for (std::size_t i = 1; i <= n; ++i)
+        for (std::size_t j = 1; j <= m; ++j)
+            for (std::size_t u = size; u-- > 0;) { // downwards: of[j][u - j] still is that of i - 1 samples
+                const double largest_is_ours = u >= j ? of[j][u - j] : 0;
+                of[j][u] = (static_cast<double>(i) * largest_is_ours + static_cast<double>(j) * of[j - 1][u]) /
+                           static_cast<double>(i + j);
+            }
+    return of[m];
+}
+
+/// The number of values u = 0, 1, ... whose probabilities add up to no more than `tail`.
+std::size_t counted_values(std::size_t n, std::size_t m, double tail)
+{
+    std::size_t values = 0;
+    double sum = 0;
+    for (const double probability : pair_count_distribution(n, m)) {
+        sum += probability;
+        if (sum > tail) break;
+        ++values;
+    }
+    return values;
+}
+
+/// The same from the normal distribution of equal mean and variance, whose tails are the heavier ones.
+std::size_t approximate_values(std::size_t n, std::size_t m, double tail)
+{
+    const auto pairs = static_cast<double>(n) * static_cast<double>(m);
+    const double deviation = std::sqrt(pairs * static_cast<double>(n + m + 1) / 12);
+    const auto is_in_tail = [&](std::size_t u) {
+        const double deviations = (static_cast<double>(u) + 0.5 - pairs / 2) / deviation;
+        return std::erfc(-deviations / std::sqrt(2.0)) / 2 <= tail;
+    };
+    std::size_t inside = 0, outside = n * m / 2 + 1; // the first value that is not in the tail lies between
+    while (inside < outside) {
+        const std::size_t middle = (inside + outside) / 2;
+        (is_in_tail(middle) ? inside : outside) = is_in_tail(middle) ? middle + 1 : middle;
+    }
+    return inside;
+}
+
+/// How many quotients are at most x. Both sets ascend.
+std::size_t quotients_up_to(double x, const std::vector<double>& numerator, const std::vector<double>& denominator)
+{
+    std::size_t count = 0;
+    for (const double above : numerator) {
+        const auto first = std::partition_point(denominator.begin(), denominator.end(),
+                                                [&](double below) { return above / below > x; });
+        count += static_cast<std::size_t>(denominator.end() - first);
+    }
+    return count;
+}
+
+/// The quotient that `rank` others precede. There may be 10^8 of them: bisected, not sorted. The bits of positive
+/// numbers ascend as the numbers do.
+double quotient_of_rank(std::size_t rank, const std::vector<double>& numerator, const std::vector<double>& denominator)
+{
+    std::uint64_t low = 0, high = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
+    while (low < high) {
+        const std::uint64_t middle = low + (high - low) / 2;
+        if (quotients_up_to(std::bit_cast<double>(middle), numerator, denominator) > rank)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return std::bit_cast<double>(low);
+}
+
+} // namespace
+
+double smallest_error(std::size_t n, std::size_t m)
+{
+    const auto log_factorial = [](std::size_t k) { return std::lgamma(static_cast<double>(k) + 1); };
+    const double log_share = log_factorial(n) + log_factorial(m) - log_factorial(n + m);
+    constexpr double rounding = 1 + 1e-9;
+    return std::min(1.0, 2 * std::exp(log_share) * rounding);
+}
+
+std::optional<std::size_t> quotients_left_out(std::size_t n, std::size_t m, double error)
+{
+    const bool few = n <= most_counted && m <= most_counted;
+    const std::size_t values = few ? counted_values(n, m, error / 2) : approximate_values(n, m, error / 2);
+    if (values == 0) return std::nullopt;
+    return values - 1;
+}
+
+std::optional<FactorInterval> rank_interval(std::vector<double> numerator, std::vector<double> denominator,
+                                            double error)
+{
+    const auto left_out = quotients_left_out(numerator.size(), denominator.size(), error);
+    if (!left_out) return std::nullopt;
+    std::sort(numerator.begin(), numerator.end());
+    std::sort(denominator.begin(), denominator.end());
+    const std::size_t last = numerator.size() * denominator.size() - 1;
+    return FactorInterval{quotient_of_rank(*left_out, numerator, denominator),
+                          quotient_of_rank(last - *left_out, numerator, denominator)};
+}
+
+} // namespace tetrace

@@ -1,0 +1,159 @@
+#include "bench/terminal/progress.h"
+
+#include "bench/terminal/text.h"
+#include "core/base/elapsed.h"
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace tetrace {
+
+namespace {
+
+constexpr double quiet_s = 2.0;
+constexpr double redraw_s = 0.1;
+
+std::size_t terminal_width()
+{
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80u;
+}
+
+bool draws_here()
+{
+    const char* term = std::getenv("TERM");
+    return isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
+}
+
+/// Columns that the process's line takes, for the signal handler.
+std::atomic<std::size_t> columns_to_clear{0};
+
+/// Takes the line away, then lets the signal end the process as it would have: only async-signal-safe calls.
+void clear_and_end(int signal)
+{
+    char blanks[256];
+    std::memset(blanks, ' ', sizeof blanks);
+    blanks[0] = '\r';
+    const std::size_t columns = std::min(columns_to_clear.load(), sizeof blanks - 2);
+    blanks[columns + 1] = '\r';
+    if (columns > 0) (void)!::write(STDERR_FILENO, blanks, columns + 2);
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
+/// Signals that are ignored, or handled by others, stay so.
+void clear_when_interrupted()
+{
+    static_assert(decltype(columns_to_clear)::is_always_lock_free, "read by a signal handler");
+    for (const int signal : {SIGINT, SIGTERM}) {
+        struct sigaction before {};
+        if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL)
+            std::signal(signal, clear_and_end);
+    }
+}
+
+bool colour_here()
+{
+    const char* no_colour = std::getenv("NO_COLOR");
+    return no_colour == nullptr || *no_colour == '\0';
+}
+
+} // namespace
+
+namespace {
+
+ProgressLine make_progress_line()
+{
+    const bool draws = draws_here();
+    if (draws) clear_when_interrupted();
+    return ProgressLine(draws, colour_here());
+}
+
+} // namespace
+
+std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width, double left_s)
+{
+    std::string text = fmt::format("{}  {}", stage, seconds_text(elapsed_s));
+    if (fraction >= 0) text += fmt::format("  {:.0f} %", 100 * std::min(fraction, 1.0));
+    if (left_s >= 0) text += fmt::format("  {} left", seconds_text(left_s));
+    if (display_width(text) <= width) return text;
+    std::size_t end = 0; // byte after the last character that fits
+    for (std::size_t columns = 0; end < text.size(); ++end)
+        if ((static_cast<unsigned char>(text[end]) & 0xC0) != 0x80 && ++columns > width) break;
+    return text.substr(0, end);
+}
+
+ProgressLine::ProgressLine(bool draws, bool colour)
+    : draws_(draws), colour_(colour), stage_start_(Clock::now()), last_draw_(stage_start_)
+{
+}
+
+ProgressLine::~ProgressLine()
+{
+    clear();
+}
+
+void ProgressLine::show(const std::string& stage, double fraction, double left_s)
+{
+    if (!draws_) return;
+    if (stage != stage_) {
+        stage_ = stage;
+        stage_start_ = Clock::now();
+    }
+    // Counted from the last output, not from the stage: a person waits for the whole, however short its stages are.
+    if (seconds_since(last_draw_) < (drawn_ == 0 ? quiet_s : redraw_s)) return;
+    const std::string text = progress_text(stage, seconds_since(stage_start_), fraction, terminal_width() - 1, left_s);
+    const std::size_t columns = display_width(text);
+    const std::string rest(drawn_ > columns ? drawn_ - columns : 0, ' ');
+    std::fputs(fmt::format(fmt::runtime(colour_ ? "\r\x1b[2m{}\x1b[0m{}" : "\r{}{}"), text, rest).c_str(), stderr);
+    std::fflush(stderr);
+    drawn_ = columns;
+    columns_to_clear = columns;
+    last_draw_ = Clock::now();
+}
+
+void ProgressLine::clear()
+{
+    if (drawn_ == 0) return;
+    std::fputs(fmt::format("\r{}\r", std::string(drawn_, ' ')).c_str(), stderr);
+    std::fflush(stderr);
+    drawn_ = 0;
+    columns_to_clear = 0;
+    last_draw_ = Clock::now();
+}
+
+Progress ProgressLine::callback()
+{
+    return [this](const std::string& stage, double fraction) { show(stage, fraction); };
+}
+
+ProgressLine& progress_line()
+{
+    static ProgressLine line = make_progress_line();
+    return line;
+}
+
+void say(const std::string& message)
+{
+    progress_line().clear();
+    std::fputs((message + "\n").c_str(), stderr);
+}
+
+void print(const std::string& text)
+{
+    progress_line().clear();
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("writing the result to standard output: {}; use --out FILE", std::strerror(errno)));
+}
+
+} // namespace tetrace

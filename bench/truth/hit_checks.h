@@ -1,0 +1,48 @@
+#pragma once
+
+#include "core/rays/hit.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace tetrace {
+
+/// What became of the rays, counted.
+struct RayTotals {
+    std::uint64_t rays = 0;
+    std::uint64_t hits = 0;
+    std::uint64_t misses = 0;
+    std::uint64_t lost = 0;
+    std::uint64_t unwritten = 0; ///< hit records that still hold POISON
+    std::uint64_t hit_steps = 0;
+    std::uint64_t miss_steps = 0;
+    std::uint64_t lost_steps = 0;
+
+    [[nodiscard]] std::uint64_t steps() const { return hit_steps + miss_steps + lost_steps; }
+    void add(const RayTotals& other);
+};
+[[nodiscard]] RayTotals count_rays(std::span<const Hit> hits);
+
+/// How far two answers may be apart that are one.
+struct Allowance {
+    std::uint32_t ulps = 0;    ///< of t, u and v, in units in the last place; 0: the same bits
+    bool any_triangle = false; ///< any hit answers: whether there is one counts, not which
+};
+
+/// Rays on which two backends disagree.
+struct Differences {
+    std::uint64_t count = 0;          ///< further apart than allowed
+    std::optional<std::size_t> first; ///< index of the first of those
+    std::uint64_t inexact = 0;        ///< not the same bits, allowed or not
+    std::uint64_t largest_ulps = 0;   ///< of t, u and v where allowed
+};
+
+/// Whether two hits may be one answer: face, tet and steps in every bit, t, u and v as near as is allowed (see
+/// SelfTest::allowed_ulps); or whether both or neither is a hit, where that is all that is asked.
+[[nodiscard]] bool is_same_hit(const Hit& a, const Hit& b, Allowance allowed);
+
+/// Compares a device's hits with openmp's. Throws Error{internal} where their numbers differ.
+[[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed);
+
+} // namespace tetrace

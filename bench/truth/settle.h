@@ -1,0 +1,76 @@
+#pragma once
+
+#include "core/mesh/triangle_mesh.h"
+#include "core/rays/hit.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tetrace {
+
+/// A ray as exact arithmetic sees it: its float coordinates, taken literally.
+struct ExactRay {
+    Float3 origin, direction;
+};
+
+/// What of a ray counts, and what is asked of it.
+struct RayPart {
+    std::uint32_t start = NO_HIT; ///< the triangle that it starts on, which it does not meet again; NO_HIT: on none
+    float end = NO_END;           ///< ray parameter of its end
+    bool any_hit = false;         ///< ours need not be nearest
+
+    [[nodiscard]] bool is_whole() const { return start == NO_HIT && end >= NO_END; }
+};
+
+/// What became of a disagreement between two answers.
+struct Settlement {
+    enum class Kind {
+        ours,  ///< exact arithmetic has our answer as the nearest of the candidates
+        tie,   ///< the ray passes an edge so closely that float32 may decide either way
+        wrong, ///< neither
+    } kind = Kind::wrong;
+    double distance = 0; ///< of a tie: how far the ray, or its start or end, is from what explains it
+    const char* reason = "";
+};
+
+/// Settles disagreements about which triangle a ray meets first, by exact arithmetic on the triangles concerned.
+///
+/// The candidates are the triangles of both answers and all that share a vertex with them. Our answer stands if it is
+/// the nearest candidate that the exact ray meets. It is a tie if the ray is within the bound of our triangle, and
+/// every candidate that the exact ray meets before it can be escaped within the bound: over an edge or vertex that it
+/// shares with our triangle, or over a silhouette (an edge whose triangles all lie on one side as seen along the ray,
+/// or that has only one). Between two triangles that continue each other there is no gap to slip through: that is
+/// wrong. A ray that starts on a triangle, or ends, is also a tie where a triangle is within the bound of its start, or
+/// within the bound times hit_condition() of its end, which is compared with a rounded t.
+class Settler {
+public:
+    explicit Settler(const TriangleMesh& mesh);
+
+    /// ours, reference: triangle indices, or NO_HIT. bound: in domain units.
+    [[nodiscard]] Settlement settle(const ExactRay& ray, std::uint32_t ours, std::uint32_t reference,
+                                    double bound) const;
+    [[nodiscard]] Settlement settle(const ExactRay& ray, const RayPart& part, std::uint32_t ours,
+                                    std::uint32_t reference, double bound) const;
+
+private:
+    [[nodiscard]] std::vector<std::uint32_t> candidates(std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] std::array<Float3, 3> corners(std::uint32_t triangle) const;
+    [[nodiscard]] bool meets(const ExactRay& ray, const RayPart& part, std::uint32_t triangle) const;
+    [[nodiscard]] double excess(const ExactRay& ray, const RayPart& part, std::uint32_t triangle, double bound) const;
+    [[nodiscard]] double distance_to_limits(const ExactRay& ray, const RayPart& part, std::uint32_t triangle,
+                                            double bound) const;
+    [[nodiscard]] bool is_before(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] double distance_to_edge(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] double distance_to_outline(const ExactRay& ray, std::uint32_t triangle) const;
+    [[nodiscard]] bool is_silhouette(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] double escape_distance(const ExactRay& ray, std::uint32_t triangle, std::uint32_t ours,
+                                         double bound) const;
+    [[nodiscard]] std::vector<std::uint32_t> triangles_at(std::uint32_t vertex) const;
+
+    const TriangleMesh& mesh_;
+    std::vector<std::uint32_t> ranges_;   // per vertex, into incident_
+    std::vector<std::uint32_t> incident_; // triangles
+};
+
+} // namespace tetrace

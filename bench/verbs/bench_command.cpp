@@ -1,0 +1,59 @@
+#include "bench/output/bench_report.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+int list_rows(const std::vector<RowKey>& keys)
+{
+    std::string text;
+    for (const RowKey& key : keys)
+        text += row_name(key) + "\n";
+    print(text);
+    return 0;
+}
+
+/// Google Benchmark's own JSON names the host, whatever it is told.
+void check_anonymous(const Options& options, const BenchmarkFlags& flags)
+{
+    const bool prints_json = flags.format == "json", writes_json = !flags.out.empty() && flags.out_format == "json";
+    if (options.anonymous && (prints_json || writes_json))
+        throw Error(ErrorKind::usage,
+                    fmt::format("--anonymous: the JSON of {} names the host; --out FILE.json holds the same without it",
+                                prints_json ? "--benchmark_format" : "--benchmark_out"));
+}
+
+} // namespace
+
+int bench_command(const Options& options)
+{
+    const BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
+    check_anonymous(options, flags);
+    const auto keys =
+        selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
+    if (options.list || flags.list_tests) return list_rows(keys);
+    check_output(options);
+    if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
+    BenchResult result;
+    result.missing_scenes = missing_default_scenes(options);
+    result.run = open_and_verify(keys, options);
+    result.measurement = measure_rows(result.run.rows, options, flags);
+    progress_line().show("measuring the devices themselves", -1);
+    result.devices = devices_of(result.run.rows);
+    measure_devices(result.devices, session_options(options));
+    result.comparisons = compare_rows(result.run.rows);
+    const Report report = bench_report(result, options);
+    // Google Benchmark has written its own form to standard output already, where it was asked to.
+    if (!flags.format)
+        deliver(options, report);
+    else if (options.out)
+        deliver_to_file(options, report);
+    return exit_code(result.run.rows, true);
+}
+
+} // namespace tetrace

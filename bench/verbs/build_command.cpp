@@ -1,0 +1,190 @@
+#include "bench/measuring/figures.h"
+#include "bench/output/report.h"
+#include "bench/output/row_json.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/hash.h"
+
+#include <fmt/format.h>
+#include <optional>
+
+namespace tetrace {
+
+namespace {
+
+/// A combination, and what became of it.
+struct Built {
+    SceneRequest request;
+    std::optional<nlohmann::json> scene; ///< empty where it failed
+    TetMeshCounts counts;
+    std::string switches; ///< as passed; empty where no TetGen ran
+    std::uint64_t bytes = 0;
+    double build_s = 0;
+    bool from_cache = false;
+    RayTotals totals;
+    std::string reason; ///< why it failed
+};
+
+std::vector<SceneRequest> combinations(const Options& options)
+{
+    std::vector<SceneRequest> requests;
+    for (SceneRequest request : scene_requests(options))
+        for (const DomainKind domain : options.domains)
+            for (const std::uint32_t divisions : options.divisions)
+                for (const std::string& switches : options.switches) {
+                    request.build.domain = domain;
+                    request.build.divisions = divisions;
+                    request.build.switches = switches;
+                    requests.push_back(request);
+                }
+    return requests;
+}
+
+/// The kernel whose walk counts the steps: the first that openmp has. Steps are the mesh's, whatever the method.
+RowKey counting_row(const Options& options, const std::string& label)
+{
+    Options selection = options;
+    selection.structures = {Structure::cdt};
+    selection.backends = {"openmp"};
+    return select_rows(selection, {label}).front();
+}
+
+void count_steps(Built& built, SceneWork& scene, const Options& options)
+{
+    RowRun row = open_row(counting_row(options, scene.label()), scene, options);
+    if (row.session == nullptr) throw Error(ErrorKind::unsupported, "counting steps: " + reason_of(row));
+    std::vector<Hit> hits(scene.rays_per_view());
+    for (std::size_t view = 0; view < scene.views().size(); ++view) {
+        progress_line().show("counting steps, " + scene.label(),
+                             static_cast<double>(view) / static_cast<double>(scene.views().size()));
+        row.session->launch(scene.job(view, &row.packed->scene));
+        static_cast<void>(row.session->wait());
+        row.session->read_back(hits);
+        built.totals.add(count_rays(hits));
+    }
+    built.bytes = row.session->bytes();
+}
+
+Built build_one(const SceneRequest& request, const Options& options)
+{
+    Built built;
+    built.request = request;
+    try {
+        SceneWork scene = load_work(request, options);
+        built.counts = scene.counts();
+        built.switches = scene.loaded().scene.build.switches;
+        built.build_s = scene.loaded().scene.build.build_s;
+        built.from_cache = scene.loaded().from_cache;
+        built.request.build.divisions = scene.loaded().scene.domain.divisions;
+        built.request.build.domain = scene.loaded().scene.domain.kind;
+        count_steps(built, scene, options);
+        built.scene = scene_json(scene, options);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::usage) throw;
+        built.reason = error.what();
+        progress_line().clear();
+    }
+    return built;
+}
+
+std::vector<Cell> table_row(const Built& built)
+{
+    const bool good = built.scene.has_value();
+    const MeanSteps mean = mean_steps(built.totals);
+    const auto count = [&](std::uint64_t value) { return good ? Cell(value) : Cell(); };
+    const double hits_percent = 100.0 * static_cast<double>(built.totals.hits) / static_cast<double>(built.totals.rays);
+    return {scene_label(built.request.name),
+            std::string(name_of(built.request.build.domain)),
+            std::uint64_t{built.request.build.divisions},
+            good && built.switches.empty() ? Cell() : Cell(good ? built.switches : built.request.build.switches),
+            count(built.counts.tets),
+            count(built.counts.occlusive_faces),
+            count(built.counts.free_faces),
+            good ? Cell(1e-6 * static_cast<double>(built.bytes)) : Cell(),
+            good ? Cell(built.build_s) : Cell(),
+            good ? Cell(std::string(built.from_cache ? "yes" : "no")) : Cell(),
+            cell_of(mean.all),
+            cell_of(mean.hit),
+            cell_of(mean.miss),
+            good ? Cell(hits_percent) : Cell(),
+            built.totals.lost > 0 ? Cell(built.totals.lost) : Cell(),
+            good ? Cell() : Cell(built.reason)};
+}
+
+std::vector<Column> columns(bool with_reason)
+{
+    std::vector<Column> list = {{"scene", "scene"},
+                                {"domain", "domain"},
+                                {"divisions", "n"},
+                                {"switches", "switches"},
+                                {"tets", "tets"},
+                                {"occlusive_faces", "occlusive"},
+                                {"free_faces", "free"},
+                                {"size_mb", "size", "MB", 1},
+                                {"build_s", "build", "s", 1},
+                                {"from_cache", "cached"},
+                                {"mean_steps", "steps", "a ray"},
+                                {"mean_steps_hit", "steps", "a hit"},
+                                {"mean_steps_miss", "steps", "a miss"},
+                                {"hits_percent", "hits", "%", 1},
+                                {"lost", "lost", "rays"}};
+    if (with_reason) list.push_back({"reason", "reason"});
+    return list;
+}
+
+Table build_table(const std::vector<Built>& all, bool with_reason)
+{
+    Table table(columns(with_reason));
+    for (const Built& built : all) {
+        auto row = table_row(built);
+        if (!with_reason) row.pop_back();
+        table.add(std::move(row));
+    }
+    return table;
+}
+
+/// Reasons are sentences, too long for a column that people read: they stand below the table.
+std::string reasons_text(const std::vector<Built>& all)
+{
+    std::string text;
+    for (const Built& built : all)
+        if (!built.scene)
+            text += fmt::format("\n{} ({}, {}, {}) failed: {}\n", scene_label(built.request.name),
+                                name_of(built.request.build.domain), built.request.build.divisions,
+                                built.request.build.switches, built.reason);
+    return text;
+}
+
+Report build_report(const std::vector<Built>& all, const Options& options)
+{
+    nlohmann::json section = result_head(options);
+    const Table full = build_table(all, true);
+    section["builds"] = to_json(full);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        section["builds"][i]["status"] = all[i].scene ? "ok" : "error";
+        if (all[i].scene) section["builds"][i]["scene_record"] = *all[i].scene;
+    }
+    const std::string rays =
+        fmt::format("\nSteps of primary rays: {} views of {} at {}x{}.\n", selected_views(options).size(),
+                    name_of(options.camera_set), options.width, options.height);
+    return {build_table(all, false).text() + reasons_text(all) + rays, full, {{"tetrace", std::move(section)}}};
+}
+
+} // namespace
+
+int build_command(const Options& options)
+{
+    check_output(options);
+    for (const std::string& sentence : missing_default_scenes(options))
+        say(sentence);
+    std::vector<Built> all;
+    bool failed = false;
+    for (const SceneRequest& request : combinations(options)) {
+        all.push_back(build_one(request, options));
+        failed = failed || !all.back().scene || all.back().totals.lost > 0;
+    }
+    deliver(options, build_report(all, options));
+    return failed ? 1 : 0;
+}
+
+} // namespace tetrace

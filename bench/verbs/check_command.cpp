@@ -1,0 +1,234 @@
+#include "bench/measuring/conformity.h"
+#include "bench/options/anonymous.h"
+#include "bench/output/bench_report.h"
+#include "bench/output/check_differences.h"
+#include "bench/output/check_matrix.h"
+#include "bench/output/difference_pictures.h"
+#include "bench/output/junit.h"
+#include "bench/output/row_json.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+Table check_table(const std::vector<RowRun>& rows)
+{
+    Table table({{"name", "row"},
+                 {"rays", "rays"},
+                 {"agreed", "agreed"},
+                 {"ties", "ties"},
+                 {"largest_tie_distance", "largest", {}, 12},
+                 {"settled", "settled"},
+                 {"offset", "offset"},
+                 {"wrong", "wrong"},
+                 {"lost", "lost"},
+                 {"conformity", "conformity"},
+                 {"different_from_openmp", "differ"},
+                 {"largest_ulps", "ulps"},
+                 {"hit_hash", "hits"},
+                 {"status", "status"},
+                 {"reason", "reason"}});
+    for (const RowRun& row : rows) {
+        const Traced* result = traced(row);
+        const auto count = [&](std::uint64_t Verdicts::*member) {
+            return result ? Cell(result->verdicts.*member) : Cell();
+        };
+        const std::string reason = reason_of(row);
+        table.add({row_name(row.key), count(&Verdicts::rays), count(&Verdicts::agreed), count(&Verdicts::ties),
+                   result && result->verdicts.ties > 0 ? Cell(result->verdicts.largest_tie_distance) : Cell(),
+                   count(&Verdicts::settled), count(&Verdicts::offset), count(&Verdicts::wrong), count(&Verdicts::lost),
+                   conformity_text(row), result && result->compared ? Cell(result->different) : Cell(),
+                   result && result->compared ? Cell(result->largest_ulps) : Cell(),
+                   result ? Cell(hash_text(result->hit_hash)) : Cell(), std::string(name_of(status_of(row))),
+                   reason.empty() ? Cell() : Cell(reason)});
+    }
+    return table;
+}
+
+/// Whether the row fails the check; one without an answer does not by itself (see exit_code and --require).
+bool fails_check(const RowRun& row, const Options& options)
+{
+    return fails(row, options.allow_flawed) || conformity_of(row) == Conformity::not_exact;
+}
+
+/// Without pictures where none are asked for.
+struct Checked {
+    SceneRows run;
+    std::vector<std::string> missing;
+    std::unique_ptr<DifferencePictures> pictures;
+};
+
+nlohmann::json check_row_json(const RowRun& row)
+{
+    nlohmann::json object = row_json(row);
+    object["conformity"] = conformity_text(row);
+    add_paths(object, row);
+    return object;
+}
+
+nlohmann::json check_json(const Checked& checked, const Options& options)
+{
+    nlohmann::json section = result_head(options);
+    section["scenes"] = nlohmann::json::array();
+    for (const auto& scene : checked.run.scenes)
+        section["scenes"].push_back(scene_json(*scene, options));
+    section["matrix"] = matrix_json(checked.run.rows);
+    section["rows"] = nlohmann::json::array();
+    for (const RowRun& row : checked.run.rows)
+        section["rows"].push_back(check_row_json(row));
+    section["missing_devices"] = checked.missing;
+    return {{"tetrace", std::move(section)}};
+}
+
+/// With an empty line behind it; nothing of nothing.
+std::string paragraph(const std::string& text)
+{
+    return text.empty() ? text : text + "\n";
+}
+
+std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
+{
+    return scene_headline(scene, rows) + "\n" + paragraph(matrix_text(scene.label(), rows)) +
+           paragraph(answers_text(scene.label(), rows));
+}
+
+/// Devices that compute otherwise than exact mode promises, each once.
+std::string inexact_devices_text(const std::vector<RowRun>& rows)
+{
+    std::set<std::string> sentences;
+    for (const RowRun& row : rows)
+        if (conformity_of(row) == Conformity::not_exact)
+            sentences.insert(
+                fmt::format("{}: its answers are openmp's here, but its self-test in exact mode found: {}; "
+                            "other scenes may differ\n",
+                            device_label(row.key), row.self_test->text()));
+    std::string text;
+    for (const std::string& sentence : sentences)
+        text += sentence;
+    return text;
+}
+
+std::string closing_text(const Checked& checked, const Options& options)
+{
+    std::string text = labelled("Verified", verdict_sentence(checked.run.rows));
+    for (const std::string& sentence : checked.missing)
+        text += labelled("Missing", sentence);
+    if (checked.pictures != nullptr)
+        for (const auto& file : checked.pictures->files())
+            text += labelled("Picture", file.string());
+    if (options.junit) text += labelled("JUnit", options.junit->string());
+    if (options.out) text += labelled("Result", options.out->string());
+    return text;
+}
+
+Report check_report(const Checked& checked, const Options& options)
+{
+    const auto& rows = checked.run.rows;
+    Report report{{}, check_table(rows), check_json(checked, options)};
+    for (const auto& scene : checked.run.scenes)
+        report.text += scene_text(*scene, rows);
+    report.text += paragraph(devices_text(rows)) + failure_lines(rows);
+    for (const RowRun& row : rows)
+        report.text += differences_text(row);
+    report.text += inexact_devices_text(rows) + closing_text(checked, options);
+    return report;
+}
+
+void write_junit(const std::vector<RowRun>& rows, const Options& options)
+{
+    if (!options.junit) return;
+    std::vector<bool> failed;
+    for (const RowRun& row : rows)
+        failed.push_back(fails_check(row, options));
+    const std::string xml = junit_xml(rows, failed);
+    write_text(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
+}
+
+/// Rows of Embree's own BVH and of drivers' are judged only where somebody asks for them: they make no claim that can
+/// be broken.
+Options with_default_layouts(Options options)
+{
+    const auto& required = options.required;
+    const bool asked = !options.structures.empty() || !options.methods.empty() || !options.layouts.empty() ||
+                       !options.backends.empty() || !options.filter.empty() ||
+                       std::find(required.begin(), required.end(), "embree") != required.end();
+    if (!asked) options.layouts = {Layout::tet80, Layout::tet96, Layout::half32, Layout::bvh2, Layout::cwbvh};
+    return options;
+}
+
+/// A required backend without a selected row would pass unseen.
+void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
+{
+    for (const std::string& name : backends)
+        if (std::none_of(keys.begin(), keys.end(), [&](const RowKey& key) { return key.backend == name; }))
+            throw Error(ErrorKind::missing,
+                        fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace check "
+                                    "--list' with the same options prints those that are",
+                                    name));
+}
+
+/// A required backend whose rows were all selected but not judged has not been checked.
+void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
+{
+    for (const RowRun& row : rows) {
+        const bool required = std::find(backends.begin(), backends.end(), row.key.backend) != backends.end();
+        const Status status = status_of(row);
+        if (required && (status == Status::skipped || status == Status::unsupported))
+            throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
+                                                        row_name(row.key), name_of(status), reason_of(row)));
+    }
+}
+
+/// A check without an answer from any device must not pass for one that found all well.
+void require_answers(const std::vector<RowRun>& rows)
+{
+    const auto unanswered = [](const RowRun& row) {
+        const Status status = status_of(row);
+        return status == Status::skipped || status == Status::unsupported;
+    };
+    if (std::all_of(rows.begin(), rows.end(), unanswered))
+        throw Error(ErrorKind::missing, fmt::format("nothing was checked: no selected row could run here, for example "
+                                                    "{}: {}",
+                                                    row_name(rows.front().key), reason_of(rows.front())));
+}
+
+} // namespace
+
+int check_command(const Options& asked)
+{
+    const Options options = with_default_layouts(asked);
+    if (!options.list) require_devices(options.required); // first: it knows better why nothing would be selected
+    const auto keys = selected_rows(options, [](const std::string&) { return true; });
+    if (options.list) {
+        for (const RowKey& key : keys)
+            print(row_name(key) + "\n");
+        return 0;
+    }
+    check_output(options);
+    if (options.junit) check_writable("--junit", *options.junit);
+    require_selected(keys, options.required);
+    for (const std::string& sentence : missing_default_scenes(options))
+        say(sentence);
+    Checked checked;
+    checked.missing = missing_devices(options);
+    if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
+    checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
+        if (checked.pictures != nullptr) checked.pictures->see(image);
+    });
+    const auto& rows = checked.run.rows;
+    write_junit(rows, options);
+    deliver(options, check_report(checked, options));
+    require_judged(rows, options.required);
+    require_answers(rows);
+    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails_check(row, options); })) return 1;
+    return exit_code(rows, options.allow_flawed);
+}
+
+} // namespace tetrace

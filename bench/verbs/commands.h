@@ -1,0 +1,27 @@
+#pragma once
+
+#include "bench/options/options.h"
+
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+// A verb each: returns the exit code; throws Error for what ends it early.
+int devices_command(const Options& options);
+int scenes_command(const Options& options);
+int build_command(const Options& options);
+int bench_command(const Options& options);
+int check_command(const Options& options);
+int render_command(const Options& options);
+int reproduce_command(const Options& options);
+int compare_command(const Options& options);
+int report_command(const Options& options);
+
+/// Throws Error{missing} naming the first backend of the list that has no usable device.
+void require_devices(const std::vector<std::string>& backends);
+
+/// Runs the program on a command line, its name left out; prints errors; returns the exit code.
+int run_program(const std::vector<std::string>& arguments);
+
+} // namespace tetrace

@@ -1,0 +1,261 @@
+#include "bench/options/identity.h"
+#include "bench/output/report.h"
+#include "bench/output/self_test_json.h"
+#include "bench/rows/device_facts.h"
+#include "bench/rows/physical_device.h"
+#include "bench/rows/rows.h"
+#include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
+#include "bench/verbs/commands.h"
+#include "core/base/error.h"
+#include "scenes/build_scene.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/ranges.h>
+#include <map>
+
+namespace tetrace {
+
+namespace {
+
+/// A device of one API.
+struct ApiDevice {
+    std::string label; ///< as rows name it: "opencl", "opencl:1"
+    Device device;
+    std::size_t physical = 0; ///< devices of one number are one piece of hardware
+    std::optional<SelfTest> self_test;
+    std::string self_test_text; ///< or why it failed; empty where the API runs no kernel of ours
+};
+
+void run_self_test(ApiDevice& found, Backend& backend, std::size_t index)
+{
+    if (!found.device.usable) return;
+    try {
+        found.self_test = self_test_of(backend, index, MathMode::exact);
+        if (found.self_test) found.self_test_text = found.self_test->text();
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
+        found.self_test_text = std::string("failed: ") + error.what();
+    }
+}
+
+std::vector<ApiDevice> find_devices()
+{
+    std::vector<ApiDevice> found;
+    std::vector<Device> devices;
+    for (Backend* backend : all_backends())
+        for (std::size_t i = 0; i < backend->devices().size(); ++i) {
+            RowKey key;
+            key.backend = backend->name();
+            key.device = i;
+            devices.push_back(backend->devices()[i]);
+            found.push_back({device_label(key), devices.back(), 0, {}, {}});
+            progress_line().show("testing " + found.back().label, -1);
+            run_self_test(found.back(), *backend, i);
+        }
+    const auto numbers = physical_devices(devices);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        found[i].physical = numbers[i];
+    return found;
+}
+
+Cell text_cell(const std::string& text)
+{
+    return text.empty() ? Cell() : Cell(text);
+}
+
+Cell count_cell(std::uint64_t count)
+{
+    return count == 0 ? Cell() : Cell(count);
+}
+
+std::string backend_of(const ApiDevice& found)
+{
+    return found.label.substr(0, found.label.find(':'));
+}
+
+Table device_table(const std::vector<ApiDevice>& devices)
+{
+    Table table({{"backend", "backend"},
+                 {"label", "label"},
+                 {"device", "device"},
+                 {"type", "type"},
+                 {"driver", "driver"},
+                 {"implementation", "implementation"},
+                 {"physical_device", "physical device"},
+                 {"id", "id"},
+                 {"uuid", "UUID"},
+                 {"pci", "PCI"},
+                 {"threads", "threads"},
+                 {"memory_bytes", "memory", "bytes"},
+                 {"max_buffer_bytes", "largest buffer", "bytes"},
+                 {"max_group_items", "group"},
+                 {"group_width", "lockstep"},
+                 {"timer_period_s", "timer", "s", 9},
+                 {"self_test", "self-test"},
+                 {"status", "status"},
+                 {"reason", "reason"}});
+    for (const ApiDevice& found : devices) {
+        const Device& device = found.device;
+        table.add({backend_of(found), found.label, device.name, device.type, text_cell(device.driver),
+                   text_cell(device.implementation), std::uint64_t{found.physical}, text_cell(device.id),
+                   text_cell(device.uuid), text_cell(device.pci), std::uint64_t{device.threads},
+                   count_cell(device.memory_bytes), count_cell(device.max_buffer_bytes),
+                   count_cell(device.max_group_items), count_cell(device.group_width),
+                   device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(), text_cell(found.self_test_text),
+                   std::string(device.usable ? "usable" : "missing"), text_cell(device.reason)});
+    }
+    return table;
+}
+
+std::string joined(const std::vector<std::string>& parts)
+{
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// A physical device: what is known of it under any API.
+std::string heading(const std::vector<const ApiDevice*>& apis)
+{
+    std::vector<std::string> parts = {apis.front()->device.name};
+    const auto add_first = [&](const char* title, std::string Device::*member) {
+        for (const ApiDevice* api : apis)
+            if (const std::string& text = api->device.*member; !text.empty()) {
+                parts.push_back(title + text);
+                return;
+            }
+    };
+    const bool is_host = runs_on_host(apis.front()->device);
+    if (!is_host) { // what drivers make up for the processor identifies the driver
+        add_first("UUID ", &Device::uuid);
+        add_first("PCI ", &Device::pci);
+    }
+    if (apis.front()->device.memory_bytes > 0) parts.push_back(size_text(apis.front()->device.memory_bytes));
+    if (is_host) parts.push_back(fmt::format("{} threads for this process", host_identity().threads));
+    return joined(parts) + "\n";
+}
+
+std::string limits_text(const Device& device)
+{
+    std::vector<std::string> parts;
+    if (device.max_buffer_bytes > 0) parts.push_back("largest buffer " + size_text(device.max_buffer_bytes));
+    if (device.max_group_items > 0) parts.push_back(fmt::format("groups of {}", with_commas(device.max_group_items)));
+    if (device.group_width > 0) parts.push_back(fmt::format("{} in lockstep", device.group_width));
+    if (device.timer_period_s > 0) parts.push_back(fmt::format("timer {:.3g} ns", 1e9 * device.timer_period_s));
+    return joined(parts);
+}
+
+std::string api_text(const ApiDevice& found)
+{
+    constexpr std::size_t width = 110, margin = 13;
+    const Device& device = found.device;
+    std::string text =
+        fmt::format("{}, {}{}{}", device.name, device.type, device.driver.empty() ? "" : ", ", device.driver);
+    if (const std::string limits = limits_text(device); !limits.empty()) text += "\n\n" + limits;
+    if (!found.self_test_text.empty()) text += "\n\nself-test: " + found.self_test_text;
+    std::string lines = wrapped(text, width, margin);
+    for (std::size_t gap; (gap = lines.find("\n\n")) != std::string::npos;) // facts of one device stay together
+        lines.erase(gap, 1);
+    return fmt::format("  {:<{}}", found.label, margin - 2) + lines.substr(margin);
+}
+
+std::string missing_text(const std::vector<ApiDevice>& devices)
+{
+    std::string text;
+    for (const ApiDevice& found : devices)
+        if (!found.device.usable)
+            text +=
+                fmt::format("  {:<11}", found.label) +
+                wrapped((found.device.name == "none" ? "" : found.device.name + ": ") + found.device.reason, 110, 13)
+                    .substr(13);
+    return text.empty() ? text : "Not usable\n" + text + "\n";
+}
+
+std::string devices_text(const std::vector<ApiDevice>& devices)
+{
+    std::map<std::size_t, std::vector<const ApiDevice*>> groups;
+    for (const ApiDevice& found : devices)
+        if (found.device.usable) groups[found.physical].push_back(&found);
+    std::string text;
+    for (const auto& [number, apis] : groups) {
+        text += heading(apis);
+        for (const ApiDevice* api : apis)
+            text += api_text(*api);
+        text += "\n";
+    }
+    return text + missing_text(devices);
+}
+
+nlohmann::json devices_json(const std::vector<ApiDevice>& devices)
+{
+    nlohmann::json rows = to_json(device_table(devices));
+    for (std::size_t i = 0; i < devices.size(); ++i)
+        if (devices[i].self_test) rows[i]["self_test"] = self_test_json(*devices[i].self_test);
+    return rows;
+}
+
+struct Part {
+    const char* name;
+    bool present;
+    const char* use;
+    const char* remedy;
+};
+
+std::vector<Part> parts()
+{
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    return {{"builder", !find_builder().empty(), "reads meshes, makes scenes",
+             "install libtet1.5-dev and libcgal-dev, configure and build again"},
+            {"images", std::filesystem::exists(folder / "tetrace_images.so"), "writes pictures",
+             "install libopenimageio-dev, configure and build again"}};
+}
+
+Table part_table()
+{
+    Table table({{"part", "part"}, {"use", "use"}, {"status", "status"}, {"remedy", "remedy"}});
+    for (const Part& part : parts())
+        table.add({std::string(part.name), std::string(part.use), std::string(part.present ? "present" : "missing"),
+                   part.present ? Cell() : Cell(part.remedy)});
+    return table;
+}
+
+bool has_usable_device(const std::string& name)
+{
+    for (const Backend* backend : all_backends()) {
+        const auto devices = backend->devices();
+        if (backend->name() == name &&
+            std::any_of(devices.begin(), devices.end(), [](const Device& device) { return device.usable; }))
+            return true;
+    }
+    return false;
+}
+
+} // namespace
+
+void require_devices(const std::vector<std::string>& backends)
+{
+    for (const std::string& name : backends)
+        if (!has_usable_device(name))
+            throw Error(ErrorKind::missing,
+                        fmt::format("--require {}: this backend has no usable device here; 'tetrace "
+                                    "devices' tells the reason",
+                                    name));
+}
+
+int devices_command(const Options& options)
+{
+    check_output(options);
+    const auto devices = find_devices();
+    progress_line().clear();
+    const Table optional = part_table();
+    Report report{host_identity().system + "\n\n" + devices_text(devices) + optional.text(), device_table(devices),
+                  result_head(options)};
+    report.json["devices"] = devices_json(devices);
+    report.json["parts"] = to_json(optional);
+    report.json = {{"tetrace", report.json}};
+    deliver(options, report);
+    require_devices(options.required);
+    return 0;
+}
+
+} // namespace tetrace

@@ -1,0 +1,49 @@
+#include "bench/options/help.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/error.h"
+
+#include <exception>
+#include <new>
+
+namespace tetrace {
+
+namespace {
+
+int run_verb(const Options& options)
+{
+    switch (options.verb) {
+    case Verb::devices: return devices_command(options);
+    case Verb::scenes: return scenes_command(options);
+    case Verb::build: return build_command(options);
+    case Verb::bench: return bench_command(options);
+    case Verb::check: return check_command(options);
+    case Verb::render: return render_command(options);
+    case Verb::reproduce: return reproduce_command(options);
+    case Verb::compare: return compare_command(options);
+    case Verb::report: return report_command(options);
+    case Verb::help: print(help_text(options.help_topic)); return 0;
+    case Verb::version: print(version_text()); return 0;
+    }
+    throw Error(ErrorKind::internal, "run_verb: no such verb");
+}
+
+} // namespace
+
+int run_program(const std::vector<std::string>& arguments)
+{
+    try {
+        return run_verb(parse_options(arguments));
+    } catch (const Error& error) {
+        say(std::string("tetrace: ") + error.what());
+        return exit_code(error.kind());
+    } catch (const std::bad_alloc&) {
+        say("tetrace: out of memory; use a smaller --size, fewer scenes or fewer --views");
+        return exit_code(ErrorKind::unsupported);
+    } catch (const std::exception& error) {
+        say(std::string("tetrace: internal error: ") + error.what());
+        return exit_code(ErrorKind::internal);
+    }
+}
+
+} // namespace tetrace

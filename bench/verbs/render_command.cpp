@@ -1,0 +1,117 @@
+#include "bench/pictures/false_colour.h"
+#include "bench/pictures/picture_name.h"
+#include "bench/pictures/picture_writer.h"
+#include "bench/pictures/shading.h"
+#include "bench/rows/row_run.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+std::vector<Picture> wanted_pictures(const Options& options)
+{
+    return options.pictures.empty() ? std::vector{Picture::normals} : options.pictures;
+}
+
+/// Writes the pictures of a run, all in one form, and prints the names of their files.
+class PictureFiles {
+public:
+    explicit PictureFiles(const Options& options)
+        : options_(&options), ending_(picture_ending(options.out, has_images_module())), writer_(ending_)
+    {
+    }
+
+    void write(const PictureKey& key, bool only_picture, const Pixmap& pixmap) const
+    {
+        const auto path = picture_path(options_->out, key, ending_, only_picture);
+        writer_.write(path, pixmap);
+        print(path.string() + "\n");
+    }
+
+private:
+    const Options* options_;
+    std::string ending_;
+    PictureWriter writer_;
+};
+
+/// The first row that the options select, with its session open.
+RowRun open_first_row(SceneWork& scene, const Options& options)
+{
+    RowRun row = open_row(select_rows(options, {scene.label()}).front(), scene, options);
+    if (row.session == nullptr)
+        throw Error(ErrorKind::missing, fmt::format("rendering {}: {}", row_name(row.key), reason_of(row)));
+    return row;
+}
+
+std::vector<Hit> trace(RowRun& row, std::size_t view)
+{
+    const SceneWork& scene = *row.scene;
+    std::vector<Hit> hits(scene.rays_per_view(), Hit{POISON, NO_TET, 0, 0, 0, 0});
+    row.session->launch(scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr));
+    (void)row.session->wait();
+    row.session->read_back(hits);
+    return hits;
+}
+
+Pixmap draw(Picture picture, std::span<const Hit> hits, const SceneWork& scene, std::size_t view)
+{
+    if (picture == Picture::steps)
+        return draw_steps(hits, scene.width(), scene.height(),
+                          fmt::format("{}, view {}", scene.label(), scene.view_numbers()[view]));
+    return shade_hits(hits, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
+}
+
+void refuse_steps_without_tets(const RowRun& row, const std::vector<Picture>& pictures)
+{
+    for (const Picture picture : pictures)
+        if (picture == Picture::steps && row.key.kernel.structure != Structure::cdt)
+            throw Error(ErrorKind::usage,
+                        fmt::format("--picture steps: {} counts no steps; use --structure cdt", row_name(row.key)));
+}
+
+/// Says when rays are lost, which a picture shows only to those who look for a few magenta pixels.
+void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hits)
+{
+    if (const std::uint64_t lost = count_rays(hits).lost; lost > 0)
+        say(fmt::format("{}, view {}: {} rays are lost; they are drawn in magenta", row_name(row.key),
+                        row.scene->view_numbers()[view], lost));
+}
+
+void render_scene(SceneWork& scene, const Options& options, const PictureFiles& files, bool only_scene)
+{
+    const auto pictures = wanted_pictures(options);
+    const bool only_picture = only_scene && scene.views().size() == 1 && pictures.size() == 1;
+    RowRun row = open_first_row(scene, options);
+    refuse_steps_without_tets(row, pictures);
+    for (std::size_t view = 0; view < scene.views().size(); ++view) {
+        progress_line().show("rendering " + scene.label(),
+                             static_cast<double>(view) / static_cast<double>(scene.views().size()));
+        const std::vector<Hit> hits = trace(row, view);
+        tell_lost_rays(row, view, hits);
+        for (const Picture picture : pictures)
+            files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
+                        draw(picture, hits, scene, view));
+    }
+}
+
+} // namespace
+
+int render_command(const Options& options)
+{
+    check_picture_ending(options.out);
+    const PictureFiles files(options); // first: without it there is nothing to trace for
+    for (const std::string& reason : missing_default_scenes(options))
+        say(reason);
+    const auto requests = scene_requests(options);
+    for (const SceneRequest& request : requests) {
+        SceneWork scene = load_work(request, options);
+        render_scene(scene, options, files, requests.size() == 1);
+    }
+    return 0;
+}
+
+} // namespace tetrace

@@ -1,0 +1,426 @@
+#include "bench/options/identity.h"
+#include "bench/output/bench_report.h"
+#include "bench/output/device_json.h"
+#include "bench/output/row_json.h"
+#include "bench/reproduce/paper.h"
+#include "bench/reproduce/scene_run.h"
+#include "bench/reproduce/tables/figure6.h"
+#include "bench/reproduce/tables/growth.h"
+#include "bench/reproduce/tables/paper_table.h"
+#include "bench/reproduce/tables/pictures.h"
+#include "bench/reproduce/tables/search_json.h"
+#include "bench/reproduce/tables/table3.h"
+#include "bench/reproduce/tables/table4.h"
+#include "bench/reproduce/tables/table5.h"
+#include "bench/reproduce/tables/table6.h"
+#include "bench/reproduce/yardsticks.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+/// All that there is to tell.
+struct Reproduction {
+    std::vector<SceneRun> runs;
+    std::optional<SearchRun> searches;
+    json search_records; ///< as results have them; null without searches
+    RunProgress progress;
+
+    [[nodiscard]] SceneRuns of_builds(const std::vector<std::string>& builds) const
+    {
+        SceneRuns found;
+        for (const SceneRun& run : runs)
+            if (std::find(builds.begin(), builds.end(), run.build.build) != builds.end()) found.push_back(&run);
+        return found;
+    }
+
+    std::vector<RowDevice> devices;
+    std::vector<PaperTable> tables;
+    std::vector<PaperFigure> figures;
+    std::vector<std::string> missing_scenes; ///< a sentence each
+};
+
+bool wants(const Options& options, PaperTarget target)
+{
+    return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
+}
+
+bool wants_scenes(const Options& options)
+{
+    const auto& targets = options.targets;
+    return std::any_of(targets.begin(), targets.end(), [](PaperTarget target) {
+        return target != PaperTarget::table5 && target != PaperTarget::growth;
+    });
+}
+
+bool is_method_of(Structure structure, Method method)
+{
+    const auto& kernels = all_kernels();
+    return std::any_of(kernels.begin(), kernels.end(), [&](const KernelId& kernel) {
+        return kernel.structure == structure && kernel.method == method;
+    });
+}
+
+/// All methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks its own.
+void add_methods(Options& options)
+{
+    const auto& methods = options.methods;
+    const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
+    const bool with_rivals = wants(options, PaperTarget::table6) || wants(options, PaperTarget::growth);
+    const bool names_any = std::any_of(methods.begin(), methods.end(), is_of_cdt);
+    if (with_rivals && names_any && std::find(methods.begin(), methods.end(), Method::maria) == methods.end())
+        throw Error(ErrorKind::usage, "table6 and growth compare maria with BVHs: add it to --method");
+    if (names_any || (!methods.empty() && !with_rivals)) return;
+    for (const KernelId& kernel : all_kernels())
+        if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
+}
+
+/// All methods of the paper, and of its scenes those that can be had here, else the embedded one, where none are named.
+Options with_defaults(Options options, std::vector<std::string>& missing)
+{
+    if (options.targets.empty())
+        for (const PaperTarget target : all_targets())
+            if (target != PaperTarget::growth) options.targets.push_back(target);
+    add_methods(options);
+    if (!options.scenes.empty() || !wants_scenes(options)) return options;
+    for (const char* const name : {"banana", "bunny", "armadillo"}) {
+        const std::string reason = why_not_available(name);
+        if (reason.empty())
+            options.scenes.emplace_back(name);
+        else
+            missing.push_back(fmt::format("{} is left out: {}", name, reason));
+    }
+    if (options.scenes.empty()) options.scenes = {"cubes"};
+    return options;
+}
+
+/// Whether the paper has the scene, and TetGen makes its tets, with the switches that it is given.
+bool has_papers_build(const std::string& name)
+{
+    if (!paper::nearest_switches(scene_label(name))) return false;
+    const CatalogueEntry* entry = find_in_catalogue(name);
+    if (entry != nullptr) return entry->source != SceneSource::cubes;
+    return std::filesystem::path(name).extension() != ".tet";
+}
+
+SceneBuild papers(SceneBuild build)
+{
+    BuildOptions& how = build.request.build;
+    how.domain = DomainKind::wide;
+    how.divisions = 1;
+    how.switches = paper::nearest_switches(build.scene).value();
+    build.build = papers_build;
+    build.label += "-paper";
+    build.robustness = false;
+    build.methods = true;
+    build.rivals = false;
+    return build;
+}
+
+/// The builds of the scenes asked for.
+std::vector<SceneBuild> paper_builds(const Options& options)
+{
+    const bool table3 = wants(options, PaperTarget::table3), table6 = wants(options, PaperTarget::table6);
+    const bool table4 = wants(options, PaperTarget::table4), figure6 = wants(options, PaperTarget::figure6);
+    std::vector<SceneBuild> builds;
+    if (!wants_scenes(options)) return builds;
+    for (const SceneRequest& request : scene_requests(options)) {
+        const std::string label = scene_label(request.name);
+        const SceneBuild ours = {
+            request, label, our_build, label, table4, table3 || table6 || figure6, table3 || table4 || figure6, table6};
+        builds.push_back(ours);
+        if (table3 && has_papers_build(request.name)) builds.push_back(papers(ours));
+    }
+    return builds;
+}
+
+/// One scene in several sizes: banana, and cubes where they are asked for.
+void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
+{
+    static const std::vector<std::uint32_t> cubes_sizes = {4, 8, 16, 32, 64};
+    Options of_families = options;
+    std::erase_if(of_families.scenes, [](const std::string& name) { return name != "banana" && name != "cubes"; });
+    if (of_families.scenes.empty()) of_families.scenes = {"banana"};
+    for (const SceneRequest& request : scene_requests(of_families)) {
+        const auto& standard = request.name == "cubes" ? cubes_sizes : growth_sizes();
+        for (SceneBuild& build : growth_builds(request, options.sizes.empty() ? standard : options.sizes))
+            builds.push_back(std::move(build));
+    }
+}
+
+/// The builds that the tables asked for need.
+std::vector<SceneBuild> scene_builds(const Options& options)
+{
+    auto builds = paper_builds(options);
+    if (wants(options, PaperTarget::growth)) add_growth_builds(builds, options);
+    return builds;
+}
+
+/// The options with the views that the build is traced from.
+Options options_of_build(const SceneBuild& build, Options options)
+{
+    if (build.build == growth_build && options.views.empty() && options.camera_set == CameraSet::flight)
+        options.views = growth_views;
+    return options;
+}
+
+std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& options)
+{
+    std::size_t parts = wants(options, PaperTarget::table5) ? batch_count(options.searches) : 0;
+    for (const SceneBuild& build : builds)
+        parts += selected_views(options_of_build(build, options)).size();
+    return parts;
+}
+
+/// Each device once: all run on the same ones, but for scenes that could not be loaded.
+void add_devices(Reproduction& all, const RecordedRows& run, const Options& options, Yardsticks& yardsticks)
+{
+    progress_line().show("measuring the devices themselves", -1);
+    auto devices = devices_of(run.rows);
+    yardsticks.measure(devices, session_options(options)); // at the first call
+    if (devices.size() > all.devices.size()) all.devices = std::move(devices);
+}
+
+/// All that decides what the views and searches come to, and how they are timed.
+json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
+{
+    const BuildIdentity program = build_identity();
+    json head = {{"version", program.version},
+                 {"commit", program.commit},
+                 {"compiler", program.compiler},
+                 {"flags", program.flags},
+                 {"cpu", host_identity().cpu},
+                 {"views", selected_views(options)},
+                 {"size", {options.width, options.height}},
+                 {"threads", resolved_threads(options)},
+                 {"tile", options.tile_height},
+                 {"buffer_limit", options.buffer_limit},
+                 {"samples", options.samples},
+                 {"scenes", json::array()},
+                 {"rows", json::array()},
+                 {"devices", json::array()}};
+    for (const SceneBuild& build : builds) {
+        const BuildOptions& how = build.request.build;
+        head["scenes"].push_back({{"label", build.label},
+                                  {"name", build.request.name},
+                                  {"domain", name_of(how.domain)},
+                                  {"divisions", how.divisions},
+                                  {"switches", how.switches},
+                                  {"resolution", how.resolution},
+                                  {"views", selected_views(options_of_build(build, options))},
+                                  {"robustness", build.robustness},
+                                  {"timing", build.timing}});
+        for (const RowKey& key : rows_of_build(build, options))
+            head["rows"].push_back(row_name(key));
+    }
+    if (wants(options, PaperTarget::table5)) {
+        head["searches"] = {options.searches.tets, options.searches.rays};
+        for (const RowKey& key : select_search_rows(options))
+            head["rows"].push_back(row_name(key));
+    }
+    for (const Backend* backend : all_backends())
+        for (const Device& device : backend->devices())
+            if (device.usable) head["devices"].push_back({backend->name(), device.name, device.driver});
+    return head;
+}
+
+/// Throws Error{usage} where two scenes would be called the same.
+void check_labels(const std::vector<SceneBuild>& builds)
+{
+    for (std::size_t i = 0; i < builds.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (builds[i].label == builds[j].label)
+                throw Error(ErrorKind::usage,
+                            fmt::format("--scene: '{}' and '{}' would both be called '{}' in the "
+                                        "results; name each scene once",
+                                        builds[j].request.name, builds[i].request.name, builds[i].label));
+}
+
+std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<SceneBuild>& builds)
+{
+    if (!options.out) {
+        if (options.resume)
+            throw Error(ErrorKind::usage, "--resume: the journal lies beside the result; name its file with --out");
+        return nullptr;
+    }
+    return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
+}
+
+/// Throws Error{usage} where the journal has a line of something else than these.
+void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds)
+{
+    const auto is_of_build = [&](const json& entry) {
+        return std::any_of(builds.begin(), builds.end(), [&](const SceneBuild& build) {
+            return entry.contains("scene") && entry["scene"] == build.label;
+        });
+    };
+    for (const json& entry : journal.entries())
+        if (!entry.contains("batch") && !entry.contains("yardstick") && !entry.contains("setup") && !is_of_build(entry))
+            journal.reject(
+                "the journal has a line that is of no view of these scenes, no batch, no build and no yardstick");
+}
+
+/// What is kept beside the result; null where that has no file.
+struct Keeping {
+    Keeping(const Options& options, const std::vector<SceneBuild>& builds)
+        : journal(open_journal(options, builds)), yardsticks(journal.get()), costs(journal.get()),
+          pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
+    {
+        if (journal != nullptr) check_entries(*journal, builds);
+    }
+
+    std::unique_ptr<Journal> journal;
+    Yardsticks yardsticks;
+    SetupCosts costs;
+    std::unique_ptr<ResultPictures> pictures;
+};
+
+void make_tables(Reproduction& all, const Options& options)
+{
+    const SceneRuns ours = all.of_builds({our_build}), papers = all.of_builds({our_build, papers_build});
+    if (wants(options, PaperTarget::table3)) {
+        all.tables.push_back(table3(papers));
+        all.tables.push_back(table3_rates(papers));
+    }
+    if (wants(options, PaperTarget::table4)) {
+        all.tables.push_back(table4(ours, view_count(options.camera_set)));
+        all.figures.push_back(table4_views(ours));
+    }
+    if (all.searches) all.tables.push_back(table5(*all.searches, all.devices));
+    if (wants(options, PaperTarget::table6)) {
+        all.tables.push_back(table6(ours));
+        all.tables.push_back(table6_pairs(ours));
+        for (PaperFigure& figure : table6_figures(ours))
+            all.figures.push_back(std::move(figure));
+    }
+    if (wants(options, PaperTarget::growth)) {
+        const SceneRuns sizes = all.of_builds({growth_build});
+        all.tables.push_back(growth_table(sizes));
+        all.tables.push_back(growth_exponents(sizes));
+        for (PaperFigure& figure : growth_figures(sizes))
+            all.figures.push_back(std::move(figure));
+    }
+    if (wants(options, PaperTarget::figure6)) {
+        all.tables.push_back(figure6_table(ours));
+        for (PaperFigure& figure : figure6(ours))
+            all.figures.push_back(std::move(figure));
+    }
+}
+
+/// 0 where nothing was timed.
+unsigned samples_of(const Reproduction& all, const Options& options)
+{
+    const bool timed = all.searches.has_value() || std::any_of(all.runs.begin(), all.runs.end(),
+                                                               [](const SceneRun& run) { return run.build.timing; });
+    return timed ? options.samples : 0;
+}
+
+json reproduction_json(const Reproduction& all, const Options& options)
+{
+    json section = result_head(options);
+    section["threads"] = resolved_threads(options);
+    section["samples_a_row"] = samples_of(all, options);
+    section["missing_scenes"] = all.missing_scenes;
+    section["missing_devices"] = missing_devices(options);
+    for (const char* key : {"scenes", "devices", "rows", "tables", "figures"})
+        section[key] = json::array();
+    for (const SceneRun& run : all.runs) {
+        if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
+        section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
+    }
+    if (all.searches) section["searches"] = all.search_records;
+    for (const RowDevice& device : all.devices)
+        section["devices"].push_back(row_device_json(device));
+    for (const PaperTable& table : all.tables)
+        section["tables"].push_back(table_json(table));
+    for (const PaperFigure& figure : all.figures)
+        section["figures"].push_back(figure_json(figure));
+    return {{"tetrace", std::move(section)}};
+}
+
+std::string closing_text(const Reproduction& all, const Options& options)
+{
+    std::string text;
+    for (const auto& sentences : {all.missing_scenes, missing_devices(options)})
+        for (const std::string& sentence : sentences)
+            text += labelled("Missing", sentence);
+    if (options.out) text += labelled("Result", options.out->string());
+    return text;
+}
+
+Report reproduction_report(const Reproduction& all, const Options& options)
+{
+    Report report{{}, tidy_table(all.tables, all.figures), reproduction_json(all, options), {}};
+    for (const PaperTable& table : all.tables) {
+        report.text += table_text(table);
+        report.markdown += table_markdown(table);
+    }
+    for (const PaperFigure& figure : all.figures) {
+        report.text += figure_text(figure);
+        report.markdown += figure_markdown(figure);
+    }
+    report.text += closing_text(all, options);
+    return report;
+}
+
+int rows_exit_code(const Reproduction& all)
+{
+    int code = all.searches ? exit_code(all.searches->rows, true) : 0;
+    for (const SceneRun& run : all.runs)
+        code = code == 1 ? code : std::max(code, exit_code(run.rows, true));
+    return code;
+}
+
+void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked, Keeping& keeping)
+{
+    const Options options = options_of_build(build, asked);
+    SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
+    if (build.rivals) run.costs = keeping.costs.of(run.rows);
+    run_views(run, options, keeping.journal.get(), all.progress);
+    const bool is_ours = build.build == our_build;
+    if (keeping.pictures != nullptr && is_ours)
+        keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
+    run.close();
+    add_devices(all, run, options, keeping.yardsticks);
+}
+
+void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping)
+{
+    SearchRun& run = all.searches.emplace(open_search_run(options));
+    run_searches(run, options, keeping.journal.get(), all.progress);
+    all.search_records = searches_json(run);
+    for (RowRun& row : run.rows)
+        row.session.reset();
+    add_devices(all, run, options, keeping.yardsticks);
+}
+
+} // namespace
+
+int reproduce_command(const Options& asked)
+{
+    Reproduction all;
+    const Options options = with_defaults(asked, all.missing_scenes);
+    check_output(options);
+    const auto builds = scene_builds(options);
+    check_labels(builds);
+    Keeping keeping(options, builds);
+    for (const std::string& sentence : all.missing_scenes)
+        say(sentence);
+    all.progress.all = parts_of(builds, options);
+    for (const SceneBuild& build : builds)
+        run_scene(all, build, options, keeping);
+    if (wants(options, PaperTarget::table5)) run_all_searches(all, options, keeping);
+    make_tables(all, options);
+    deliver(options, reproduction_report(all, options));
+    if (keeping.journal != nullptr) keeping.journal->finish();
+    return rows_exit_code(all);
+}
+
+} // namespace tetrace

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/mesh/box.h"
+
+namespace tetrace {
+
+/// The boxes of a triangle's two parts.
+struct TriangleParts {
+    Box below, above;
+};
+
+/// Cuts a triangle at a plane across an axis: boxes of what lies on either side and in `box`, rounded outwards; empty
+/// where nothing does. What lies in the plane is in both.
+[[nodiscard]] TriangleParts split_triangle(const Float3 (&corners)[3], int axis, float position, const Box& box);
+
+} // namespace tetrace

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/bvh/bvh.h"
+
+namespace tetrace {
+
+inline constexpr std::uint32_t wide_children = 8;
+inline constexpr std::uint32_t wide_leaf_triangles = 3;
+/// What the surface area heuristic takes a node's eight boxes and a leaf's triangle to cost, beside each other: a
+/// choice.
+inline constexpr double wide_node_cost = 1.0;
+inline constexpr double wide_triangle_cost = 0.3;
+
+/// A child of a wide node: a leaf where it has references, else a node.
+struct WideChild {
+    Box box;
+    std::uint32_t node = 0;
+    std::uint32_t first = 0; ///< of a leaf: its first reference
+    std::uint32_t count = 0; ///< of a leaf: its references, 1 to wide_leaf_triangles; 0 of an inner child
+};
+
+/// 1 to wide_children children.
+using WideNode = std::vector<WideChild>;
+
+/// A BVH whose nodes have up to eight children; the root first, a child after its parent, the root alone may have one
+/// child.
+struct WideBvh {
+    std::vector<WideNode> nodes;
+    std::vector<std::uint32_t> references; ///< triangles of the mesh
+};
+
+/// How a binary BVH becomes a wide one.
+enum class Collapse {
+    cheapest, ///< of the least cost by the surface area heuristic
+    shallow,  ///< three levels become one wherever there are three: for trees that would be too deep otherwise
+};
+
+/// The wide BVH whose nodes and leaves are subtrees of this one.
+/// bvh: valid, its leaves of one triangle and its references in the order of leaves (with_single_leaves()).
+/// Source: Ylitie, Karras, Laine 2017, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs,
+/// section 3 (the dynamic programme).
+[[nodiscard]] WideBvh make_wide(const Bvh& bvh, Collapse collapse);
+
+/// Nodes on the longest way from the root to a leaf.
+[[nodiscard]] std::uint32_t levels_of(const WideBvh& bvh);
+
+} // namespace tetrace

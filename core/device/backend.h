@@ -1,0 +1,147 @@
+#pragma once
+
+#include "core/pack/kernel_id.h"
+#include "core/pack/packed_scene.h"
+#include "core/rays/camera.h"
+#include "core/rays/hit.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// A device as its API describes it; usable, or with the reason why not and what would bring it.
+struct Device {
+    std::string name;
+    std::string type;           ///< "cpu", "gpu", or "emulated": an API of GPUs that runs on the processor here
+    std::string driver;         ///< driver or library, with version
+    std::string implementation; ///< of the API, in short, as tests/expected/ names it: "pocl-3.1", "lavapipe-22.3"
+    std::string id;             ///< its name for the user: UUID, else PCI id, else the name
+    std::string uuid;           ///< 32 lower-case hexadecimal digits, the same under every API; empty where unknown
+    std::string pci;            ///< domain:bus:device.function, for example "0000:41:00.0"; empty where unknown
+    std::uint64_t memory_bytes = 0;
+    std::uint64_t max_buffer_bytes = 0; ///< the largest that a kernel can be given at once; 0: memory is the limit
+    unsigned max_group_items = 0;       ///< work items of a group; 0: does not apply
+    unsigned group_width = 0;           ///< items or rays in lockstep (warp, subgroup, packet); 0: unknown, or none
+    double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
+    unsigned threads = 1;               ///< hardware threads or compute units
+    bool usable = true;
+    std::string reason; ///< why not, where not usable
+};
+
+/// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not
+/// portable, which build a structure of the mesh.
+struct SceneData {
+    const TriangleMesh* mesh = nullptr;
+    const PackedScene* packed = nullptr;
+};
+
+struct SessionOptions {
+    unsigned threads = 0;                     ///< host threads; 0 is all that the process may use
+    unsigned tile_height = 0;                 ///< 4 or 8; 0: tile_height_for() the device
+    std::uint64_t max_buffer_bytes = 0;       ///< treat the device's largest buffer as this small; 0: as it is
+    std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
+};
+
+/// One image's worth of primary rays, or the rays that a session was given: see given_job(), search_job().
+struct TraceJob {
+    View view; ///< of primary rays
+    std::uint32_t width = 0, height = 0;
+    std::uint32_t start_tet = NO_TET; ///< tet that holds view.origin, in packed order; NO_TET: rays enter from outside
+    StartTet start;                   ///< of start_tet, see start_in()
+    std::uint32_t max_steps = 0;      ///< a walk that long is LOST
+    bool any_hit = false;             ///< whether there is a hit is asked: whichever is found first will do
+};
+
+/// Lets the job's rays start in a tet.
+/// tet: of the scene that was packed, as its mesh numbers them; NO_TET: rays enter from outside.
+void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std::uint32_t tet);
+
+/// The job that traces so many rays, all that a session of task rays was given: a column of tiles.
+/// rays: a multiple of TILE_WIDTH.
+[[nodiscard]] TraceJob given_job(std::size_t rays, std::uint32_t max_steps, bool any_hit);
+
+/// The job that searches the exits of so many rays, all that a session was given: a column of tiles.
+/// rays: a multiple of TILE_WIDTH.
+[[nodiscard]] TraceJob search_job(std::size_t rays);
+
+/// Seconds that are paid once a session, apart from any kernel.
+struct SetupTimes {
+    double compile_s = 0;        ///< kernels compiled, or a BVH built
+    double upload_s = 0;         ///< data copied to where the kernel reads it
+    bool compile_cached = false; ///< the kernels came from SessionOptions::program_cache
+    double build_s = 0;          ///< a BVH built by the device's driver, on the device's clock
+};
+
+/// What a device can do at best, the measure of every row on it.
+struct Yardstick {
+    double copy_bytes_per_s = 0; ///< its memory copied to its memory, bytes read and written
+    double launch_s = 0;         ///< an empty kernel, from launch to the end of wait on the host's clock; median
+};
+
+/// One scene on one device with one kernel. Every call throws Error, and only Error: unsupported where memory or a
+/// limit does not suffice (both numbers are told), internal where the device was lost or its driver failed.
+class Session {
+public:
+    virtual ~Session() = default;
+    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before. rows: as
+    /// many a ray as rows_per_ray() says (kernels/layouts/layout.h), for a multiple of TILE_WIDTH rays. Before any
+    /// launch. Throws Error{unsupported} with both numbers where they exceed the largest buffer.
+    virtual void set_rays(std::span<const Row> rows);
+    /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so
+    /// long that a watchdog fires (core/device/launch.h).
+    virtual void launch(const TraceJob& job) = 0;
+    /// Waits for the launch; returns device seconds of the kernel alone.
+    [[nodiscard]] virtual double wait() = 0;
+    /// Copies the hits of the last launch, row after row; hits.size() == width * height.
+    /// Throws Error{wrong_result} where the kernel wrote elsewhere.
+    void read_back(std::span<Hit> hits);
+    /// Task search: copies the faces that were found by the last launch, 0 to 3 or NO_EXIT, in the order of the rays.
+    /// faces.size(): their number. Throws Error{wrong_result} where the kernel wrote elsewhere, or no face.
+    void read_back(std::span<std::uint32_t> faces);
+    /// Seconds that copying the output took in the last read_back(), its checks left out.
+    [[nodiscard]] double download_s() const { return download_s_; }
+    [[nodiscard]] virtual SetupTimes setup_times() const = 0;
+    /// Device bytes that the structure and its scene data occupy.
+    [[nodiscard]] virtual std::uint64_t bytes() const = 0;
+
+private:
+    [[nodiscard]] std::vector<std::uint32_t> checked_output(std::size_t words);
+    /// Copies the whole output: GUARD_WORDS, words_per_ray() a ray row after row, GUARD_WORDS.
+    virtual void read_output(std::span<std::uint32_t> words) = 0;
+
+    double download_s_ = 0;
+};
+
+/// An API. Prints nothing, validates nothing, computes no statistics.
+class Backend {
+public:
+    virtual ~Backend() = default;
+    [[nodiscard]] virtual std::string name() const = 0;
+    [[nodiscard]] virtual std::string clock() const = 0; ///< which clock Session::wait reads
+    /// What there is, found once a process; never empty: an API without any has one that is not usable, with the reason
+    /// and the package that would bring it.
+    [[nodiscard]] virtual const std::vector<Device>& devices() const = 0;
+    /// Whether this build has the kernel for this API, whatever the host and its devices can run.
+    [[nodiscard]] virtual bool has_kernel(const KernelId& kernel) const = 0;
+    /// Empty where the kernel can run on the device (its index in devices()), else the reason.
+    [[nodiscard]] virtual std::string why_not(std::size_t device, const KernelId& kernel) const = 0;
+    [[nodiscard]] virtual std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel,
+                                                        const SceneData& scene, const SessionOptions& options) = 0;
+    /// Runs kernels/probe.h, a work item a row of {operation, a, b, c}; a result word each (core/device/self_test.h).
+    /// Empty where the API runs none of our kernels.
+    [[nodiscard]] virtual std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
+                                                           std::span<const Row> operations) = 0;
+    /// Measures the device, in about a second; empty where the API has no memory and no launches of its own.
+    [[nodiscard]] virtual std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) = 0;
+};
+
+/// Every backend of this build, in CMake's order; those that cannot run here say so in their devices.
+[[nodiscard]] const std::vector<Backend*>& all_backends();
+
+} // namespace tetrace

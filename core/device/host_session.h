@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/device/backend.h"
+
+#include <vector>
+
+namespace tetrace {
+
+/// A session on the host's own processor and memory: launch() runs to the end, wait() tells how long that took.
+/// A backend brings run(), and what was set up.
+class HostSession : public Session {
+public:
+    explicit HostSession(Task task) : task_(task) {}
+    void launch(const TraceJob& job) final;
+    [[nodiscard]] double wait() final { return kernel_s_; }
+
+private:
+    void read_output(std::span<std::uint32_t> words) final;
+    /// Does the whole image. output: words_per_ray() a ray, row after row.
+    virtual void run(const TraceJob& job, std::span<std::uint32_t> output) = 0;
+
+    Task task_;
+    std::vector<std::uint32_t> output_;
+    double kernel_s_ = 0;
+};
+
+/// A hit is six words without padding: an output of task trace holds hits as every device's does.
+[[nodiscard]] inline std::span<Hit> as_hits(std::span<std::uint32_t> output)
+{
+    return {reinterpret_cast<Hit*>(output.data()), output.size() / HIT_WORDS};
+}
+
+} // namespace tetrace

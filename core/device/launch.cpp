@@ -1,0 +1,106 @@
+#include "core/device/launch.h"
+
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <string>
+
+namespace tetrace {
+
+namespace {
+
+constexpr std::uint32_t first_launch_rays = 16'384;
+constexpr double launch_target_s = 0.1;
+constexpr double largest_growth = 4;
+
+} // namespace
+
+LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height, unsigned part_log2)
+{
+    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width, job.height,  job.start_tet,
+            job.max_steps,   job.any_hit,     job.start,       divisions,       0,         tile_height, part_log2};
+}
+
+std::uint32_t tile_count(const LaunchParams& image)
+{
+    return ((image.width + TILE_WIDTH - 1) / TILE_WIDTH) * ((image.height + image.tile_height - 1) / image.tile_height);
+}
+
+std::size_t words_per_ray(Task task)
+{
+    return task == Task::search ? 1 : HIT_WORDS;
+}
+
+std::size_t rows_per_ray(Task task)
+{
+    return task == Task::search ? RAY_ROWS : task == Task::rays ? GIVEN_RAY_ROWS : 0;
+}
+
+std::size_t output_words(const TraceJob& job, Task task)
+{
+    return 2 * std::size_t{GUARD_WORDS} + words_per_ray(task) * job.width * job.height;
+}
+
+void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)
+{
+    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    if (max_buffer_bytes == 0 || bytes <= max_buffer_bytes) return;
+    throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
+                                            " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
+                                            "; trace a smaller image");
+}
+
+void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes)
+{
+    if (max_buffer_bytes == 0 || rows.size_bytes() <= max_buffer_bytes) return;
+    throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(rows.size_bytes()) +
+                                            " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
+                                            "; give fewer at once");
+}
+
+void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words)
+{
+    if (asked_words == output_words) return;
+    throw Error(ErrorKind::internal, "reading back: an output of " + std::to_string(asked_words) +
+                                         " words is asked for, that of the last launch has " +
+                                         std::to_string(output_words));
+}
+
+LaunchSize::LaunchSize(unsigned tile_height, std::uint32_t most_tiles)
+    : most_tiles_(std::min(most_tiles, no_limit)),
+      tiles_(std::min(most_tiles_, first_launch_rays / (TILE_WIDTH * tile_height)))
+{
+}
+
+void LaunchSize::took(std::uint32_t tiles, double seconds)
+{
+    if (tiles == 0) return;
+    const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : most_tiles_;
+    // A launch shorter than the limit says little about longer ones: growth is by steps, shrinking at once.
+    const double largest = std::min<double>(most_tiles_, std::max<double>(tiles_, tiles * largest_growth));
+    tiles_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, largest));
+}
+
+void Launches::start(const LaunchParams& image,
+                     const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
+                     const std::function<void()>& take_times)
+{
+    seconds_ = 0;
+    LaunchParams params = image;
+    const std::uint32_t end = tile_count(image);
+    while (params.first_tile < end) {
+        const std::uint32_t tiles = std::min(size_.tiles(), end - params.first_tile);
+        enqueue(params, tiles);
+        params.first_tile += tiles;
+        if (is_first_image_) take_times();
+    }
+    is_first_image_ = false;
+}
+
+void Launches::took(std::uint32_t tiles, double seconds)
+{
+    size_.took(tiles, seconds);
+    seconds_ += seconds;
+}
+
+} // namespace tetrace

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "core/device/backend.h"
+
+#include <cstdint>
+#include <functional>
+
+namespace tetrace {
+
+/// What a device gets with each launch: LaunchParams of kernels/launch.h, word for word.
+struct LaunchParams {
+    Float3 origin, corner, step_x, step_y;
+    std::uint32_t width, height, start_tet, max_steps, any_hit;
+    StartTet start;
+    std::uint32_t divisions, first_tile, tile_height, part_log2;
+};
+static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; see kernels/launch.h");
+
+/// The params of a job's first launch.
+[[nodiscard]] LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height,
+                                         unsigned part_log2);
+
+/// Tiles of an image, row after row.
+[[nodiscard]] std::uint32_t tile_count(const LaunchParams& image);
+
+/// Words that a kernel writes a ray: a hit, or a face.
+[[nodiscard]] std::size_t words_per_ray(Task task);
+
+/// Rows that a ray is given by; 0 of task trace.
+[[nodiscard]] std::size_t rows_per_ray(Task task);
+
+/// Words of an image's output, guards included.
+[[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
+
+/// Throws Error{unsupported} with both numbers where an image's output of so many words exceeds the largest buffer;
+/// max_buffer_bytes: 0 is no limit.
+void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
+
+/// The same for a session's rays.
+void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes);
+
+/// Throws Error{internal} where other hits are read back than those of the last launch.
+void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words);
+
+/// How many tiles a launch may hold so that it ends long before any watchdog fires (2 s is the shortest known): few at
+/// first, then as many as fit into a tenth of a second at the speed that the last launches had.
+class LaunchSize {
+public:
+    static constexpr std::uint32_t no_limit = 1u << 20; ///< 2^26 rays at most: far below most APIs' limit on groups
+
+    explicit LaunchSize(unsigned tile_height, std::uint32_t most_tiles = no_limit);
+    [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
+    /// Tells how long a launch of that many tiles took.
+    void took(std::uint32_t tiles, double seconds);
+
+private:
+    std::uint32_t most_tiles_;
+    std::uint32_t tiles_;
+};
+
+/// Cuts a session's images into launches, and adds up what an image's launches take.
+class Launches {
+public:
+    /// most_tiles: of a launch, where the API has a limit.
+    explicit Launches(unsigned tile_height, std::uint32_t most_tiles = LaunchSize::no_limit)
+        : size_(tile_height, most_tiles)
+    {
+    }
+    /// Calls enqueue with the params and the tiles of launch after launch. image: params of the first one.
+    /// During the session's first image take_times, which tells took(), is called after each: nothing is known yet of
+    /// how long a launch takes.
+    void start(const LaunchParams& image, const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
+               const std::function<void()>& take_times);
+    /// Tells how long a launch of that many tiles took on the device.
+    void took(std::uint32_t tiles, double seconds);
+    /// Of those launches of the image that took() was told of.
+    [[nodiscard]] double seconds() const { return seconds_; }
+
+private:
+    LaunchSize size_;
+    bool is_first_image_ = true;
+    double seconds_ = 0;
+};
+
+} // namespace tetrace

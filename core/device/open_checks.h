@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/device/backend.h"
+
+namespace tetrace {
+
+/// What Backend::open of any API asks first. Throws Error{missing} where the device cannot be used, unsupported where
+/// the kernel does not run on it.
+void require_kernel(const Backend& backend, std::size_t device, const KernelId& kernel);
+
+/// The scene of a kernel that reads it packed, after require_kernel(). Throws Error{internal} where it is not packed in
+/// the kernel's layout.
+[[nodiscard]] const PackedScene& packed_scene(const Backend& backend, std::size_t device, const KernelId& kernel,
+                                              const SceneData& scene);
+
+/// Bytes of the largest buffer that a session may make: the device's, or what the options say it is; 0 is no limit.
+[[nodiscard]] std::uint64_t largest_buffer(const Device& device, const SessionOptions& options);
+
+/// Pixel rows of a tile: what the options ask for, else chosen by measurement per type of device (results/tiles.md).
+[[nodiscard]] unsigned tile_height_for(const Device& device, const SessionOptions& options);
+
+} // namespace tetrace

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/mesh/tet_mesh.h"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+/// How far the box that the CDT fills reaches.
+enum class DomainKind {
+    tight, ///< the mesh's bounding box grown by 2 % of its largest extent; rays mostly enter from outside
+    wide,  ///< a cube of half-size 3 bounding-sphere radii; cameras are inside, as in the paper
+};
+
+[[nodiscard]] std::string_view name_of(DomainKind kind);
+
+/// The box that the CDT fills, its sides cut into divisions x divisions squares.
+/// lines[axis] holds divisions + 1 ascending coordinates; the first and last are the box's own. Every corner of a
+/// square is a vertex of the tet mesh, bit for bit, so that a ray's square and a face's square cannot disagree.
+struct Domain {
+    DomainKind kind = DomainKind::tight;
+    std::uint32_t divisions = 1;
+    std::array<std::vector<float>, 3> lines;
+
+    [[nodiscard]] Float3 low() const { return {lines[0].front(), lines[1].front(), lines[2].front()}; }
+    [[nodiscard]] Float3 high() const { return {lines[0].back(), lines[1].back(), lines[2].back()}; }
+    [[nodiscard]] bool contains(Float3 point) const; ///< closed: the boundary is inside
+
+    friend bool operator==(const Domain&, const Domain&) = default;
+};
+
+/// The domain of a placed mesh. divisions >= 1. Lines are multiples of 2^-20, so they are exact in float.
+[[nodiscard]] Domain make_domain(const TriangleMesh& mesh, DomainKind kind, std::uint32_t divisions);
+
+/// The surface of the domain as triangles, two a square, wound outwards; vertices shared. What the CDT must contain.
+[[nodiscard]] TriangleMesh domain_surface(const Domain& domain);
+
+/// Per square of the domain's sides, the boundary faces that lie in it, as links into the tet mesh.
+/// Square index: (side * n + j) * n + i with side = 2 axis + (1 on the high side), i along axis + 1, j along axis + 2.
+struct EntryGrid {
+    std::vector<std::uint32_t> ranges; ///< 6 n n + 1 offsets into links
+    std::vector<std::uint32_t> links;  ///< tet << 2 | local face of a boundary face
+};
+
+/// Throws Error{invalid_input} where a square has no boundary face, or a boundary face lies on no side.
+[[nodiscard]] EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh);
+
+} // namespace tetrace

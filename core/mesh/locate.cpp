@@ -1,0 +1,113 @@
+#include "core/mesh/locate.h"
+
+#include "core/base/exact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tetrace {
+namespace {
+
+std::array<Float3, 4> corners_of(const TetMesh& mesh, const Tet& tet)
+{
+    return {mesh.vertices[tet.vertices[0]], mesh.vertices[tet.vertices[1]], mesh.vertices[tet.vertices[2]],
+            mesh.vertices[tet.vertices[3]]};
+}
+
+// Sign of the point's position at a face: negative inside, as the tet's own orientation is.
+int side_of_face(std::array<Float3, 4> corners, std::size_t face, Float3 point)
+{
+    corners[face] = point;
+    return orientation(corners[0], corners[1], corners[2], corners[3]);
+}
+
+bool holds(const TetMesh& mesh, const Tet& tet, Float3 point)
+{
+    const auto corners = corners_of(mesh, tet);
+    for (std::size_t face = 0; face < 4; face++)
+        if (side_of_face(corners, face, point) > 0) return false;
+    return true;
+}
+
+std::uint32_t search_all(const TetMesh& mesh, Float3 point)
+{
+    for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
+        if (holds(mesh, mesh.tets[i], point)) return i;
+    return NO_TET;
+}
+
+double distance_to_face(std::array<Float3, 4> corners, std::size_t face, Float3 point)
+{
+    const Double3 a = to_double(corners[(face + 1) % 4]);
+    const Double3 normal = cross(to_double(corners[(face + 2) % 4]) - a, to_double(corners[(face + 3) % 4]) - a);
+    return std::abs(dot(normal, to_double(point) - a)) / length(normal);
+}
+
+// Distance to the nearest face of the tet; 0 on a face.
+double clearance(const TetMesh& mesh, std::uint32_t tet, Float3 point)
+{
+    const auto corners = corners_of(mesh, mesh.tets[tet]);
+    double least = HUGE_VAL;
+    for (std::size_t face = 0; face < 4; face++) {
+        if (side_of_face(corners, face, point) == 0) return 0;
+        least = std::min(least, distance_to_face(corners, face, point));
+    }
+    return least;
+}
+
+constexpr double enough = 0x1p-16; // several times tie_bound() for a camera in the domain
+constexpr float nudges[] = {0x1p-15f, 0x1p-13f, 0x1p-12f};
+
+Float3 nudged(Float3 point, int choice, float by)
+{
+    // 26 neighbours in a cube, as digits of base 3.
+    const int digit[3] = {choice % 3 - 1, choice / 3 % 3 - 1, choice / 9 - 1};
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] += static_cast<float>(digit[axis]) * by;
+    return snap_to_grid(point);
+}
+
+} // namespace
+
+std::uint32_t locate(const TetMesh& mesh, Float3 point)
+{
+    std::uint32_t tet = 0;
+    std::uint32_t turn = 0; // which face is asked first changes from tet to tet, so that no cycle repeats for ever
+    for (std::size_t step = 0; step < 2 * mesh.tets.size() + 16; step++) {
+        const auto corners = corners_of(mesh, mesh.tets[tet]);
+        turn = turn * 1664525u + 1013904223u;
+        std::uint32_t beyond = 4;
+        for (std::uint32_t k = 0; k < 4 && beyond == 4; k++) {
+            const std::uint32_t face = (k + (turn >> 30)) & 3u;
+            if (side_of_face(corners, face, point) > 0) beyond = face;
+        }
+        if (beyond == 4) return tet;
+        const std::uint32_t link = mesh.tets[tet].links[beyond];
+        if (link == NO_LINK) return NO_TET; // the domain is convex
+        tet = link_tet(link);
+    }
+    return search_all(mesh, point);
+}
+
+Start find_start(const Scene& scene, Float3 origin)
+{
+    if (!scene.domain.contains(origin)) return {origin, NO_TET};
+    const std::uint32_t tet = locate(scene.tets, origin);
+    Start best{origin, tet};
+    double most = tet == NO_TET ? 0 : clearance(scene.tets, tet, origin);
+    for (const float by : nudges) {
+        if (most >= enough) break;
+        for (int choice = 0; choice < 27; choice++) {
+            const Float3 candidate = nudged(origin, choice, by);
+            if (!scene.domain.contains(candidate)) continue;
+            const std::uint32_t at = locate(scene.tets, candidate);
+            const double room = at == NO_TET ? 0 : clearance(scene.tets, at, candidate);
+            if (room > most) best = {candidate, at};
+            most = std::max(most, room);
+        }
+    }
+    return best;
+}
+
+} // namespace tetrace

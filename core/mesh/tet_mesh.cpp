@@ -1,0 +1,189 @@
+#include "core/mesh/tet_mesh.h"
+
+#include "core/base/exact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetrace {
+namespace {
+
+using Kind = TetMeshDefect::Kind;
+
+// Collects the first defect of a kind and how many there are.
+struct Finding {
+    std::uint64_t first = 0, count = 0;
+
+    void add(std::uint64_t index)
+    {
+        if (count++ == 0) first = index;
+    }
+    [[nodiscard]] TetMeshDefect defect(Kind kind, const std::string& text) const
+    {
+        return {kind, first, count,
+                text + " (first: " + std::to_string(first) + ", " + std::to_string(count) + " in all)"};
+    }
+};
+
+bool indices_exist(const TetMesh& mesh, const Tet& tet, std::size_t triangle_count)
+{
+    for (std::size_t i = 0; i < 4; i++) {
+        if (tet.vertices[i] >= mesh.vertices.size()) return false;
+        if (tet.links[i] != NO_LINK && link_tet(tet.links[i]) >= mesh.tets.size()) return false;
+        if (tet.faces[i] != FREE_FACE && tet.faces[i] >= triangle_count) return false;
+    }
+    return true;
+}
+
+std::array<std::uint32_t, 3> sorted_face(const Tet& tet, std::uint32_t face)
+{
+    std::array<std::uint32_t, 3> vertices{};
+    for (std::uint32_t i = 0, n = 0; i < 4; i++)
+        if (i != face) vertices[n++] = tet.vertices[i];
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+}
+
+bool links_are_symmetric(const TetMesh& mesh, std::uint32_t index)
+{
+    const Tet& tet = mesh.tets[index];
+    for (std::uint32_t face = 0; face < 4; face++) {
+        const std::uint32_t link = tet.links[face];
+        if (link == NO_LINK) continue;
+        const Tet& other = mesh.tets[link_tet(link)];
+        if (other.links[link_face(link)] != make_link(index, face)) return false;
+        if (sorted_face(other, link_face(link)) != sorted_face(tet, face)) return false;
+    }
+    return true;
+}
+
+bool faces_are_symmetric(const TetMesh& mesh, const Tet& tet)
+{
+    for (std::uint32_t face = 0; face < 4; face++) {
+        const std::uint32_t link = tet.links[face];
+        if (link != NO_LINK && mesh.tets[link_tet(link)].faces[link_face(link)] != tet.faces[face]) return false;
+    }
+    return true;
+}
+
+int orientation_of(const TetMesh& mesh, const Tet& tet)
+{
+    return orientation(mesh.vertices[tet.vertices[0]], mesh.vertices[tet.vertices[1]], mesh.vertices[tet.vertices[2]],
+                       mesh.vertices[tet.vertices[3]]);
+}
+
+double area(Float3 a, Float3 b, Float3 c)
+{
+    return 0.5 * length(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
+}
+
+double volume(const TetMesh& mesh, const Tet& tet)
+{
+    const Double3 origin = to_double(mesh.vertices[tet.vertices[0]]);
+    const Double3 a = to_double(mesh.vertices[tet.vertices[1]]) - origin;
+    const Double3 b = to_double(mesh.vertices[tet.vertices[2]]) - origin;
+    const Double3 c = to_double(mesh.vertices[tet.vertices[3]]) - origin;
+    return dot(a, cross(b, c)) / -6.0;
+}
+
+// Of each input triangle, the area of the occlusive faces that name it, each face once.
+std::vector<double> covered_areas(const TetMesh& mesh, std::size_t triangle_count)
+{
+    std::vector<double> covered(triangle_count, 0.0);
+    for (std::uint32_t index = 0; index < mesh.tets.size(); index++) {
+        const Tet& tet = mesh.tets[index];
+        for (std::uint32_t face = 0; face < 4; face++) {
+            const bool counted_here = tet.links[face] == NO_LINK || make_link(index, face) < tet.links[face];
+            if (tet.faces[face] == FREE_FACE || !counted_here) continue;
+            const auto v = sorted_face(tet, face);
+            covered[tet.faces[face]] += area(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]);
+        }
+    }
+    return covered;
+}
+
+double perimeter(const TriangleMesh& mesh, std::size_t triangle)
+{
+    const auto& [ia, ib, ic] = mesh.triangles[triangle];
+    const Double3 a = to_double(mesh.vertices[ia]), b = to_double(mesh.vertices[ib]), c = to_double(mesh.vertices[ic]);
+    return length(b - a) + length(c - b) + length(a - c);
+}
+
+} // namespace
+
+std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triangle_count)
+{
+    Finding bad_index, asymmetric_link, inverted, flat, asymmetric_face;
+    if (mesh.tets.empty()) return TetMeshDefect{Kind::bad_index, 0, 0, "the mesh has no tets"};
+    if (mesh.tets.size() > MAX_TETS)
+        return TetMeshDefect{Kind::bad_index, MAX_TETS, 1, "more tets than a link of 30 bits can name"};
+    for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
+        if (!indices_exist(mesh, mesh.tets[i], triangle_count)) bad_index.add(i);
+    if (bad_index.count > 0)
+        return bad_index.defect(Kind::bad_index, "a tet names a vertex, tet or triangle that is not there");
+
+    for (std::uint32_t i = 0; i < mesh.tets.size(); i++) {
+        if (!links_are_symmetric(mesh, i)) asymmetric_link.add(i);
+        if (!faces_are_symmetric(mesh, mesh.tets[i])) asymmetric_face.add(i);
+        const int sign = orientation_of(mesh, mesh.tets[i]);
+        if (sign > 0) inverted.add(i);
+        if (sign == 0) flat.add(i);
+    }
+    if (asymmetric_link.count > 0)
+        return asymmetric_link.defect(Kind::asymmetric_link,
+                                      "a tet's neighbour does not name it back over the same face");
+    if (asymmetric_face.count > 0)
+        return asymmetric_face.defect(Kind::asymmetric_face, "the two sides of a face name different input triangles");
+    if (inverted.count > 0) return inverted.defect(Kind::inverted, "a tet is inverted");
+    if (flat.count > 0) return flat.defect(Kind::flat, "a tet is flat");
+    return std::nullopt;
+}
+
+std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& triangles, Double3 box_size)
+{
+    const double box_area = 2 * (box_size.x * box_size.y + box_size.y * box_size.z + box_size.z * box_size.x);
+    const auto covered = covered_areas(mesh, triangles.triangles.size());
+    Finding uncovered;
+    for (std::size_t i = 0; i < covered.size(); i++) {
+        const auto& [a, b, c] = triangles.triangles[i];
+        const double wanted = area(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c]);
+        // A Steiner point on an edge is rounded by up to 2^-21, which in a needle is much of the area.
+        const double rounding = 0x1p-21 * perimeter(triangles, i);
+        if (covered[i] == 0 || std::abs(covered[i] - wanted) > 1e-4 * wanted + 1e-12 * box_area + rounding)
+            uncovered.add(i);
+    }
+    if (uncovered.count > 0)
+        return uncovered.defect(Kind::uncovered_triangle,
+                                "the faces that belong to an input triangle do not add up to its area");
+
+    double sum = 0;
+    for (const Tet& tet : mesh.tets)
+        sum += volume(mesh, tet);
+    const double box_volume = box_size.x * box_size.y * box_size.z;
+    if (std::abs(sum - box_volume) > 1e-6 * box_volume)
+        return TetMeshDefect{Kind::open_boundary, 0, 1,
+                             "the tets' volumes sum to " + std::to_string(sum / box_volume) + " of the domain's"};
+    return std::nullopt;
+}
+
+TetMeshCounts count_faces(const TetMesh& mesh)
+{
+    TetMeshCounts counts;
+    std::uint64_t inner_sides = 0;
+    std::uint64_t occlusive_sides = 0;
+    counts.tets = mesh.tets.size();
+    for (const Tet& tet : mesh.tets) {
+        for (std::size_t face = 0; face < 4; face++) {
+            const bool occlusive = tet.faces[face] != FREE_FACE;
+            const bool boundary = tet.links[face] == NO_LINK;
+            if (boundary) counts.boundary_faces++;
+            if (boundary && occlusive) counts.occlusive_faces++;
+            if (!boundary) (occlusive ? occlusive_sides : inner_sides)++;
+        }
+    }
+    counts.occlusive_faces += occlusive_sides / 2;
+    counts.free_faces = inner_sides / 2;
+    return counts;
+}
+
+} // namespace tetrace

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/base/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tetrace {
+
+/// A triangle soup with shared vertices; what a mesh reader returns, and, placed in the domain, what rays hit.
+struct TriangleMesh {
+    std::vector<Float3> vertices;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+
+    friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;
+};
+
+/// The sphere round the mesh's bounding box: its centre and half its diagonal. What camera distances and wide domains
+/// count in.
+struct BoundingSphere {
+    Double3 centre;
+    double radius = 0;
+};
+
+/// Precondition: at least one vertex, all finite.
+[[nodiscard]] BoundingSphere bounding_sphere(const TriangleMesh& mesh);
+
+} // namespace tetrace

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/mesh/box.h"
+
+#include <array>
+#include <cstdint>
+
+namespace tetrace {
+
+/// A grid of 255 cells along each axis over a box; its cells are powers of two wide.
+struct BoxGrid {
+    Float3 origin;
+    std::array<std::uint8_t, 3> exponent = {}; ///< the float with bits exponent << 23 is a cell's width
+
+    [[nodiscard]] double width(int axis) const;
+};
+
+/// A box in lines of a grid.
+struct GridBox {
+    std::array<std::uint8_t, 3> low = {}, high = {};
+};
+
+/// The finest grid from the box's low corner on that covers it. box: not empty, at most 2^100 in size.
+[[nodiscard]] BoxGrid make_box_grid(const Box& box);
+
+/// The smallest box of grid lines round this one. box: within what the grid covers.
+[[nodiscard]] GridBox to_grid(const BoxGrid& grid, const Box& box);
+
+/// The coordinate of a grid line.
+[[nodiscard]] double line_at(const BoxGrid& grid, int axis, std::uint8_t line);
+
+} // namespace tetrace

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+enum class Structure { cdt, bvh };
+/// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or by how
+/// many rays at once a BVH is asked.
+enum class Method { plane, plucker, stp, ms06, maria, project, single, packet16 };
+/// A packed form of the mesh: tets (half32: a record for each way into one; tet20 and tet16: tets that share their
+/// vertices), a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
+enum class Layout { tet80, tet96, half32, tet20, tet16, bvh2, cwbvh, embree, rt };
+enum class MathMode { exact, fast };
+/// What rays are for (core/rays/ray_set.h); all but primary ones are given to a session.
+enum class RayKind { primary, shadow, ao, diffuse, random };
+/// The order of rays that are given: as their pixels lie in tiles, along a space-filling curve, at random.
+enum class RayOrder { tiles, morton, shuffled };
+/// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
+/// (Aila, Laine, Karras 2012), or as many rays at once as a processor's vectors have lanes.
+enum class Schedule { tiles, persistent, packets };
+/// What a kernel does: traces the primary rays of an image, traces rays that it is given, or searches for the exit face
+/// of one tet alone for each ray that it is given.
+enum class Task { trace, rays, search };
+/// The order of the tets in memory: along a space-filling curve; the same, with those that no ray from outside reaches
+/// (inside closed surfaces) behind all others; as the tetrahedralization wrote them.
+enum class TetOrder { hilbert, reached, input };
+
+/// A kernel is data: backends map it to code, or say that they have none.
+struct KernelId {
+    Structure structure = Structure::cdt;
+    Method method = Method::maria;
+    Layout layout = Layout::tet80;
+    MathMode math = MathMode::exact;
+    Schedule schedule = Schedule::tiles;
+    Task task = Task::trace;
+
+    friend bool operator==(const KernelId&, const KernelId&) = default;
+};
+
+/// Every kernel of task trace that some backend can run, schedule tiles and exact mode first, the methods in the order
+/// of the enum; the one list that options and rows come from.
+[[nodiscard]] const std::vector<KernelId>& all_kernels();
+
+/// Whether the kernel's text does its task: exits are searched in a CDT alone, where its tets hold their corners: walks
+/// through other layouts carry what a search alone would have to make anew; and rays are given to BVHs, to maria, the
+/// paper's own method, and to project where a link says what its corners are, not to methods that they are compared
+/// with.
+[[nodiscard]] bool has_task(const KernelId& kernel);
+
+/// Whether the kernel, of whatever schedule, has packets: one walk is written for them, in exact mode.
+[[nodiscard]] bool has_packets(const KernelId& kernel);
+
+/// The kernels that do a task, in the same order; those that are given rays have no schedule persistent.
+[[nodiscard]] std::vector<KernelId> kernels_of(Task task);
+
+/// The structure that a layout packs.
+[[nodiscard]] Structure structure_of(Layout layout);
+/// Whether a layout's tets share their vertices and name no corner: method project alone walks them.
+[[nodiscard]] bool is_compact(Layout layout);
+/// Whether the kernel is one of kernels/, the same source on every backend; Embree's own and
+/// those of drivers are not.
+[[nodiscard]] bool is_portable(const KernelId& kernel);
+
+/// Whether the kernel is one that should lose and mistake no ray: maria as published, project by its proof, and our
+/// BVHs by their watertight triangle test. Wrong and lost rays then fail a run. Those of the others are their nature:
+/// counted, told beside the rate, and no failure.
+[[nodiscard]] bool claims_robustness(const KernelId& kernel);
+
+[[nodiscard]] std::string_view name_of(Structure value);
+[[nodiscard]] std::string_view name_of(Method value);
+[[nodiscard]] std::string_view name_of(Layout value);
+[[nodiscard]] std::string_view name_of(MathMode value);
+[[nodiscard]] std::string_view name_of(RayKind value);
+[[nodiscard]] std::string_view name_of(RayOrder value);
+[[nodiscard]] std::string_view name_of(Schedule value);
+[[nodiscard]] std::string_view name_of(Task value);
+[[nodiscard]] std::string_view name_of(TetOrder value);
+
+/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" of task search; of task rays as of
+/// trace.
+[[nodiscard]] std::string name_of(const KernelId& kernel);
+
+} // namespace tetrace

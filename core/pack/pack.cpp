@@ -1,0 +1,240 @@
+#include "core/base/error.h"
+#include "core/pack/hilbert.h"
+#include "core/pack/pack_compact.h"
+#include "core/pack/pack_half32.h"
+#include "core/pack/packed_scene.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace tetrace {
+namespace {
+
+std::uint32_t rows_of(Layout layout)
+{
+    return layout == Layout::tet80 ? TET80_ROWS : TET96_ROWS;
+}
+
+// Words of a tet in either layout: where vertex coordinates and faces stand.
+struct WordMap {
+    std::uint32_t vertex_stride, first_face;
+};
+WordMap words_of(Layout layout)
+{
+    return layout == Layout::tet80 ? WordMap{3, 12} : WordMap{4, 16};
+}
+
+std::uint32_t& word(std::vector<Row>& rows, std::size_t index)
+{
+    static_assert(sizeof(Row) == 4 * sizeof(std::uint32_t));
+    Row& row = rows[index / 4];
+    return index % 4 == 0 ? row.x : index % 4 == 1 ? row.y : index % 4 == 2 ? row.z : row.w;
+}
+std::uint32_t word(const std::vector<Row>& rows, std::size_t index)
+{
+    return word(const_cast<std::vector<Row>&>(rows), index);
+}
+
+Double3 unit_centroid(const Scene& scene, const Tet& tet)
+{
+    Double3 sum;
+    for (const auto v : tet.vertices)
+        sum = sum + to_double(scene.tets.vertices[v]);
+    const Double3 low = to_double(scene.domain.low());
+    const Double3 size = to_double(scene.domain.high()) - low;
+    const Double3 offset = sum * 0.25 - low;
+    return {offset.x / size.x, offset.y / size.y, offset.z / size.z};
+}
+
+// Which tets are joined to the domain's boundary by free faces: rays from there cross no others.
+std::vector<bool> reached_tets(const TetMesh& mesh)
+{
+    std::vector<bool> reached(mesh.tets.size());
+    std::vector<std::uint32_t> pending;
+    const auto reach = [&](std::uint32_t tet) {
+        if (!reached[tet]) pending.push_back(tet);
+        reached[tet] = true;
+    };
+    for (std::uint32_t tet = 0; tet < mesh.tets.size(); tet++)
+        if (std::ranges::count(mesh.tets[tet].links, NO_LINK) > 0) reach(tet);
+    while (!pending.empty()) {
+        const Tet& tet = mesh.tets[pending.back()];
+        pending.pop_back();
+        for (std::size_t face = 0; face < 4; face++)
+            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
+    }
+    return reached;
+}
+
+// Tets of the scene in the order in which they are packed.
+std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
+{
+    std::vector<std::uint32_t> tets(scene.tets.tets.size());
+    std::iota(tets.begin(), tets.end(), 0u);
+    if (order == TetOrder::input) return tets;
+    std::vector<std::uint64_t> key(tets.size());
+    std::transform(scene.tets.tets.begin(), scene.tets.tets.end(), key.begin(),
+                   [&](const Tet& tet) { return hilbert_index(unit_centroid(scene, tet)); });
+    std::stable_sort(tets.begin(), tets.end(), [&](auto a, auto b) { return key[a] < key[b]; });
+    if (order == TetOrder::reached) {
+        const std::vector<bool> reached = reached_tets(scene.tets);
+        std::stable_partition(tets.begin(), tets.end(), [&](auto tet) { return reached[tet]; });
+    }
+    return tets;
+}
+
+std::uint32_t renumbered(std::uint32_t link, const std::vector<std::uint32_t>& packed_of_mesh)
+{
+    return link == NO_LINK ? NO_LINK : make_link(packed_of_mesh[link_tet(link)], link_face(link));
+}
+
+// The scene's tets in packed order, linked by it.
+TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& tets,
+                        const std::vector<std::uint32_t>& packed_of_mesh)
+{
+    TetMesh result{mesh.vertices, {}};
+    result.tets.reserve(tets.size());
+    for (const auto index : tets) {
+        Tet tet = mesh.tets[index];
+        for (auto& link : tet.links)
+            link = renumbered(link, packed_of_mesh);
+        result.tets.push_back(tet);
+    }
+    return result;
+}
+
+void pack_tet(PackedScene& packed, std::size_t position, const TetMesh& mesh)
+{
+    const WordMap map = words_of(packed.layout);
+    const std::size_t first = position * rows_of(packed.layout) * 4;
+    const Tet& tet = mesh.tets[position];
+    for (std::size_t i = 0; i < 4; i++) {
+        const Float3 vertex = mesh.vertices[tet.vertices[i]];
+        for (int axis = 0; axis < 3; axis++)
+            word(packed.tets, first + map.vertex_stride * i + static_cast<std::size_t>(axis)) =
+                std::bit_cast<std::uint32_t>(vertex[axis]);
+        word(packed.tets, first + map.first_face + 2 * i) = tet.links[i];
+        word(packed.tets, first + map.first_face + 2 * i + 1) = tet.faces[i];
+    }
+}
+
+Row row_of(Float3 a)
+{
+    return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z), 0};
+}
+
+Float3 difference(Float3 a, Float3 b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+void pack_tets(PackedScene& packed, const TetMesh& mesh)
+{
+    if (packed.layout == Layout::half32) {
+        packed.tets = half32_records(mesh);
+        return;
+    }
+    if (is_compact(packed.layout)) {
+        pack_compact(packed, mesh);
+        return;
+    }
+    packed.tets.assign(mesh.tets.size() * rows_of(packed.layout), Row{});
+    for (std::size_t position = 0; position < mesh.tets.size(); position++)
+        pack_tet(packed, position, mesh);
+}
+
+void pack_triangles(PackedScene& packed, const TriangleMesh& mesh)
+{
+    for (const auto& [a, b, c] : mesh.triangles) {
+        packed.triangles.push_back(row_of(mesh.vertices[a]));
+        packed.triangles.push_back(row_of(difference(mesh.vertices[b], mesh.vertices[a])));
+        packed.triangles.push_back(row_of(difference(mesh.vertices[c], mesh.vertices[a])));
+    }
+}
+
+void pack_domain(PackedScene& packed, const Scene& scene)
+{
+    packed.divisions = scene.domain.divisions;
+    for (const auto& lines : scene.domain.lines)
+        for (const float line : lines)
+            packed.lines.push_back(std::bit_cast<std::uint32_t>(line));
+    EntryGrid grid = make_entry_grid(scene.domain, scene.tets);
+    packed.entry_ranges = std::move(grid.ranges);
+    for (const auto link : grid.links)
+        packed.entry_links.push_back(renumbered(link, packed.packed_of_mesh));
+}
+
+} // namespace
+
+std::size_t PackedScene::bytes() const
+{
+    return (tets.size() + triangles.size() + vertices.size() + entry_faces.size() + nodes.size() +
+            leaf_triangles.size()) *
+               sizeof(Row) +
+           (lines.size() + entry_ranges.size() + entry_links.size() + occlusive_faces.size()) * sizeof(std::uint32_t);
+}
+
+std::uint32_t most_tets(Layout layout)
+{
+    constexpr std::uint64_t indices = std::uint64_t{1} << 32;
+    if (layout == Layout::half32) return HALF32_MAX_TETS;
+    if (is_compact(layout)) return layout == Layout::tet20 ? indices / TET20_WORDS : MAX_TETS;
+    const std::uint64_t elements = layout == Layout::tet80 ? 4 * TET80_ROWS : rows_of(layout);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(MAX_TETS, indices / elements));
+}
+
+PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
+{
+    if (scene.tets.tets.size() > most_tets(layout))
+        throw Error(ErrorKind::unsupported, "packing " + scene.name + " as " + std::string(name_of(layout)) + ": " +
+                                                std::to_string(scene.tets.tets.size()) +
+                                                " tets, its kernels reach at most " +
+                                                std::to_string(most_tets(layout)));
+    if (layout == Layout::half32 && scene.mesh.triangles.size() > HALF32_MAX_TRIANGLES)
+        throw Error(ErrorKind::unsupported,
+                    "packing " + scene.name + " as half32: " + std::to_string(scene.mesh.triangles.size()) +
+                        " triangles, its records name at most " + std::to_string(HALF32_MAX_TRIANGLES));
+    PackedScene packed;
+    packed.layout = layout;
+    packed.order = order;
+    packed.tet_count = static_cast<std::uint32_t>(scene.tets.tets.size());
+
+    const auto tets = packing_order(scene, order);
+    packed.packed_of_mesh.resize(tets.size());
+    for (std::uint32_t position = 0; position < tets.size(); position++)
+        packed.packed_of_mesh[tets[position]] = position;
+    pack_triangles(packed, scene.mesh);
+    pack_domain(packed, scene);
+    pack_tets(packed, in_packed_order(scene.tets, tets, packed.packed_of_mesh));
+    return packed;
+}
+
+TetMesh unpack(const PackedScene& packed)
+{
+    if (packed.layout == Layout::half32) return half32_tets(packed.tets);
+    if (is_compact(packed.layout)) return unpack_compact(packed);
+    const WordMap map = words_of(packed.layout);
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
+    TetMesh mesh;
+    mesh.tets.resize(packed.tet_count);
+    for (std::size_t position = 0; position < packed.tet_count; position++) {
+        const std::size_t first = position * rows_of(packed.layout) * 4;
+        for (std::size_t i = 0; i < 4; i++) {
+            const std::size_t at = first + map.vertex_stride * i;
+            const std::tuple key(word(packed.tets, at), word(packed.tets, at + 1), word(packed.tets, at + 2));
+            const auto [entry, is_new] = index.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
+            if (is_new)
+                mesh.vertices.push_back({std::bit_cast<float>(std::get<0>(key)), std::bit_cast<float>(std::get<1>(key)),
+                                         std::bit_cast<float>(std::get<2>(key))});
+            mesh.tets[position].vertices[i] = entry->second;
+            mesh.tets[position].links[i] = word(packed.tets, first + map.first_face + 2 * i);
+            mesh.tets[position].faces[i] = word(packed.tets, first + map.first_face + 2 * i + 1);
+        }
+    }
+    return mesh;
+}
+
+} // namespace tetrace

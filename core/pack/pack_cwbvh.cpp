@@ -1,0 +1,166 @@
+#include "core/pack/pack_bvh.h"
+
+#include "core/bvh/single_leaves.h"
+#include "core/bvh/wide_bvh.h"
+#include "core/pack/box_grid.h"
+#include "core/pack/octant_slots.h"
+#include "kernels/layouts/layout.h"
+
+#include <array>
+#include <bit>
+
+namespace tetrace {
+namespace {
+
+static_assert(wide_leaf_triangles == CWBVH_LEAF_TRIANGLES);
+
+/// The words of a node as a device reads them.
+struct CwbvhNode {
+    std::array<std::uint32_t, 4 * std::size_t{CWBVH_NODE_ROWS}> words = {};
+
+    static constexpr std::size_t grid_word = 3, child_base = 4, triangle_base = 5, meta = 6, low = 8, high = 14;
+
+    /// Byte `slot` of eight that begin at a word.
+    void set_byte(std::size_t word, std::size_t slot, std::uint32_t value)
+    {
+        words[word + slot / 4] |= value << 8 * (slot % 4);
+    }
+    void append_to(std::vector<Row>& rows, std::size_t at) const
+    {
+        for (std::size_t i = 0; i < words.size(); i += 4)
+            rows[at + i / 4] = {words[i], words[i + 1], words[i + 2], words[i + 3]};
+    }
+};
+
+/// A node's children where they stand: by slot, null where none does.
+using SlottedChildren = std::array<const WideChild*, wide_children>;
+
+Box grown_box(const WideChild& child)
+{
+    return grown(child.box, BOX_MARGIN);
+}
+
+SlottedChildren place_children(const WideNode& node, Double3 node_centre)
+{
+    std::vector<Double3> offsets;
+    for (const auto& child : node)
+        offsets.push_back(centre(child.box) - node_centre);
+    const auto slots = octant_slots(offsets);
+    SlottedChildren placed = {};
+    for (std::size_t i = 0; i < node.size(); i++)
+        placed[slots[i]] = &node[i];
+    return placed;
+}
+
+void set_grid(CwbvhNode& node, const BoxGrid& grid)
+{
+    for (std::size_t axis = 0; axis < 3; axis++) {
+        node.words[axis] = std::bit_cast<std::uint32_t>(grid.origin[static_cast<int>(axis)]);
+        node.set_byte(CwbvhNode::grid_word, axis, grid.exponent[axis]);
+    }
+}
+
+// An empty slot has the box that no ray meets.
+void set_boxes(CwbvhNode& node, const BoxGrid& grid, const SlottedChildren& children)
+{
+    for (std::size_t slot = 0; slot < wide_children; slot++) {
+        const GridBox box =
+            children[slot] != nullptr ? to_grid(grid, grown_box(*children[slot])) : GridBox{{255, 255, 255}, {0, 0, 0}};
+        for (std::size_t axis = 0; axis < 3; axis++) {
+            node.set_byte(CwbvhNode::low + 2 * axis, slot, box.low[axis]);
+            node.set_byte(CwbvhNode::high + 2 * axis, slot, box.high[axis]);
+        }
+    }
+}
+
+class CwbvhPacker {
+public:
+    CwbvhPacker(const TriangleMesh& mesh, const WideBvh& wide) : mesh_(mesh), wide_(wide) {}
+
+    PackedScene pack()
+    {
+        packed_.nodes.resize(CWBVH_NODE_ROWS);
+        pack_node(wide_.nodes.front(), 0);
+        return std::move(packed_);
+    }
+
+private:
+    // Children of a node stand together; below them come, one child after the other, what is below each.
+    void pack_node(const WideNode& wide, std::uint32_t index)
+    {
+        Box box;
+        for (const auto& child : wide)
+            box = merged(box, grown_box(child));
+        const BoxGrid grid = make_box_grid(box);
+        const SlottedChildren children = place_children(wide, centre(box));
+        CwbvhNode node;
+        set_grid(node, grid);
+        set_boxes(node, grid, children);
+        const auto first_child = static_cast<std::uint32_t>(packed_.nodes.size() / CWBVH_NODE_ROWS);
+        node.words[CwbvhNode::child_base] = first_child;
+        const std::uint32_t inner = set_inner(node, children);
+        set_leaves(node, children);
+        packed_.nodes.resize(packed_.nodes.size() + std::size_t{inner} * CWBVH_NODE_ROWS);
+        node.append_to(packed_.nodes, std::size_t{index} * CWBVH_NODE_ROWS);
+
+        std::uint32_t next = first_child;
+        for (const auto* child : children)
+            if (child != nullptr && child->count == 0) pack_node(wide_.nodes[child->node], next++);
+    }
+
+    static std::uint32_t set_inner(CwbvhNode& node, const SlottedChildren& children)
+    {
+        std::uint32_t inner = 0;
+        for (std::uint32_t slot = 0; slot < wide_children; slot++) {
+            if (children[slot] == nullptr || children[slot]->count > 0) continue;
+            node.words[CwbvhNode::grid_word] |= 1u << (24 + slot);
+            node.set_byte(CwbvhNode::meta, slot, 0x20 | (24 + slot));
+            inner++;
+        }
+        return inner;
+    }
+
+    void set_leaves(CwbvhNode& node, const SlottedChildren& children)
+    {
+        const std::uint32_t first = add_leaf_triangles(packed_, mesh_, {});
+        node.words[CwbvhNode::triangle_base] = first;
+        for (std::uint32_t slot = 0; slot < wide_children; slot++) {
+            if (children[slot] == nullptr || children[slot]->count == 0) continue;
+            const auto triangles = triangles_of(*children[slot]);
+            const std::uint32_t offset = add_leaf_triangles(packed_, mesh_, triangles) - first;
+            const std::uint32_t unary = (1u << triangles.size()) - 1;
+            node.set_byte(CwbvhNode::meta, slot, unary << 5 | offset);
+        }
+    }
+
+    // Once where two parts of a triangle came into one leaf.
+    [[nodiscard]] std::vector<std::uint32_t> triangles_of(const WideChild& leaf) const
+    {
+        const auto references = std::span(wide_.references).subspan(leaf.first, leaf.count);
+        std::vector<std::uint32_t> triangles(references.begin(), references.end());
+        std::sort(triangles.begin(), triangles.end());
+        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+        return triangles;
+    }
+
+    const TriangleMesh& mesh_;
+    const WideBvh& wide_;
+    PackedScene packed_;
+};
+
+} // namespace
+
+PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh)
+{
+    constexpr std::uint32_t most_depth = 3 * CWBVH_STACK; // three levels of two children make one of eight
+    if (const auto depth = depth_of(bvh); depth > most_depth)
+        refuse_to_pack(Layout::cwbvh, depth, "inner nodes above a leaf", most_depth);
+    const Bvh binary = with_single_leaves(mesh, bvh);
+    WideBvh wide = make_wide(binary, Collapse::cheapest);
+    if (levels_of(wide) > CWBVH_STACK) wide = make_wide(binary, Collapse::shallow);
+    if (const auto levels = levels_of(wide); levels > CWBVH_STACK)
+        refuse_to_pack(Layout::cwbvh, levels, "pairs would wait on a ray's stack", CWBVH_STACK);
+    return CwbvhPacker(mesh, wide).pack();
+}
+
+} // namespace tetrace

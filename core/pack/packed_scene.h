@@ -1,0 +1,70 @@
+#pragma once
+
+#include "core/mesh/domain.h"
+#include "core/mesh/scene.h"
+#include "core/pack/kernel_id.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tetrace {
+
+/// 16 bytes as they lie in a device's buffer; floats are stored by their bits.
+struct Row {
+    std::uint32_t x, y, z, w;
+
+    friend bool operator==(const Row&, const Row&) = default;
+};
+static_assert(sizeof(Row) == 16, "rows are uvec4 / uint4 on a device");
+
+/// The tet that rays start in, where tets cannot name their vertices.
+struct StartTet {
+    std::array<std::uint32_t, 4> vertices{}; ///< numbered as they are packed
+    std::uint32_t neighbour = 0;             ///< PackedScene::last_neighbours
+
+    friend bool operator==(const StartTet&, const StartTet&) = default;
+};
+
+/// A scene in the form that crosses to a device: the tets of a CDT, or a BVH; the arrays of the other are empty.
+struct PackedScene {
+    Layout layout = Layout::tet80;
+    TetOrder order = TetOrder::hilbert;
+    std::uint32_t tet_count = 0;
+    std::uint32_t divisions = 1;
+
+    std::vector<Row> tets;                   ///< TET80_ROWS or TET96_ROWS a tet, or HALF32_ROWS for each of its faces
+    std::vector<Row> triangles;              ///< TRIANGLE_ROWS an input triangle
+    std::vector<std::uint32_t> lines;        ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
+    std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
+    std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
+
+    std::vector<Row> vertices;                  ///< of tet20 and tet16: position and rank (kernels/layouts/layout.h)
+    std::vector<Row> entry_faces;               ///< of those, in place of entry_links: three vertices and a tet
+    std::vector<std::uint32_t> occlusive_faces; ///< of those: OCCLUSIVE_WORDS a face
+
+    std::vector<Row> nodes;          ///< of a BVH: BVH2_NODE_ROWS or CWBVH_NODE_ROWS a node, the root first
+    std::vector<Row> leaf_triangles; ///< LEAF_TRIANGLE_ROWS a reference of a leaf to a triangle
+
+    std::vector<std::uint32_t> packed_of_mesh;   ///< stays on the host: position of each tet of the scene in `tets`
+    std::vector<std::uint32_t> number_of_vertex; ///< of tet20 and tet16, stays too: of each vertex of the scene's tets
+    std::vector<std::uint32_t> last_neighbours;  ///< stays too: what is behind the face opposite each tet's last vertex
+
+    [[nodiscard]] std::size_t bytes() const; ///< of all arrays that cross
+};
+
+/// The most tets that a layout's links of 30 bits can name and its kernels reach: they index the array of tets, by word
+/// (tet80) or by row (tet96), with 32 bits; half32's exits have 28 bits for it.
+[[nodiscard]] std::uint32_t most_tets(Layout layout);
+
+/// Packs a scene's tets.
+/// scene: valid (see find_defect), at most most_tets(layout). layout: of tets.
+/// Throws Error{unsupported} naming both numbers where the scene has more.
+[[nodiscard]] PackedScene pack(const Scene& scene, Layout layout, TetOrder order);
+
+/// The tets of a packed scene again, with one vertex per corner merged by exact position; in packed order.
+/// For tests and for checking what a device was given. Links, faces and coordinates come back bit for bit.
+/// Throws Error{internal} where what half32 says more than once is not said alike.
+[[nodiscard]] TetMesh unpack(const PackedScene& packed);
+
+} // namespace tetrace

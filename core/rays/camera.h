@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/mesh/triangle_mesh.h"
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace tetrace {
+
+/// Numbered views round a scene, reproducible bit for bit (only + - * / sqrt in IEEE double).
+enum class CameraSet {
+    smoke,  ///< 4 views at 2 radii
+    orbit,  ///< 1,282 views on a spherical Fibonacci lattice at 2 radii
+    flight, ///< 1,282 views along a spiral, distance swept between 1.2 and 2.9 radii
+};
+
+/// A pinhole camera, 60 degrees field of view along the image's larger side.
+struct Camera {
+    Float3 origin;              ///< a multiple of 2^-40 per coordinate, so that no product on the way is denormal
+    Double3 forward, right, up; ///< orthonormal
+};
+
+/// What a device gets of a camera at a given image size: the direction of pixel (x, y) is
+/// corner + step_x * x + step_y * y, through the pixel's centre; (0, 0) is the top left. Not normalized: t counts
+/// along the optical axis.
+struct View {
+    Float3 origin, corner, step_x, step_y;
+
+    friend bool operator==(const View&, const View&) = default;
+};
+
+[[nodiscard]] std::vector<Camera> make_cameras(CameraSet set, const BoundingSphere& sphere);
+[[nodiscard]] View make_view(const Camera& camera, std::uint32_t width, std::uint32_t height);
+
+[[nodiscard]] std::string_view name_of(CameraSet set);
+[[nodiscard]] std::size_t view_count(CameraSet set);
+
+} // namespace tetrace

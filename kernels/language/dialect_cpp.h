@@ -1,0 +1,53 @@
+// The kernels' language as host C++. Include it, and the kernel headers after it, inside an unnamed namespace: every
+// kernel is compiled once per layout and math mode, and none of these names may meet another's.
+// The including file has <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/device/backend.h before it.
+#define KERNEL_FN [[maybe_unused]] inline
+#define PRECISE // contraction is switched off by the compiler's flags
+#define STRUCT(name) struct name
+#define VEC3(x, y, z) (Vec3{(x), (y), (z)})
+#define FETCH(scene, array, index) (assert((index) < (scene).array##_size), (scene).array[(index)])
+
+using uint = std::uint32_t;
+using uint4 = tetrace::Row;
+#ifndef KERNEL_REAL // the test that counts operations brings its own number type
+#define KERNEL_REAL float
+#endif
+using real = KERNEL_REAL;
+
+KERNEL_FN real as_real(uint bits)
+{
+    return real(std::bit_cast<float>(bits));
+}
+#ifndef KERNEL_REAL_HAS_NO_BITS
+KERNEL_FN uint as_bits(real value)
+{
+    return std::bit_cast<uint>(value);
+}
+KERNEL_FN real square_root(real value)
+{
+    return std::sqrt(value);
+}
+#endif
+KERNEL_FN real to_real(uint value)
+{
+    return real(static_cast<float>(value));
+}
+
+// Of numbers: never NaN.
+KERNEL_FN real minimum(real a, real b)
+{
+    return a < b ? a : b;
+}
+KERNEL_FN real maximum(real a, real b)
+{
+    return a > b ? a : b;
+}
+// Index of the highest bit that is set. value: not 0.
+KERNEL_FN uint highest_bit(uint value)
+{
+    return 31u - static_cast<uint>(std::countl_zero(value));
+}
+KERNEL_FN uint bit_count(uint value)
+{
+    return static_cast<uint>(std::popcount(value));
+}

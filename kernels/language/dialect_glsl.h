@@ -1,0 +1,51 @@
+// The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
+// Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, where comparing two
+// numbers and selecting one is faster than their minimum (of NaNs, which nothing compares, it is another).
+#include "kernels/layouts/layout.h"
+
+#ifndef SELECTS_MINIMA
+#define SELECTS_MINIMA false
+#endif
+#define KERNEL_FN
+#define STRUCT(name) struct name
+#define VEC3(x, y, z) Vec3(x, y, z)
+#define real float
+#define uint4 uvec4
+#ifdef MATH_FAST
+#define PRECISE
+#else
+#define PRECISE precise // works on locals alone: a function's parameters and result say nothing about what is inside
+#endif
+
+KERNEL_FN real as_real(uint bits)
+{
+    return uintBitsToFloat(bits);
+}
+KERNEL_FN uint as_bits(real value)
+{
+    return floatBitsToUint(value);
+}
+KERNEL_FN real to_real(uint value)
+{
+    return real(value);
+}
+KERNEL_FN real square_root(real value)
+{
+    return sqrt(value);
+}
+KERNEL_FN real minimum(real a, real b)
+{
+    return SELECTS_MINIMA ? (a < b ? a : b) : min(a, b);
+}
+KERNEL_FN real maximum(real a, real b)
+{
+    return SELECTS_MINIMA ? (a > b ? a : b) : max(a, b);
+}
+KERNEL_FN uint highest_bit(uint value)
+{
+    return uint(findMSB(value));
+}
+KERNEL_FN uint bit_count(uint value)
+{
+    return uint(bitCount(value));
+}

@@ -1,0 +1,13 @@
+// The kernels of a CDT whose tets share their vertices, and name no corner: a layout and the walk of method project,
+// which carries the vertices of the face that it is at.
+#include "kernels/layouts/faces.h"
+
+#include KERNEL_LAYOUT_HEADER
+
+#include "kernels/methods/signs.h"
+
+#include "kernels/walks/entry_faces.h"
+
+#include "kernels/walks/triangle_hit.h"
+
+#include "kernels/walks/compact_walk.h"

@@ -1,0 +1,322 @@
+// What CUDA alone has, without a GPU: that its two stand-ins, the host emulation and a library that poses as NVIDIA's
+// driver (tests/stub_cuda), say so; a driver's failures; NVRTC; the code that real GPUs get, which is looked at, not
+// run. tests/backends/device_test.cpp has what is claimed of every API.
+#include "backends/cuda/driver_backend.h"
+#include "backends/cuda_host/backend.h"
+#include "core/device/scene_buffers.h"
+#include "core/device/self_test.h"
+#include "tests/support/device_rays.h"
+#include "tests/support/temporary_folder.h"
+
+#include <algorithm>
+#include <cstring>
+#include <regex>
+#include <set>
+
+namespace tetrace {
+namespace {
+
+/// The cuda backend on the library that poses as NVIDIA's driver.
+std::unique_ptr<Backend> stub_backend(const std::function<cuda::Programs()>& programs)
+{
+    return std::make_unique<cuda::DriverBackend>(
+        cuda::Platform{"cuda", "CUDA events", [] { return cuda::load_driver(TETRACE_STUB_CUDA); }, programs});
+}
+
+/// What a machine without nvcc has.
+cuda::Programs programs_by_nvrtc()
+{
+    cuda::Programs programs = cuda::embedded_programs();
+    programs.code = {};
+    programs.compiler.clear();
+    return programs;
+}
+
+/// What a machine has whose driver could use our code, and nothing else.
+cuda::Programs programs_without_nvrtc()
+{
+    cuda::Programs programs = cuda::embedded_programs();
+    programs.nvrtc = nullptr;
+    return programs;
+}
+
+bool has_nvcc()
+{
+    return !cuda::embedded_programs().code.empty();
+}
+
+/// Operations that exact mode excludes: contracted, approximate, or flushing denormals.
+std::vector<std::string> inexact_operations(const std::string& assembly)
+{
+    const std::regex inexact(
+        R"((fma|mad)\.[a-z0-9.]*f32|[a-z0-9]+\.(approx|full)[a-z0-9.]*|[a-z0-9]+\.[a-z.]*ftz[a-z0-9.]*)");
+    return {std::sregex_token_iterator(assembly.begin(), assembly.end(), inexact), {}};
+}
+
+/// The assembly among a kernel's code, which is there as text.
+std::string assembly_of(const EmbeddedKernel& code)
+{
+    const std::string_view text = code.text();
+    const std::size_t start = text.find(".version ");
+    return start == std::string_view::npos ? "" : std::string(text.substr(start, text.find('\0', start) - start));
+}
+
+std::string assembly_by_nvrtc(const std::string& source, std::span<const std::string> options)
+{
+    const auto* text = find_kernel(cuda::embedded_sources(), source);
+    const auto made = cuda::Nvrtc::installed().compile(text->text().data(), source, "compute_90", options);
+    return {made.begin(), made.end()};
+}
+
+/// On each of the two.
+class CudaWithoutGpu : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override
+    {
+        if (GetParam() == std::string("host")) {
+            backend = &cuda_host_backend();
+            return;
+        }
+        made = stub_backend(cuda::embedded_programs);
+        backend = made.get();
+        if (!backend->devices()[0].usable) GTEST_SKIP() << backend->devices()[0].reason;
+    }
+
+    std::unique_ptr<Backend> made;
+    Backend* backend = nullptr;
+};
+
+/// What a driver's failure becomes.
+class CudaFailures : public ::testing::Test {
+protected:
+    [[nodiscard]] std::string error_with(const char* failure, const std::function<void()>& work) const
+    {
+        const ScopedVariable fail("TETRACE_STUB_FAIL", failure);
+        return error_of(work);
+    }
+    void SetUp() override
+    {
+        if (!backend->devices()[0].usable) GTEST_SKIP() << backend->devices()[0].reason;
+    }
+
+    std::unique_ptr<Backend> backend = stub_backend(cuda::embedded_programs);
+    DeviceRays rays{make_cubes(3), Layout::tet80};
+    TraceJob job = rays.from_outside(20, 20);
+};
+
+class CudaNvrtc : public ::testing::Test {
+protected:
+    void SetUp() override
+    {
+        if (!nvrtc.reason().empty()) GTEST_SKIP() << nvrtc.reason();
+    }
+    const cuda::Nvrtc& nvrtc = cuda::Nvrtc::installed();
+};
+
+} // namespace
+
+TEST_P(CudaWithoutGpu, says_that_it_is_an_emulation)
+{
+    const Device& device = backend->devices().at(0);
+    EXPECT_EQ(device.type, "emulated");
+    EXPECT_EQ(device.implementation, "cuda-host");
+    EXPECT_TRUE(contains(device.name, "host emulation of CUDA"));
+    EXPECT_TRUE(contains(device.driver, "emulated"));
+    EXPECT_EQ(device.uuid + device.pci, "") << "it is no GPU that other APIs show too";
+    EXPECT_GT(device.memory_bytes, 0u);
+}
+
+TEST_P(CudaWithoutGpu, is_exact_in_exact_mode)
+{
+    const SelfTest test = judge_self_test(backend->probe(0, MathMode::exact, self_test_operations()));
+    EXPECT_EQ(test, SelfTest{}) << test.text();
+}
+
+TEST_P(CudaWithoutGpu, contracts_in_fast_mode)
+{
+    if (const auto reason = cuda_host_backend().why_not(0, {.math = MathMode::fast}); !reason.empty())
+        GTEST_SKIP() << reason;
+    EXPECT_TRUE(judge_self_test(backend->probe(0, MathMode::fast, self_test_operations())).contracts);
+}
+
+INSTANTIATE_TEST_SUITE_P(on, CudaWithoutGpu, ::testing::Values("host", "stub"),
+                         [](const auto& driver) { return std::string(driver.param); });
+
+TEST(CudaDriver, that_is_not_there_is_a_device_that_says_so)
+{
+    const auto loaded = cuda::load_driver("libcuda-of-no-machine.so.1");
+    EXPECT_FALSE(loaded.usable());
+    EXPECT_TRUE(contains(loaded.reason, "no NVIDIA driver") && contains(loaded.reason, "nvidia-driver"));
+    cuda::DriverBackend backend({"cuda", "CUDA events", [&] { return loaded; }, cuda::embedded_programs});
+    ASSERT_EQ(backend.devices().size(), 1u);
+    EXPECT_FALSE(backend.devices()[0].usable);
+    EXPECT_EQ(backend.why_not(0, {}), loaded.reason);
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    EXPECT_EQ(error_of([&] { (void)backend.open(0, {}, rays.data(), {}); }), "missing: " + loaded.reason);
+}
+
+TEST(CudaDriver, a_library_without_its_functions_is_refused_by_name)
+{
+    const auto loaded = cuda::load_driver("libm.so.6");
+    EXPECT_TRUE(contains(loaded.reason, "cuModuleLoadDataEx"));
+}
+
+TEST(CudaDriver, of_a_build_without_compilers_is_listed_with_the_reason)
+{
+    const auto backend = stub_backend([] { return cuda::Programs{.sources = cuda::embedded_sources()}; });
+    EXPECT_FALSE(backend->devices().at(0).usable);
+    EXPECT_TRUE(contains(backend->devices()[0].reason, "without nvcc"));
+}
+
+TEST_F(CudaFailures, of_memory_make_a_row_unsupported_with_both_numbers)
+{
+    const std::string error = error_with("alloc", [&] { (void)backend->open(0, {}, rays.data(), {}); });
+    EXPECT_TRUE(error.starts_with("unsupported: ")) << error;
+    EXPECT_TRUE(contains(error, std::to_string(scene_buffers(rays.packed())[0].bytes.size()) + " bytes"));
+    EXPECT_TRUE(contains(error, "bytes of memory free"));
+}
+
+TEST_F(CudaFailures, of_an_images_memory_leave_the_session_alive)
+{
+    const auto session = backend->open(0, {}, rays.data(), {});
+    EXPECT_TRUE(contains(error_with("alloc", [&] { session->launch(job); }), "bytes for the output"));
+    EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
+}
+
+TEST_F(CudaFailures, of_a_launch_name_the_drivers_error)
+{
+    const auto session = backend->open(0, {}, rays.data(), {});
+    const std::string error = error_with("launch", [&] { session->launch(job); });
+    EXPECT_TRUE(error.starts_with("internal: ") && contains(error, "CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES")) << error;
+    EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
+}
+
+TEST_F(CudaFailures, of_a_launch_leave_no_hits_of_the_image_before)
+{
+    const auto session = backend->open(0, {}, rays.data(), {});
+    std::vector<Hit> hits = traced(*session, job);
+    (void)error_with("launch", [&] { session->launch(job); });
+    session->read_back(hits);
+    EXPECT_TRUE(std::all_of(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }));
+}
+
+TEST_F(CudaFailures, a_lost_device_is_told_and_the_next_session_gets_a_new_context)
+{
+    {
+        const auto session = backend->open(0, {}, rays.data(), {});
+        const std::string error = error_with("lost", [&] { (void)traced(*session, job); });
+        EXPECT_TRUE(error.starts_with("internal: ") && contains(error, "CUDA_ERROR_LAUNCH_FAILED")) << error;
+        EXPECT_TRUE(contains(error, "context is lost"));
+        EXPECT_TRUE(error_of([&] { (void)traced(*session, job); }).starts_with("internal: "));
+        EXPECT_EQ(openmp_hits(rays, job).size(), 400u) << "other rows go on";
+    }
+    const auto session = backend->open(0, {}, rays.data(), {});
+    EXPECT_EQ(traced(*session, job), openmp_hits(rays, job));
+}
+
+TEST_F(CudaFailures, a_lost_context_is_lost_to_every_session_that_shares_it_and_to_none_after_the_last)
+{
+    auto bystander = backend->open(0, {}, rays.data(), {});
+    {
+        const auto culprit = backend->open(0, {}, rays.data(), {});
+        (void)error_with("lost", [&] { (void)traced(*culprit, job); });
+    }
+    EXPECT_TRUE(contains(error_of([&] { (void)traced(*bystander, job); }), "context is lost"));
+    EXPECT_TRUE(contains(error_of([&] { (void)backend->open(0, {}, rays.data(), {}); }), "context is lost"));
+    bystander.reset();
+    EXPECT_EQ(traced(*backend->open(0, {}, rays.data(), {}), job), openmp_hits(rays, job));
+}
+
+TEST_F(CudaFailures, code_newer_than_the_driver_names_both_versions)
+{
+    if (!has_nvcc()) GTEST_SKIP() << "this build has no code of nvcc's";
+    backend = stub_backend(programs_without_nvrtc);
+    const std::string error = error_with("module", [&] { (void)backend->open(0, {}, rays.data(), {}); });
+    EXPECT_TRUE(error.starts_with("unsupported: ")) << error;
+    EXPECT_TRUE(contains(error, "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"));
+    EXPECT_TRUE(contains(error, "made by " + programs_without_nvrtc().compiler) && contains(error, "of CUDA 13.0"));
+}
+
+TEST_F(CudaFailures, nvrtc_is_tried_where_the_driver_cannot_use_the_builds_code)
+{
+    if (const std::string reason = cuda::Nvrtc::installed().reason(); !reason.empty()) GTEST_SKIP() << reason;
+    const std::string error = error_with("module", [&] { (void)backend->open(0, {}, rays.data(), {}); });
+    EXPECT_TRUE(error.starts_with("unsupported: ") && contains(error, "made by NVRTC")) << error;
+}
+
+TEST_F(CudaNvrtc, compiles_what_nvcc_did_not_and_keeps_it)
+{
+    const auto backend = stub_backend(programs_by_nvrtc);
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    const TraceJob job = rays.from_outside(20, 20);
+    const TemporaryFolder folder;
+    const SessionOptions options{.program_cache = folder / "programs"};
+    const auto first = backend->open(0, {}, rays.data(), options);
+    EXPECT_FALSE(first->setup_times().compile_cached);
+    EXPECT_GT(first->setup_times().compile_s, 1e-3);
+    EXPECT_EQ(traced(*first, job), openmp_hits(rays, job));
+    EXPECT_TRUE(backend->open(0, {}, rays.data(), options)->setup_times().compile_cached);
+    EXPECT_FALSE(backend->open(0, {.math = MathMode::fast}, rays.data(), options)->setup_times().compile_cached)
+        << "another math mode is another program";
+    EXPECT_EQ(judge_self_test(backend->probe(0, MathMode::exact, self_test_operations())), SelfTest{});
+}
+
+TEST_F(CudaNvrtc, targets_the_device_or_the_newest_that_is_older)
+{
+    EXPECT_EQ(nvrtc.target(90), "sm_90");
+    EXPECT_TRUE(nvrtc.target(999).starts_with("compute_")) << nvrtc.target(999);
+    EXPECT_TRUE(error_of([&] { (void)nvrtc.target(20); }).starts_with("unsupported: "));
+}
+
+TEST_F(CudaNvrtc, shows_its_log_where_a_source_is_wrong)
+{
+    const std::string error = error_of([&] { (void)nvrtc.compile("__global__ void f() { g(); }", "f", "sm_90", {}); });
+    EXPECT_TRUE(error.starts_with("internal: ") && contains(error, "\"g\" is undefined")) << error;
+}
+
+TEST_F(CudaNvrtc, every_source_is_exact_in_exact_mode_and_contracts_without_its_option)
+{
+    for (const EmbeddedKernel& source : cuda::embedded_sources()) {
+        const std::string name(source.name);
+        auto options = cuda::compiler_options({name, MathMode::exact});
+        const std::string exact = assembly_by_nvrtc(name, options);
+        EXPECT_TRUE(contains(exact, "div.rn.f32"));
+        EXPECT_EQ(inexact_operations(exact), std::vector<std::string>{}) << name;
+        std::erase(options, "--fmad=false");
+        EXPECT_NE(inexact_operations(assembly_by_nvrtc(name, options)), std::vector<std::string>{}) << name;
+        options = cuda::compiler_options({name, MathMode::fast});
+        EXPECT_TRUE(contains(assembly_by_nvrtc(name, options), "div.approx")) << name;
+    }
+}
+
+TEST(CudaCode, has_machine_code_for_each_architecture)
+{
+    if (!has_nvcc()) GTEST_SKIP() << "this build has no code of nvcc's";
+    for (const EmbeddedKernel& code : cuda::embedded_programs().code) {
+        const std::string_view text = code.text();
+        std::set<int> architectures;
+        // Machine code is an ELF file whose flags name the architecture, in the second byte since CUDA 13, else the
+        // first.
+        for (std::size_t at = text.find("\177ELF"); at != std::string_view::npos; at = text.find("\177ELF", at + 1)) {
+            std::uint32_t flags = 0;
+            std::memcpy(&flags, text.data() + at + 48, sizeof(flags));
+            const int version = text[at + 8];
+            architectures.insert(static_cast<int>(version >= 8 ? flags >> 8 & 255 : flags & 255));
+        }
+        EXPECT_EQ(architectures, (std::set<int> TETRACE_CUDA_ARCHITECTURES)) << code.name;
+    }
+}
+
+TEST(CudaCode, is_exact_in_exact_mode_and_contracts_in_fast_mode)
+{
+    if (!has_nvcc()) GTEST_SKIP() << "this build has no code of nvcc's";
+    for (const EmbeddedKernel& code : cuda::embedded_programs().code) {
+        const std::string assembly = assembly_of(code);
+        EXPECT_TRUE(contains(assembly, ".target sm_")) << code.name << " has no assembly for later devices";
+        const bool exact = code.name.ends_with("_exact");
+        EXPECT_EQ(inexact_operations(assembly).empty(), exact) << code.name;
+        EXPECT_EQ(assembly.find("div.rn.f32") != std::string::npos, exact) << code.name;
+    }
+}
+
+} // namespace tetrace

@@ -1,0 +1,107 @@
+// What OpenCL alone has: its program cache, what its drivers say of themselves, its errors.
+// tests/backends/device_test.cpp has what is claimed of every API.
+#include "backends/opencl/backend.h"
+#include "backends/opencl/device.h"
+#include "backends/opencl/errors.h"
+#include "tests/support/device_rays.h"
+#include "tests/support/temporary_folder.h"
+
+namespace tetrace {
+namespace fs = std::filesystem;
+namespace {
+
+class Opencl : public UsableDevices {
+protected:
+    Opencl() : UsableDevices(opencl_backend()) {}
+};
+
+} // namespace
+
+TEST_F(Opencl, a_second_session_finds_its_program_in_the_cache)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    const TraceJob job = rays.from_outside(20, 20);
+    for (const std::size_t device : usable) {
+        const TemporaryFolder folder;
+        const SessionOptions options{.program_cache = folder / "programs"};
+        EXPECT_FALSE(backend.open(device, {}, rays.data(), options)->setup_times().compile_cached);
+        const auto second = backend.open(device, {}, rays.data(), options);
+        EXPECT_TRUE(second->setup_times().compile_cached);
+        EXPECT_EQ(different_rays(traced(*second, job), openmp_hits(rays, job), 3), 0u);
+        EXPECT_FALSE(backend.open(device, {.math = MathMode::fast}, rays.data(), options)->setup_times().compile_cached)
+            << "another math mode is another program";
+    }
+}
+
+TEST_F(Opencl, survives_a_damaged_program_cache_and_mends_it)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    const TraceJob job = rays.from_outside(20, 20);
+    const TemporaryFolder folder;
+    const SessionOptions options{.program_cache = folder / "programs"};
+    const std::size_t device = usable.front();
+    (void)backend.open(device, {}, rays.data(), options);
+    const fs::path file = fs::directory_iterator(folder / "programs")->path();
+    const std::string whole = read_text(file);
+    const auto bent = [&](std::size_t position) {
+        std::string text = whole;
+        text[position] = static_cast<char>(text[position] ^ 1);
+        return text;
+    };
+    for (const std::string& damaged : {std::string(), whole.substr(0, 7), whole.substr(0, whole.size() / 2), bent(0),
+                                       bent(whole.size() - 1), std::string(100, 'x')}) {
+        write_file(file, damaged);
+        const auto session = backend.open(device, {}, rays.data(), options);
+        EXPECT_FALSE(session->setup_times().compile_cached);
+        EXPECT_EQ(different_rays(traced(*session, job), openmp_hits(rays, job), 3), 0u);
+        EXPECT_TRUE(backend.open(device, {}, rays.data(), options)->setup_times().compile_cached);
+    }
+}
+
+TEST_F(Opencl, does_without_a_cache_that_cannot_be_written)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    const TemporaryFolder folder;
+    write_file(folder / "file", "not a folder");
+    EXPECT_NO_THROW((void)backend.open(usable.front(), {}, rays.data(), {.program_cache = folder / "file"}));
+}
+
+TEST_F(Opencl, a_buffer_fits_into_a_devices_memory)
+{
+    for (const std::size_t device : usable)
+        EXPECT_LE(backend.devices()[device].max_buffer_bytes, backend.devices()[device].memory_bytes);
+}
+
+TEST(OpenclImplementation, is_read_from_whatever_drivers_say)
+{
+    using opencl::implementation_of;
+    EXPECT_EQ(implementation_of("Portable Computing Language", "3.1+debian", "OpenCL 3.0 PoCL 3.1+debian  Linux"),
+              "pocl-3.1");
+    EXPECT_EQ(implementation_of("Portable Computing Language", "6.0+debian", "OpenCL 3.0 PoCL 6.0+debian"), "pocl-6.0");
+    EXPECT_EQ(implementation_of("Oclgrind", "Oclgrind 21.10", "OpenCL 1.2 (Oclgrind 21.10)"), "oclgrind-21.10");
+    EXPECT_EQ(implementation_of("NVIDIA CUDA", "580.82.07", "OpenCL 3.0 CUDA 13.0.97"), "nvidia-580");
+    EXPECT_EQ(implementation_of("rusticl", "25.0.7-2", "OpenCL 3.0 "), "rusticl-25.0");
+    EXPECT_EQ(implementation_of("Intel(R) OpenCL Graphics", "23.05.25593.11", "OpenCL 3.0 "),
+              "intel-r-opencl-graphics-23.05");
+    EXPECT_EQ(implementation_of("AMD Accelerated Parallel Processing", "3513.0 (HSA1.1,LC)", "OpenCL 2.1 AMD-APP.dbg"),
+              "amd-accelerated-parallel-processing-3513.0");
+    EXPECT_EQ(implementation_of("Some Driver", "beta", "OpenCL 1.2 Some 7.9.1"), "some-driver-7.9");
+    EXPECT_EQ(implementation_of("Some Driver", "", "OpenCL 1.2"), "some-driver") << "its OpenCL is no driver's version";
+    EXPECT_EQ(implementation_of("", "", ""), "opencl");
+    EXPECT_EQ(implementation_of("NVIDIA CUDA", "", ""), "nvidia");
+}
+
+TEST(OpenclErrors, name_the_call_the_code_and_the_device)
+{
+    const opencl::Doing task{"launching", "a device", 1234, 999};
+    const Error lost = opencl::to_error(cl::Error(CL_OUT_OF_RESOURCES, "clFinish"), task);
+    EXPECT_EQ(lost.kind(), ErrorKind::internal);
+    EXPECT_TRUE(contains(lost.what(), "launching on 'a device': clFinish gave CL_OUT_OF_RESOURCES"));
+    const Error full = opencl::to_error(cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "clCreateBuffer"), task);
+    EXPECT_EQ(full.kind(), ErrorKind::unsupported);
+    EXPECT_TRUE(contains(full.what(), "1234") && contains(full.what(), "999"));
+    EXPECT_EQ(opencl::error_name(-1001), "CL_PLATFORM_NOT_FOUND_KHR");
+    EXPECT_EQ(opencl::error_name(-9999), "OpenCL error -9999");
+}
+
+} // namespace tetrace

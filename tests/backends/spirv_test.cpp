@@ -1,0 +1,208 @@
+// The SPIR-V that devices get: nothing in exact modules may be contracted, and data lies where the host puts it.
+#include "backends/vulkan/kernels.h"
+#include "core/device/launch.h"
+#include "core/device/scene_buffers.h"
+#include "tests/backends/spirv/module.h"
+#include "tests/backends/spirv/twins.h"
+
+#include <cstddef>
+#include <gtest/gtest.h>
+
+namespace tetrace {
+
+using spirv::Array;
+using spirv::Member;
+using spirv::Module;
+
+namespace {
+
+bool is_exact(std::string_view name)
+{
+    return name.find("_exact") != std::string_view::npos;
+}
+
+bool is_probe(std::string_view name)
+{
+    return name.starts_with("probe");
+}
+
+/// What traces by a driver's BVH reads no scene of ours.
+bool is_drivers(std::string_view name)
+{
+    return name.starts_with("single_rt_");
+}
+
+/// Portable kernels and probes; not the empty shader.
+std::vector<EmbeddedKernel> modules()
+{
+    std::vector<EmbeddedKernel> found;
+    for (const EmbeddedKernel& kernel : vulkan::embedded_kernels())
+        if (kernel.name != "empty" && !is_drivers(kernel.name)) found.push_back(kernel);
+    return found;
+}
+
+bool takes_rays(std::string_view name)
+{
+    return name.find("_trace") == std::string_view::npos;
+}
+
+/// A kernel's module is called method_layout_math_variant.
+Layout layout_of_module(std::string_view name)
+{
+    for (const KernelId& kernel : all_kernels())
+        if (name.starts_with(std::string(name_of(kernel.method)).append("_").append(name_of(kernel.layout)) + "_"))
+            return kernel.layout;
+    throw std::runtime_error("no kernel is called " + std::string(name));
+}
+
+/// What a kernel's storage buffers must be: its layout's arrays (core/device/scene_buffers.h) and
+/// kernels/layouts/layout.h.
+std::map<std::string, Array> expected_arrays(std::string_view module, bool in_parts)
+{
+    std::map<std::string, Array> arrays;
+    for (const SceneArray& array : scene_arrays(layout_of_module(module)))
+        arrays[array.name] = {array.binding, array.element_bytes, false};
+    arrays["output_words"] = {OUTPUT_BINDING, 4, true};
+    if (takes_rays(module)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
+    for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++) {
+        arrays["tet_words_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 4, false};
+        arrays["tet_rows_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
+    }
+    return arrays;
+}
+
+/// What a kernel's texel buffers must be: words at their array's binding, rows FIRST_ROWS_BINDING behind it.
+std::map<std::string, std::uint32_t> expected_texels(std::string_view module)
+{
+    std::map<std::string, std::uint32_t> bindings;
+    for (const SceneArray& array : scene_arrays(layout_of_module(module)))
+        bindings[array.name] = array.binding + (array.element_bytes == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
+    if (takes_rays(module)) bindings["rays"] = FIRST_ROWS_BINDING + RAYS_BINDING;
+    return bindings;
+}
+
+/// What the push constants must be: core/device/launch.h, word for word.
+std::vector<Member> expected_push_constants()
+{
+    std::vector<Member> members;
+    const auto add_vector = [&](const std::string& name, std::size_t offset) {
+        for (const std::string axis : {"x", "y", "z"}) {
+            members.push_back({"launch.trace." + name + "." + axis, static_cast<std::uint32_t>(offset), "float"});
+            offset += sizeof(float);
+        }
+    };
+    const auto add = [&](const std::string& path, std::size_t offset) {
+        members.push_back({"launch." + path, static_cast<std::uint32_t>(offset), "uint"});
+    };
+    add_vector("origin", offsetof(LaunchParams, origin));
+    add_vector("corner", offsetof(LaunchParams, corner));
+    add_vector("step_x", offsetof(LaunchParams, step_x));
+    add_vector("step_y", offsetof(LaunchParams, step_y));
+    add("trace.width", offsetof(LaunchParams, width));
+    add("trace.height", offsetof(LaunchParams, height));
+    add("trace.start_tet", offsetof(LaunchParams, start_tet));
+    add("trace.max_steps", offsetof(LaunchParams, max_steps));
+    add("trace.any_hit", offsetof(LaunchParams, any_hit));
+    for (std::size_t i = 0; i < 4; i++)
+        add("trace.start_v" + std::to_string(i), offsetof(LaunchParams, start.vertices) + i * sizeof(std::uint32_t));
+    add("trace.start_neighbour", offsetof(LaunchParams, start.neighbour));
+    add("divisions", offsetof(LaunchParams, divisions));
+    add("first_tile", offsetof(LaunchParams, first_tile));
+    add("tile_height", offsetof(LaunchParams, tile_height));
+    add("part_log2", offsetof(LaunchParams, part_log2));
+    return members;
+}
+
+Module twin()
+{
+    return Module(find_kernel(twins::embedded_kernels(), "vectors")->bytes);
+}
+
+} // namespace
+
+TEST(Spirv, no_operation_of_an_exact_module_may_be_contracted)
+{
+    std::size_t checked = 0;
+    for (const EmbeddedKernel& kernel : modules()) {
+        if (!is_exact(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        EXPECT_GE(module.rounding_operations(), is_probe(kernel.name)                             ? 5u
+                                                : kernel.name.find("_search") != kernel.name.npos ? 15u
+                                                                                                  : 30u)
+            << kernel.name;
+        EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
+        checked++;
+    }
+    EXPECT_GE(checked, 23u); // maria on two layouts, seven variants each; two BVHs, four each; the probe
+}
+
+TEST(Spirv, the_same_source_without_precise_would_be_found)
+{
+    for (const EmbeddedKernel& kernel : modules()) { // math mode fast is the text with PRECISE empty
+        if (is_exact(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        EXPECT_EQ(module.contractible_operations(), module.rounding_operations()) << kernel.name;
+        EXPECT_GT(module.contractible_operations(), 0u) << kernel.name;
+    }
+}
+
+TEST(Spirv, storage_buffers_are_those_of_scene_arrays_and_layout)
+{
+    for (const EmbeddedKernel& kernel : modules()) {
+        if (is_probe(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        if (kernel.name.ends_with("_texels")) {
+            EXPECT_EQ(module.texels(), expected_texels(kernel.name)) << kernel.name;
+            EXPECT_EQ(module.arrays(), (std::map<std::string, Array>{{"output_words", {OUTPUT_BINDING, 4, true}}}));
+        } else {
+            EXPECT_EQ(module.arrays(), expected_arrays(kernel.name, kernel.name.ends_with("_parts"))) << kernel.name;
+            EXPECT_TRUE(module.texels().empty());
+        }
+    }
+}
+
+TEST(Spirv, push_constants_are_launch_params_word_for_word)
+{
+    for (const EmbeddedKernel& kernel : modules()) {
+        if (is_probe(kernel.name)) continue;
+        EXPECT_EQ(Module(kernel.bytes).push_constants(), expected_push_constants()) << kernel.name;
+        EXPECT_TRUE(Module(kernel.bytes).has_specialization_constant(0)) << kernel.name << ": the tile's height";
+    }
+}
+
+TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_same_rays)
+{
+    std::size_t checked = 0;
+    for (const EmbeddedKernel& kernel : vulkan::embedded_kernels()) {
+        if (!is_drivers(kernel.name)) continue;
+        const Module module(kernel.bytes);
+        std::map<std::string, Array> arrays = {{"output_words", {OUTPUT_BINDING, 4, true}}};
+        if (takes_rays(kernel.name)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
+        EXPECT_EQ(module.arrays(), arrays) << kernel.name;
+        EXPECT_EQ(module.texels(), (std::map<std::string, std::uint32_t>{{"scene", 0}})) << "the top level";
+        EXPECT_EQ(module.push_constants(), expected_push_constants()) << kernel.name;
+        EXPECT_TRUE(module.has_specialization_constant(0)) << kernel.name << ": the tile's height";
+        EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
+        checked++;
+    }
+    EXPECT_EQ(checked, 2u);
+}
+
+TEST(Spirv, vectors_of_three_and_rows_read_as_words_would_be_found)
+{
+    EXPECT_NE(twin().push_constants(), expected_push_constants());
+    ASSERT_FALSE(twin().push_constants().empty());
+    EXPECT_EQ(twin().push_constants().front().type, "vector");
+    EXPECT_NE(twin().arrays().at("triangles"), expected_arrays("maria_tet80_exact_trace", false).at("triangles"));
+    EXPECT_EQ(twin().arrays().at("output_words"), expected_arrays("maria_tet80_exact_trace", false).at("output_words"));
+}
+
+TEST(Spirv, damaged_modules_are_refused)
+{
+    const auto bytes = modules().front().bytes;
+    EXPECT_THROW(Module{bytes.first(16)}, std::runtime_error);
+    EXPECT_THROW(Module{bytes.subspan(4)}, std::runtime_error);
+    EXPECT_THROW(Module{bytes.first(24)}, std::runtime_error) << "in its first instruction";
+}
+
+} // namespace tetrace

@@ -1,0 +1,228 @@
+// What Vulkan alone has: its program cache, staging, texels, validation layers, limits, timestamps, errors.
+// tests/backends/device_test.cpp has what is claimed of every API.
+#include "backends/vulkan/backend.h"
+#include "backends/vulkan/instance.h"
+#include "backends/vulkan/session.h"
+#include "backends/vulkan/ticks.h"
+#include "tests/support/bvh_scene.h"
+#include "tests/support/device_rays.h"
+#include "tests/support/given_scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace tetrace {
+namespace {
+
+/// Before the instance is made: in all builds, not only in debug ones.
+[[maybe_unused]] const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
+
+class Vulkan : public UsableDevices {
+protected:
+    Vulkan() : UsableDevices(vulkan_backend()) {}
+};
+
+} // namespace
+
+TEST_F(Vulkan, a_program_cache_changes_no_hit_and_is_filled)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    const TraceJob job = rays.from_outside(20, 20);
+    for (const std::size_t device : usable) {
+        const TemporaryFolder folder;
+        const SessionOptions options{.program_cache = folder / "programs"};
+        for (int pass = 0; pass < 2; pass++) {
+            const auto session = backend.open(device, {}, rays.data(), options);
+            EXPECT_EQ(different_rays(traced(*session, job), openmp_hits(rays, job), 3), 0u);
+        }
+        EXPECT_FALSE(std::filesystem::is_empty(folder / "programs"));
+        EXPECT_FALSE(backend.open(device, {}, rays.data(), {})->setup_times().compile_cached) << "no cache, no hit";
+    }
+}
+
+TEST_F(Vulkan, an_allocation_beyond_the_devices_largest_is_refused_with_both_numbers)
+{
+    for (vulkan::FoundDevice found : vulkan::find_devices()) {
+        if (!found.facts.usable) continue;
+        found.limits.allocation_bytes = 1000;
+        const vulkan::Context context(found);
+        const std::string refused = error_of([&] { vulkan::Buffer(context, 4096, vulkan::Place::device); });
+        EXPECT_TRUE(refused.starts_with("unsupported: ")) << refused;
+        EXPECT_TRUE(contains(refused, "4096") && contains(refused, "1000"));
+    }
+}
+
+TEST_F(Vulkan, hits_are_openmps_where_the_host_does_not_see_the_devices_memory)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    const TraceJob job = rays.from_outside(61, 35);
+    for (vulkan::FoundDevice found : vulkan::find_devices()) {
+        if (!found.facts.usable) continue;
+        found.always_stages = true;
+        vulkan::VulkanSession session(found, {}, rays.packed(), {});
+        EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+    }
+}
+
+TEST_F(Vulkan, hits_are_openmps_whether_the_scene_is_read_as_texels_or_from_storage_buffers)
+{
+    for (const Layout layout : {Layout::tet80, Layout::tet96}) {
+        const DeviceRays rays(make_cubes(8), layout);
+        for (vulkan::FoundDevice found : vulkan::find_devices()) {
+            if (!found.facts.usable) continue;
+            for (const bool texels : {false, true}) {
+                found.reads_texels = texels;
+                vulkan::VulkanSession session(found, {.layout = layout}, rays.packed(), {});
+                for (const TraceJob& job : jobs_of_all_kinds(rays))
+                    EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u) << texels;
+            }
+            found.limits.texels = 100; // too few for the scene: storage buffers again
+            vulkan::VulkanSession session(found, {.layout = layout}, rays.packed(), {});
+            const TraceJob job = rays.from_outside(61, 35);
+            EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+        }
+    }
+}
+
+namespace {
+
+/// Calls expect_right with every usable device, told to be as emulated devices are and as others are.
+void with_devices_of_all_kinds(const std::function<void(const vulkan::FoundDevice&)>& expect_right)
+{
+    for (vulkan::FoundDevice found : vulkan::find_devices()) {
+        if (!found.facts.usable) continue;
+        for (const bool selects : {false, true})
+            for (const unsigned shares : {1u, 2u, 7u, 1000u}) {
+                found.selects_minima = selects;
+                found.shares = shares;
+                SCOPED_TRACE(found.facts.name + (selects ? ", selects, " : ", minima, ") + std::to_string(shares));
+                expect_right(found);
+            }
+    }
+}
+
+KernelId bvh_kernel(Layout layout, Task task)
+{
+    return {.structure = Structure::bvh, .method = Method::single, .layout = layout, .task = task};
+}
+
+} // namespace
+
+TEST_F(Vulkan, hits_of_walks_are_openmps_whatever_kind_of_device_it_is)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    with_devices_of_all_kinds([&](const vulkan::FoundDevice& found) {
+        vulkan::VulkanSession session(found, {}, rays.packed(), {});
+        for (const TraceJob& job : jobs_of_all_kinds(rays))
+            EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+    });
+}
+
+TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    const test::GivenScene cubes{40, false, 6};
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
+        const SceneData data{&cubes.scene.mesh, &packed};
+        const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::trace), data, {.threads = 2});
+        const auto given_on_host = openmp_backend().open(0, bvh_kernel(layout, Task::rays), data, {.threads = 2});
+        with_devices_of_all_kinds([&](const vulkan::FoundDevice& found) {
+            vulkan::VulkanSession session(found, bvh_kernel(layout, Task::trace), packed, {});
+            for (const TraceJob& job : {rays.from_outside(200, 150), rays.from_outside(61, 35, 2)})
+                EXPECT_EQ(different_rays(traced(session, job), traced(*on_host, job), 3), 0u);
+            vulkan::VulkanSession given(found, bvh_kernel(layout, Task::rays), packed, {});
+            for (const RayKind kind : {RayKind::ao, RayKind::diffuse}) {
+                const RaySet set = make_rays(kind, cubes.source());
+                const auto rows = given_rows_offset(set, cubes.scene.mesh);
+                const TraceJob job = given_job(set.rays.size(), 0, set.any_hit);
+                given_on_host->set_rays(rows);
+                given.set_rays(rows);
+                EXPECT_EQ(different_rays(traced(given, job), traced(*given_on_host, job), 3), 0u) << name_of(kind);
+            }
+        });
+    }
+}
+
+TEST_F(Vulkan, what_the_validation_layers_say_fails_the_next_call)
+{
+    if (!vulkan::instance().validates())
+        GTEST_SKIP() << "the validation layers are not installed (package vulkan-validationlayers)";
+    for (const vulkan::FoundDevice& found : vulkan::find_devices()) {
+        if (!found.facts.usable) continue;
+        const vulkan::Context context(found);
+        const auto wrong = vk::BufferCreateInfo{}.setSize(0).setUsage(vk::BufferUsageFlagBits::eTransferSrc);
+        try {
+            const vk::raii::Buffer buffer(context.device(), wrong);
+        } catch (const vk::SystemError&) {
+            ADD_FAILURE() << "the driver refused before the layers' message counted";
+        }
+        const std::string said = error_of([&] { context.check_validation("testing"); });
+        EXPECT_TRUE(said.starts_with("internal: ") && contains(said, "VUID-VkBufferCreateInfo-size-00912")) << said;
+        EXPECT_NO_THROW(context.check_validation("testing")) << "each message once";
+    }
+}
+
+TEST_F(Vulkan, devices_say_what_vulkan_promises)
+{
+    for (const std::size_t index : usable) {
+        const Device& device = backend.devices()[index];
+        EXPECT_EQ(device.uuid.size(), 32u) << device.uuid;
+        EXPECT_GE(device.max_buffer_bytes, 128u << 20) << "the least that Vulkan allows";
+        EXPECT_GT(device.group_width, 0u);
+        EXPECT_GT(device.timer_period_s, 0);
+    }
+}
+
+TEST(VulkanImplementation, is_read_from_whatever_drivers_say)
+{
+    using vulkan::implementation_of;
+    EXPECT_EQ(implementation_of("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)"), "lavapipe-22.3");
+    EXPECT_EQ(implementation_of("llvmpipe", "Mesa 25.0.7-2 (LLVM 19.1.7)"), "lavapipe-25.0");
+    EXPECT_EQ(implementation_of("NVIDIA", "580.65.06"), "nvidia-580");
+    EXPECT_EQ(implementation_of("radv", "Mesa 22.3.6"), "radv-22.3");
+    EXPECT_EQ(implementation_of("Intel open-source Mesa driver", "Mesa 23.2.1-1ubuntu3"),
+              "intel-open-source-mesa-driver-23.2");
+    EXPECT_EQ(implementation_of("AMD (proprietary) ", "beta"), "amd-proprietary");
+    EXPECT_EQ(implementation_of("Driver", "v7."), "driver-7");
+    EXPECT_EQ(implementation_of("", ""), "unknown");
+}
+
+TEST(VulkanLimits, each_is_told_with_its_number)
+{
+    const vulkan::Limits good{VK_API_VERSION_1_1, 0, 64, 128, 13, 128, 128, 65535, 1u << 30};
+    const auto reason = [&](auto member, auto value) {
+        vulkan::Limits limits = good;
+        limits.*member = value;
+        return vulkan::why_not_usable(limits);
+    };
+    using vulkan::Limits;
+    EXPECT_EQ(vulkan::why_not_usable(good), "");
+    EXPECT_TRUE(contains(reason(&Limits::api_version, VK_API_VERSION_1_0), "Vulkan 1.0.0, 1.1 is needed"));
+    EXPECT_TRUE(contains(reason(&Limits::queue_family, std::nullopt), "no queue"));
+    EXPECT_TRUE(contains(reason(&Limits::push_constant_bytes, 64u), "push constants: 64, 104 are needed"));
+    EXPECT_TRUE(contains(reason(&Limits::storage_buffers, 4u), "4, 7 are needed"));
+    EXPECT_TRUE(contains(reason(&Limits::group_items, 32u), "32, 64 are needed"));
+    EXPECT_TRUE(contains(reason(&Limits::group_height, 4u), "4, 8 are needed"));
+}
+
+TEST(VulkanTicks, count_through_a_wrap_and_ignore_invalid_bits)
+{
+    using vulkan::ticks_between;
+    EXPECT_EQ(ticks_between(10, 25, 64), 15u);
+    EXPECT_EQ(ticks_between(~std::uint64_t{0}, 4, 64), 5u);
+    EXPECT_EQ(ticks_between((std::uint64_t{1} << 36) - 3, 7, 36), 10u);
+    EXPECT_EQ(ticks_between(0xABC0'0000'0000'0001, 0x1230'0000'0000'0003, 36), 2u);
+    EXPECT_EQ(ticks_between(1, 0, 1), 1u);
+}
+
+TEST(VulkanErrors, name_the_call_the_code_and_the_device)
+{
+    const vulkan::Doing task{"launching", "a device", 1234, 999};
+    const Error lost = vulkan::to_error(vk::DeviceLostError("vk::Queue::submit"), task);
+    EXPECT_EQ(lost.kind(), ErrorKind::internal);
+    EXPECT_TRUE(contains(lost.what(), "launching on 'a device': vk::Queue::submit: ErrorDeviceLost")) << lost.what();
+    const Error full = vulkan::to_error(vk::OutOfDeviceMemoryError("vk::Device::allocateMemory"), task);
+    EXPECT_EQ(full.kind(), ErrorKind::unsupported);
+    EXPECT_TRUE(contains(full.what(), "1234") && contains(full.what(), "999"));
+}
+
+} // namespace tetrace

@@ -1,0 +1,186 @@
+#include "core/pack/packed_scene.h"
+
+#include "core/base/error.h"
+#include "core/pack/hilbert.h"
+#include "scenes/procedural.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+namespace tetrace {
+namespace {
+
+// The scene's tets in packed order, with vertices by position, as unpack() gives them.
+void expect_same_tets(const Scene& scene, const PackedScene& packed)
+{
+    const TetMesh back = unpack(packed);
+    ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
+    for (std::size_t i = 0; i < scene.tets.tets.size(); i++) {
+        const Tet& tet = scene.tets.tets[i];
+        const Tet& other = back.tets[packed.packed_of_mesh[i]];
+        for (std::size_t k = 0; k < 4; k++) {
+            ASSERT_EQ(scene.tets.vertices[tet.vertices[k]], back.vertices[other.vertices[k]]);
+            ASSERT_EQ(tet.faces[k], other.faces[k]);
+            const auto link = tet.links[k];
+            const auto expected =
+                link == NO_LINK ? NO_LINK : make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
+            ASSERT_EQ(other.links[k], expected);
+        }
+    }
+    EXPECT_EQ(find_defect(back, scene.mesh.triangles.size()), std::nullopt);
+}
+
+class Packing : public testing::TestWithParam<std::tuple<Layout, TetOrder>> {};
+
+TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
+{
+    const Scene scene = make_cubes(6);
+    expect_same_tets(scene, pack(scene, std::get<0>(GetParam()), std::get<1>(GetParam())));
+}
+
+INSTANTIATE_TEST_SUITE_P(EachLayoutAndOrder, Packing,
+                         testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32),
+                                          testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
+                         [](const auto& row) {
+                             return std::string(name_of(std::get<0>(row.param))) + "_" +
+                                    std::string(name_of(std::get<1>(row.param)));
+                         });
+
+TEST(Pack, sizes_are_those_of_the_layout)
+{
+    const Scene scene = make_cubes(3);
+    const auto tets = scene.tets.tets.size();
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Row), 80 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Row), 96 * tets);
+    EXPECT_EQ(pack(scene, Layout::half32, TetOrder::hilbert).tets.size() * sizeof(Row), 4 * 32 * tets);
+}
+
+TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
+{
+    EXPECT_EQ(most_tets(Layout::tet80), 214'748'364u) << "20 words each";
+    EXPECT_EQ(most_tets(Layout::tet96), 715'827'882u) << "6 rows each";
+    EXPECT_EQ(most_tets(Layout::half32), 268'435'455u) << "28 bits in an exit";
+}
+
+// Along the curve no two tets that follow each other are far apart; row after row of cubes, the ends of rows are.
+TEST(Pack, hilbert_order_has_no_long_jumps)
+{
+    const Scene scene = make_cubes(12);
+    const auto longest_jump = [&](TetOrder order) {
+        const TetMesh mesh = unpack(pack(scene, Layout::tet80, order));
+        double longest = 0;
+        for (std::size_t i = 1; i < mesh.tets.size(); i++)
+            longest = std::max(longest, length(to_double(mesh.vertices[mesh.tets[i].vertices[0]]) -
+                                               to_double(mesh.vertices[mesh.tets[i - 1].vertices[0]])));
+        return longest;
+    };
+    EXPECT_LT(longest_jump(TetOrder::hilbert), 0.5 * longest_jump(TetOrder::input));
+}
+
+// cubes are closed surfaces: a part of the tets lies inside them.
+TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached)
+{
+    const Scene scene = make_cubes(12);
+    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::reached);
+    const TetMesh mesh = unpack(packed);
+    std::vector<bool> reached(mesh.tets.size());
+    std::size_t count = 0;
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t tet = 0; tet < mesh.tets.size(); tet++)
+            for (std::size_t face = 0; face < 4 && !reached[tet]; face++) {
+                const auto link = mesh.tets[tet].links[face];
+                const bool is_open =
+                    link == NO_LINK || (mesh.tets[tet].faces[face] == FREE_FACE && reached[link_tet(link)]);
+                if (is_open) grows = reached[tet] = true, count++;
+            }
+    }
+    EXPECT_GT(count, 0u);
+    EXPECT_LT(count, mesh.tets.size());
+    EXPECT_TRUE(std::is_partitioned(reached.begin(), reached.end(), [](bool is_reached) { return is_reached; }));
+}
+
+TEST(Pack, layouts_number_the_tets_alike)
+{
+    const Scene scene = make_cubes(5);
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).packed_of_mesh,
+              pack(scene, Layout::tet96, TetOrder::hilbert).packed_of_mesh);
+}
+
+// One flipped bit anywhere in the tets' rows must be visible after unpacking: no word is ignored but tet96's w.
+TEST(Pack, every_word_of_a_tet_matters)
+{
+    const Scene scene = make_cubes(2);
+    for (const auto layout : {Layout::tet80, Layout::tet96}) {
+        const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
+        const TetMesh whole = unpack(packed);
+        const std::size_t words = layout == Layout::tet80 ? 20 : 24;
+        for (std::size_t word = 0; word < words; word++) {
+            if (layout == Layout::tet96 && word < 16 && word % 4 == 3) continue; // padding
+            PackedScene spoilt = packed;
+            Row& row = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            *at[word % 4] ^= 1u;
+            EXPECT_FALSE(unpack(spoilt) == whole) << name_of(layout) << " word " << word;
+        }
+    }
+}
+
+// half32 says most things several times: no copy may differ from the others.
+TEST(Pack, no_word_of_a_record_may_contradict_the_others)
+{
+    const Scene scene = make_cubes(2);
+    const PackedScene packed = pack(scene, Layout::half32, TetOrder::hilbert);
+    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_ROWS; word++)
+        for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
+            PackedScene spoilt = packed;
+            Row& row = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            *at[word % 4] ^= bit;
+            EXPECT_THROW((void)unpack(spoilt), Error) << "word " << word << ", bit " << bit;
+        }
+}
+
+// Compilers compute with a record's ranks as with its coordinates.
+TEST(Pack, no_rank_is_denormal_as_a_float)
+{
+    const PackedScene packed = pack(make_cubes(4), Layout::half32, TetOrder::hilbert);
+    for (std::size_t row = 0; row < packed.tets.size(); row += HALF32_ROWS)
+        ASSERT_TRUE(std::isnormal(std::bit_cast<float>(packed.tets[row].w))) << "row " << row;
+}
+
+TEST(Pack, triangles_hold_a_corner_and_two_edges)
+{
+    const Scene scene = make_cubes(3);
+    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
+    ASSERT_EQ(packed.triangles.size(), 3 * scene.mesh.triangles.size());
+    const auto& [a, b, c] = scene.mesh.triangles[1];
+    const auto x = [](const Row& row) { return std::bit_cast<float>(row.x); };
+    EXPECT_EQ(x(packed.triangles[3]), scene.mesh.vertices[a].x);
+    EXPECT_EQ(x(packed.triangles[4]), scene.mesh.vertices[b].x - scene.mesh.vertices[a].x);
+    EXPECT_EQ(x(packed.triangles[5]), scene.mesh.vertices[c].x - scene.mesh.vertices[a].x);
+}
+
+TEST(Hilbert, neighbouring_cells_follow_each_other)
+{
+    // Through the centres of an 8^3 grid the curve visits every cell once, and each step goes to a neighbour.
+    std::vector<std::pair<std::uint64_t, std::array<int, 3>>> cells;
+    for (int x = 0; x < 8; x++)
+        for (int y = 0; y < 8; y++)
+            for (int z = 0; z < 8; z++)
+                cells.push_back({hilbert_index({(x + 0.5) / 8, (y + 0.5) / 8, (z + 0.5) / 8}), {x, y, z}});
+    std::sort(cells.begin(), cells.end());
+    for (std::size_t i = 1; i < cells.size(); i++) {
+        int apart = 0;
+        for (std::size_t axis = 0; axis < 3; axis++)
+            apart += std::abs(cells[i].second[axis] - cells[i - 1].second[axis]);
+        EXPECT_EQ(apart, 1) << "at cell " << i;
+    }
+}
+
+} // namespace
+} // namespace tetrace

@@ -1,0 +1,186 @@
+#include "core/base/exact.h"
+#include "core/device/backend.h"
+#include "scenes/procedural.h"
+#include "tests/support/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+
+namespace {
+
+#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet96.h"
+#define KERNEL_METHOD_HEADER "kernels/methods/maria.h"
+#include "kernels/kernel_cpp.h"
+
+using tetrace::Float3;
+
+struct Box {
+    tetrace::Scene scene = tetrace::make_cubes(5);
+    tetrace::PackedScene packed = tetrace::pack(scene, tetrace::Layout::tet96, tetrace::TetOrder::input);
+};
+const Box& box()
+{
+    static const Box made;
+    return made;
+}
+
+// Whether the ray only touches the closed box, at a point or along a side, and never gets inside. Directions whose
+// components are powers of two make the quotients exact; others do not graze.
+bool grazes(Float3 origin, Float3 direction)
+{
+    double enter = 0, leave = HUGE_VAL;
+    for (int axis = 0; axis < 3; axis++) {
+        const auto& lines = box().scene.domain.lines[static_cast<std::size_t>(axis)];
+        const double o = origin[axis], d = direction[axis];
+        if (d == 0 && (o <= lines.front() || o >= lines.back())) return true;
+        if (d == 0) continue;
+        const auto [near, far] = std::minmax({(lines.front() - o) / d, (lines.back() - o) / d});
+        enter = std::max(enter, near);
+        leave = std::min(leave, far);
+    }
+    return enter >= leave;
+}
+
+// All boundary faces that the exact ray meets on its way in: none where it misses the box, or only grazes it.
+std::set<uint> brute_force(Float3 origin, Float3 direction)
+{
+    std::set<uint> met;
+    if (grazes(origin, direction)) return met;
+    const auto& mesh = box().scene.tets;
+    for (uint index = 0; index < mesh.tets.size(); index++) {
+        for (uint face = 0; face < 4; face++) {
+            if (mesh.tets[index].links[face] != NO_LINK) continue;
+            const auto v = [&](uint k) { return mesh.vertices[mesh.tets[index].vertices[corner(face, k)]]; };
+            const auto crossing = tetrace::cross_exactly(origin, direction, v(0), v(1), v(2));
+            const bool entering =
+                crossing.edge_side[0] >= 0 && crossing.edge_side[1] >= 0 && crossing.edge_side[2] >= 0;
+            if (crossing.met && entering) met.insert(tetrace::make_link(index, face));
+        }
+    }
+    return met;
+}
+
+uint look_up(Float3 origin, Float3 direction)
+{
+    const Vec3 d = to_vec3(direction);
+    return entry_link(view_of(box().packed),
+                      make_ray(to_vec3(origin), VEC3(without_dust(d.x), without_dust(d.y), without_dust(d.z))));
+}
+
+void expect_brute_force(Float3 origin, Float3 direction)
+{
+    const auto met = brute_force(origin, direction);
+    const uint found = look_up(origin, direction);
+    if (met.empty())
+        EXPECT_EQ(found, NO_LINK);
+    else
+        EXPECT_TRUE(met.count(found) == 1) << "entered by another face than the exact ray does";
+}
+
+Float3 toward(Float3 from, Float3 to)
+{
+    return {to.x - from.x, to.y - from.y, to.z - from.z};
+}
+
+TEST(Entry, agrees_with_brute_force_from_all_round)
+{
+    tetrace::test::Random random(8);
+    int differing = 0;
+    int entered = 0;
+    for (int i = 0; i < 3000; i++) {
+        const Float3 origin = random.point(-3, 3);
+        if (box().scene.domain.contains(origin)) continue;
+        const Float3 direction = toward(origin, random.point(-1.2f, 1.2f));
+        const auto met = brute_force(origin, direction);
+        const uint found = look_up(origin, direction);
+        entered += !met.empty();
+        differing += met.empty() ? found != NO_LINK : met.count(found) == 0;
+    }
+    EXPECT_GT(entered, 1000);
+    EXPECT_EQ(differing, 0);
+}
+
+TEST(Entry, rays_parallel_to_a_side_enter_by_the_side_they_face)
+{
+    const Float3 low = box().scene.domain.low(), high = box().scene.domain.high();
+    const float x = low.x + 0.3f * (high.x - low.x), y = low.y + 0.7f * (high.y - low.y);
+    expect_brute_force({x, y, high.z + 1}, {0, 0, -1});
+    expect_brute_force({x, y, low.z - 1}, {0, 0, 1});
+    expect_brute_force({high.x + 2, y, x}, {-1, 0, 0});
+    expect_brute_force({x, y, high.z + 1}, {0, 1, 0}); // beside the box
+    EXPECT_EQ(look_up({x, y, high.z + 1}, {0, 0, 1}), NO_LINK) << "away from the box";
+}
+
+TEST(Entry, rays_through_corners_and_edges_of_the_box_and_of_squares_find_a_face_there)
+{
+    const auto& lines = box().scene.domain.lines;
+    const std::size_t n = box().scene.domain.divisions;
+    for (std::size_t i = 0; i <= n; i++) {
+        for (std::size_t j = 0; j <= n; j++) {
+            const Float3 corner_on_side{lines[0][i], lines[1][j], lines[2][n]};
+            const Float3 origin{corner_on_side.x + 0.25f, corner_on_side.y - 0.5f, corner_on_side.z + 1};
+            expect_brute_force(origin, {-0.25f, 0.5f, -1}); // exact: it passes through the corner itself
+            expect_brute_force({corner_on_side.x, corner_on_side.y, lines[2][n] + 1}, {0, 0, -1});
+        }
+    }
+}
+
+TEST(Entry, rays_in_the_plane_of_a_side_or_along_an_edge_of_the_box_miss_it)
+{
+    const Float3 low = box().scene.domain.low(), high = box().scene.domain.high();
+    for (const float y : {low.y, high.y, 0.5f * (low.y + high.y)}) {
+        expect_brute_force({low.x - 1, y, high.z}, {1, 0, 0});
+        expect_brute_force({low.x - 1, y, high.z}, {1, 0, 0.5f});
+        EXPECT_EQ(look_up({low.x - 1, y, high.z}, {1, 0, 0}), NO_LINK);
+    }
+    // Through an edge of the box and on inside, the ray does enter.
+    EXPECT_NE(look_up({low.x - 1, 0, high.z + 1}, {1, 0, -1}), NO_LINK);
+    expect_brute_force({low.x - 1, 0, high.z + 1}, {1, 0, -1});
+}
+
+TEST(Entry, a_ray_through_a_line_belongs_to_the_square_above_it)
+{
+    const auto& lines = box().scene.domain.lines;
+    const uint n = box().packed.divisions;
+    for (uint i = 0; i < n; i++) {
+        const float y = 0.5f * (lines[1][2] + lines[1][3]);
+        const Ray ray = make_ray(VEC3(lines[0][i] - 0.25f, y, lines[2][n] + 1), VEC3(0.25f, 0, -1));
+        EXPECT_EQ(entry_square(view_of(box().packed), ray), ((2 * 2 + 1) * n + 2) * n + i);
+    }
+}
+
+TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
+{
+    const auto& mesh = box().scene.mesh;
+    const auto& [a, b, c] = mesh.triangles.front();
+    const auto centroid = [&](int axis) {
+        return (mesh.vertices[a][axis] + mesh.vertices[b][axis] + mesh.vertices[c][axis]) / 3;
+    };
+    tetrace::PackedScene packed = box().packed;
+    for (std::size_t row = 0; row < 3; row++)
+        packed.triangles[row].z = 0; // the first triangle, flattened into z = 0
+    const Hit hit =
+        hit_on(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7, NO_END);
+    EXPECT_NEAR(hit.t, 2, 1e-6);
+    EXPECT_FLOAT_EQ(hit.u, 1.0f / 3);
+    EXPECT_FLOAT_EQ(hit.v, 1.0f / 3);
+    EXPECT_EQ(hit.steps, 7u);
+}
+
+TEST(Entry, tiny_direction_components_are_dropped)
+{
+    EXPECT_EQ(without_dust(0x1p-21f), 0.0f);
+    EXPECT_EQ(without_dust(-0x1p-21f), 0.0f);
+    EXPECT_EQ(without_dust(0x1p-20f), 0x1p-20f);
+}
+
+} // namespace

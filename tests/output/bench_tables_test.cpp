@@ -1,0 +1,110 @@
+#include "bench/output/bench_tables.h"
+
+#include "bench/terminal/text.h"
+#include "tests/support/fake_backend.h"
+
+#include <gtest/gtest.h>
+#include <sstream>
+
+using namespace tetrace;
+
+namespace {
+
+/// The host under five APIs, as on a machine with every emulation, and a GPU under two; two layouts each.
+class bench_tables : public testing::Test {
+protected:
+    bench_tables()
+    {
+        for (const Layout layout : {Layout::tet80, Layout::tet96})
+            for (FakeBackend* backend : {&vulkan_, &opencl_, &cuda_host_, &openmp_, &cuda_, &vulkan_gpu_})
+                add_row(*backend, layout);
+        result_.devices = devices_of(result_.run.rows);
+        for (RowDevice& device : result_.devices)
+            device.yardstick = Yardstick{123.4e9, 123.4e-6};
+        result_.comparisons = compare_rows(result_.run.rows);
+    }
+
+    void add_row(FakeBackend& backend, Layout layout)
+    {
+        RowRun row;
+        row.key = {"bunny", backend.name(), {}, RayKind::primary, TetOrder::hilbert, 0};
+        row.key.kernel.layout = layout;
+        row.backend = &backend;
+        row.device = backend.devices()[0];
+        Traced result;
+        result.totals.rays = 4'000'000'000;
+        result.totals.hit_steps = 40'000'000'000;
+        row.outcome = result;
+        row.samples_s = {9, 10, 11, 10, 9, 11};
+        row.wall_samples_s = {10, 11, 12, 11, 10, 12};
+        result_.run.rows.push_back(std::move(row));
+    }
+
+    static Device device(const char* name, const char* type, const char* implementation, const char* uuid = "")
+    {
+        Device result;
+        result.name = name;
+        result.type = type;
+        result.implementation = implementation;
+        result.uuid = uuid;
+        return result;
+    }
+
+    FakeBackend vulkan_{"vulkan", device("llvmpipe", "emulated", "lavapipe-22.3")};
+    FakeBackend opencl_{"opencl", device("pthread", "emulated", "pocl-3.1")};
+    FakeBackend cuda_host_{"cuda-host", device("host C++", "emulated", "cuda-host")};
+    FakeBackend openmp_{"openmp", device("CPU", "cpu", "openmp")};
+    FakeBackend cuda_{"cuda", device("H200", "gpu", "cuda-13.0", "a")};
+    FakeBackend vulkan_gpu_{"vulkan", device("H200", "gpu", "nvidia-570", "a")};
+    BenchResult result_;
+};
+
+std::size_t widest(const std::string& text)
+{
+    std::size_t width = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        width = std::max(width, display_width(line));
+    return width;
+}
+
+} // namespace
+
+TEST_F(bench_tables, rows_stand_by_device_under_what_they_may_be_ranked_with)
+{
+    const std::string text = rate_table("bunny", result_).text();
+    const auto cpu = text.find("CPU (cpu)"), openmp = text.find("openmp  "), emulated = text.find("emulated by"),
+               opencl = text.find("opencl  "), gpu = text.find("H200 (gpu)"), cuda = text.find("cuda   ");
+    for (const auto place : {cpu, openmp, emulated, opencl, gpu, cuda})
+        ASSERT_NE(place, std::string::npos) << text;
+    EXPECT_TRUE(cpu < openmp && openmp < emulated && emulated < opencl && opencl < gpu && gpu < cuda) << text;
+}
+
+TEST_F(bench_tables, fit_a_page_of_110_columns)
+{
+    EXPECT_LE(widest(rate_table("bunny", result_).text(2)), 110u) << rate_table("bunny", result_).text(2);
+    EXPECT_LE(widest(time_table(result_).text(2)), 110u);
+    EXPECT_LE(widest(device_table(result_.devices).text(2)), 110u);
+}
+
+TEST_F(bench_tables, comparisons_show_their_interval_and_references_none)
+{
+    const Table table = rate_table("bunny", result_);
+    int with = 0;
+    for (const auto& row : table.rows()) {
+        const auto* text = std::get_if<std::string>(&row[4]);
+        if (text == nullptr) continue;
+        with++;
+        EXPECT_EQ(text->substr(0, 7), " 1.00 [") << *text;
+    }
+    EXPECT_EQ(with, 2 * 4) << "three emulations beside openmp, and Vulkan's GPU beside cuda, in two layouts";
+    EXPECT_EQ(table.columns()[4].title, "x reference") << "openmp and cuda both are";
+}
+
+TEST_F(bench_tables, a_row_that_did_not_run_comes_last)
+{
+    result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
+    result_.run.rows[0].backend = nullptr;
+    const std::string text = rate_table("bunny", result_).text();
+    EXPECT_GT(text.find("not run"), text.find("H200 (gpu)")) << text;
+}

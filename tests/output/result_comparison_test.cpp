@@ -1,0 +1,187 @@
+#include "bench/results/result_comparison.h"
+#include "tests/support/temporary_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <gtest/gtest.h>
+#include <map>
+#include <vector>
+
+using namespace tetrace;
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// Ten samples around so many seconds, 0.1 % apart.
+Json samples_around(double seconds)
+{
+    Json samples = Json::array();
+    for (int i = 0; i < 10; ++i)
+        samples.push_back(seconds * (1 + 0.001 * i));
+    return samples;
+}
+
+Json timed_row(const char* name, double seconds)
+{
+    return {{"name", name},
+            {"scene", "cubes"},
+            {"backend", "openmp"},
+            {"status", "ok"},
+            {"hit_hash", "00000000000000ff"},
+            {"times", {{"samples_s", samples_around(seconds)}}}};
+}
+
+Json untimed_row(const char* name, const char* status)
+{
+    return {{"name", name}, {"scene", "cubes"}, {"backend", "openmp"}, {"status", status}, {"reason", "the reason"}};
+}
+
+Json scene()
+{
+    return {{"name", "cubes"}, {"hash", "0123456789abcdef"}, {"camera_set", "smoke"}, {"views", {0, 3}}, {"width", 24},
+            {"height", 16}};
+}
+
+Json result_of(const std::vector<Json>& rows)
+{
+    return {{"tetrace",
+             {{"schema_version", 2},
+              {"verb", "bench"},
+              {"date", "2026-01-31T12:00:00Z"},
+              {"version", "0.1.0"},
+              {"commit", "abc1234"},
+              {"host", {{"cpu", "a processor"}, {"system", "a system"}}},
+              {"scenes", {scene()}},
+              {"rows", rows}}}};
+}
+
+class result_comparison : public testing::Test {
+protected:
+    const ResultFile& file(const char* name, const Json& json)
+    {
+        write_file(folder_ / name, json.dump());
+        return files_.emplace_back(read_result(folder_ / name));
+    }
+    ResultComparison compare(const Json& before, const Json& after, const std::string& filter = {})
+    {
+        return compare_results(file("a.json", before), file("b.json", after), filter, 0.03);
+    }
+    /// Why a row that was timed in both is refused, its second version changed.
+    std::string refusal(const std::function<void(Json& tetrace)>& change)
+    {
+        const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
+        Json after = before;
+        change(after["tetrace"]);
+        return error_of([&] { static_cast<void>(compare(before, after)); });
+    }
+
+    TemporaryFolder folder_;
+    std::deque<ResultFile> files_;
+};
+
+} // namespace
+
+TEST_F(result_comparison, judges_each_row_by_its_name)
+{
+    const auto comparison =
+        compare(result_of({timed_row("same", 1), timed_row("slower", 1), timed_row("faster", 1)}),
+                result_of({timed_row("faster", 0.8), timed_row("slower", 1.25), timed_row("same", 1.001)}));
+    ASSERT_EQ(comparison.rows.size(), 3u);
+    for (const ComparedRow& row : comparison.rows) {
+        std::string expected = row.name();
+        std::transform(expected.begin(), expected.end(), expected.begin(), ::toupper);
+        EXPECT_EQ(row.verdict(), expected);
+        EXPECT_EQ(row.note(), "");
+    }
+    EXPECT_NEAR(comparison.rows[1].change->ratio, 0.8, 1e-9);
+    ASSERT_EQ(comparison.regressions(false).size(), 1u);
+    EXPECT_EQ(comparison.regressions(false)[0]->name(), "slower");
+    EXPECT_NEAR(comparison.geometric_mean().value(), std::cbrt(0.8 * 1.25 / 1.001), 1e-9);
+    EXPECT_NEAR(comparison.error(), 0.01, 1e-12);
+}
+
+TEST_F(result_comparison, lists_rows_that_failed_or_are_missing_and_counts_none_as_fast)
+{
+    const Json before = result_of({timed_row("good", 1), timed_row("broken", 1), timed_row("differs", 1),
+                                   timed_row("skipped", 1), timed_row("gone", 1), untimed_row("old", "error")});
+    const Json after = result_of({timed_row("good", 1), untimed_row("broken", "error"), untimed_row("differs", "wrong"),
+                                  untimed_row("skipped", "skipped"), timed_row("new", 1e-6), timed_row("old", 1e-6)});
+    const auto comparison = compare(before, after);
+    std::map<std::string, std::string> verdicts, notes;
+    for (const ComparedRow& row : comparison.rows) {
+        verdicts[row.name()] = row.verdict();
+        notes[row.name()] = row.note();
+    }
+    const std::map<std::string, std::string> expected = {
+        {"good", "SAME"},    {"broken", "FAILED"}, {"differs", "FAILED"}, {"skipped", "MISSING"},
+        {"gone", "MISSING"}, {"new", "NEW"},       {"old", "NEW"}};
+    EXPECT_EQ(verdicts, expected);
+    EXPECT_EQ(notes["broken"], "B: error: the reason");
+    EXPECT_EQ(notes["gone"], "B: no such row");
+    EXPECT_EQ(notes["new"], "A: no such row");
+    EXPECT_NEAR(comparison.geometric_mean().value(), 1, 1e-9);
+    EXPECT_EQ(comparison.regressions(false).size(), 4u);
+    EXPECT_EQ(comparison.regressions(true).size(), 2u);
+}
+
+TEST_F(result_comparison, has_no_mean_where_all_failed)
+{
+    const auto comparison = compare(result_of({timed_row("one", 1)}), result_of({untimed_row("one", "wrong")}));
+    EXPECT_FALSE(comparison.geometric_mean());
+    EXPECT_EQ(comparison.regressions(true).size(), 1u);
+}
+
+TEST_F(result_comparison, a_row_that_is_wrong_has_no_rate_even_where_it_has_samples)
+{
+    Json wrong = timed_row("one", 1e-6);
+    wrong["status"] = "wrong";
+    EXPECT_EQ(compare(result_of({timed_row("one", 1)}), result_of({wrong})).rows[0].verdict(), "FAILED");
+}
+
+TEST_F(result_comparison, of_different_work_is_refused_naming_the_rows)
+{
+    const std::string hits = refusal([](Json& tetrace) { tetrace["rows"][1]["hit_hash"] = "00000000000000fe"; });
+    EXPECT_TRUE(contains(hits, "invalid_input: "));
+    EXPECT_TRUE(contains(hits, "two: hit hash 00000000000000ff in A and 00000000000000fe in B"));
+    EXPECT_FALSE(contains(hits, "one: ")) << hits;
+    const std::string hash = refusal([](Json& tetrace) { tetrace["scenes"][0]["hash"] = "0000000000000000"; });
+    EXPECT_TRUE(contains(hash, "one: the scene cubes has hash 0123456789abcdef in A and 0000000000000000 in B"));
+    EXPECT_TRUE(contains(hash, "two: the scene cubes"));
+    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["scenes"][0]["width"] = 25; }),
+                         "2 views of smoke at 24x16 in A, 2 views of smoke at 25x16 in B"));
+    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["scenes"][0]["views"] = {0, 2}; }), "other views"));
+    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["rows"][0].erase("hit_hash"); }), "no hit hash in B"));
+    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["scenes"].clear(); }), "not among tetrace.scenes"));
+    EXPECT_EQ(refusal([](Json&) {}), "");
+}
+
+TEST_F(result_comparison, leaves_out_by_the_filter_what_would_be_refused)
+{
+    const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
+    Json after = before;
+    after["tetrace"]["rows"][1]["hit_hash"] = "00000000000000fe";
+    EXPECT_EQ(compare(before, after, "^o").rows.size(), 1u);
+}
+
+TEST_F(result_comparison, of_nothing_is_refused)
+{
+    const auto refused = [&](const Json& before, const Json& after, const std::string& filter = {}) {
+        return error_of([&] { static_cast<void>(compare(before, after, filter)); });
+    };
+    const Json timed = result_of({timed_row("one", 1)});
+    Json check = result_of({timed_row("one", 1)});
+    check["tetrace"]["verb"] = "check";
+    check["tetrace"]["rows"][0].erase("times");
+    EXPECT_TRUE(contains(refused(check, timed), "(of 'tetrace check')"));
+    EXPECT_TRUE(contains(refused(check, timed), "A has no row with samples"));
+    EXPECT_TRUE(contains(refused(result_of({}), result_of({})), "neither has a row"));
+    EXPECT_TRUE(contains(refused(timed, result_of({timed_row("two", 1)})), "no row in common"));
+    EXPECT_TRUE(contains(refused(timed, result_of({})), "no row in common"));
+    EXPECT_TRUE(contains(refused(timed, timed, "nothing"), "--filter 'nothing' matches no row"));
+    // A check after a bench: nothing is as fast as before.
+    EXPECT_EQ(compare(timed, check).rows[0].verdict(), "MISSING");
+    EXPECT_EQ(compare(timed, check).rows[0].note(), "B: no samples");
+}

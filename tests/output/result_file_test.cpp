@@ -1,0 +1,159 @@
+#include "bench/results/result_file.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+nlohmann::json small_result()
+{
+    return nlohmann::json::parse(R"({"tetrace": {
+        "schema_version": 2, "verb": "bench", "date": "2026-01-31T12:00:00Z", "version": "0.1.0", "commit": "abc1234",
+        "host": {"cpu": "a processor", "system": "a system", "threads": 2},
+        "scenes": [{"name": "cubes", "hash": "0123456789abcdef", "camera_set": "smoke", "views": [0, 3],
+                    "width": 24, "height": 16}],
+        "rows": [
+            {"name": "cdt/a", "scene": "cubes", "backend": "openmp", "status": "ok", "hit_hash": "00000000000000ff",
+             "device": {"name": "cpu 1", "type": "cpu", "driver": "OpenMP"}, "times": {"samples_s": [1, 1.5]}},
+            {"name": "cdt/b", "scene": "cubes", "backend": "cuda", "status": "skipped", "reason": "no\ndevice"}]}})");
+}
+
+class result_file : public testing::Test {
+protected:
+    [[nodiscard]] ResultFile read(const std::string& text) const
+    {
+        write_file(folder_ / "a.json", text);
+        return read_result(folder_ / "a.json");
+    }
+    [[nodiscard]] std::string error_of_text(const std::string& text) const
+    {
+        return error_of([&] { static_cast<void>(read(text)); });
+    }
+    /// Of a result of which the value at a JSON pointer is another; null removes it.
+    [[nodiscard]] std::string error_with(const char* pointer, const nlohmann::json& value) const
+    {
+        nlohmann::json json = small_result();
+        const nlohmann::json::json_pointer place(std::string("/tetrace") + pointer);
+        if (value.is_null())
+            json[place.parent_pointer()].erase(place.back());
+        else
+            json[place] = value;
+        return error_of_text(json.dump());
+    }
+
+    TemporaryFolder folder_;
+};
+
+} // namespace
+
+TEST_F(result_file, is_read)
+{
+    const ResultFile result = read(small_result().dump());
+    EXPECT_EQ(result.head.verb, "bench");
+    EXPECT_EQ(result.head.commit, "abc1234");
+    EXPECT_EQ(result.head.cpu, "a processor");
+    ASSERT_NE(result.find_scene("cubes"), nullptr);
+    EXPECT_EQ(result.find_scene("cubes")->hash, "0123456789abcdef");
+    EXPECT_EQ(result.find_scene("cubes")->views, (std::vector<std::uint64_t>{0, 3}));
+    EXPECT_EQ(result.find_scene("cubes")->height, 16u);
+    ASSERT_EQ(result.rows.size(), 2u);
+    ASSERT_NE(result.find_row("cdt/a"), nullptr);
+    EXPECT_EQ(result.find_row("cdt/a")->samples_s, (std::vector<double>{1, 1.5}));
+    EXPECT_EQ(result.find_row("cdt/a")->device, "cpu 1");
+    EXPECT_EQ(result.find_row("cdt/b")->reason, "no\ndevice");
+    EXPECT_TRUE(result.find_row("cdt/b")->samples_s.empty());
+    EXPECT_EQ(result.find_row("cdt/c"), nullptr);
+    EXPECT_EQ(result.section().at("rows").items().at(1).at("backend").text(), "cuda");
+}
+
+TEST_F(result_file, of_the_repository_is_read_in_every_schema_version)
+{
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(TETRACE_RESULTS)) {
+        if (entry.path().extension() != ".json" || entry.path().filename() == "result.schema.json") continue;
+        EXPECT_FALSE(read_result(entry.path()).head.date.empty()) << entry.path();
+        files++;
+    }
+    EXPECT_GT(files, 0);
+}
+
+TEST_F(result_file, that_is_not_there_is_missing)
+{
+    const std::string error = error_of([&] { static_cast<void>(read_result(folder_ / "none.json")); });
+    EXPECT_TRUE(contains(error, "missing: "));
+    EXPECT_TRUE(contains(error, "none.json"));
+    EXPECT_TRUE(
+        contains(error_of([&] { static_cast<void>(read_result(folder_.path())); }), "invalid_input: reading the"));
+}
+
+TEST_F(result_file, without_an_end_is_refused_and_not_read_for_ever)
+{
+    EXPECT_TRUE(contains(error_of([] { static_cast<void>(read_result("/dev/zero")); }), "larger than 256 MiB"));
+}
+
+TEST_F(result_file, that_is_no_json_or_was_cut_off_names_file_and_place)
+{
+    const std::string whole = small_result().dump();
+    for (const std::string& text :
+         {std::string("hello"), std::string("{\"tetrace\": nan}"), whole + "x", whole.substr(0, whole.size() / 2),
+          whole.substr(0, whole.size() - 1), std::string("{\"tetrace\": \"\xff\"}"), std::string(100000, '[')}) {
+        const std::string error = error_of_text(text);
+        EXPECT_TRUE(contains(error, "invalid_input: reading the result")) << error;
+        EXPECT_TRUE(contains(error, "a.json")) << error;
+        EXPECT_TRUE(contains(error, "line 1")) << error;
+    }
+    EXPECT_TRUE(contains(error_of_text(""), "it is empty"));
+}
+
+TEST_F(result_file, that_is_another_programs_json_is_no_result)
+{
+    EXPECT_TRUE(contains(error_of_text("{\"context\": {}, \"benchmarks\": []}"), "no section 'tetrace'"));
+    EXPECT_TRUE(contains(error_of_text("[1, 2]"), "is not an object (array)"));
+    EXPECT_TRUE(contains(error_of_text("{\"tetrace\": 3}"), "tetrace: is not an object (number)"));
+}
+
+TEST_F(result_file, of_another_schema_version_is_refused)
+{
+    for (const int version : {0, 3, 99})
+        EXPECT_TRUE(contains(error_with("/schema_version", version), "tetrace.schema_version: is ")) << version;
+    EXPECT_TRUE(contains(error_with("/schema_version", "2"), "schema_version: is not a whole number"));
+    EXPECT_EQ(error_with("/schema_version", 1), "");
+}
+
+TEST_F(result_file, that_lacks_a_key_names_it)
+{
+    for (const char* const key : {"/schema_version", "/verb", "/date", "/version", "/commit", "/host", "/host/cpu",
+                                  "/scenes/0/name", "/scenes/0/hash", "/scenes/0/views", "/rows/0/name",
+                                  "/rows/0/scene", "/rows/0/backend", "/rows/0/status", "/rows/0/device/name"}) {
+        const std::string error = error_with(key, nullptr);
+        const std::string name = nlohmann::json::json_pointer(key).back();
+        EXPECT_TRUE(contains(error, "has no '" + name + "'")) << error;
+    }
+    EXPECT_TRUE(contains(error_with("/rows/0/status", nullptr), "tetrace.rows[0]: has no 'status'"));
+}
+
+TEST_F(result_file, with_a_value_of_another_kind_names_its_key)
+{
+    const auto refused = [&](const char* pointer, const nlohmann::json& value, const char* text) {
+        const std::string error = error_with(pointer, value);
+        EXPECT_TRUE(contains(error, text)) << error;
+    };
+    refused("/rows", nlohmann::json::object(), "tetrace.rows: is not an array");
+    refused("/rows/0", 7, "tetrace.rows[0]: is not an object");
+    refused("/rows/0/status", "fine", "tetrace.rows[0].status: is 'fine', and a row is ok, flawed");
+    refused("/rows/0/hit_hash", "00000000000000FF", "tetrace.rows[0].hit_hash: is not a hash");
+    refused("/rows/0/times/samples_s", 1.5, "tetrace.rows[0].times.samples_s: is not an array");
+    refused("/rows/0/times/samples_s/1", "1.5", "tetrace.rows[0].times.samples_s[1]: is not a finite number");
+    refused("/rows/0/times/samples_s/1", 0, "samples_s[1]: is no duration");
+    refused("/rows/0/times/samples_s/0", -1.5, "samples_s[0]: is no duration");
+    refused("/scenes/0/width", -24, "tetrace.scenes[0].width: is not a whole number");
+    refused("/scenes/0/views/1", 0.5, "tetrace.scenes[0].views[1]: is not a whole number");
+    refused("/rows/0/name", "cdt/\x1b[2J", "tetrace.rows[0].name: holds a control character");
+}
+
+TEST_F(result_file, with_two_rows_of_one_name_is_refused)
+{
+    EXPECT_TRUE(contains(error_with("/rows/1/name", "cdt/a"), "tetrace.rows[1]: has the name 'cdt/a'"));
+}

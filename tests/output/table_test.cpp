@@ -1,0 +1,88 @@
+#include "bench/terminal/table.h"
+#include "bench/terminal/text.h"
+#include "core/base/error.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace tetrace;
+
+namespace {
+
+Table example()
+{
+    Table table({{"name", "name"}, {"tets", "tets"}, {"build_s", "build", "s", 1}, {"note", "note"}});
+    table.add({std::string("bunny"), std::uint64_t{209397}, 4.04, Cell()});
+    table.add({std::string("Dürer"), std::uint64_t{12}, Cell(), Cell()});
+    return table;
+}
+
+} // namespace
+
+TEST(table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
+{
+    EXPECT_EQ(example().text(), "name      tets  build\n"
+                                "                    s\n"
+                                "bunny  209,397    4.0\n"
+                                "Dürer       12      -\n");
+}
+
+TEST(table, a_heading_stands_before_its_rows_and_in_text_alone)
+{
+    Table table(std::vector<Column>{{"a", "a"}});
+    table.add_heading("first");
+    table.add({std::string("x")});
+    table.add_heading("second: longer than any cell");
+    table.add({std::string("y")});
+    EXPECT_EQ(table.text(1), " a\n first\n x\n second: longer than any cell\n y\n");
+    EXPECT_EQ(table.csv(), "a\nx\ny\n");
+}
+
+TEST(table, csv_has_keys_all_digits_and_quotes_where_needed)
+{
+    Table table({{"a", "a"}, {"b_s", "b", "s", 1}});
+    table.add({std::string("x, \"y\""), 0.123456789});
+    table.add({Cell(), std::uint64_t{1234567}});
+    EXPECT_EQ(table.csv(), "a,b_s\n\"x, \"\"y\"\"\",0.123456789\n,1234567\n");
+}
+
+TEST(table, markdown_names_units_in_the_header_and_escapes_bars)
+{
+    Table table({{"a", "a"}, {"b_s", "b", "s", 1}});
+    table.add({std::string("x|y"), 0.25});
+    EXPECT_EQ(table.markdown(), "| a | b (s) |\n|---|---:|\n| x\\|y | 0.2 |\n");
+}
+
+TEST(table, a_number_that_is_not_finite_is_never_printed)
+{
+    Table table({Column{"a", "a"}});
+    table.add({std::numeric_limits<double>::quiet_NaN()});
+    table.add({std::numeric_limits<double>::infinity()});
+    EXPECT_EQ(table.csv(), "a\n\n\n");
+    EXPECT_EQ(table.text(), "a\n-\n-\n");
+}
+
+TEST(table, a_row_of_another_length_is_rejected)
+{
+    Table table({Column{"a", "a"}});
+    EXPECT_THROW(table.add({}), Error);
+}
+
+TEST(text, paragraphs_are_filled_and_indented)
+{
+    EXPECT_EQ(wrapped("one two three\n\nfour", 9, 2), "  one two\n  three\n\n  four\n");
+}
+
+TEST(text, numbers_and_sizes_read_well)
+{
+    EXPECT_EQ(with_commas(0), "0");
+    EXPECT_EQ(with_commas(999), "999");
+    EXPECT_EQ(with_commas(1000), "1,000");
+    EXPECT_EQ(with_commas(1234567), "1,234,567");
+    EXPECT_EQ(size_text(1500), "1.5 kB");
+    EXPECT_EQ(size_text(16'800'000), "16.8 MB");
+    EXPECT_EQ(seconds_text(0.84), "0.8 s");
+    EXPECT_EQ(seconds_text(12.2), "12 s");
+    EXPECT_EQ(seconds_text(59.7), "1 min 00 s");
+    EXPECT_EQ(seconds_text(185), "3 min 05 s");
+}

@@ -1,0 +1,125 @@
+#include "bench/pictures/images.h"
+
+#include "core/base/error.h"
+
+#include <OpenImageIO/imageio.h>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+
+namespace tetrace {
+
+namespace {
+
+/// A folder of the test's own, removed at its end, and the module that the build made.
+class ImagesModuleTest : public testing::Test {
+protected:
+    void SetUp() override
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "tetrace-module-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string refusal(const std::filesystem::path& path, const Pixmap& pixmap) const
+    {
+        try {
+            writer_.write(path, pixmap);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
+            return error.what();
+        }
+        return "no error";
+    }
+
+    std::filesystem::path folder_;
+    ImageWriter writer_;
+};
+
+/// Three by two pixels, all different, so that a swapped axis or channel shows.
+Pixmap sample()
+{
+    Pixmap pixmap(3, 2);
+    pixmap.pixels = {{0, 0, 0}, {1, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.25f}, {0.125f, 0.0625f, 1}, {0.75f, 0.5f, 0.25f}};
+    return pixmap;
+}
+
+std::vector<float> read_floats(const std::filesystem::path& path)
+{
+    const auto input = OIIO::ImageInput::open(path.string());
+    if (!input || input->spec().width != 3 || input->spec().height != 2 || input->spec().nchannels != 3) {
+        return {};
+    }
+    std::vector<float> values(18);
+    return input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data()) ? values : std::vector<float>{};
+}
+
+float channel(const Pixmap& pixmap, std::size_t i)
+{
+    const Colour& colour = pixmap.pixels[i / 3];
+    return i % 3 == 0 ? colour.r : i % 3 == 1 ? colour.g : colour.b;
+}
+
+double encode_srgb(double linear)
+{
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+} // namespace
+
+TEST_F(ImagesModuleTest, png_comes_back_as_srgb_bytes)
+{
+    writer_.write(folder_ / "a.png", sample());
+    const auto values = read_floats(folder_ / "a.png");
+    ASSERT_EQ(values.size(), 18u);
+    const Pixmap pixmap = sample();
+    for (std::size_t i = 0; i < 18; ++i) {
+        const float linear = channel(pixmap, i);
+        EXPECT_NEAR(values[i], encode_srgb(linear), 0.5 / 255 + 1e-6) << i; // half of a byte's step
+    }
+}
+
+TEST_F(ImagesModuleTest, exr_comes_back_as_linear_light)
+{
+    writer_.write(folder_ / "a.exr", sample());
+    const auto values = read_floats(folder_ / "a.exr");
+    ASSERT_EQ(values.size(), 18u);
+    const Pixmap pixmap = sample();
+    for (std::size_t i = 0; i < 18; ++i) {
+        EXPECT_EQ(values[i], channel(pixmap, i)) << i; // all are halves
+    }
+}
+
+TEST_F(ImagesModuleTest, colours_beyond_the_screen_are_clamped)
+{
+    Pixmap pixmap(3, 2, {7.0f, -1.0f, std::numeric_limits<float>::quiet_NaN()});
+    writer_.write(folder_ / "a.png", pixmap);
+    const auto values = read_floats(folder_ / "a.png");
+    ASSERT_EQ(values.size(), 18u);
+    EXPECT_EQ(values[0], 1.0f);
+    EXPECT_EQ(values[1], 0.0f);
+    EXPECT_EQ(values[2], 0.0f);
+}
+
+TEST_F(ImagesModuleTest, a_folder_that_is_not_there_is_an_error_with_the_file_name)
+{
+    const auto path = folder_ / "none" / "a.png";
+    EXPECT_NE(refusal(path, sample()).find(path.string()), std::string::npos) << refusal(path, sample());
+}
+
+TEST_F(ImagesModuleTest, other_endings_are_refused_with_the_accepted_ones)
+{
+    EXPECT_NE(refusal(folder_ / "a.jpg", sample()).find(".png or .exr"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.jpg"));
+}
+
+TEST_F(ImagesModuleTest, an_empty_picture_is_refused)
+{
+    EXPECT_NE(refusal(folder_ / "a.png", Pixmap{}).find("no pixels"), std::string::npos);
+}
+
+} // namespace tetrace

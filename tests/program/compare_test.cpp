@@ -1,0 +1,227 @@
+#include "tests/support/program_fixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+using namespace tetrace;
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// `tetrace compare` of results that `tetrace bench` made, changed here and there.
+class compare : public ProgramTest {
+protected:
+    /// What bench wrote, with seven samples a row that leave no doubt.
+    Json result()
+    {
+        const Ended ended = bench("--out measured.json");
+        EXPECT_EQ(ended.code, 0) << ended.errors;
+        Json json = Json::parse(file("measured.json"));
+        for (Json& row : json["tetrace"]["rows"])
+            row["times"]["samples_s"] = {1.000, 1.001, 1.002, 1.003, 1.004, 1.005, 1.006};
+        return json;
+    }
+
+    void write(const char* name, const Json& json) { write_file(folder_ / name, json.dump()); }
+
+    /// a.json as measured, b.json with a change.
+    Ended compare_with(const std::function<void(Json& section)>& change, const std::string& options = {})
+    {
+        Json json = result();
+        write("a.json", json);
+        change(json["tetrace"]);
+        write("b.json", json);
+        return run("compare a.json b.json " + options);
+    }
+
+    /// What people read, with a blank where a line was broken.
+    static std::string unwrapped(const Ended& ended) { return std::regex_replace(ended.out, std::regex("\\s+"), " "); }
+
+    static void slow_down(Json& row, double factor)
+    {
+        for (Json& sample : row["times"]["samples_s"])
+            sample = sample.get<double>() * factor;
+    }
+};
+
+} // namespace
+
+TEST_F(compare, finds_a_result_the_same_as_itself)
+{
+    const Ended ended = compare_with([](Json&) {});
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(unwrapped(ended), "8 of 8 rows: 8 SAME; geometric mean of B / A 1.000"));
+    EXPECT_TRUE(contains(unwrapped(ended), "Differ in nothing"));
+    EXPECT_TRUE(contains(unwrapped(ended), "is at most 1 %"));
+}
+
+TEST_F(compare, exits_with_1_on_a_regression_beyond_the_tolerance)
+{
+    const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.05); };
+    const Ended ended = compare_with(slower);
+    EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "SLOWER"));
+    EXPECT_TRUE(contains(unwrapped(ended), "5.0 % slower, more than the tolerance of 3 %"));
+    const Ended tolerant = compare_with(slower, "--tolerance 4.9");
+    EXPECT_EQ(tolerant.code, 1) << tolerant.out;
+    const Ended more_tolerant = compare_with(slower, "--tolerance 5.1%");
+    EXPECT_EQ(more_tolerant.code, 0) << more_tolerant.out;
+    EXPECT_FALSE(contains(more_tolerant.out, "Regressed"));
+}
+
+TEST_F(compare, finds_an_improvement_without_complaint)
+{
+    const Ended ended = compare_with([](Json& section) { slow_down(section["rows"][0], 0.8); });
+    EXPECT_EQ(ended.code, 0) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "1 FASTER"));
+}
+
+TEST_F(compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_allowed)
+{
+    const auto fail = [](Json& section) {
+        section["rows"][0]["status"] = "error";
+        section["rows"][0]["reason"] = "the driver is \x1b[31mgone";
+    };
+    const Ended failed = compare_with(fail, "--allow-missing");
+    EXPECT_EQ(failed.code, 1) << failed.out;
+    EXPECT_TRUE(contains(failed.out, "FAILED: B: error: the driver is ?[31mgone"));
+    EXPECT_TRUE(contains(unwrapped(failed), "7 of 8 rows: 7 SAME"));
+    const auto drop = [](Json& section) { section["rows"].erase(0); };
+    EXPECT_EQ(compare_with(drop).code, 1);
+    EXPECT_EQ(compare_with(drop, "--allow-missing").code, 0);
+}
+
+TEST_F(compare, tells_what_else_differs)
+{
+    const Ended ended = compare_with([](Json& section) {
+        section["commit"] = "fedcba9";
+        section["rows"][0]["device"]["driver"] = "another driver";
+    });
+    EXPECT_TRUE(contains(unwrapped(ended), "the commit, devices or their drivers."));
+    EXPECT_TRUE(contains(unwrapped(ended), "another driver in B"));
+    EXPECT_TRUE(contains(unwrapped(ended), "(fedcba9)"));
+}
+
+TEST_F(compare, tells_of_threads_compiler_flags_and_version)
+{
+    const Ended ended = compare_with([](Json& section) {
+        section["version"] = "0.0.1";
+        section["compiler"] = "another";
+        section["flags"] = "-O0";
+        section["threads"] = section["threads"].get<int>() + 1;
+        section["host"].erase("threads");
+    });
+    EXPECT_TRUE(contains(unwrapped(ended),
+                         "Differ in the version, the compiler, the compiler's flags, the threads that "
+                         "the process may use, the threads that it used."))
+        << ended.out;
+}
+
+TEST_F(compare, says_so_where_samples_are_too_few_to_tell)
+{
+    const Ended ended = compare_with([](Json& section) {
+        section["rows"][1]["times"]["samples_s"] = {10.00, 10.01, 10.02};
+    });
+    EXPECT_EQ(ended.code, 0);
+    EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: too few samples for an interval: 7 in A and 3 in B"));
+    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
+}
+
+TEST_F(compare, never_replaces_what_it_compares)
+{
+    ASSERT_EQ(compare_with([](Json&) {}).code, 0);
+    std::filesystem::create_symlink("b.json", folder_ / "link.json");
+    const std::string before = file("a.json"), after = file("b.json");
+    for (const char* const out : {"a.json", "./b.json", "link.json"}) {
+        const Ended ended = run(std::string("compare a.json b.json --out ") + out);
+        EXPECT_EQ(ended.code, 2) << out;
+        EXPECT_TRUE(contains(ended.errors, "would replace the input")) << ended.errors;
+    }
+    EXPECT_EQ(file("a.json"), before);
+    EXPECT_EQ(file("b.json"), after);
+    EXPECT_EQ(run("report a.json --out a.json").code, 2);
+    write_file(folder_ / "p.png", "a picture");
+    EXPECT_EQ(run("report a.json --picture p.png --out p.png").code, 2);
+    EXPECT_EQ(file("a.json"), before);
+    EXPECT_EQ(file("p.png"), "a picture");
+    EXPECT_EQ(run("compare a.json b.json --out c.json").code, 0);
+}
+
+TEST_F(compare, refuses_other_scenes_and_other_hits_naming_the_row)
+{
+    const Ended scene = compare_with([](Json& section) { section["scenes"][0]["hash"] = "0000000000000000"; });
+    EXPECT_EQ(scene.code, 2);
+    EXPECT_EQ(scene.out, "");
+    EXPECT_TRUE(
+        contains(scene.errors, "cdt/maria/tet80/cubes/primary/math:exact/api:openmp: the scene cubes has hash"));
+    const auto other_hits = [](Json& section) { section["rows"].back()["hit_hash"] = "0000000000000000"; };
+    const Ended hits = compare_with(other_hits);
+    EXPECT_EQ(hits.code, 2);
+    EXPECT_TRUE(contains(hits.errors, "api:embree: hit hash"));
+    EXPECT_EQ(compare_with(other_hits, "--filter math:exact").code, 0);
+}
+
+TEST_F(compare, gives_a_table_csv_markdown_and_json)
+{
+    const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.25); };
+    const Ended csv = compare_with(slower, "--format csv");
+    EXPECT_EQ(csv.out.rfind("name,verdict,ratio,low,high,confidence,", 0), 0u);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
+    EXPECT_EQ(compare_with(slower, "--format markdown").out.rfind("| name | verdict |", 0), 0u);
+    const Ended both = compare_with(slower, "--out comparison.json");
+    EXPECT_EQ(both.code, 1);
+    EXPECT_TRUE(contains(both.out, "B / A"));
+    const Json comparison = Json::parse(file("comparison.json"))["tetrace"]["comparison"];
+    EXPECT_EQ(comparison["before"]["file"], "a.json");
+    EXPECT_NEAR(comparison["rows"][1]["ratio"].get<double>(), 0.8, 1e-9);
+    EXPECT_EQ(comparison["rows"][1]["verdict"], "SLOWER");
+    ASSERT_EQ(comparison["regressions"].size(), 1u);
+    EXPECT_EQ(comparison["regressions"][0], comparison["rows"][1]["name"]);
+    EXPECT_NEAR(comparison["geometric_mean"].get<double>(), std::pow(0.8, 1.0 / 8), 1e-9);
+}
+
+TEST_F(compare, refuses_files_that_it_cannot_compare)
+{
+    const Json measured = result();
+    write("good.json", measured);
+    const std::string good = file("good.json");
+    write_file(folder_ / "text.json", "no json");
+    write_file(folder_ / "cut.json", good.substr(0, good.size() / 2));
+    Json newer = measured, empty = measured, no_samples = measured;
+    newer["tetrace"]["schema_version"] = 3;
+    empty["tetrace"]["rows"] = Json::array();
+    for (Json& row : no_samples["tetrace"]["rows"])
+        row["times"].erase("samples_s");
+    write("newer.json", newer);
+    write("empty.json", empty);
+    write("no-samples.json", no_samples);
+    ASSERT_EQ(run("check --scene cubes --resolution 6 --size 24 --backend openmp --out check.json").code, 0);
+    for (const char* const bad :
+         {"text.json", "cut.json", "newer.json", "empty.json", "no-samples.json", "check.json"}) {
+        const Ended ended = run(std::string("compare ") + bad + " good.json");
+        EXPECT_EQ(ended.code, 2) << bad << ": " << ended.out;
+        EXPECT_EQ(ended.out, "") << bad;
+        EXPECT_TRUE(contains(ended.errors, bad));
+    }
+    EXPECT_EQ(run("compare good.json check.json").code, 1) << "nothing is as fast as before";
+    EXPECT_EQ(run("compare good.json none.json").code, 3);
+}
+
+TEST_F(compare, takes_two_files)
+{
+    for (const char* const bad :
+         {"compare", "compare a.json", "compare a.json b.json c.json", "compare a.json b.json --tolerance -1",
+          "compare a.json b.json --tolerance x", "compare a.json b.json --samples 3"}) {
+        const Ended ended = run(bad);
+        EXPECT_EQ(ended.code, 2) << bad;
+        EXPECT_NE(ended.errors, "") << bad;
+    }
+    EXPECT_TRUE(contains(run("compare a.json").errors, "usage: tetrace compare A.json B.json [OPTION]..."));
+    EXPECT_TRUE(contains(run("help compare").out, "Usage: tetrace compare A.json B.json [OPTION]..."));
+}

@@ -1,0 +1,241 @@
+#include "bench/options/option_table.h"
+#include "bench/options/option_values.h"
+#include "bench/options/options.h"
+#include "core/base/error.h"
+
+#include <gtest/gtest.h>
+#include <set>
+
+using namespace tetrace;
+
+namespace {
+
+std::string rejection(const std::vector<std::string>& arguments)
+{
+    try {
+        static_cast<void>(parse_options(arguments));
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+        return error.what();
+    }
+    ADD_FAILURE() << "accepted";
+    return {};
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST(options, without_arguments_help_is_asked_for)
+{
+    EXPECT_EQ(parse_options({}).verb, Verb::help);
+    EXPECT_EQ(parse_options({"--help"}).verb, Verb::help);
+    EXPECT_EQ(parse_options({"bench", "--help"}).help_topic, "bench");
+    EXPECT_EQ(parse_options({"help", "build"}).help_topic, "build");
+    EXPECT_EQ(parse_options({"--version"}).verb, Verb::version);
+}
+
+TEST(options, defaults_are_those_of_the_main_job)
+{
+    const Options options = parse_options({"bench"});
+    EXPECT_TRUE(options.scenes.empty());
+    EXPECT_EQ(options.camera_set, CameraSet::smoke);
+    EXPECT_EQ(options.width, 1024u);
+    EXPECT_EQ(options.height, 1024u);
+    EXPECT_EQ(options.samples, 10u);
+    EXPECT_EQ(options.divisions, std::vector<std::uint32_t>{BuildOptions{}.divisions});
+    EXPECT_FALSE(options.format.has_value());
+}
+
+TEST(options, lists_take_commas_and_repetition)
+{
+    const Options options =
+        parse_options({"bench", "--scene", "cubes,banana", "--scene=bunny", "--layout", "tet80,tet96"});
+    EXPECT_EQ(options.scenes, (std::vector<std::string>{"cubes", "banana", "bunny"}));
+    EXPECT_EQ(options.layouts, (std::vector<Layout>{Layout::tet80, Layout::tet96}));
+    EXPECT_TRUE(contains(rejection({"bench", "--scene", "cubes,,bunny"}), "empty value"));
+}
+
+TEST(options, an_unknown_option_is_answered_with_the_accepted_ones)
+{
+    const std::string text = rejection({"bench", "--scenes", "cubes"});
+    EXPECT_TRUE(contains(text, "--scenes"));
+    const std::set<std::string> of_bench_too = {"--out", "--format",
+                                                "--samples"}; // rows of other verbs have these names
+    for (const OptionRow& row : option_table())
+        EXPECT_EQ(contains(text, row.name), takes(Verb::bench, row) || of_bench_too.count(row.name) > 0) << row.name;
+}
+
+TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
+{
+    EXPECT_TRUE(contains(rejection({"bench", "--method", "bsp"}),
+                         "all, plane, plucker, stp, ms06, maria, project, single or packet16"));
+    EXPECT_EQ(parse_options({"bench", "--method", "all"}).methods.size(), 8u);
+    EXPECT_EQ(parse_options({"bench", "--method", "stp,ms06"}).methods,
+              (std::vector<Method>{Method::stp, Method::ms06}));
+    EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "cuda-host or embree"));
+    EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
+    EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
+    EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert, reached or input"));
+    EXPECT_TRUE(contains(rejection({"draw"}),
+                         "devices, scenes, build, bench, check, render, reproduce, compare, report or help"));
+    EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
+}
+
+TEST(options, options_of_other_verbs_are_not_accepted)
+{
+    EXPECT_TRUE(contains(rejection({"scenes", "--samples", "3"}), "--samples"));
+    EXPECT_TRUE(contains(rejection({"check", "--benchmark_filter=x"}), "--benchmark_filter"));
+    EXPECT_TRUE(contains(rejection({"bench", "stray"}), "stray"));
+    EXPECT_TRUE(contains(rejection({"bench", "--scene", "cubes", "stray"}), "stray")) << "a value each";
+}
+
+TEST(options, build_takes_lists_where_others_take_one_value)
+{
+    const Options options =
+        parse_options({"build", "--switches", "p,pq5Y", "--domain", "tight,wide", "--divisions", "4,8"});
+    EXPECT_EQ(options.switches, (std::vector<std::string>{"p", "pq5Y"}));
+    EXPECT_EQ(options.domains, (std::vector<DomainKind>{DomainKind::tight, DomainKind::wide}));
+    EXPECT_EQ(options.divisions, (std::vector<std::uint32_t>{4, 8}));
+    EXPECT_TRUE(contains(rejection({"bench", "--switches", "p,pq5Y"}), "one value"));
+    EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "--size", "9"}), "one value"));
+}
+
+TEST(options, values_reach_the_scene_requests)
+{
+    const Options options =
+        parse_options({"bench", "--scene", "cubes", "--domain", "wide", "--divisions", "3", "--switches", "pq",
+                       "--resolution", "5", "--time-limit", "2m", "--memory-limit", "3M"});
+    const auto requests = scene_requests(options);
+    ASSERT_EQ(requests.size(), 1u);
+    EXPECT_EQ(requests[0].build.domain, DomainKind::wide);
+    EXPECT_EQ(requests[0].build.divisions, 3u);
+    EXPECT_EQ(requests[0].build.switches, "pq");
+    EXPECT_EQ(requests[0].build.resolution, 5u);
+    EXPECT_EQ(requests[0].build.time_limit_s, 120);
+    EXPECT_EQ(requests[0].build.memory_limit_bytes, 3u << 20);
+}
+
+TEST(options, google_benchmarks_flags_pass_through)
+{
+    const Options options =
+        parse_options({"bench", "--benchmark_repetitions=5", "--size", "8", "--benchmark_filter=maria"});
+    EXPECT_EQ(options.benchmark_flags,
+              (std::vector<std::string>{"--benchmark_repetitions=5", "--benchmark_filter=maria"}));
+}
+
+TEST(options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
+{
+    std::set<std::pair<std::string, unsigned>> seen;
+    for (const OptionRow& row : option_table()) {
+        EXPECT_NE(row.verbs, 0u) << row.name;
+        EXPECT_EQ(row.help.back(), '.') << row.name;
+        EXPECT_EQ(row.name.rfind("--", 0) == 0, row.name != "TABLE") << row.name << " has a place, not dashes";
+        for (unsigned verb = 0; verb < 32; ++verb)
+            if ((row.verbs >> verb & 1u) != 0) {
+                EXPECT_TRUE(seen.insert({row.name, verb}).second) << row.name;
+            }
+    }
+}
+
+TEST(options, compare_takes_two_files_and_a_tolerance_in_percent)
+{
+    const Options options = parse_options({"compare", "a.json", "--tolerance", "2.5%", "b.json"});
+    EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b.json"}));
+    EXPECT_DOUBLE_EQ(options.tolerance, 0.025);
+    EXPECT_TRUE(contains(rejection({"compare", "a.json"}), "one file is given; usage: tetrace compare A.json B.json"));
+    EXPECT_TRUE(contains(rejection({"compare", "a", "b", "c"}), "3 files are given"));
+    EXPECT_TRUE(contains(rejection({"compare", "a", "b", "--samples", "3"}), "--tolerance"));
+    EXPECT_EQ(parse_percent("--tolerance", "0"), 0);
+    for (const char* const bad : {"", "%", "-1", "101", "nan", "3 %", "three"})
+        EXPECT_THROW(static_cast<void>(parse_percent("--tolerance", bad)), Error) << bad;
+}
+
+TEST(option_values, views_take_numbers_ranges_and_strides)
+{
+    EXPECT_EQ(parse_views("0,3,10-12", 20), (std::vector<std::uint32_t>{0, 3, 10, 11, 12}));
+    EXPECT_EQ(parse_views("0-1281:640", 1282), (std::vector<std::uint32_t>{0, 640, 1280}));
+    EXPECT_EQ(parse_views("3,1,1-3", 4), (std::vector<std::uint32_t>{1, 2, 3}));
+    EXPECT_EQ(parse_views("", 4).size(), 4u);
+    for (const char* const bad : {"4", "x", "1-", "-1", "3-1", "0-3:0", "1,,2", "0-4"})
+        EXPECT_THROW(static_cast<void>(parse_views(bad, 4)), Error) << bad;
+}
+
+TEST(option_values, a_view_beyond_the_set_is_named)
+{
+    EXPECT_TRUE(contains(rejection({"bench", "--views", "4"}), "no view 4; this camera set has views 0 to 3"));
+    EXPECT_EQ(selected_views(parse_options({"bench", "--views", "4", "--camera-set", "orbit"})),
+              std::vector<std::uint32_t>{4});
+}
+
+TEST(option_values, sizes_counts_times_and_bytes_are_read_or_rejected)
+{
+    EXPECT_EQ(parse_size("--size", "640x480"), (std::pair<std::uint32_t, std::uint32_t>{640, 480}));
+    EXPECT_EQ(parse_size("--size", "7"), (std::pair<std::uint32_t, std::uint32_t>{7, 7}));
+    for (const char* const bad : {"", "0", "x", "3x", "x3", "3x4x5", "-1", "99999", "1.5"})
+        EXPECT_THROW(static_cast<void>(parse_size("--size", bad)), Error) << bad;
+    EXPECT_EQ(parse_seconds("--budget", "1.5"), 1.5);
+    EXPECT_EQ(parse_seconds("--budget", "2h"), 7200);
+    for (const char* const bad : {"", "0", "-1", "nan", "inf", "s", "5d"})
+        EXPECT_THROW(static_cast<void>(parse_seconds("--budget", bad)), Error) << bad;
+    EXPECT_EQ(parse_bytes("--memory-limit", "2G"), std::uint64_t{2} << 30);
+    EXPECT_EQ(parse_bytes("--memory-limit", "17"), 17u);
+    for (const char* const bad : {"", "G", "0", "1.5G", "99999999T", "-1"})
+        EXPECT_THROW(static_cast<void>(parse_bytes("--memory-limit", bad)), Error) << bad;
+    EXPECT_THROW(static_cast<void>(parse_count("--samples", "2", 3, 10)), Error);
+}
+
+TEST(options, devices_schedules_tiles_and_buffer_limits_are_read)
+{
+    const Options options = parse_options(
+        {"bench", "--device", "gpu,pocl", "--schedule", "persistent", "--tile", "8x4", "--buffer-limit", "64K"});
+    EXPECT_EQ(options.devices, (std::vector<std::string>{"gpu", "pocl"}));
+    EXPECT_EQ(options.schedules, std::vector<Schedule>{Schedule::persistent});
+    EXPECT_EQ(options.tile_height, 4u);
+    EXPECT_EQ(options.buffer_limit, 65536u);
+    EXPECT_TRUE(contains(rejection({"bench", "--tile", "4x8"}), "8x4 or 8x8"));
+    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent or packets"));
+}
+
+TEST(options, files_stand_between_options_wherever_they_are_given)
+{
+    const Options options = parse_options({"report", "a.json", "--out", "page.html", "b,c.json"});
+    EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b,c.json"}));
+    EXPECT_EQ(options.out, "page.html");
+    EXPECT_EQ(parse_options({"report", "--picture", "a.png,b.png", "a.json"}).report_pictures,
+              (std::vector<std::filesystem::path>{"a.png", "b.png"}));
+    EXPECT_TRUE(contains(rejection({"report"}), "no file is given"));
+    EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "9"}), "not expected: 9"));
+}
+
+TEST(options, a_picture_is_a_kind_of_render_and_a_folder_of_check)
+{
+    EXPECT_EQ(parse_options({"check", "--picture", "folder"}).picture_folder, "folder");
+    EXPECT_EQ(parse_options({"check", "--junit", "check.xml"}).junit, "check.xml");
+    EXPECT_TRUE(contains(rejection({"render", "--picture", "folder"}), "normals or steps"));
+    EXPECT_TRUE(contains(rejection({"check", "--junit", ""}), "--junit: the file name is empty"));
+}
+
+TEST(options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
+{
+    const Options options = parse_options({"reproduce", "--scene", "cubes", "figure6,table4", "--resume"});
+    EXPECT_EQ(options.targets, (std::vector<PaperTarget>{PaperTarget::figure6, PaperTarget::table4}));
+    EXPECT_EQ(options.scenes, std::vector<std::string>{"cubes"});
+    EXPECT_EQ(options.camera_set, CameraSet::flight);
+    EXPECT_TRUE(options.resume);
+    EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6 or growth"));
+}
+
+TEST(options, searches_are_tets_times_rays_and_the_papers_unless_told)
+{
+    EXPECT_EQ(parse_options({"reproduce", "table5"}).searches, (SearchSize{10'000, 16'384}));
+    EXPECT_EQ(parse_options({"reproduce", "--searches", "3x1048576"}).searches, (SearchSize{3, 1'048'576}));
+    for (const char* const bad :
+         {"", "x", "8", "3x", "x8", "3x8x8", "0x8", "3x0", "-3x8", "3x12", "1000001x8", "3x1048584", "3x8 ", "3.5x8"})
+        EXPECT_TRUE(contains(rejection({"reproduce", "--searches", bad}), "TETSxRAYS, 1 to 1000000 tets with 8 to"))
+            << bad;
+    EXPECT_TRUE(contains(rejection({"bench", "--searches", "3x8"}), "--searches"));
+}

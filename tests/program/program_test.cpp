@@ -1,0 +1,324 @@
+#include "tests/support/program_fixture.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sys/wait.h>
+
+using namespace tetrace;
+
+namespace {
+
+class program : public ProgramTest {};
+
+} // namespace
+
+TEST_F(program, describes_itself)
+{
+    EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
+    EXPECT_TRUE(contains(run("--version").out, "tetrace "));
+    for (const char* const verb :
+         {"devices", "scenes", "build", "bench", "check", "render", "reproduce", "compare", "report", "help"}) {
+        const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
+        EXPECT_EQ(help.code, 0);
+        EXPECT_TRUE(contains(help.out, "Examples")) << verb;
+        EXPECT_EQ(help.errors, "");
+    }
+    EXPECT_TRUE(contains(run("help options").out, "| `--scene SCENE` |"));
+}
+
+TEST_F(program, report_writes_a_page_from_results)
+{
+    ASSERT_EQ(bench("--out a.json").code, 0);
+    const Ended report = run("report a.json a.json --out page.html");
+    EXPECT_EQ(report.code, 0) << report.errors;
+    EXPECT_TRUE(contains(report.errors, "page.html"));
+    EXPECT_TRUE(contains(file("page.html"), "cdt maria tet80"));
+    EXPECT_TRUE(contains(file("page.html"), "2 results"));
+    EXPECT_EQ(run("report a.json").code, 0);
+    EXPECT_FALSE(file("report.html").empty()) << "the default name";
+}
+
+TEST_F(program, report_names_what_it_cannot_use)
+{
+    const Ended nothing = run("report");
+    EXPECT_EQ(nothing.code, 2);
+    EXPECT_TRUE(contains(nothing.errors, "no file is given"));
+    EXPECT_EQ(run("report none.json").code, 3);
+    EXPECT_EQ(run("report stdout").code, 2) << "no JSON";
+    EXPECT_TRUE(contains(run("help report").out, "Usage: tetrace report RESULT... [OPTION]..."));
+}
+
+TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)
+{
+    for (const char* const bad :
+         {"draw", "bench --sizes 3", "bench --size 0", "bench --scene nothing-of-that-name", "check --filter '('",
+          "bench --scene cubes --filter nothing", "bench --benchmark_bogus=1", "bench --benchmark_format=xml",
+          "bench --scene cubes --out result.xyz", "bench --scene cubes,cubes",
+          "bench --scene cubes --benchmark_filter=nothing"}) {
+        const Ended ended = run(bad);
+        EXPECT_EQ(ended.code, 2) << bad << ended.errors;
+        EXPECT_EQ(ended.out, "") << bad;
+        EXPECT_NE(ended.errors, "") << bad;
+    }
+    EXPECT_TRUE(contains(run("bench --backend openmp,embree --scene cubes --filter nothing").errors,
+                         "matches none of the 8 rows"));
+}
+
+TEST_F(program, renders_without_openimageio)
+{
+    const Ended ended = run("render --backend openmp --scene cubes --resolution 3 --views 0 --size 16 --out a.ppm");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_EQ(ended.out, "a.ppm\n");
+    const std::string header = "P6\n16 16\n255\n", picture = file("a.ppm");
+    ASSERT_EQ(picture.size(), header.size() + 3 * 16 * 16);
+    EXPECT_TRUE(contains(picture, header));
+    EXPECT_NE(picture.find_first_not_of(picture.back(), header.size()), std::string::npos) << "of one colour";
+}
+
+TEST_F(program, lists_devices_with_their_backends)
+{
+    const Ended ended = run("devices --require openmp,embree --format json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto section = nlohmann::json::parse(ended.out)["tetrace"];
+    EXPECT_EQ(section["devices"][0]["backend"], "openmp");
+    EXPECT_EQ(section["devices"][0]["status"], "usable");
+    EXPECT_EQ(section["parts"].size(), 2u);
+    EXPECT_TRUE(contains(run("devices").out, "openmp"));
+}
+
+TEST_F(program, lists_scenes_and_clears_the_cache)
+{
+    const Ended table = run("scenes");
+    EXPECT_EQ(table.code, 0) << table.errors;
+    for (const char* const name : {"cubes", "banana", "bunny", "armadillo"})
+        EXPECT_TRUE(contains(table.out, name));
+    const Ended cleared = run("scenes --clear --format json");
+    ASSERT_EQ(cleared.code, 0) << cleared.errors;
+    EXPECT_EQ(nlohmann::json::parse(cleared.out)["tetrace"]["cache"]["files"].size(), 0u);
+}
+
+TEST_F(program, benches_and_writes_the_table_and_the_json)
+{
+    const Ended ended = bench("--out result.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "Mrays/s"));
+    EXPECT_TRUE(contains(ended.out, "Verified  18,432 rays"));
+    const auto json = nlohmann::json::parse(file("result.json"));
+    EXPECT_EQ(json["tetrace"]["schema_version"], 2);
+    ASSERT_EQ(json["tetrace"]["rows"].size(), 8u);
+    std::set<std::string> benchmarked;
+    for (const auto& entry : json["benchmarks"])
+        benchmarked.insert(entry["run_name"].get<std::string>());
+    for (const auto& row : json["tetrace"]["rows"]) {
+        EXPECT_EQ(row["status"], "ok") << row;
+        EXPECT_EQ(row["times"]["samples_s"].size(), 3u);
+        EXPECT_GT(row["rates"]["mrays_per_s"].get<double>(), 0);
+        EXPECT_EQ(row["verification"]["rays"], 4 * 24 * 24);
+        EXPECT_EQ(row["hit_hash"].get<std::string>().size(), 16u);
+        EXPECT_EQ(benchmarked.count(row["name"].get<std::string>()), 1u) << row["name"];
+    }
+    EXPECT_EQ(json["tetrace"]["rows"][0]["hit_hash"], json["tetrace"]["rows"][1]["hit_hash"]) << "tet80 and tet96";
+    EXPECT_EQ(json["tetrace"]["scenes"][0]["views"].size(), 4u);
+    EXPECT_EQ(json["tetrace"]["scenes"][0]["hash"].get<std::string>().size(), 16u);
+}
+
+TEST_F(program, the_same_rays_give_the_same_hashes_whatever_the_number_of_threads)
+{
+    const auto hash = [&](const std::string& more) {
+        return nlohmann::json::parse(
+            bench("--layout tet80 --format json " + more).out)["tetrace"]["rows"][0]["hit_hash"];
+    };
+    const auto first = hash("--threads 1");
+    EXPECT_EQ(first, hash("--threads 3"));
+    EXPECT_NE(first, hash("--views 0"));
+}
+
+TEST_F(program, benches_as_csv_and_markdown)
+{
+    const Ended csv = bench("--format csv");
+    ASSERT_EQ(csv.code, 0) << csv.errors;
+    EXPECT_EQ(csv.out.rfind("name,scene,structure,method,", 0), 0u);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
+    EXPECT_EQ(bench("--format markdown").out.rfind("| name | scene |", 0), 0u);
+    const Ended to_file = bench("--format csv --out table.csv");
+    EXPECT_EQ(to_file.out, "");
+    EXPECT_EQ(file("table.csv").rfind("name,scene", 0), 0u);
+}
+
+TEST_F(program, lists_rows_without_loading_scenes)
+{
+    const Ended ours = run("bench --backend openmp,embree --scene bunny,armadillo --list");
+    EXPECT_EQ(ours.code, 0) << ours.errors;
+    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 16);
+    EXPECT_EQ(run("bench --backend openmp,embree --scene bunny,armadillo --benchmark_list_tests").out, ours.out);
+    EXPECT_EQ(
+        run("bench --backend openmp,embree --scene bunny --benchmark_list_tests=true --benchmark_filter=-bvh").out,
+        "cdt/maria/tet80/bunny/primary/math:exact/api:openmp\ncdt/maria/tet96/bunny/primary/math:exact/api:openmp\n"
+        "cdt/project/half32/bunny/primary/math:exact/api:openmp\n"
+        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n");
+}
+
+TEST_F(program, google_benchmarks_flags_keep_their_meaning)
+{
+    const Ended ended = bench("--benchmark_filter='tet80.*openmp$' --benchmark_repetitions=5 --benchmark_out=gb.json "
+                              "--out ours.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto ours = nlohmann::json::parse(file("ours.json"));
+    ASSERT_EQ(ours["tetrace"]["rows"].size(), 1u);
+    EXPECT_EQ(ours["tetrace"]["rows"][0]["times"]["samples_s"].size(), 5u);
+    const auto theirs = nlohmann::json::parse(file("gb.json"));
+    EXPECT_EQ(theirs["benchmarks"][0]["name"], "cdt/maria/tet80/cubes/primary/math:exact/api:openmp");
+    EXPECT_EQ(theirs["benchmarks"].size(), ours["benchmarks"].size());
+    EXPECT_EQ(bench("--benchmark_report_aggregates_only=true --format csv").code, 0);
+    EXPECT_EQ(bench("--benchmark_format=csv").out.rfind("name,iterations,", 0), 0u);
+}
+
+TEST_F(program, checks_every_ray)
+{
+    const Ended ended = run(
+        "check --backend openmp,embree --scene cubes --resolution 6 --size 24 --math exact,fast --order hilbert,input "
+        "--require openmp,embree --out check.json");
+    ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
+    const auto rows = nlohmann::json::parse(file("check.json"))["tetrace"]["rows"];
+    EXPECT_EQ(rows.size(), 20u);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row["status"], "ok") << row;
+        const auto& found = row["verification"];
+        EXPECT_EQ(found["rays"].get<int>(), found["agreed"].get<int>() + found["ties"].get<int>() +
+                                                found["settled"].get<int>() + found["offset"].get<int>() +
+                                                found["wrong"].get<int>() + found["lost"].get<int>());
+    }
+}
+
+TEST_F(program, check_shows_rows_against_devices_and_writes_junit)
+{
+    const Ended ended = run("check --backend openmp --scene cubes --resolution 6 --size 24 --junit check.xml "
+                            "--out check.json");
+    ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "cdt maria tet96             reference"));
+    EXPECT_TRUE(contains(ended.out, "self-test, exact mode"));
+    const auto section = nlohmann::json::parse(file("check.json"))["tetrace"];
+    const auto& cell = section["matrix"]["cubes"]["cdt maria tet80"]["openmp"];
+    EXPECT_EQ(cell["cell"], "reference");
+    EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
+    EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
+    EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+}
+
+TEST_F(program, a_check_of_which_no_row_could_run_does_not_pass)
+{
+    ::setenv("CUDA_VISIBLE_DEVICES", "", 1); // where there is a GPU, CUDA has none for this program
+    const Ended ended = run("check --backend cuda --scene cubes --resolution 6 --size 24");
+    EXPECT_EQ(ended.code, 3) << ended.out;
+    EXPECT_TRUE(contains(ended.errors, "nothing was checked")) << ended.errors;
+}
+
+TEST_F(program, checks_embree_where_it_is_asked_for)
+{
+    const auto rows_of = [&](const std::string& options) { return run("check --scene cubes --list" + options).out; };
+    EXPECT_FALSE(contains(rows_of(""), "api:embree"));
+    EXPECT_TRUE(contains(rows_of(" --structure cdt,bvh"), "api:embree"));
+    EXPECT_TRUE(contains(rows_of(" --require embree"), "api:embree"));
+}
+
+TEST_F(program, builds_every_combination_and_goes_on_after_a_failure)
+{
+    std::ofstream(folder_.path() / "broken.tet") << "no scene";
+    const Ended ended = run("build --scene cubes,broken.tet --resolution 6 --size 24 --format json");
+    EXPECT_EQ(ended.code, 1) << ended.errors;
+    const auto builds = nlohmann::json::parse(ended.out)["tetrace"]["builds"];
+    ASSERT_EQ(builds.size(), 2u);
+    EXPECT_EQ(builds[0]["status"], "ok");
+    EXPECT_EQ(builds[0]["tets"], 6 * 6 * 6 * 6);
+    EXPECT_GT(builds[0]["mean_steps_hit"].get<double>(), 1);
+    EXPECT_EQ(builds[1]["status"], "error");
+    EXPECT_TRUE(contains(builds[1]["reason"].get<std::string>(), "broken.tet")) << builds[1];
+}
+
+TEST_F(program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
+{
+    std::ofstream(folder_.path() / "broken.tet") << "no scene";
+    const Ended ended = run(
+        "bench --backend openmp,embree --scene cubes,broken.tet --resolution 6 --size 24 --samples 3 --format json");
+    EXPECT_NE(ended.code, 0);
+    const auto rows = nlohmann::json::parse(ended.out)["tetrace"]["rows"];
+    ASSERT_EQ(rows.size(), 16u);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row["status"], row["scene"] == "cubes" ? "ok" : "error") << row;
+        EXPECT_EQ(row.contains("rates"), row["scene"] == "cubes");
+    }
+}
+
+TEST_F(program, a_result_that_cannot_be_written_is_told_before_any_work)
+{
+    const Ended ended = bench("--out no/such/folder/result.json");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "no/such/folder/result.json")) << ended.errors;
+}
+
+TEST_F(program, google_benchmarks_result_that_cannot_be_written_is_told_before_any_work)
+{
+    const Ended ended = bench("--benchmark_out=no/such/folder/gb.json");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_TRUE(contains(ended.errors, "no/such/folder/gb.json")) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "--benchmark_out"));
+}
+
+TEST_F(program, a_result_leaves_out_what_does_not_apply_and_where_files_lie)
+{
+    const Ended ended = bench("--layout tet80 --out result.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto section = nlohmann::json::parse(file("result.json"))["tetrace"];
+    const auto& times = section["rows"][0]["times"];
+    EXPECT_FALSE(times.contains("compile_s"));
+    EXPECT_FALSE(times.contains("upload_s"));
+    EXPECT_TRUE(times.contains("pack_s"));
+    EXPECT_GE(times["overhead_s"].get<double>(), 0);
+    const auto& verification = section["rows"][0]["verification"];
+    EXPECT_EQ(verification.contains("largest_tie_distance"), verification["ties"] > 0);
+    EXPECT_FALSE(contains(section["scenes"][0].value("file", ""), "/"));
+    EXPECT_TRUE(contains(section["flags"].get<std::string>(), "exact: -ffp-contract=off"));
+    EXPECT_TRUE(contains(section["flags"].get<std::string>(), "fast: -ffp-contract=fast -ffast-math"));
+}
+
+TEST_F(program, google_benchmarks_context_is_added_once)
+{
+    const Ended ended = bench("--layout tet80 --benchmark_context=a=b --format json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_EQ(nlohmann::json::parse(ended.out)["context"]["a"], "b");
+    EXPECT_FALSE(contains(ended.errors, "ontext")) << ended.errors;
+}
+
+TEST_F(program, a_result_tells_the_threads_that_worked)
+{
+    const auto threads = [&](const std::string& more) {
+        return nlohmann::json::parse(bench("--layout tet80 --format json " + more).out)["tetrace"]["threads"];
+    };
+    EXPECT_EQ(threads("--threads 1"), 1);
+    EXPECT_EQ(threads("--threads 3"), 3);
+    const ScopedVariable variable("OMP_NUM_THREADS", "1");
+    EXPECT_EQ(threads(""), 1);
+    EXPECT_EQ(threads("--threads 2"), 2);
+}
+
+TEST_F(program, a_required_backend_without_a_selected_row_is_no_success)
+{
+    const std::string check = "check --scene cubes --resolution 6 --size 24 ";
+    const Ended ended = run(check + "--require embree --backend openmp");
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_TRUE(contains(ended.errors, "no row of embree is selected")) << ended.errors;
+    EXPECT_EQ(run(check + "--require openmp --backend openmp").code, 0);
+}
+
+TEST_F(program, no_progress_line_without_a_terminal)
+{
+    const Ended ended = bench("");
+    EXPECT_FALSE(contains(ended.errors, "\r")) << ended.errors;
+}

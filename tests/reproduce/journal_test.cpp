@@ -1,0 +1,159 @@
+#include "bench/reproduce/image_record.h"
+#include "bench/reproduce/journal.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+using nlohmann::json;
+
+namespace {
+
+class journal : public testing::Test {
+protected:
+    [[nodiscard]] std::vector<json> resumed(const json& head) const { return Journal(path_, head, true).entries(); }
+
+    TemporaryFolder folder_;
+    std::filesystem::path path_ = folder_ / "run.json.journal";
+    json head_ = {{"commit", "abc"}, {"views", {1, 2, 3}}};
+};
+
+} // namespace
+
+TEST_F(journal, gives_back_what_was_appended)
+{
+    {
+        Journal first(path_, head_, false);
+        first.append({{"view", 1}, {"seconds", 0.1}});
+        first.append({{"view", 2}, {"seconds", 1.0 / 3}});
+    }
+    const auto entries = resumed(head_);
+    ASSERT_EQ(entries.size(), 2u);
+    EXPECT_EQ(entries[0]["view"], 1);
+    EXPECT_EQ(entries[1]["seconds"].get<double>(), 1.0 / 3) << "every bit of a time";
+}
+
+TEST_F(journal, goes_on_where_a_line_was_cut_off)
+{
+    Journal(path_, head_, false).append({{"view", 1}});
+    std::ofstream(path_, std::ios::app) << R"({"view": 2, "sec)";
+    {
+        Journal again(path_, head_, true);
+        EXPECT_EQ(again.entries().size(), 1u);
+        again.append({{"view", 2}});
+    }
+    EXPECT_EQ(resumed(head_).size(), 2u) << "the cut line is gone from the file too";
+}
+
+TEST_F(journal, begins_anew_where_the_head_itself_was_cut_off)
+{
+    write_file(path_, R"({"journal": {"com)");
+    EXPECT_EQ(resumed(head_).size(), 0u);
+    EXPECT_EQ(resumed(head_).size(), 0u) << "and is whole now";
+}
+
+TEST_F(journal, of_another_run_is_refused_with_what_differs)
+{
+    Journal(path_, head_, false).append({{"view", 1}});
+    json other = head_;
+    other["commit"] = "def";
+    const std::string error = error_of([&] { (void)resumed(other); });
+    EXPECT_TRUE(contains(error, "usage: --resume"));
+    EXPECT_TRUE(contains(error, R"(commit: "abc" there, "def" here)"));
+    EXPECT_FALSE(contains(error, "views"));
+    EXPECT_EQ(resumed(head_).size(), 1u) << "it is as it was";
+}
+
+TEST_F(journal, of_a_run_that_did_not_end_is_not_overwritten_unasked)
+{
+    Journal(path_, head_, false).append({{"view", 1}});
+    EXPECT_TRUE(contains(error_of([&] { Journal(path_, head_, false); }), "--resume"));
+    EXPECT_EQ(resumed(head_).size(), 1u);
+}
+
+TEST_F(journal, of_a_finished_run_begins_anew_or_repeats_the_run)
+{
+    {
+        Journal whole(path_, head_, false);
+        whole.append({{"view", 1}});
+        whole.finish();
+    }
+    EXPECT_EQ(resumed(head_).size(), 1u);
+    EXPECT_TRUE(Journal(path_, head_, false).entries().empty());
+    EXPECT_EQ(resumed(head_).size(), 0u);
+}
+
+TEST_F(journal, of_a_finished_run_takes_more_and_ends_again)
+{
+    {
+        Journal whole(path_, head_, false);
+        whole.append({{"view", 1}});
+        whole.finish();
+    }
+    {
+        Journal more(path_, head_, true);
+        more.append({{"view", 2}});
+        more.finish();
+    }
+    EXPECT_EQ(resumed(head_), (std::vector<json>{{{"view", 1}}, {{"view", 2}}}));
+    EXPECT_TRUE(Journal(path_, head_, false).entries().empty()) << "it has ended: a new one begins unasked";
+}
+
+TEST_F(journal, with_a_damaged_line_is_refused_by_its_number)
+{
+    Journal(path_, head_, false).append({{"view", 1}});
+    std::ofstream(path_, std::ios::app) << "damage\n{}\n";
+    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "invalid_input: line 3"));
+}
+
+TEST_F(journal, is_written_by_one_run_at_a_time)
+{
+    const Journal first(path_, head_, false);
+    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "being written by another run"));
+}
+
+TEST_F(journal, names_the_file_that_it_cannot_write)
+{
+    EXPECT_TRUE(contains(error_of([&] { Journal(folder_ / "no" / "such", head_, false); }), "no/such"));
+}
+
+TEST(image_record, comes_back_from_json_as_it_was)
+{
+    ImageRecord record;
+    record.verdict.totals = {100, 50, 40, 10, 0, 500, 300, 200};
+    record.verdict.verdicts = {
+        100, 76, 5, 5, 4, 3, 7, 1e-7, WrongRay{4, 1, 2, {7, 8, 0.1f, 0.2f, 0.3f, 9}, 6, 0.7f, "it is"}, {}};
+    record.verdict.visits = {100, 2400, 470};
+    record.verdict.compared = true;
+    record.verdict.different = 1, record.verdict.inexact = 2, record.verdict.largest_ulps = 3;
+    record.verdict.first_different = DifferingRay{4, 5, 6, {1, 2, 0.5f, 0.25f, 0.1f, 3}, {2, 2, 0.5f, 0.25f, 0.1f, 3}};
+    record.verdict.hit_hash = 0xFEDCBA9876543210u;
+    record.verdict.kernel_s = 0.1, record.verdict.wall_s = 0.2, record.verdict.download_s = 0.3;
+    record.chained_hash = 0x1u;
+    record.lost_at_cap = 7;
+    record.flawed = {10, 9}, record.any = {32, 1};
+    record.samples_s = {0.1, 1.0 / 3}, record.wall_samples_s = {0.2, 0.4};
+    const json once = outcome_json(record);
+    const json twice = outcome_json(outcome_from_json(json::parse(once.dump())));
+    EXPECT_EQ(once, twice);
+    const auto back = std::get<ImageRecord>(outcome_from_json(once));
+    EXPECT_EQ(back.verdict.hit_hash, record.verdict.hit_hash);
+    EXPECT_EQ(back.verdict.verdicts.first_wrong->ours, record.verdict.verdicts.first_wrong->ours);
+    EXPECT_EQ(back.verdict.first_different->openmp.face_id, 2u);
+    EXPECT_EQ(back.samples_s, record.samples_s);
+    EXPECT_EQ(back.verdict.totals.lost_steps, 200u);
+    EXPECT_EQ(back.verdict.verdicts.offset, 4u);
+    EXPECT_EQ(back.verdict.verdicts.lost, 7u);
+    EXPECT_EQ(back.verdict.visits.triangles, 470u);
+    EXPECT_EQ(back.any.through_flat, 1u);
+}
+
+TEST(image_record, an_end_of_a_row_comes_back_from_json)
+{
+    const auto failed = std::get<Failed>(outcome_from_json(outcome_json(Failed{ErrorKind::wrong_result, "gone"})));
+    EXPECT_EQ(failed.kind, ErrorKind::wrong_result);
+    EXPECT_EQ(failed.what, "gone");
+    const auto skipped = std::get<Skipped>(outcome_from_json(outcome_json(Skipped{Status::unsupported, "small"})));
+    EXPECT_EQ(skipped.status, Status::unsupported);
+    EXPECT_EQ(skipped.reason, "small");
+}

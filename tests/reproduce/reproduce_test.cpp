@@ -1,0 +1,306 @@
+#include "bench/reproduce/flat_tets.h"
+#include "tests/support/reproduce_fixture.h"
+
+using namespace tetrace;
+using nlohmann::json;
+
+namespace {
+
+class reproduce : public ReproduceTest {};
+
+const json& claim(const json& table, const std::string& id)
+{
+    for (const json& one : table.at("claims"))
+        if (one.at("id") == id) return one;
+    throw std::runtime_error("no claim " + id);
+}
+
+} // namespace
+
+TEST_F(reproduce, table4_of_a_sample_of_views)
+{
+    const Ended ended = run("table4 --method maria --size 24 --views 0-1281:100 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    EXPECT_EQ(section["verb"], "reproduce");
+    const json table = of_id(section["tables"], "table4");
+    ASSERT_EQ(table["rows"].size(), 2u) << "tet80 and tet96";
+    for (const json& row : table["rows"]) {
+        EXPECT_EQ(row["scene"], "cubes");
+        EXPECT_EQ(row["method"], "maria");
+        EXPECT_EQ(row["status"], "ok");
+        EXPECT_EQ(row["views"]["value"], 13);
+        EXPECT_EQ(row["flawed"]["value"], 0);
+        EXPECT_EQ(row["flawed"]["paper"], 0);
+        EXPECT_FALSE(row["flawed"].contains("ratio")) << "nothing over nothing";
+        EXPECT_FALSE(row["flawed"].contains("high")) << "none in a sample bounds nothing";
+    }
+    for (const json& column : table["columns"])
+        EXPECT_EQ(column.value("decimals", -1) == 0, column["key"] == "views") << column;
+    EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
+    EXPECT_EQ(claim(table, "maria-has-the-fewest")["verdict"], "not testable here") << "nothing to compare with";
+    EXPECT_EQ(claim(table, "project-has-no-wrong-result")["verdict"], "not testable here") << "it was not traced";
+    EXPECT_EQ(section["rows"][0]["verification"]["rays"], 13 * 24 * 24);
+    EXPECT_FALSE(section["rows"][0].contains("rates")) << "nothing was timed";
+    EXPECT_TRUE(contains(ended.out, "table4: Rays with a wrong result"));
+}
+
+TEST_F(reproduce, table4_has_every_method_where_none_is_named_and_none_wrong_of_project)
+{
+    const Ended ended = run("table4 --layout tet80 --size 24 --views 0-1281:100 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json table = of_id(result("r.json")["tables"], "table4");
+    ASSERT_EQ(table["rows"].size(), 6u);
+    const json row = table["rows"][5];
+    EXPECT_EQ(row["method"], "project");
+    EXPECT_EQ(row["status"], "ok");
+    EXPECT_EQ(row["flawed"]["value"], 0);
+    EXPECT_FALSE(row["flawed"].contains("paper")) << "it does not have this method";
+    EXPECT_TRUE(contains(claim(table, "project-has-no-wrong-result")["evidence"], "0 of 7,488 rays in 13 of 1,282"));
+}
+
+TEST_F(reproduce, all_views_of_smaller_images_are_a_sample_still)
+{
+    const Ended ended = run("table4 --method maria --layout tet80 --size 4 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json table = result("r.json")["tables"][0];
+    EXPECT_EQ(table["rows"][0]["views"]["value"], 1282);
+    EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
+}
+
+TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
+{
+    const Ended ended =
+        run("figure6 --method maria --layout tet80 --size 64 --samples 3 --views 0-1281:60 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    const json figure = of_id(section["figures"], "figure6-cubes-cpu");
+    EXPECT_EQ(figure["series"][0]["name"], "maria") << "the one layout and device go without saying";
+    ASSERT_EQ(figure["series"].size(), 1u);
+    EXPECT_EQ(figure["series"][0]["points"].size(), 22u);
+    for (const json& point : figure["series"][0]["points"])
+        EXPECT_GT(point[1].get<double>(), 0);
+    EXPECT_EQ(figure["pictures"].size(), 4u);
+    for (const json& name : figure["pictures"])
+        EXPECT_TRUE(std::filesystem::exists(folder_ / name.get<std::string>())) << name;
+    const json row = of_id(section["tables"], "figure6")["rows"][0];
+    EXPECT_LE(row["correlation"]["low"], row["correlation"]["value"]);
+    EXPECT_LT(row["fewest_tets"]["value"], row["most_tets"]["value"]);
+    EXPECT_FALSE(row["fewest_tets"].contains("paper")) << "it does not trace this scene";
+    EXPECT_EQ(section["rows"][0]["times"]["samples_s"].size(), 3u);
+    EXPECT_GT(section["rows"][0]["rates"]["mrays_per_s"], 0);
+    EXPECT_EQ(claim(of_id(section["tables"], "figure6"), "time-is-proportional-to-tets-gpu")["verdict"],
+              "not testable here");
+}
+
+TEST_F(reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
+{
+    const Ended ended = run("figure6 --method maria,ms06 --layout tet80 --backend openmp,cuda-host --size 16 "
+                            "--samples 3 --views 0-3 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json figures = result("r.json")["figures"];
+    ASSERT_EQ(figures.size(), 2u);
+    for (const char* const id : {"figure6-cubes-cpu", "figure6-cubes-emulated"}) {
+        const json figure = of_id(figures, id);
+        ASSERT_EQ(figure["series"].size(), 2u) << id;
+        EXPECT_EQ(figure["series"][0]["name"], "ms06");
+        EXPECT_EQ(figure["series"][1]["name"], "maria");
+    }
+    EXPECT_EQ(figures[0]["pictures"].size(), 4u);
+    EXPECT_EQ(figures[1]["pictures"].size(), 0u) << "they are the scene's";
+    EXPECT_EQ(figures[0]["notes"].size(), figures[1]["notes"].size() + 1) << "which tells of them";
+}
+
+TEST_F(reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
+{
+    const Ended ended = run("table3 --method maria --size 24 --samples 3 --views 0,1 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    const json scenes = of_id(section["tables"], "table3")["rows"];
+    ASSERT_EQ(scenes.size(), 1u) << "no TetGen makes this scene: there is no paper's build of it";
+    EXPECT_EQ(scenes[0]["tets"]["value"], 6 * 6 * 6 * 6);
+    EXPECT_LT(scenes[0]["tet80_mb"]["value"], scenes[0]["tet96_mb"]["value"]);
+    const json rates = of_id(section["tables"], "table3-rates")["rows"];
+    ASSERT_EQ(rates.size(), 2u);
+    EXPECT_GT(rates[0]["mrays_per_s"]["value"], 0);
+}
+
+TEST_F(reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
+{
+    const std::string octahedron = "OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n"
+                                   "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n";
+    for (const char* const name : {"dragon.off", "armadillo.off"})
+        write_file(folder_ / name, octahedron);
+    const Ended ended = run("table3 --scene dragon.off,armadillo.off --method maria --layout tet80 --size 8 "
+                            "--samples 3 --views 0 --out r.json");
+    ASSERT_TRUE(ended.code == 0 || ended.code == 3) << ended.errors; // 3: no TetGen is built here
+    const json table = of_id(result("r.json")["tables"], "table3");
+    ASSERT_EQ(table["claims"].size(), 1u);
+    EXPECT_EQ(table["claims"][0]["id"], "armadillo-has-the-papers-counts");
+    EXPECT_EQ(table["notes"].back(), "armadillo, paper's build: the paper's counts are not known to this program; "
+                                     "switches -pq8/4, as for bunny.");
+    const json rates = of_id(result("r.json")["tables"], "table3-rates")["rows"];
+    ASSERT_EQ(rates.size(), 3u);
+    EXPECT_EQ(rates[0]["scene"], "dragon");
+    EXPECT_EQ(rates[1]["build"], "ours");
+    EXPECT_EQ(rates[2]["build"], "paper's");
+}
+
+TEST_F(reproduce, table6_has_maria_beside_the_bvhs_and_no_other_table_has_them)
+{
+    const std::string common = " --backend openmp,embree --layout tet80 --size 16 --samples 3 --views 0-1281:120 ";
+    const Ended ended = run("table6 --out r.json" + common);
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    ASSERT_EQ(section["rows"].size(), 5u) << "maria alone of the methods, bvh2, cwbvh, and Embree's two";
+    ASSERT_EQ(of_id(section["tables"], "table6")["rows"].size(), 5u);
+    ASSERT_EQ(of_id(section["tables"], "table6-pairs")["rows"].size(), 4u);
+    const json pairs = of_id(section["tables"], "table6-pairs")["rows"];
+    for (const json& row : pairs)
+        EXPECT_TRUE(row["ratio"].contains("low"));
+    EXPECT_EQ(of_id(section["figures"], "table6-cubes-cpu")["series"].size(), 5u);
+    const Ended both = run("table6,figure6 --method stp,maria,single --out b.json" + common);
+    ASSERT_EQ(both.code, 0) << both.errors;
+    EXPECT_EQ(result("b.json")["rows"].size(), 5u) << "stp, maria, and single of three BVHs";
+    EXPECT_EQ(of_id(result("b.json")["tables"], "figure6")["rows"].size(), 2u);
+    EXPECT_EQ(of_id(result("b.json")["tables"], "table6")["rows"].size(), 4u);
+}
+
+TEST_F(reproduce, table6_is_the_same_again_from_its_journal_build_times_too)
+{
+    const std::string arguments = "table6 --backend openmp,embree --size 8 --samples 3 --views 0-2 --out r.json";
+    ASSERT_EQ(run(arguments).code, 0);
+    const json before = result("r.json");
+    ASSERT_EQ(run(arguments + " --resume").code, 0);
+    EXPECT_EQ(result("r.json")["tables"], before["tables"]);
+    EXPECT_EQ(result("r.json")["figures"], before["figures"]);
+    std::string journal = read_text(folder_ / "r.json.journal");
+    const std::size_t place = journal.find("\"build_s\":");
+    ASSERT_NE(place, std::string::npos);
+    write_file(folder_ / "r.json.journal", journal.insert(place + 10, 1, '-'));
+    EXPECT_TRUE(contains(run(arguments + " --resume").errors, "a build time in the journal is damaged"));
+}
+
+TEST_F(reproduce, growth_has_a_scene_in_several_sizes_and_no_other_scene)
+{
+    const Ended ended = run("growth --scene cubes --sizes 4,8,12 --backend openmp,embree --size 16 --samples 3 "
+                            "--layout tet80,bvh2 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    ASSERT_EQ(section["scenes"].size(), 3u);
+    EXPECT_EQ(section["scenes"][2]["name"], "cubes@12");
+    EXPECT_EQ(section["scenes"][0]["views"].size(), 21u) << "every 64th, since none are named";
+    EXPECT_EQ(section["rows"].size(), 3u * 2);
+    const json exponents = of_id(section["tables"], "growth-exponents")["rows"];
+    ASSERT_EQ(exponents.size(), 2u);
+    EXPECT_GT(exponents[0]["steps"]["value"], 0) << "finer meshes have more tets on the way";
+    EXPECT_GT(exponents[0]["time"]["high"], exponents[0]["time"]["low"]);
+    EXPECT_GT(exponents[1]["nodes"]["value"], 0);
+    EXPECT_EQ(of_id(section["figures"], "growth-cubes-time-cpu")["x"]["scale"], "logarithmic");
+    EXPECT_TRUE(contains(run("growth --scene cubes --sizes 129").errors, "129 cubes along an axis"));
+    EXPECT_EQ(run("growth --scene banana --sizes 150").code, 2);
+    EXPECT_EQ(run("growth --sizes 1").code, 2);
+}
+
+TEST_F(reproduce, table5_has_every_search_of_every_method_without_a_scene)
+{
+    const Ended ended = run("table5 --searches 40x64 --samples 3 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    EXPECT_TRUE(section["scenes"].empty());
+    EXPECT_TRUE(section["missing_scenes"].empty());
+    EXPECT_EQ(section["devices"].size(), 1u) << "compare and report read them";
+    const json table = of_id(section["tables"], "table5");
+    ASSERT_EQ(table["rows"].size(), 12u) << "six methods, two layouts, one thread";
+    for (const json& row : table["rows"]) {
+        EXPECT_EQ(row["device"], "openmp, 1 thread");
+        EXPECT_EQ(row["threads"]["value"], 1);
+        EXPECT_EQ(row["searches"]["value"], 40 * 64);
+        EXPECT_EQ(row["faces"], "reference");
+        EXPECT_NEAR(row["ns_a_search"]["value"].get<double>() * row["msearches_per_s"]["value"].get<double>(), 1e3,
+                    1e-6);
+        EXPECT_GT(row["copy_percent"]["value"].get<double>(), 0);
+        if (row["method"] == "maria") {
+            EXPECT_EQ(row["wrong"]["value"], 0);
+            EXPECT_EQ(row["lost"]["value"], 0);
+        }
+    }
+    EXPECT_EQ(claim(table, "table5-maria-exact")["verdict"], "not testable here") << "a part of the paper's searches";
+    EXPECT_TRUE(contains(claim(table, "table5-maria-exact")["evidence"], "5,120 searches by 2 rows: 0 wrong"));
+    EXPECT_TRUE(contains(claim(table, "table5-maria-fastest-cpu")["evidence"], "plane / maria"));
+    EXPECT_TRUE(contains(claim(table, "table5-plucker-overtakes-stp-gpu")["evidence"], "No row of a GPU"));
+    EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
+}
+
+TEST_F(reproduce, table5_records_what_it_was_made_from)
+{
+    const Ended ended = run("table5 --searches 40x64 --method maria --layout tet80 --samples 3 --out r.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const json section = result("r.json");
+    EXPECT_EQ(section["samples_a_row"], 3);
+    EXPECT_EQ(section["searches"]["tets"], 40);
+    EXPECT_EQ(section["searches"]["rays_a_tet"], 64);
+    EXPECT_EQ(section["searches"]["batches"], 20);
+    ASSERT_EQ(section["searches"]["rows"].size(), 1u);
+    const json row = section["searches"]["rows"][0];
+    EXPECT_EQ(row["name"], "search/maria/tet80/random-tets/math:exact/api:openmp/threads:1");
+    EXPECT_EQ(row["status"], "ok");
+    EXPECT_EQ(row["host_threads"], 1);
+    EXPECT_EQ(row["times"]["clock"], "host steady clock");
+    EXPECT_EQ(row["times"]["samples_s"].size(), 3u);
+    EXPECT_EQ(row["batch_medians_s"].size(), 20u);
+    EXPECT_EQ(row["face_hash"].get<std::string>().size(), 16u);
+    EXPECT_EQ(row["verification"]["searches"], 40 * 64);
+    EXPECT_EQ(row["verification"]["wrong"], 0);
+    const json table = of_id(section["tables"], "table5");
+    EXPECT_EQ(row["msearches_per_s"], table["rows"][0]["msearches_per_s"]["value"]);
+}
+
+TEST_F(reproduce, samples_a_row_are_none_where_nothing_is_timed)
+{
+    ASSERT_EQ(run("table4 --method maria --layout tet80 --size 8 --views 0 --samples 7 --out r.json").code, 0);
+    EXPECT_EQ(result("r.json")["samples_a_row"], 0);
+    EXPECT_FALSE(result("r.json").contains("searches"));
+}
+
+TEST_F(reproduce, refuses_what_it_does_not_make)
+{
+    const Ended unknown = run("table9");
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_TRUE(contains(unknown.errors, "table3, table4, table5, table6, figure6 or growth"));
+    const Ended no_maria = run("table6 --method stp");
+    EXPECT_EQ(no_maria.code, 2);
+    EXPECT_TRUE(contains(no_maria.errors, "table6 and growth compare maria with BVHs: add it to --method"));
+    EXPECT_TRUE(contains(run("table4 --resume").errors, "--out"));
+}
+
+TEST_F(reproduce, as_csv_and_markdown)
+{
+    const std::string arguments = "table4 --method maria --layout tet80 --size 24 --views 0,1 --format ";
+    const Ended csv = run(arguments + "csv");
+    ASSERT_EQ(csv.code, 0) << csv.errors;
+    EXPECT_EQ(
+        csv.out.rfind(
+            "table,scene,build,method,layout,device,quantity,unit,value,low,high,paper,ratio,x,verdict,text\n", 0),
+        0u);
+    EXPECT_TRUE(contains(csv.out, "table4,cubes,,maria,tet80,openmp,flawed,rays an image,0,0,"));
+    EXPECT_TRUE(contains(csv.out, "table4,cubes,,maria,tet80,openmp,status,,,,,,,,,ok\n"));
+    EXPECT_TRUE(contains(csv.out, "table4,,,,,,maria-has-no-wrong-result,,,,,,,,not testable here,"));
+    const Ended searches = run("table5 --searches 20x8 --method maria --layout tet96 --format csv");
+    EXPECT_TRUE(contains(searches.out, "table5,,,maria,tet96,\"openmp, 1 thread\",searches,,160,"));
+    EXPECT_TRUE(contains(searches.out, "table5,,,maria,tet96,\"openmp, 1 thread\",wrong,a million,0,"));
+    const Ended markdown = run(arguments + "markdown");
+    EXPECT_TRUE(contains(markdown.out, "## table4: Rays with"));
+    EXPECT_TRUE(contains(markdown.out, "| maria has no wrong result | not testable here |"));
+}
+
+TEST(flat_tets, flatness_is_the_shortest_altitude_over_the_longest_edge)
+{
+    TetMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.25f, 0.25f, 1e-4f}};
+    mesh.tets = {{{0, 1, 2, 3}, {}, {}}, {{0, 1, 2, 4}, {}, {}}};
+    // The corner of a cube: volume 1/6, largest face sqrt(3)/2, longest edge sqrt(2).
+    EXPECT_NEAR(flatness(mesh, 0), 1 / std::sqrt(3.0) / std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(flatness(mesh, 1), 1e-4 / std::sqrt(2.0), 1e-9);
+    EXPECT_LT(flatness(mesh, 1), flat_below);
+}

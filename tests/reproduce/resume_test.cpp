@@ -1,0 +1,131 @@
+#include "tests/support/reproduce_fixture.h"
+
+#include <functional>
+
+using namespace tetrace;
+using nlohmann::json;
+
+namespace {
+
+class resume : public ReproduceTest {};
+
+} // namespace
+
+TEST_F(resume, a_damaged_journal_is_refused)
+{
+    const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
+    ASSERT_EQ(run(arguments).code, 0);
+    const std::string journal = read_text(folder_ / "r.json.journal");
+    const auto resumed = [&](const std::function<void(json & entry, json & row)>& damage) {
+        std::istringstream whole(journal);
+        std::string damaged, line;
+        for (std::size_t number = 1; std::getline(whole, line); ++number) {
+            json entry = json::parse(line);
+            if (number == 2) damage(entry, entry["rows"].front());
+            damaged += entry.dump() + "\n";
+        }
+        write_file(folder_ / "r.json.journal", damaged);
+        const Ended ended = run(arguments + " --resume");
+        return std::to_string(ended.code) + " " + ended.errors;
+    };
+    const auto refused = [&](const std::string& why, const std::function<void(json & entry, json & row)>& damage) {
+        const std::string text = resumed(damage);
+        EXPECT_EQ(text.rfind("2 ", 0), 0u) << text;
+        EXPECT_TRUE(contains(text, "line 2 of the journal is damaged: ")) << text;
+        EXPECT_TRUE(contains(text, why)) << text;
+        EXPECT_TRUE(contains(text, "remove 'r.json.journal' to begin anew")) << text;
+    };
+    EXPECT_EQ(resumed([](json&, json&) {}), "0 ") << "as it was";
+    refused("'rows' not found", [](json& entry, json&) { entry = {{"batch", 0}}; });
+    refused("'verdict' not found", [](json&, json& row) { row.erase("verdict"); });
+    refused("type must be string", [](json&, json& row) { row["chained_hash"] = 5; });
+    refused("stoull", [](json&, json& row) { row["chained_hash"] = "none"; });
+    refused("no such status", [](json&, json& row) { row = {{"skipped", "so"}, {"status", 99}}; });
+    refused("has 9 rays, not 8", [](json&, json& row) { row["verdict"]["totals"][0] = 9; });
+    const std::string samples = "wants 3 samples, all above 0 s";
+    refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
+    refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
+    refused(samples, [](json&, json& row) { row["wall_samples_s"][1] = 0; });
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "of no view of these scenes"));
+    EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "of no view of these scenes"));
+    refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
+}
+
+TEST_F(resume, a_damaged_yardstick_in_the_journal_is_refused)
+{
+    const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
+    ASSERT_EQ(run(arguments).code, 0);
+    std::string journal = read_text(folder_ / "r.json.journal");
+    const std::size_t place = journal.find("\"copy_bytes_per_s\":");
+    ASSERT_NE(place, std::string::npos);
+    write_file(folder_ / "r.json.journal", journal.insert(place + 19, 1, '-'));
+    const Ended ended = run(arguments + " --resume");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(contains(ended.errors, "a yardstick in the journal is damaged; remove 'r.json.journal'"));
+}
+
+TEST_F(resume, table5_goes_on_after_kill_9_to_the_same_result)
+{
+    const std::string arguments =
+        "table5 --searches 200x2048 --method maria,stp --layout tet80 --samples 3 --out r.json";
+    const std::size_t batches = kill_in_the_middle(arguments, "r.json.journal");
+    ASSERT_LT(batches, 20u);
+    const std::string before = read_text(folder_ / "r.json.journal");
+    EXPECT_TRUE(contains(run("table5 --searches 200x2056 --method maria,stp --layout tet80 --samples 3 --out r.json "
+                             "--resume")
+                             .errors,
+                         "searches: [200,2048] there, [200,2056] here"));
+    ASSERT_EQ(run(arguments + " --resume").code, 0);
+    const json resumed = result("r.json");
+    EXPECT_GT(resumed["tables"][0]["rows"][0]["copy_percent"]["value"], 0);
+    const std::string after = read_text(folder_ / "r.json.journal");
+    const std::string kept = before.substr(0, before.rfind('\n') + 1);
+    EXPECT_EQ(after.substr(0, kept.size()), kept) << "finished batches are not done again";
+    EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
+    ASSERT_EQ(run(arguments + " --resume").code, 0) << "once more, from the journal alone";
+    const json again = result("r.json");
+    EXPECT_EQ(again["tables"], resumed["tables"]);
+    EXPECT_EQ(again["devices"], resumed["devices"]) << "their bandwidth is not measured again";
+}
+
+TEST_F(resume, goes_on_after_kill_9_to_the_same_result)
+{
+    const std::string arguments =
+        "table4,figure6 --method maria,ms06 --layout tet80 --size 48 --samples 3 --views 0-1281:40 --out ";
+    const std::size_t views = kill_in_the_middle(arguments + "killed.json", "killed.json.journal");
+    ASSERT_LT(views, 33u);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "killed.json"));
+    std::ofstream(folder_ / "killed.json.journal", std::ios::app)
+        << R"({"scene": "cub)"; // as a cut-off write leaves it
+    EXPECT_EQ(run(arguments + "killed.json").code, 2) << "not overwritten unasked";
+    const std::string journal = read_text(folder_ / "killed.json.journal");
+    const Ended ended = run(arguments + "killed.json --resume");
+    ASSERT_EQ(ended.code, run(arguments + "whole.json").code) << ended.errors;
+    const json resumed = result("killed.json"), whole = result("whole.json");
+    EXPECT_EQ(of_id(resumed["tables"], "table4"), of_id(whole["tables"], "table4"));
+    EXPECT_EQ(resumed["rows"][0]["hit_hash"], whole["rows"][0]["hit_hash"]);
+    EXPECT_EQ(resumed["rows"][0]["verification"], whole["rows"][0]["verification"]);
+    // Times of finished views are the journal's, not measured again.
+    std::istringstream before(journal), after(read_text(folder_ / "killed.json.journal"));
+    std::string first, second;
+    for (std::size_t line = 0; line <= views; ++line) {
+        std::getline(before, first), std::getline(after, second);
+        EXPECT_EQ(first, second) << "line " << line;
+    }
+    EXPECT_EQ(lines("killed.json.journal"), 1u + 33 + 1 + 1) << "head, views, yardstick, end";
+    EXPECT_EQ(run(arguments + "killed.json --resume").code, ended.code) << "once more, from the journal alone";
+    const json again = result("killed.json");
+    EXPECT_EQ(of_id(again["figures"], "figure6-cubes-cpu")["series"],
+              of_id(resumed["figures"], "figure6-cubes-cpu")["series"]);
+}
+
+TEST_F(resume, a_journal_of_other_options_is_refused)
+{
+    const std::string arguments = "table4 --method maria --size 32 --views 0-1281:20 --out r.json ";
+    (void)kill_in_the_middle(arguments + "--layout tet80", "r.json.journal");
+    const Ended other = run(arguments + "--layout tet96 --resume");
+    EXPECT_EQ(other.code, 2);
+    EXPECT_TRUE(contains(other.errors, "is of another run"));
+    EXPECT_TRUE(contains(other.errors, "rows:")) << "it says what differs";
+    EXPECT_EQ(run("table4 --size 33 --method maria --layout tet80 --views 0-1281:20 --out r.json --resume").code, 2);
+}

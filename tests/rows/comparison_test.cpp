@@ -1,0 +1,93 @@
+#include "bench/measuring/comparison.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+RowRun row_on(const std::string& backend, const std::string& type, double seconds, const std::string& uuid = "")
+{
+    RowRun row;
+    row.key = {"bunny", backend, {}, RayKind::primary, TetOrder::hilbert, 0};
+    row.device.type = type;
+    row.device.uuid = uuid;
+    Traced result;
+    result.totals.rays = 1000;
+    row.outcome = result;
+    row.samples_s = {0.99 * seconds, seconds, 1.01 * seconds, seconds, 0.99 * seconds, 1.01 * seconds};
+    return row;
+}
+
+template <class... Rows>
+std::vector<RowRun> list(Rows... rows)
+{
+    std::vector<RowRun> result;
+    (result.push_back(std::move(rows)), ...);
+    return result;
+}
+
+} // namespace
+
+TEST(comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
+{
+    const auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 4), row_on("vulkan", "gpu", 1, "a"),
+                           row_on("cuda", "gpu", 0.5, "a"));
+    const auto found = compare_rows(rows);
+    EXPECT_FALSE(found[0].has_value()) << "the reference itself";
+    ASSERT_TRUE(found[1].has_value());
+    EXPECT_EQ(found[1]->reference, &rows[0]);
+    EXPECT_DOUBLE_EQ(found[1]->rate.value, 0.5) << "above 1 is faster";
+    EXPECT_TRUE(found[1]->rate.contains(0.5));
+    ASSERT_TRUE(found[2].has_value());
+    EXPECT_EQ(found[2]->reference, &rows[3]);
+    EXPECT_FALSE(found[3].has_value());
+}
+
+TEST(comparison, without_cuda_a_gpus_first_api_is_the_reference)
+{
+    const auto rows = list(row_on("opencl", "gpu", 2, "a"), row_on("vulkan", "gpu", 1, "a"));
+    const auto found = compare_rows(rows);
+    EXPECT_FALSE(found[0].has_value());
+    ASSERT_TRUE(found[1].has_value());
+    EXPECT_EQ(found[1]->reference, &rows[0]);
+}
+
+TEST(comparison, an_emulation_without_openmp_beside_it_has_no_ratio)
+{
+    for (const auto& found : compare_rows(list(row_on("opencl", "emulated", 2), row_on("vulkan", "emulated", 1))))
+        EXPECT_FALSE(found.has_value());
+}
+
+TEST(comparison, no_ratio_joins_host_and_gpu_or_two_gpus)
+{
+    for (const auto& found :
+         compare_rows(list(row_on("openmp", "cpu", 2), row_on("cuda", "gpu", 1, "a"), row_on("vulkan", "gpu", 1, "b"))))
+        EXPECT_FALSE(found.has_value());
+}
+
+TEST(comparison, only_the_same_kernel_on_the_same_scene_compares)
+{
+    auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2), row_on("opencl", "emulated", 2),
+                     row_on("opencl", "emulated", 2), row_on("opencl", "emulated", 2));
+    rows[1].key.scene = "armadillo";
+    rows[2].key.kernel.layout = Layout::tet96;
+    rows[3].key.kernel.math = MathMode::fast;
+    rows[4].key.kernel.schedule = Schedule::persistent;
+    const auto found = compare_rows(rows);
+    for (const std::size_t i : {1u, 2u, 3u})
+        EXPECT_FALSE(found[i].has_value()) << i;
+    ASSERT_TRUE(found[4].has_value()) << "the reference has tiles";
+    EXPECT_EQ(found[4]->reference, &rows[0]);
+}
+
+TEST(comparison, a_row_without_a_rate_neither_compares_nor_is_a_reference)
+{
+    auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2));
+    std::get<Traced>(rows[0].outcome).different = 1;
+    EXPECT_FALSE(compare_rows(rows)[1].has_value());
+    std::get<Traced>(rows[0].outcome).different = 0;
+    EXPECT_TRUE(compare_rows(rows)[1].has_value());
+    rows[1].outcome = Failed{ErrorKind::internal, "device lost"};
+    EXPECT_FALSE(compare_rows(rows)[1].has_value());
+}

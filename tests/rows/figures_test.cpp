@@ -1,0 +1,216 @@
+#include "bench/measuring/figures.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+/// A row of 4,000,000 rays and 40,000,000 steps with a median of 0.5 s; figures are worked out by hand.
+RowRun timed_row(Layout layout = Layout::tet80)
+{
+    RowRun row;
+    row.key = {"a", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+    row.key.kernel.layout = layout;
+    row.device.type = "cpu";
+    Traced result;
+    result.totals.rays = 4'000'000;
+    result.totals.hits = 1'000'000;
+    result.totals.misses = 3'000'000;
+    result.totals.hit_steps = 25'000'000;
+    result.totals.miss_steps = 15'000'000;
+    row.outcome = result;
+    row.samples_s = {0.5, 0.25, 0.5, 1.0, 0.5};
+    return row;
+}
+
+/// Embree's single rays, four times as fast as timed_row().
+RowRun single_row(const std::string& scene)
+{
+    RowRun row = timed_row(Layout::embree);
+    row.key.scene = scene;
+    row.key.kernel.structure = Structure::bvh;
+    row.key.kernel.method = Method::single;
+    auto& totals = std::get<Traced>(row.outcome).totals;
+    totals.hit_steps = totals.miss_steps = 0;
+    row.samples_s = {0.125, 0.125, 0.125};
+    return row;
+}
+
+} // namespace
+
+TEST(figures, rates_are_counts_over_the_median)
+{
+    const auto figures = figures_of(timed_row());
+    ASSERT_TRUE(figures.has_value());
+    EXPECT_DOUBLE_EQ(figures->kernel_s.median, 0.5);
+    EXPECT_DOUBLE_EQ(figures->mrays_per_s, 8);
+    EXPECT_DOUBLE_EQ(figures->msteps_per_s.value(), 80);
+}
+
+// Three vertices and a face: 36 + 8 bytes in tet80, four rows of 16 in tet96; a fourth vertex is 12 or 16 bytes more.
+TEST(figures, bandwidth_is_steps_times_what_a_step_loads)
+{
+    EXPECT_DOUBLE_EQ(bytes_per_step({}), 44);
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::maria, Layout::tet96}), 64);
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::plane, Layout::tet80}), 56);
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::project, Layout::tet20}), 24) << "a vertex and two words";
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::project, Layout::tet16}), 32) << "a vertex and a row";
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::ms06, Layout::tet80}), 52);
+    EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::stp, Layout::tet96}), 64 + 32.0 / 3);
+    EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet80))->gb_per_s.value(), 3.52);
+    EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet96))->gb_per_s.value(), 5.12);
+}
+
+TEST(figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
+{
+    const auto figures = figures_of(single_row("a"));
+    ASSERT_TRUE(figures.has_value());
+    EXPECT_DOUBLE_EQ(figures->mrays_per_s, 32);
+    EXPECT_FALSE(figures->msteps_per_s.has_value());
+    EXPECT_FALSE(figures->gb_per_s.has_value());
+    EXPECT_FALSE(mean_steps(traced(single_row("a"))->totals).all.has_value());
+}
+
+TEST(figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
+{
+    RowRun row = timed_row();
+    EXPECT_FALSE(figures_of(row)->overhead_s.has_value());
+    row.wall_samples_s = {0.5625, 0.375, 0.75, 1.0, 0.53125};
+    EXPECT_DOUBLE_EQ(figures_of(row)->overhead_s.value(), 0.0625);
+    EXPECT_DOUBLE_EQ(figures_of(row)->wall_s.value(), 0.5625);
+}
+
+TEST(figures, mean_steps_are_apart_for_hits_and_misses)
+{
+    const MeanSteps mean = mean_steps(traced(timed_row())->totals);
+    EXPECT_DOUBLE_EQ(mean.all.value(), 10);
+    EXPECT_DOUBLE_EQ(mean.hit.value(), 25);
+    EXPECT_DOUBLE_EQ(mean.miss.value(), 5);
+}
+
+TEST(figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_scene)
+{
+    std::vector<RowRun> rows;
+    rows.push_back(single_row("b"));
+    std::get<Traced>(rows.back().outcome).totals.rays *= 3; // another scene's: must not be taken
+    rows.push_back(timed_row());
+    rows.push_back(single_row("a"));
+    EXPECT_DOUBLE_EQ(ratio_to_single(rows[1], rows).value(), 0.25);
+    EXPECT_DOUBLE_EQ(ratio_to_single(rows[2], rows).value(), 1);
+    rows.pop_back();
+    EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
+}
+
+TEST(figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
+{
+    std::vector<RowRun> rows;
+    rows.push_back(single_row("a"));
+    rows.push_back(timed_row());
+    rows[1].device.type = "gpu";
+    EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
+    rows[1].device.type = "emulated";
+    EXPECT_TRUE(ratio_to_single(rows[1], rows).has_value());
+}
+
+TEST(figures, a_row_has_rates_where_it_is_ok_or_flawed_and_was_timed)
+{
+    RowRun flawed = timed_row();
+    std::get<Traced>(flawed.outcome).verdicts.wrong = 1;
+    EXPECT_TRUE(figures_of(flawed).has_value());
+    RowRun lost = timed_row();
+    std::get<Traced>(lost.outcome).verdicts.lost = 1;
+    EXPECT_TRUE(figures_of(lost).has_value());
+    RowRun different = timed_row();
+    std::get<Traced>(different.outcome).different = 1;
+    EXPECT_FALSE(figures_of(different).has_value());
+    RowRun untimed = timed_row();
+    untimed.samples_s.clear();
+    EXPECT_FALSE(figures_of(untimed).has_value());
+    RowRun failed = timed_row();
+    failed.outcome = Failed{ErrorKind::internal, "driver gone"};
+    EXPECT_FALSE(figures_of(failed).has_value());
+}
+
+namespace {
+
+RowRun row_with(Outcome outcome, Method method = Method::maria)
+{
+    RowRun row;
+    row.key.kernel.method = method;
+    row.outcome = std::move(outcome);
+    return row;
+}
+
+Traced judged(std::uint64_t wrong, std::uint64_t lost, std::uint64_t different)
+{
+    Traced result;
+    result.verdicts.wrong = wrong;
+    result.verdicts.lost = lost;
+    result.different = different;
+    return result;
+}
+
+/// The exit code of two rows that are ok and a third; flawed ones pass in `bench` and with --allow-flawed.
+int code_with(Outcome outcome, bool flawed_passes)
+{
+    std::vector<RowRun> rows;
+    rows.push_back(row_with(Traced{}));
+    rows.push_back(row_with(std::move(outcome)));
+    rows.push_back(row_with(Traced{}));
+    return exit_code(rows, flawed_passes);
+}
+
+} // namespace
+
+TEST(exit_codes, rows_that_are_ok_skipped_or_unsupported_are_no_failure)
+{
+    for (const bool passes : {false, true}) {
+        EXPECT_EQ(code_with(Traced{}, passes), 0);
+        EXPECT_EQ(code_with(Skipped{Status::skipped, "no device"}, passes), 0);
+        EXPECT_EQ(code_with(Skipped{Status::unsupported, "no AVX2"}, passes), 0);
+    }
+}
+
+TEST(exit_codes, a_flawed_row_fails_unless_it_may_pass)
+{
+    EXPECT_EQ(code_with(judged(2, 0, 0), false), 1);
+    EXPECT_EQ(code_with(judged(2, 0, 0), true), 0);
+}
+
+TEST(exit_codes, a_lost_ray_of_a_robust_method_or_one_that_differs_from_openmp_fails_always)
+{
+    for (const bool passes : {false, true}) {
+        EXPECT_EQ(code_with(judged(0, 1, 0), passes), 1);
+        EXPECT_EQ(code_with(judged(0, 0, 1), passes), 1);
+    }
+    EXPECT_EQ(status_of(row_with(judged(0, 0, 1))), Status::wrong);
+    EXPECT_EQ(status_of(row_with(judged(3, 1, 0))), Status::flawed);
+    EXPECT_EQ(reason_of(row_with(judged(3, 1, 0))), "1 lost, 3 wrong");
+    EXPECT_EQ(reason_of(row_with(judged(0, 0, 2))), "2 different from openmp's");
+}
+
+TEST(exit_codes, a_method_that_does_not_claim_robustness_fails_only_where_a_device_differs_from_openmp)
+{
+    for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::single})
+        for (const bool passes : {false, true}) {
+            EXPECT_FALSE(fails(row_with(judged(3, 1, 0), method), passes)) << name_of(method);
+            EXPECT_TRUE(fails(row_with(judged(3, 1, 1), method), passes)) << name_of(method);
+        }
+    EXPECT_TRUE(claims_robustness({}));
+    EXPECT_TRUE(claims_robustness({.method = Method::project}));
+    EXPECT_TRUE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::cwbvh}));
+    for (const Layout theirs : {Layout::embree, Layout::rt})
+        EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = theirs}));
+}
+
+TEST(exit_codes, an_error_gives_that_of_its_kind_unless_something_is_wrong)
+{
+    EXPECT_EQ(code_with(Failed{ErrorKind::internal, ""}, true), exit_code(ErrorKind::internal));
+    EXPECT_EQ(code_with(Failed{ErrorKind::invalid_input, ""}, true), exit_code(ErrorKind::invalid_input));
+    EXPECT_NE(code_with(Failed{ErrorKind::internal, ""}, true), 0);
+    std::vector<RowRun> rows;
+    rows.push_back(row_with(Failed{ErrorKind::internal, ""}));
+    rows.push_back(row_with(judged(0, 1, 0)));
+    EXPECT_EQ(exit_code(rows, true), 1);
+}

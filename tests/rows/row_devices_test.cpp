@@ -1,0 +1,94 @@
+#include "bench/measuring/row_devices.h"
+
+#include "tests/support/fake_backend.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+Device device(const char* name, const char* type, const char* uuid = "")
+{
+    Device result;
+    result.name = name;
+    result.type = type;
+    result.uuid = uuid;
+    return result;
+}
+
+// Backends are static as every backend is: what is found out about a device is kept by its address.
+
+/// A row of 1,000,000 steps in a millisecond: 44 GB/s in tet80.
+RowRun row_of(Backend& backend)
+{
+    RowRun row;
+    row.key = {"a", backend.name(), {}, RayKind::primary, TetOrder::hilbert, 0};
+    row.backend = &backend;
+    row.device = backend.devices()[0];
+    Traced result;
+    result.totals.rays = 1000;
+    result.totals.hit_steps = 1'000'000;
+    row.outcome = result;
+    row.samples_s = {1e-3, 1e-3, 1e-3};
+    return row;
+}
+
+template <class... Rows>
+std::vector<RowRun> list(Rows... rows)
+{
+    std::vector<RowRun> result;
+    (result.push_back(std::move(rows)), ...);
+    return result;
+}
+
+} // namespace
+
+TEST(row_devices, are_listed_once_by_hardware_emulations_last)
+{
+    static FakeBackend opencl("opencl", device("PoCL", "emulated")), cuda("cuda", device("GPU", "gpu", "a")),
+        vulkan("vulkan", device("GPU", "gpu", "a")), openmp("openmp", device("CPU", "cpu"));
+    const auto rows = list(row_of(opencl), row_of(cuda), row_of(openmp), row_of(vulkan), row_of(openmp));
+    const auto devices = devices_of(rows);
+    std::string order;
+    for (const RowDevice& found : devices)
+        order += found.backend->name() + std::to_string(found.hardware) + " ";
+    EXPECT_EQ(order, "openmp0 opencl0 cuda1 vulkan1 ");
+    EXPECT_EQ(device_of(rows[2], devices), std::size_t{0});
+    EXPECT_FALSE(device_of(RowRun{}, devices).has_value());
+}
+
+TEST(row_devices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
+{
+    static FakeBackend slow("a", device("slow", "gpu", "a")), fast("b", device("fast", "gpu", "b"));
+    slow.measure = [] { return Yardstick{88e9, 1e-6}; };
+    fast.measure = [] { return Yardstick{440e9, 1e-6}; };
+    const auto rows = list(row_of(slow), row_of(fast));
+    auto devices = devices_of(rows);
+    EXPECT_FALSE(share_of_copy(rows[0], devices).has_value()) << "not measured yet";
+    measure_devices(devices, {});
+    EXPECT_DOUBLE_EQ(share_of_copy(rows[0], devices).value(), 0.5);
+    EXPECT_DOUBLE_EQ(share_of_copy(rows[1], devices).value(), 0.1);
+}
+
+TEST(row_devices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)
+{
+    static FakeBackend host("host", device("CPU", "cpu")), gpu("gpu", device("GPU", "gpu"));
+    auto devices = devices_of(list(row_of(host), row_of(gpu)));
+    measure_devices(devices, {.threads = 1});
+    ASSERT_TRUE(devices[0].yardstick.has_value());
+    EXPECT_GT(devices[0].yardstick->copy_bytes_per_s, 0);
+    EXPECT_FALSE(devices[1].yardstick.has_value());
+}
+
+TEST(row_devices, a_device_that_fails_keeps_the_reason_and_the_others_are_measured)
+{
+    static FakeBackend lost("lost", device("lost", "gpu", "a")), good("good", device("good", "gpu", "b"));
+    lost.measure = []() -> std::optional<Yardstick> { throw Error(ErrorKind::internal, "the device was lost"); };
+    good.measure = [] { return Yardstick{1e9, 1e-6}; };
+    auto devices = devices_of(list(row_of(lost), row_of(good)));
+    measure_devices(devices, {});
+    EXPECT_EQ(devices[0].problem, "yardstick: the device was lost");
+    EXPECT_EQ(devices[1].problem, "");
+    EXPECT_TRUE(devices[1].yardstick.has_value());
+}

@@ -1,0 +1,268 @@
+#include "bench/options/benchmark_flags.h"
+#include "bench/rows/rows.h"
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+std::vector<std::string> names(const std::vector<std::string>& arguments, const std::vector<std::string>& scenes)
+{
+    std::vector<std::string> list;
+    // Not those of this machine's GPU interfaces.
+    for (const RowKey& key :
+         select_rows(parse_options(arguments), scenes, {all_backends().front(), all_backends().back()}))
+        list.push_back(row_name(key));
+    return list;
+}
+
+/// A backend that has every kernel of structure cdt, on hosts that run none of math mode fast.
+class OldHost : public Backend {
+public:
+    explicit OldHost(std::vector<Device> devices = {Device{}}) : devices_(std::move(devices)) {}
+    [[nodiscard]] std::string name() const override { return "old"; }
+    [[nodiscard]] std::string clock() const override { return "none"; }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.structure == Structure::cdt; }
+    [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
+    {
+        return kernel.math == MathMode::fast ? "no fused multiply-add" : "";
+    }
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData&,
+                                                const SessionOptions&) override
+    {
+        throw Error(ErrorKind::unsupported, why_not(0, kernel));
+    }
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Row>) override { return {}; }
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
+
+private:
+    std::vector<Device> devices_;
+};
+
+/// A backend whose kernels trace by the driver's own BVH, on its device number 1 alone.
+class Drivers : public OldHost {
+public:
+    Drivers() : OldHost({Device{}, Device{}}) {}
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId&) const override
+    {
+        return device == 1 ? "" : "no extension";
+    }
+};
+
+Device device_named(const char* name, const char* type, bool usable = true)
+{
+    Device device;
+    device.name = name;
+    device.type = type;
+    device.usable = usable;
+    if (!usable) device.reason = "no driver; install one";
+    return device;
+}
+
+Options with_required(const char* backend)
+{
+    Options options = parse_options({"bench"});
+    options.required = {backend};
+    return options;
+}
+
+} // namespace
+
+TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_lacks_is_none)
+{
+    OldHost old;
+    const auto rows = select_rows(parse_options({"bench", "--math", "exact,fast"}), {"a"}, {&old});
+    EXPECT_EQ(rows.size(), 7u);
+    EXPECT_EQ(
+        std::count_if(rows.begin(), rows.end(), [](const RowKey& key) { return key.kernel.math == MathMode::fast; }),
+        3);
+    EXPECT_TRUE(std::none_of(rows.begin(), rows.end(),
+                             [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
+}
+
+TEST(rows, every_usable_device_has_rows_named_by_its_index)
+{
+    OldHost old({device_named("a", "gpu"), device_named("b", "gpu", false), device_named("c", "cpu")});
+    const auto rows = select_rows(parse_options({"bench", "--layout", "tet80"}), {"s"}, {&old});
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(row_name(rows[0]), "cdt/maria/tet80/s/primary/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[1]), "cdt/maria/tet80/s/primary/math:exact/api:old:2");
+    EXPECT_EQ(device_label(rows[1]), "old:2");
+    EXPECT_TRUE(missing_devices(parse_options({"bench"}), {&old}).empty());
+}
+
+TEST(rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
+{
+    OldHost old({device_named("Radeon", "gpu"), device_named("llvmpipe", "emulated")});
+    const auto indices = [&](const char* text) {
+        std::vector<std::size_t> found;
+        for (const RowKey& key :
+             select_rows(parse_options({"bench", "--layout", "tet80", "--device", text}), {"s"}, {&old}))
+            found.push_back(key.device);
+        return found;
+    };
+    EXPECT_EQ(indices("radeON"), std::vector<std::size_t>{0});
+    EXPECT_EQ(indices("EMULATED"), std::vector<std::size_t>{1});
+    EXPECT_EQ(indices("radeon,pipe"), (std::vector<std::size_t>{0, 1}));
+    EXPECT_THROW(static_cast<void>(indices("geforce")), Error);
+}
+
+TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
+{
+    OldHost old({device_named("none", "gpu", false)});
+    OldHost usable;
+    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 4u);
+    EXPECT_THROW(static_cast<void>(select_rows(parse_options({"bench"}), {"s"}, {&old})), Error);
+    EXPECT_EQ(missing_devices(parse_options({"bench"}), {&old}),
+              std::vector<std::string>{"old: no device: no driver; install one"});
+    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 4u);
+    EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
+}
+
+TEST(rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_asked_for)
+{
+    Drivers drivers;
+    const auto names_with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "bench");
+        std::vector<std::string> list;
+        for (const RowKey& key : select_rows(parse_options(arguments), {"s"}, {&drivers}))
+            list.push_back(row_name(key));
+        return list;
+    };
+    const std::string without = "bvh/single/rt/s/primary/math:fast/api:old", with = without + ":1";
+    EXPECT_EQ(names_with({}), std::vector{with});
+    EXPECT_EQ(names_with({"--math", "exact", "--schedule", "persistent"}), std::vector{with});
+    EXPECT_EQ(names_with({"--layout", "bvh2,rt"}), (std::vector{without, with}));
+    EXPECT_EQ(names_with({"--filter", "/rt/"}), (std::vector{without, with}));
+    EXPECT_THROW((void)names_with({"--layout", "bvh2"}), Error);
+    const KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = Layout::rt};
+    EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt");
+}
+
+TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
+{
+    OldHost old;
+    const auto rows = select_rows(parse_options({"bench", "--schedule", "tiles,persistent"}), {"s"}, {&old});
+    EXPECT_EQ(rows.size(), 6u);
+    EXPECT_EQ(row_name(rows[3]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
+}
+
+TEST(rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
+{
+    EXPECT_EQ(names({"bench"}, {"bunny"}),
+              (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
+                                        "cdt/maria/tet96/bunny/primary/math:exact/api:openmp",
+                                        "cdt/project/half32/bunny/primary/math:exact/api:openmp",
+                                        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp",
+                                        "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
+                                        "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
+                                        "bvh/single/embree/bunny/primary/math:fast/api:embree",
+                                        "bvh/packet16/embree/bunny/primary/math:fast/api:embree"}));
+}
+
+TEST(rows, the_papers_tables_have_no_packets)
+{
+    const auto list = names({"reproduce", "table4", "--method", "project", "--layout", "half32"}, {"a"});
+    EXPECT_EQ(list, std::vector<std::string>{"cdt/project/half32/a/primary/math:exact/api:openmp"});
+}
+
+TEST(rows, every_method_has_rows_where_all_are_asked_for)
+{
+    const auto list = names({"bench", "--method", "all", "--layout", "tet80,embree"}, {"a"});
+    ASSERT_EQ(list.size(), 8u);
+    EXPECT_EQ(list[0], "cdt/plane/tet80/a/primary/math:exact/api:openmp");
+    EXPECT_EQ(list[4], "cdt/maria/tet80/a/primary/math:exact/api:openmp");
+    EXPECT_EQ(list[5], "cdt/project/tet80/a/primary/math:exact/api:openmp");
+    EXPECT_EQ(list[6], "bvh/single/embree/a/primary/math:fast/api:embree");
+    EXPECT_EQ(names({"check", "--method", "plucker"}, {"a"}).size(), 2u);
+}
+
+TEST(rows, options_select_and_rows_go_scene_after_scene)
+{
+    EXPECT_EQ(names({"bench", "--layout", "tet96"}, {"a", "b"}),
+              (std::vector<std::string>{"cdt/maria/tet96/a/primary/math:exact/api:openmp",
+                                        "cdt/maria/tet96/b/primary/math:exact/api:openmp"}));
+    EXPECT_EQ(names({"bench", "--backend", "embree", "--method", "packet16"}, {"a"}),
+              std::vector<std::string>{"bvh/packet16/embree/a/primary/math:fast/api:embree"});
+}
+
+TEST(rows, embree_has_one_row_whatever_the_math_modes_and_orders)
+{
+    const auto list =
+        names({"bench", "--math", "exact,fast", "--order", "input,hilbert", "--layout", "tet80,embree"}, {"a"});
+    EXPECT_EQ(std::count_if(list.begin(), list.end(),
+                            [](const auto& name) { return name.find("api:embree") + 10 == name.size(); }),
+              2);
+    EXPECT_NE(std::find(list.begin(), list.end(), "cdt/maria/tet80/a/primary/math:exact/order:input/api:openmp"),
+              list.end());
+    EXPECT_NE(std::find(list.begin(), list.end(), "cdt/maria/tet80/a/primary/math:exact/api:openmp"), list.end());
+}
+
+TEST(rows, values_given_twice_give_a_row_once)
+{
+    EXPECT_EQ(names({"bench", "--layout", "tet80,tet80", "--order", "input,input"}, {"a"}).size(), 1u);
+}
+
+TEST(rows, the_filter_is_a_search_in_names)
+{
+    EXPECT_EQ(names({"bench", "--filter", "tet80|packet16"}, {"a"}).size(), 2u);
+    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 6u);
+}
+
+TEST(rows, an_empty_selection_is_an_error_that_says_so)
+{
+    try {
+        static_cast<void>(names({"bench", "--filter", "tet97"}, {"a"}));
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string(error.what()).find("matches none of the 8 rows"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("cdt/maria/tet96/a"), std::string::npos) << error.what();
+    }
+    try {
+        static_cast<void>(names({"bench", "--backend", "embree", "--method", "maria"}, {"a"}));
+        FAIL() << "accepted";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("Embree traces its own BVH only"), std::string::npos) << error.what();
+    }
+}
+
+TEST(rows, google_benchmarks_filter_negates_with_a_minus)
+{
+    EXPECT_TRUE(benchmark_filter_keeps("", "x"));
+    EXPECT_TRUE(benchmark_filter_keeps("all", "x"));
+    EXPECT_TRUE(benchmark_filter_keeps("maria.*openmp$", "cdt/maria/api:openmp"));
+    EXPECT_FALSE(benchmark_filter_keeps("-maria", "cdt/maria/api:openmp"));
+    EXPECT_THROW(static_cast<void>(benchmark_filter_keeps("(", "x")), Error);
+}
+
+TEST(rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays)
+{
+    OldHost old;
+    const auto rows = select_rows(parse_options({"bench", "--method", "all", "--layout", "tet80", "--rays",
+                                                 "primary,ao,diffuse", "--ray-order", "tiles,shuffled"}),
+                                  {"s"}, {&old});
+    ASSERT_EQ(rows.size(), 6u + 8u) << "six methods trace primary rays, maria and project are given others";
+    EXPECT_EQ(row_name(rows[6]), "cdt/maria/tet80/s/ao/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[7]), "cdt/project/tet80/s/ao/math:exact/api:old");
+    EXPECT_EQ(row_name(rows[8]), "cdt/maria/tet80/s/ao/math:exact/rays:shuffled/api:old");
+    EXPECT_EQ(kernel_title(rows[8]), "cdt maria tet80, ao shuffled");
+    EXPECT_EQ(rows[8].kernel.task, Task::rays);
+    EXPECT_EQ(rows[0].kernel.task, Task::trace);
+}
+
+TEST(rows, bvhs_of_ours_have_math_modes_and_schedules_and_embrees_do_not)
+{
+    const auto bvhs = names({"bench", "--structure", "bvh", "--math", "exact,fast"}, {"s"});
+    EXPECT_EQ(bvhs, (std::vector<std::string>{"bvh/single/bvh2/s/primary/math:exact/api:openmp",
+                                              "bvh/single/cwbvh/s/primary/math:exact/api:openmp",
+                                              "bvh/single/bvh2/s/primary/math:fast/api:openmp",
+                                              "bvh/single/cwbvh/s/primary/math:fast/api:openmp",
+                                              "bvh/single/embree/s/primary/math:fast/api:embree",
+                                              "bvh/packet16/embree/s/primary/math:fast/api:embree"}));
+}

@@ -1,0 +1,132 @@
+// The program tetrace-builder: what it writes, what it says, and the code that it ends with.
+#include "scenes/builder/failure.h"
+#include "scenes/scene_file.h"
+#include "tests/support/builder_meshes.h"
+
+#include <cstdlib>
+#include <sys/wait.h>
+
+namespace tetrace {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool address_sanitized = true;
+#elif defined(__has_feature)
+constexpr bool address_sanitized = __has_feature(address_sanitizer);
+#else
+constexpr bool address_sanitized = false;
+#endif
+
+class BuilderProgram : public Builder {
+protected:
+    struct Ended {
+        int code;
+        std::string errors;
+    };
+    [[nodiscard]] Ended run(const std::string& arguments, const std::string& before = "") const
+    {
+        const auto log = folder_ / "log";
+        const std::string command =
+            before + "'" TETRACE_BUILDER_PROGRAM "' " + arguments + " 2> '" + log.string() + "' > /dev/null";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(log)};
+    }
+    [[nodiscard]] Ended run_on(const std::filesystem::path& mesh, const std::string& more = "",
+                               const std::string& before = "") const
+    {
+        return run("--mesh '" + mesh.string() + "' --out '" + (folder_ / "out.tet").string() + "' " + more, before);
+    }
+};
+
+} // namespace
+
+TEST_F(BuilderProgram, writes_a_scene_that_can_be_read_back)
+{
+    const auto ended =
+        run_on(write("ball.off", to_off(sphere(2))), "--name ball --domain wide --divisions 2 --switches pq5");
+    ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "stage: TetGen pq5\n"));
+    const Scene scene = read_scene(folder_ / "out.tet");
+    EXPECT_EQ(scene.name, "ball");
+    EXPECT_EQ(scene.domain.kind, DomainKind::wide);
+    EXPECT_EQ(scene.domain.divisions, 2u);
+    expect_sound(scene);
+}
+
+TEST_F(BuilderProgram, notes_what_it_dropped)
+{
+    TriangleMesh mesh = tetrahedron();
+    mesh.triangles.push_back({1, 2, 0});
+    mesh.triangles.push_back({1, 1, 0});
+    const auto ended = run_on(write("a.off", to_off(mesh)));
+    EXPECT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "note: 1 triangles without area dropped\n"));
+    EXPECT_TRUE(contains(ended.errors, "note: 1 duplicate triangles dropped\n"));
+    EXPECT_EQ(read_scene(folder_ / "out.tet").build.duplicate_triangles, 1u);
+}
+
+TEST_F(BuilderProgram, answers_help_and_version)
+{
+    EXPECT_EQ(run("--help").code, BUILDER_GOOD);
+    EXPECT_EQ(run("--version").code, BUILDER_GOOD);
+}
+
+TEST_F(BuilderProgram, refuses_wrong_options_with_code_2)
+{
+    const auto mesh = write("a.off", to_off(tetrahedron()));
+    EXPECT_EQ(run("").code, BUILDER_USAGE);
+    for (const std::string wrong :
+         {"--domian tight", "--domain square", "--divisions 0", "--divisions 65", "--divisions two", "--switches q5",
+          "--switches pr", "--switches pq5Yo2", "extra"}) {
+        const auto ended = run_on(mesh, wrong);
+        EXPECT_EQ(ended.code, BUILDER_USAGE) << wrong;
+        EXPECT_EQ(ended.errors.rfind("error: ", 0), 0u) << wrong << ": " << ended.errors;
+    }
+}
+
+TEST_F(BuilderProgram, refuses_bad_meshes_with_code_5)
+{
+    const auto ended = run_on(write("a.off", "OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n"));
+    EXPECT_EQ(ended.code, BUILDER_BAD_MESH);
+    EXPECT_TRUE(contains(ended.errors, "a.off: vertex 1 (line 4)"));
+    EXPECT_EQ(run_on(write("b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n")).code, BUILDER_BAD_MESH) << "no area";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.tet"));
+}
+
+TEST_F(BuilderProgram, tells_missing_files_with_code_3)
+{
+    EXPECT_EQ(run_on(folder_ / "none.off").code, BUILDER_MISSING_FILE);
+    const auto mesh = write("a.off", to_off(tetrahedron()));
+    EXPECT_EQ(run("--mesh '" + mesh.string() + "' --out '" + (folder_ / "none" / "out.tet").string() + "'").code,
+              BUILDER_MISSING_FILE);
+}
+
+TEST_F(BuilderProgram, lists_self_intersections_with_code_10)
+{
+    const auto ended = run_on(write("a.off", to_off(crossing_pair())));
+    EXPECT_EQ(ended.code, BUILDER_SELF_INTERSECTION);
+    EXPECT_TRUE(contains(ended.errors, "error:   triangle 1 (1, 1, -1) (1, 1, 1) (2, 1, 1)\n"));
+}
+
+TEST_F(BuilderProgram, tells_tetgens_refusal_with_code_11)
+{
+    // Two triangles over one edge, so close to each other that TetGen takes them for one.
+    const TriangleMesh hinge{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}, {0.5f, 1, 1e-9f}}, {{0, 1, 2}, {0, 1, 3}}};
+    const auto ended = run_on(write("a.off", to_off(hinge)));
+    EXPECT_EQ(ended.code, BUILDER_TETGEN_REFUSED) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "error: TetGen gave up with code 3"));
+    EXPECT_TRUE(contains(ended.errors, std::string(try_other_switches)));
+}
+
+TEST_F(BuilderProgram, tells_exhausted_memory_with_code_13)
+{
+    if (address_sanitized) GTEST_SKIP() << "AddressSanitizer reserves more address space than any limit";
+    const auto mesh = write("a.off", to_off(tetrahedron()));
+    std::filesystem::resize_file(mesh, 400u << 20); // a hole: it takes no room on disk
+    const auto ended = run_on(mesh, "", "ulimit -v 200000; ");
+    EXPECT_EQ(ended.code, BUILDER_OUT_OF_MEMORY) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "out of memory"));
+    EXPECT_TRUE(contains(ended.errors, std::string(allow_more_memory)));
+}
+
+} // namespace tetrace

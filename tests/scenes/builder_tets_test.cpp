@@ -1,0 +1,240 @@
+// What the builder makes of TetGen's tets: a sound scene of every kind of mesh, mended where rounding inverts a tet,
+// and refused where the output is absurd.
+#include "core/base/exact.h"
+#include "scenes/builder/convert_tets.h"
+#include "scenes/builder/failure.h"
+#include "scenes/builder/run_tetgen.h"
+#include "scenes/builder/steiner_rounding.h"
+#include "tests/support/builder_meshes.h"
+
+namespace tetrace {
+namespace {
+
+BuilderTalk silence()
+{
+    return {[](const std::string&) {}, [](const std::string&) {}};
+}
+
+// Every occlusive face has its corners on the triangle that it names: a swap of two coplanar triangles would keep all
+// areas.
+void expect_faces_inside_their_triangles(const Scene& scene)
+{
+    for (const Tet& tet : scene.tets.tets) {
+        for (std::size_t face = 0; face < 4; face++) {
+            if (tet.faces[face] == FREE_FACE) continue;
+            const auto& [a, b, c] = scene.mesh.triangles[tet.faces[face]];
+            const Double3 va = to_double(scene.mesh.vertices[a]), vb = to_double(scene.mesh.vertices[b]),
+                          vc = to_double(scene.mesh.vertices[c]);
+            Double3 centre;
+            for (std::size_t i = 0; i < 4; i++)
+                if (i != face) centre = centre + to_double(scene.tets.vertices[tet.vertices[i]]) * (1.0 / 3);
+            const double whole = length(cross(vb - va, vc - va));
+            const double parts = length(cross(va - centre, vb - centre)) + length(cross(vb - centre, vc - centre)) +
+                                 length(cross(vc - centre, va - centre));
+            ASSERT_NEAR(parts, whole, 1e-4 * whole) << "a face of triangle " << tet.faces[face] << " lies outside it";
+        }
+    }
+}
+
+Scene build(const BuilderOptions& options)
+{
+    PreparedScene prepared = prepare_scene(options, silence());
+    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, options.switches);
+    return finish_scene(std::move(prepared), output, silence());
+}
+
+// A tet cut into four at a point that rounding pushed just through one of its faces.
+TetMesh four_tets(Float3 middle)
+{
+    TetMesh mesh{{{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, middle}, {}};
+    for (std::size_t i = 0; i < 4; i++) {
+        Tet tet{{1, 0, 2, 3}, {NO_LINK, NO_LINK, NO_LINK, NO_LINK}, {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}};
+        tet.vertices[i] = 4;
+        mesh.tets.push_back(tet);
+    }
+    return mesh;
+}
+
+class AbsurdOutput : public Builder {
+protected:
+    AbsurdOutput() : options_(options(sphere(1), DomainKind::wide, "pq")), prepared_(prepare_scene(options_, silence()))
+    {
+        output_ = run_tetgen(prepared_.scene.mesh, prepared_.surface, options_.switches);
+    }
+    void expect_absurd(const std::string& part)
+    {
+        try {
+            static_cast<void>(finish_scene(prepared_, output_, silence()));
+            ADD_FAILURE() << "damaged output passed";
+        } catch (const BuilderFailure& failure) {
+            EXPECT_EQ(failure.code(), BUILDER_ABSURD_OUTPUT);
+            EXPECT_TRUE(contains(failure.what(), part));
+            EXPECT_TRUE(contains(failure.what(), std::string(try_other_switches)));
+        }
+    }
+
+    BuilderOptions options_;
+    PreparedScene prepared_;
+    TetgenOutput output_;
+};
+
+} // namespace
+
+TEST(SteinerRounding, mends_inverted_and_flat_tets_by_a_near_float)
+{
+    for (const float depth : {0.0f, -0x1p-24f, -0x1p-20f}) {
+        TetMesh mesh = four_tets({0.125f, 0.125f, depth});
+        std::vector<Freedom> freedom(5);
+        freedom[4] = {{true, true, true}, 1 << 12};
+        const auto [before, after, moved] = mend_tets(mesh, freedom);
+        EXPECT_EQ(before, 1u);
+        EXPECT_EQ(after, 0u);
+        EXPECT_EQ(moved, 1u);
+        EXPECT_NEAR(mesh.vertices[4].z, 0, 0x1p-18);
+        for (const Tet& tet : mesh.tets)
+            EXPECT_LT(orientation(mesh.vertices[tet.vertices[0]], mesh.vertices[tet.vertices[1]],
+                                  mesh.vertices[tet.vertices[2]], mesh.vertices[tet.vertices[3]]),
+                      0);
+    }
+}
+
+TEST(SteinerRounding, leaves_what_may_not_move)
+{
+    TetMesh mesh = four_tets({0.125f, 0.125f, -0x1p-20f});
+    const TetMesh before = mesh;
+    std::vector<Freedom> freedom(5);
+    EXPECT_EQ(mend_tets(mesh, freedom)[1], 1u);
+    freedom[4] = {{true, true, false}, 1 << 12};
+    EXPECT_EQ(mend_tets(mesh, freedom)[1], 1u);
+    EXPECT_EQ(mesh, before);
+}
+
+TEST_F(Builder, fills_both_domains_round_every_kind_of_mesh)
+{
+    const std::vector<TriangleMesh> meshes = {tetrahedron(), flat_cube(6), sphere(3)};
+    for (std::size_t i = 0; i < meshes.size(); i++) {
+        for (const DomainKind domain : {DomainKind::tight, DomainKind::wide}) {
+            for (const std::string switches : {"p", "pq5Y", "pq5", "pq5YM", "pq"}) {
+                SCOPED_TRACE("mesh " + std::to_string(i) + ", domain " + std::to_string(static_cast<int>(domain)) +
+                             ", switches " + switches);
+                const Scene scene = build(options(meshes[i], domain, switches));
+                expect_sound(scene);
+                expect_faces_inside_their_triangles(scene);
+                EXPECT_EQ(scene.mesh.triangles.size(), meshes[i].triangles.size());
+            }
+        }
+    }
+}
+
+TEST_F(Builder, keeps_triangles_and_squares_whole_with_y)
+{
+    const Scene scene = build(options(flat_cube(6), DomainKind::tight, "pq5Y"));
+    const TetMeshCounts counts = count_faces(scene.tets);
+    EXPECT_EQ(counts.occlusive_faces, 12u * 6 * 6);
+    EXPECT_EQ(counts.boundary_faces, 12u * 4 * 4);
+}
+
+TEST_F(Builder, records_how_the_scene_came_to_be)
+{
+    const Scene scene = build(options(sphere(1), DomainKind::wide, "pq5Y"));
+    EXPECT_EQ(scene.name, "mesh");
+    EXPECT_EQ(scene.build.source, "mesh.off");
+    EXPECT_NE(scene.build.source_hash, 0u);
+    EXPECT_EQ(scene.build.switches, "pq5Y");
+    EXPECT_TRUE(contains(scene.build.tool, "TetGen 1."));
+    EXPECT_GT(scene.build.build_s, 0);
+    EXPECT_EQ(scene.domain.kind, DomainKind::wide);
+}
+
+TEST_F(AbsurdOutput, names_missing_tets)
+{
+    output_.tets.clear();
+    output_.neighbours.clear();
+    expect_absurd("no tets");
+}
+
+TEST_F(AbsurdOutput, names_indices_out_of_range)
+{
+    output_.tets[5][2] = static_cast<std::int32_t>(output_.points.size());
+    expect_absurd("tet 5 names a vertex");
+}
+
+TEST_F(AbsurdOutput, names_asymmetric_neighbours)
+{
+    std::swap(output_.neighbours[7][0], output_.neighbours[7][1]);
+    expect_absurd("asymmetric neighbours");
+}
+
+// Two pairs of neighbours change partners: each names the other back, over faces that have other vertices.
+TEST_F(AbsurdOutput, names_neighbours_that_share_other_vertices)
+{
+    const auto exchange = [&](std::size_t tet, std::int32_t from, std::int32_t to) {
+        auto& row = output_.neighbours[tet];
+        const auto at = std::find(row.begin(), row.end(), from);
+        ASSERT_NE(at, row.end());
+        *at = to;
+    };
+    const auto inner = [&](std::int32_t tet) {
+        const auto& row = output_.neighbours[static_cast<std::size_t>(tet)];
+        return *std::find_if(row.begin(), row.end(), [](std::int32_t n) { return n >= 0; });
+    };
+    const std::int32_t a = 0, c = static_cast<std::int32_t>(output_.tets.size()) - 1;
+    const std::int32_t b = inner(a), d = inner(c);
+    ASSERT_TRUE(b != c && b != d && a != d);
+    exchange(static_cast<std::size_t>(a), b, d);
+    exchange(static_cast<std::size_t>(d), c, a);
+    exchange(static_cast<std::size_t>(c), d, b);
+    exchange(static_cast<std::size_t>(b), a, c);
+    expect_absurd("which does not name it back");
+}
+
+TEST_F(AbsurdOutput, names_a_domain_that_is_not_filled)
+{
+    const std::size_t hole = output_.tets.size() - 1;
+    for (const auto& face : output_.surface_faces) // a tet of free faces, so that only the volume tells
+        for (const std::int32_t corner : face.corners) {
+            const auto& tet = output_.tets[hole];
+            ASSERT_TRUE(face.triangle < 0 || std::find(tet.begin(), tet.end(), corner) == tet.end());
+        }
+    output_.tets.pop_back();
+    output_.neighbours.pop_back();
+    for (auto& row : output_.neighbours)
+        std::replace(row.begin(), row.end(), static_cast<std::int32_t>(hole), -1);
+    expect_absurd("volume of the domain: the tets' volumes sum to");
+}
+
+TEST_F(AbsurdOutput, names_a_boundary_beside_the_domain_s_sides)
+{
+    for (float& line : prepared_.scene.domain.lines[0])
+        line += 0.0625f; // as large, so that the volume does not tell
+    expect_absurd("the domain's sides: making the entry grid: tet");
+}
+
+TEST_F(AbsurdOutput, names_missing_triangles)
+{
+    std::erase_if(output_.surface_faces, [](const auto& face) { return face.triangle == 3; });
+    expect_absurd("missing input triangles");
+}
+
+TEST_F(AbsurdOutput, names_faces_of_another_triangle)
+{
+    for (auto& face : output_.surface_faces)
+        if (face.triangle == 3) face.triangle = 4;
+    expect_absurd("missing input triangles");
+}
+
+TEST_F(AbsurdOutput, names_surface_faces_that_no_tet_has)
+{
+    output_.surface_faces.push_back({{0, 1, 1}, 0}); // without area, so that the sum of areas does not tell
+    expect_absurd("faces lie on input triangles");
+}
+
+TEST_F(AbsurdOutput, names_inverted_tets_and_who_made_them)
+{
+    ASSERT_GT(output_.points.size(), output_.input_points);
+    const Double3 apex = output_.points.back(); // a Steiner point
+    output_.points.back() = {-apex.x, -apex.y, -apex.z};
+    expect_absurd("0 were so in TetGen's double coordinates already");
+}
+
+} // namespace tetrace

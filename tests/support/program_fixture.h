@@ -1,0 +1,42 @@
+#pragma once
+
+#include "tests/support/temporary_folder.h"
+
+#include <cstdlib>
+#include <fmt/format.h>
+#include <string>
+#include <sys/wait.h>
+
+namespace tetrace {
+
+/// How a run of the program ended.
+struct Ended {
+    int code = -1;
+    std::string out, errors;
+};
+
+/// The program TETRACE_PROGRAM in a folder of its own, with a cache of its own.
+class ProgramTest : public testing::Test {
+protected:
+    Ended run(const std::string& arguments)
+    {
+        const auto out = folder_.path() / "stdout", errors = folder_.path() / "stderr";
+        const std::string command =
+            fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' '{1}' {2} > '{3}' 2> '{4}'", folder_.path().string(),
+                        TETRACE_PROGRAM, arguments, out.string(), errors.string());
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(errors)};
+    }
+
+    Ended bench(const std::string& arguments)
+    {
+        // Not on this machine's GPU interfaces, whose number nobody knows.
+        return run("bench --backend openmp,embree --scene cubes --resolution 6 --size 24 --samples 3 " + arguments);
+    }
+
+    [[nodiscard]] std::string file(const char* name) const { return read_text(folder_.path() / name); }
+
+    TemporaryFolder folder_;
+};
+
+} // namespace tetrace

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "tests/support/temporary_folder.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tetrace {
+
+/// How a run of the program ended.
+struct Ended {
+    int code = -1;
+    std::string out, errors;
+};
+
+/// The program's reproduce in a folder of its own, on a scene that it makes itself unless another is named.
+class ReproduceTest : public testing::Test {
+protected:
+    /// Starts it; its process.
+    [[nodiscard]] pid_t start(const std::string& arguments) const
+    {
+        const bool names_backends = arguments.find("--backend") != std::string::npos;
+        const bool names_scenes = arguments.find("--scene") != std::string::npos;
+        std::istringstream words("tetrace reproduce " + arguments + (names_backends ? "" : " --backend openmp") +
+                                 (names_scenes ? "" : " --scene cubes --resolution 6") + " --threads 1");
+        std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
+        std::vector<char*> pointers;
+        for (std::string& word : list)
+            pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        const pid_t child = ::fork();
+        if (child != 0) return child;
+        ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+        if (::chdir(folder_.path().c_str()) != 0) ::_exit(126);
+        ::dup2(::open("stdout", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+        ::dup2(::open("stderr", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+        ::execv(TETRACE_PROGRAM, pointers.data());
+        ::_exit(127);
+    }
+
+    [[nodiscard]] Ended end(pid_t child) const
+    {
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder_ / "stdout"),
+                read_text(folder_ / "stderr")};
+    }
+
+    [[nodiscard]] Ended run(const std::string& arguments) const { return end(start(arguments)); }
+
+    [[nodiscard]] nlohmann::json result(const std::string& name) const
+    {
+        return nlohmann::json::parse(read_text(folder_ / name)).at("tetrace");
+    }
+
+    [[nodiscard]] std::size_t lines(const std::string& name) const
+    {
+        const std::string text = read_text(folder_ / name);
+        return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    }
+
+    /// Kills the run when its journal has a few views, and gives back how many.
+    std::size_t kill_in_the_middle(const std::string& arguments, const std::string& journal) const
+    {
+        const pid_t child = start(arguments);
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+        while (lines(journal) < 4 && std::chrono::steady_clock::now() < deadline)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ::kill(child, SIGKILL);
+        EXPECT_EQ(end(child).code, -1) << "it ended before it was killed";
+        return lines(journal) - 1;
+    }
+
+    TemporaryFolder folder_;
+};
+
+/// The one of that id. Throws std::runtime_error without one.
+inline const nlohmann::json& of_id(const nlohmann::json& list, const std::string& id)
+{
+    for (const nlohmann::json& one : list)
+        if (one.at("id") == id) return one;
+    throw std::runtime_error("nothing of id " + id);
+}
+
+} // namespace tetrace

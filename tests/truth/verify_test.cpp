@@ -1,0 +1,364 @@
+#include "bench/measuring/verify.h"
+
+#include "bench/measuring/conformity.h"
+#include "bench/output/check_differences.h"
+#include "bench/output/difference_pictures.h"
+#include "bench/rows/ray_store.h"
+#include "scenes/procedural.h"
+#include "tests/support/temporary_folder.h"
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+using Damage = std::function<void(std::span<Hit>)>;
+
+/// A device that answers as openmp does, and then damages the answers.
+class DamagedSession : public Session {
+public:
+    DamagedSession(std::unique_ptr<Session> inner, Damage damage) : inner_(std::move(inner)), damage_(std::move(damage))
+    {
+    }
+    void set_rays(std::span<const Row> rows) override { inner_->set_rays(rows); }
+    void launch(const TraceJob& job) override { inner_->launch(job); }
+    [[nodiscard]] double wait() override { return inner_->wait(); }
+    void read_output(std::span<std::uint32_t> words) override
+    {
+        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
+        inner_->read_back(hits);
+        damage_(hits);
+        std::fill(words.begin(), words.end(), POISON);
+        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
+    }
+    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
+    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
+
+private:
+    std::unique_ptr<Session> inner_;
+    Damage damage_;
+};
+
+class verify : public testing::Test {
+protected:
+    /// Verifies maria on tet80 through a damaged openmp that calls itself `backend`.
+    RowRun verified(const std::string& backend, const Damage& damage, SelfTest self_test = {})
+    {
+        RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+        RowRun row = open_row(key, scene_, options_);
+        EXPECT_EQ(row.self_test, SelfTest{}) << "openmp in exact mode";
+        row.self_test = self_test;
+        EXPECT_NE(row.session, nullptr) << reason_of(row);
+        row.key.backend = backend;
+        row.session = std::make_unique<DamagedSession>(std::move(row.session), damage);
+        verify_rows({&row}, scene_, options_);
+        return row;
+    }
+
+    /// A row of openmp's on rays that are given, whose answers are damaged, called `backend`.
+    RowRun damaged_row(RayKind kind, Layout layout, const Damage& damage, const std::string& backend)
+    {
+        RowKey key{"cubes", "openmp", {}, kind, TetOrder::hilbert};
+        key.kernel.task = Task::rays;
+        key.kernel.layout = layout;
+        key.kernel.structure = structure_of(layout);
+        if (key.kernel.structure == Structure::bvh) key.kernel.method = Method::single;
+        RowRun row = open_row(key, scene_, options_);
+        EXPECT_NE(row.session, nullptr) << reason_of(row);
+        row.key.backend = backend;
+        row.session = std::make_unique<DamagedSession>(std::move(row.session), damage);
+        return row;
+    }
+
+    RowRun verified_given(RayKind kind, Layout layout, const Damage& damage, const std::string& backend = "other")
+    {
+        RowRun row = damaged_row(kind, layout, damage, backend);
+        verify_rows({&row}, scene_, options_);
+        return row;
+    }
+
+    static LoadedScene loaded_cubes()
+    {
+        LoadedScene loaded;
+        loaded.scene = make_cubes(6);
+        loaded.scene.name = "cubes";
+        return loaded;
+    }
+
+    static void damage_first_hit(std::span<Hit> hits, const std::function<void(Hit&)>& change)
+    {
+        for (Hit& hit : hits)
+            if (hit.face_id < POISON) {
+                change(hit);
+                return;
+            }
+        FAIL() << "no ray hits";
+    }
+
+    Options options_ = parse_options({"check", "--size", "40", "--views", "0,2"});
+    SceneWork scene_{loaded_cubes(), options_};
+};
+
+} // namespace
+
+TEST_F(verify, right_answers_are_ok_and_counted)
+{
+    const RowRun row = verified("openmp", [](std::span<Hit>) {});
+    ASSERT_NE(traced(row), nullptr) << reason_of(row);
+    EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
+    EXPECT_EQ(traced(row)->totals.rays, 2u * 40 * 40);
+    EXPECT_EQ(traced(row)->verdicts.rays, 2u * 40 * 40);
+    EXPECT_FALSE(traced(row)->compared);
+    EXPECT_GT(traced(row)->totals.hits, 0u);
+    EXPECT_GT(traced(row)->totals.misses, 0u);
+}
+
+TEST_F(verify, another_backend_with_openmps_answers_is_ok)
+{
+    const RowRun row = verified("other", [](std::span<Hit>) {});
+    EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
+    EXPECT_TRUE(traced(row)->compared);
+}
+
+TEST_F(verify, another_backend_with_one_other_step_count_is_wrong)
+{
+    const RowRun row = verified("other", [](std::span<Hit> hits) { hits[41].steps += 1; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(traced(row)->different, 2u) << "one a view";
+    ASSERT_TRUE(traced(row)->first_different.has_value());
+    EXPECT_EQ(traced(row)->first_different->view, 0u);
+    EXPECT_EQ(traced(row)->first_different->x, 1u);
+    EXPECT_EQ(traced(row)->first_different->y, 1u);
+}
+
+TEST_F(verify, a_method_with_a_wrong_face_is_flawed)
+{
+    const RowRun row = verified("openmp", [](std::span<Hit> hits) {
+        damage_first_hit(hits, [](Hit& hit) { hit.face_id = hit.face_id == 0 ? 200 : 0; });
+    });
+    EXPECT_EQ(status_of(row), Status::flawed);
+    EXPECT_GE(traced(row)->verdicts.wrong, 2u);
+    EXPECT_TRUE(traced(row)->verdicts.first_wrong.has_value());
+}
+
+TEST_F(verify, a_lost_ray_makes_a_row_flawed)
+{
+    const RowRun row = verified("openmp", [](std::span<Hit> hits) { hits[0].face_id = LOST; });
+    EXPECT_EQ(status_of(row), Status::flawed);
+    EXPECT_EQ(reason_of(row), "2 lost");
+    EXPECT_EQ(traced(row)->verdicts.lost, 2u);
+}
+
+TEST_F(verify, a_wrong_parameter_makes_a_row_flawed)
+{
+    const RowRun row =
+        verified("openmp", [](std::span<Hit> hits) { damage_first_hit(hits, [](Hit& hit) { hit.t *= 1.01f; }); });
+    EXPECT_EQ(status_of(row), Status::flawed);
+    EXPECT_GE(traced(row)->verdicts.wrong, 2u);
+}
+
+TEST_F(verify, a_ray_that_was_never_written_is_wrong_and_named)
+{
+    const RowRun row = verified("other", [](std::span<Hit> hits) { hits[5].face_id = POISON; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(conformity_text(row), "wrong");
+    EXPECT_EQ(reason_of(row), "1 of 1600 rays were never written, the first at view 0, pixel (5, 0)");
+    EXPECT_EQ(row.session, nullptr);
+    std::vector<RowRun> rows(1);
+    rows[0].outcome = row.outcome;
+    EXPECT_EQ(exit_code(rows, true), 1);
+}
+
+TEST_F(verify, a_kernel_that_never_ran_is_wrong)
+{
+    const RowRun row =
+        verified("other", [](std::span<Hit> hits) { std::memset(hits.data(), 0xFD, hits.size_bytes()); });
+    EXPECT_EQ(status_of(row), Status::wrong) << reason_of(row);
+}
+
+TEST_F(verify, a_device_that_answers_with_an_earlier_launchs_hits_is_wrong)
+{
+    std::vector<Hit> first;
+    const RowRun row = verified("other", [&](std::span<Hit> hits) {
+        if (first.empty()) first.assign(hits.begin(), hits.end());
+        std::copy(first.begin(), first.end(), hits.begin());
+    });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(traced(row)->first_different->view, 2u);
+}
+
+TEST_F(verify, a_device_that_changes_its_answer_is_wrong)
+{
+    int calls = 0;
+    const RowRun row = verified("other", [&](std::span<Hit> hits) { hits[3].steps += ++calls > 2 ? 1u : 0u; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(reason_of(row), "the hits of view 0 changed when it was traced again");
+}
+
+TEST_F(verify, a_device_that_writes_elsewhere_is_wrong)
+{
+    RowRun row = verified(
+        "openmp", [](std::span<Hit>) { throw Error(ErrorKind::wrong_result, "the kernel wrote before its hits"); });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    EXPECT_EQ(conformity_of(row), Conformity::wrong);
+}
+
+TEST_F(verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_further)
+{
+    SelfTest inexact;
+    inexact.division_ulps = 1;
+    const auto off_by = [&](int ulps, const SelfTest& test) {
+        return verified(
+            "other",
+            [&](std::span<Hit> hits) {
+                damage_first_hit(hits, [&](Hit& hit) {
+                    for (int i = 0; i < ulps; i++)
+                        hit.t = std::nextafter(hit.t, 100.0f);
+                });
+            },
+            test);
+    };
+    EXPECT_EQ(conformity_text(off_by(0, inexact)), "bit-exact");
+    EXPECT_EQ(conformity_text(off_by(2, inexact)), "within 2 ulp");
+    EXPECT_EQ(status_of(off_by(2, inexact)), Status::ok);
+    EXPECT_EQ(conformity_text(off_by(4, inexact)), "wrong: 2 rays");
+    EXPECT_EQ(conformity_text(off_by(1, {})), "wrong: 2 rays") << "a device whose division is correctly rounded";
+}
+
+TEST_F(verify, a_device_that_contracts_may_not_claim_to_be_exact)
+{
+    SelfTest contracting;
+    contracting.contracts = true;
+    const RowRun row = verified(
+        "other", [](std::span<Hit>) {}, contracting);
+    EXPECT_EQ(traced(row)->different, 0u);
+    EXPECT_EQ(conformity_of(row), Conformity::not_exact);
+    EXPECT_EQ(conformity_text(row), "not exact: contracts");
+}
+
+TEST_F(verify, images_are_shown_with_openmps_hits_beside_them)
+{
+    RowRun row = open_row({"cubes", "openmp", {}}, scene_, options_);
+    row.key.backend = "other";
+    std::size_t seen = 0;
+    verify_rows({&row}, scene_, options_, [&](const SeenImage& image) {
+        seen++;
+        EXPECT_EQ(compare_hits(image.hits, image.reference, {}).inexact, 0u);
+        const Pixmap picture = draw_differences(image.hits, image.reference, {}, scene_, image.view);
+        std::vector<Hit> changed(image.hits.begin(), image.hits.end());
+        changed[7].steps += 1;
+        const Pixmap marked = draw_differences(changed, image.reference, {}, scene_, image.view);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < marked.pixels.size(); i++)
+            different += marked.pixels[i] == picture.pixels[i] ? 0u : 1u;
+        EXPECT_EQ(different, 1u);
+        EXPECT_FALSE(marked.pixels[7] == picture.pixels[7]);
+    });
+    EXPECT_EQ(seen, 2u);
+}
+
+TEST_F(verify, what_a_device_throws_ends_as_the_rows_outcome)
+{
+    const RowRun unsupported =
+        verified("openmp", [](std::span<Hit>) { throw Error(ErrorKind::unsupported, "buffer of 3 GB"); });
+    EXPECT_EQ(status_of(unsupported), Status::unsupported);
+    EXPECT_EQ(reason_of(unsupported), "buffer of 3 GB");
+    const RowRun failed = verified("openmp", [](std::span<Hit>) { throw std::runtime_error("driver gone"); });
+    EXPECT_EQ(status_of(failed), Status::error);
+    EXPECT_THROW(
+        static_cast<void>(verified("openmp", [](std::span<Hit>) { throw Error(ErrorKind::interrupted, "^C"); })),
+        Error);
+}
+
+TEST_F(verify, given_rays_are_judged_and_compared_where_they_are_given)
+{
+    for (const RayKind kind : {RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random})
+        for (const Layout layout : {Layout::tet80, Layout::bvh2}) {
+            const RowRun row = verified_given(kind, layout, [](std::span<Hit>) {});
+            ASSERT_NE(traced(row), nullptr) << row_name(row.key) << ": " << reason_of(row);
+            EXPECT_EQ(status_of(row), Status::ok) << row_name(row.key) << ": " << reason_of(row);
+            EXPECT_TRUE(traced(row)->compared);
+            EXPECT_GT(traced(row)->totals.rays, 100u) << row_name(row.key);
+            EXPECT_EQ(traced(row)->verdicts.rays, traced(row)->totals.rays);
+        }
+}
+
+TEST_F(verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
+{
+    const RowRun row =
+        verified_given(RayKind::diffuse, Layout::tet80, [](std::span<Hit> hits) { hits[17].steps += 1; });
+    EXPECT_EQ(status_of(row), Status::wrong);
+    ASSERT_TRUE(traced(row)->first_different.has_value());
+    const std::uint32_t pixel = scene_.given_rays().set(scene_, RayKind::diffuse, RayOrder::tiles, 0).rays[17].pixel;
+    EXPECT_EQ(traced(row)->first_different->x, pixel % 40);
+    EXPECT_EQ(traced(row)->first_different->y, pixel / 40);
+}
+
+TEST_F(verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
+{
+    const auto one_step_more = [](std::span<Hit> hits) { hits[17].steps += 1; };
+    for (const Layout layout : {Layout::tet80, Layout::cwbvh}) {
+        const RowRun given = verified_given(RayKind::diffuse, layout, one_step_more);
+        const std::string text = differences_text(given);
+        EXPECT_NE(text.find("rays differ from openmp's"), std::string::npos) << text;
+        EXPECT_EQ(text.find("tets of"), std::string::npos) << text;
+        nlohmann::json object = {{"verification", nlohmann::json::object()}};
+        add_paths(object, given);
+        EXPECT_TRUE(object["verification"].empty()) << object;
+    }
+    const RowRun primary = verified("other", [](std::span<Hit> hits) {
+        for (Hit& hit : hits)
+            if (hit.face_id < POISON) hit.steps += 1;
+    });
+    EXPECT_NE(differences_text(primary).find("tets of openmp"), std::string::npos);
+}
+
+TEST_F(verify, a_given_ray_with_a_wrong_face_is_flawed)
+{
+    for (const RayKind kind : {RayKind::shadow, RayKind::diffuse}) {
+        const RowRun row = verified_given(
+            kind, Layout::tet80,
+            [](std::span<Hit> hits) {
+                damage_first_hit(hits, [](Hit& hit) { hit = {NO_HIT, hit.tet, 0, 0, 0, hit.steps}; });
+            },
+            "openmp");
+        EXPECT_EQ(status_of(row), Status::flawed) << name_of(kind);
+        EXPECT_GE(traced(row)->verdicts.wrong, 1u) << name_of(kind);
+    }
+}
+
+TEST_F(verify, visits_are_counted_on_openmps_bvhs_alone)
+{
+    const RowRun counted = verified_given(
+        RayKind::diffuse, Layout::cwbvh, [](std::span<Hit>) {}, "openmp");
+    EXPECT_EQ(traced(counted)->visits.rays, traced(counted)->totals.rays);
+    EXPECT_GE(traced(counted)->visits.nodes, traced(counted)->visits.rays) << "each ray enters the root";
+    EXPECT_GE(traced(counted)->visits.triangles, traced(counted)->totals.hits);
+    const RowRun of_tets = verified_given(
+        RayKind::diffuse, Layout::tet80, [](std::span<Hit>) {}, "openmp");
+    EXPECT_EQ(traced(of_tets)->visits.rays, 0u);
+}
+
+TEST_F(verify, a_counting_build_that_answers_otherwise_is_an_error)
+{
+    const RowRun row = verified_given(
+        RayKind::diffuse, Layout::bvh2,
+        [](std::span<Hit> hits) { damage_first_hit(hits, [](Hit& hit) { hit.u += 0.25f; }); }, "openmp");
+    EXPECT_EQ(status_of(row), Status::error) << reason_of(row);
+    EXPECT_NE(reason_of(row).find("visits"), std::string::npos) << reason_of(row);
+}
+
+TEST_F(verify, pictures_of_given_rays_show_them_at_their_pixels)
+{
+    const TemporaryFolder folder;
+    DifferencePictures pictures(folder.path());
+    RowRun row = damaged_row(
+        RayKind::diffuse, Layout::tet80, [](std::span<Hit> hits) { hits[3].steps += 1; }, "other");
+    verify_rows({&row}, scene_, options_, [&](const SeenImage& image) { pictures.see(image); });
+    ASSERT_EQ(pictures.files().size(), 2u) << "one a view";
+    EXPECT_GT(std::filesystem::file_size(pictures.files().front()), 100u);
+}
