@@ -26,3 +26,10 @@ if(TETRACE_SANITIZE)
   target_compile_options(tetrace_options INTERFACE -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(tetrace_options INTERFACE -fsanitize=address,undefined)
 endif()
+
+# tetrace_room(<target> <sources>...): adds a folder's sources; a unity build, of mode GROUP, compiles them together.
+function(tetrace_room target)
+  target_sources(${target} PRIVATE ${ARGN})
+  string(MAKE_C_IDENTIFIER "${CMAKE_CURRENT_SOURCE_DIR}" group)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+endfunction()

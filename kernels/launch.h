@@ -50,7 +50,7 @@ KERNEL_FN uint ray_index(Pixel pixel)
     return pixel.y * TILE_WIDTH + pixel.x;
 }
 
-// How many rays there are: row r of ray i is number r * ray_count() + i.
+// How many rays there are: quad r of ray i is number r * ray_count() + i.
 KERNEL_FN uint ray_count(LaunchParams launch)
 {
     return launch.trace.height * TILE_WIDTH;

@@ -59,7 +59,7 @@ KERNEL_FN Ray primary_ray(TraceParams params, uint x, uint y)
     return make_ray(params.origin, VEC3(without_dust(dx), without_dust(dy), without_dust(dz)));
 }
 
-// A ray that is given, by its rows (layout.h).
+// A ray that is given, by its quads (layout.h).
 KERNEL_FN Ray given_ray(uint4 direction, uint4 origin)
 {
     return make_ray(VEC3(as_real(origin.x), as_real(origin.y), as_real(origin.z)),

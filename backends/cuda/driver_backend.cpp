@@ -23,12 +23,12 @@ ProgramId probe_program(MathMode math)
     return {"probe", math};
 }
 
-std::vector<std::uint32_t> run_probe(OpenDevice& device, FunctionHandle probe, std::span<const Row> operations)
+std::vector<std::uint32_t> run_probe(OpenDevice& device, FunctionHandle probe, std::span<const Quad> operations)
 {
     std::vector<std::uint32_t> results(operations.size());
-    const Memory rows(device.context, std::as_bytes(operations), "the self-test's operations", device.stream.get());
+    const Memory quads(device.context, std::as_bytes(operations), "the self-test's operations", device.stream.get());
     const Memory words(device.context, results.size() * sizeof(results[0]), "the self-test's results");
-    Address from = rows.address(), to = words.address();
+    Address from = quads.address(), to = words.address();
     auto count = static_cast<std::uint32_t>(operations.size());
     void* parameters[] = {&from, &to, &count};
     device.launch(probe, (count + probe_block_threads - 1) / probe_block_threads, probe_block_threads, parameters);
@@ -79,7 +79,7 @@ std::unique_ptr<Session> DriverBackend::open(std::size_t device, const KernelId&
                                          tile_height_for(here.devices[device], options));
 }
 
-std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode math, std::span<const Row> operations)
+std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode math, std::span<const Quad> operations)
 {
     const Found& here = require(device);
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));

@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
                                                 const SessionOptions& options) override;
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
-                                                   std::span<const Row> operations) override;
+                                                   std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
 
 private:

@@ -9,6 +9,6 @@ extern "C" __global__ void KERNEL_NAME(const uint4* operations, uint* results, u
 {
     uint index = blockIdx.x * blockDim.x + threadIdx.x;
     if (index >= count) return;
-    uint4 row = operations[index];
-    results[index] = probe(row.x, row.y, row.z, row.w);
+    uint4 quad = operations[index];
+    results[index] = probe(quad.x, quad.y, quad.z, quad.w);
 }

@@ -76,13 +76,13 @@ void CudaSession::upload(const PackedScene& scene)
     scene_.push_back(divisions_); // in the low half of the last eight bytes, as a little-endian host has it
 }
 
-void CudaSession::set_rays(std::span<const Row> rows)
+void CudaSession::set_rays(std::span<const Quad> quads)
 {
-    require_rays_fit(rows, max_buffer_bytes_);
+    require_rays_fit(quads, max_buffer_bytes_);
     make_current();
     finish_launch(); // which reads the old ones
     rays_ = {};      // before the new ones: both may not fit
-    rays_ = Memory(device_.context, std::as_bytes(rows), "the rays", device_.stream.get());
+    rays_ = Memory(device_.context, std::as_bytes(quads), "the rays", device_.stream.get());
     device_.synchronize();
 }
 

@@ -15,7 +15,7 @@ public:
                 const PackedScene& scene, const SessionOptions& options, unsigned tile_height);
     ~CudaSession() override;
 
-    void set_rays(std::span<const Row> rows) override;
+    void set_rays(std::span<const Quad> quads) override;
     void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }

@@ -44,7 +44,7 @@ public:
             kernel.method, kernel.task, std::make_shared<embree::Accelerator>(*scene.mesh, false, threads), threads);
     }
 
-    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Row>) override { return {}; }
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Quad>) override { return {}; }
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:

@@ -24,20 +24,20 @@ tetrace::Hit any_hit(float end)
     return {end < 0 ? SOME_HIT : NO_HIT, NO_TET, 0, 0, 0, 0};
 }
 
-Float3 vector_of(const Row& row)
+Float3 vector_of(const Quad& quad)
 {
-    return {std::bit_cast<float>(row.x), std::bit_cast<float>(row.y), std::bit_cast<float>(row.z)};
+    return {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
 }
 
-/// Rows as two lists (kernels/layouts/layout.h), and what is asked of each ray.
+/// Quads as two lists (kernels/layouts/layout.h), and what is asked of each ray.
 struct Rays {
-    std::span<const Row> directions, origins;
+    std::span<const Quad> directions, origins;
     bool any_hit;
 };
 
 tetrace::Hit trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number)
 {
-    const Row& origin = rays.origins[number];
+    const Quad& origin = rays.origins[number];
     RTCRayHit query =
         query_of(vector_of(origin), vector_of(rays.directions[number]), 0, std::bit_cast<float>(origin.w));
     if (rays.any_hit) {
@@ -55,8 +55,8 @@ void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t
     for (std::size_t i = 0; i < packet_rays; i++) {
         valid[i] = first + i < hits.size() ? -1 : 0;
         if (valid[i] == 0) continue;
-        const Row& direction = rays.directions[first + i];
-        const Row& origin = rays.origins[first + i];
+        const Quad& direction = rays.directions[first + i];
+        const Quad& origin = rays.origins[first + i];
         query.ray.org_x[i] = std::bit_cast<float>(origin.x);
         query.ray.org_y[i] = std::bit_cast<float>(origin.y);
         query.ray.org_z[i] = std::bit_cast<float>(origin.z);
@@ -81,11 +81,11 @@ void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t
 
 } // namespace
 
-void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Row> rows,
+void trace_given(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<const Quad> quads,
                  std::span<tetrace::Hit> hits, unsigned threads)
 {
     const std::size_t count = hits.size();
-    const Rays rays{rows.first(count), rows.subspan(count, count), job.any_hit};
+    const Rays rays{quads.first(count), quads.subspan(count, count), job.any_hit};
     const bool in_packets = method == Method::packet16;
     const std::size_t step = in_packets ? packet_rays : 1;
 #pragma omp parallel for schedule(dynamic, 64) num_threads(static_cast <int>(threads))

@@ -12,7 +12,7 @@ namespace tetrace::embree {
 class EmbreeSession : public HostSession {
 public:
     EmbreeSession(Method method, Task task, std::shared_ptr<const Accelerator> accelerator, unsigned threads);
-    void set_rays(std::span<const Row> rows) override { rays_.assign(rows.begin(), rows.end()); }
+    void set_rays(std::span<const Quad> quads) override { rays_.assign(quads.begin(), quads.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {accelerator_->build_s(), 0.0, false}; }
     [[nodiscard]] std::uint64_t bytes() const override { return accelerator_->bytes(); }
 
@@ -21,7 +21,7 @@ private:
 
     Method method_;
     Task task_;
-    std::vector<Row> rays_;
+    std::vector<Quad> rays_;
     std::shared_ptr<const Accelerator> accelerator_;
     unsigned threads_;
 };

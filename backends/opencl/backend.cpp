@@ -39,7 +39,7 @@ public:
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
-                                                   std::span<const Row> operations) override
+                                                   std::span<const Quad> operations) override
     {
         return opencl::run_probe(*context(device, 0), math, operations);
     }

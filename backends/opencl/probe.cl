@@ -3,12 +3,12 @@
 
 #include "kernels/probe.h"
 
-// An item a row of {operation, a, b, c}.
+// An item a quad of {operation, a, b, c}.
 __kernel void run_probe(__global const uint4* restrict operations, __global uint* restrict results)
 {
     size_t item = get_global_id(0);
-    uint4 row = operations[item];
-    results[item] = probe(row.x, row.y, row.z, row.w);
+    uint4 quad = operations[item];
+    results[item] = probe(quad.x, quad.y, quad.z, quad.w);
 }
 
 __kernel void do_nothing(void)

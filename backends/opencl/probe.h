@@ -9,7 +9,7 @@
 
 namespace tetrace::opencl {
 
-/// Runs kernels/probe.h, an item a row; a result a row. Throws Error where the device fails.
-[[nodiscard]] std::vector<std::uint32_t> run_probe(Context& context, MathMode math, std::span<const Row> operations);
+/// Runs kernels/probe.h, an item a quad; a result a quad. Throws Error where the device fails.
+[[nodiscard]] std::vector<std::uint32_t> run_probe(Context& context, MathMode math, std::span<const Quad> operations);
 
 } // namespace tetrace::opencl

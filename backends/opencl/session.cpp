@@ -112,13 +112,13 @@ void OpenclSession::set_arguments()
     kernel_.setArg(output_argument, output_);
 }
 
-void OpenclSession::set_rays(std::span<const Row> rows)
+void OpenclSession::set_rays(std::span<const Quad> quads)
 {
-    require_rays_fit(rows, max_buffer_bytes_);
-    run("uploading rays", rows.size_bytes(), [&] {
+    require_rays_fit(quads, max_buffer_bytes_);
+    run("uploading rays", quads.size_bytes(), [&] {
         queue_.finish();      // what is enqueued reads the old ones
         rays_ = cl::Buffer(); // which go first: both may not fit
-        rays_ = make_uploaded(context_->handle(), queue_, std::as_bytes(rows));
+        rays_ = make_uploaded(context_->handle(), queue_, std::as_bytes(quads));
         queue_.finish();
         kernel_.setArg(rays_argument, rays_);
     });

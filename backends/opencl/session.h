@@ -18,7 +18,7 @@ public:
     OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
                   const SessionOptions& options);
 
-    void set_rays(std::span<const Row> rows) override;
+    void set_rays(std::span<const Quad> quads) override;
     void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return times_; }

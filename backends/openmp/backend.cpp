@@ -58,7 +58,8 @@ public:
                                                        tile_height_for(devices_[0], options));
     }
 
-    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode math, std::span<const Row> operations) override
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode math,
+                                                   std::span<const Quad> operations) override
     {
         return math == MathMode::exact ? openmp::probe_exact(operations) : openmp::probe_fast(operations);
     }

@@ -66,7 +66,7 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
 
 namespace tetrace::openmp {
 
-void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row>, const TraceJob& job,
+void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad>, const TraceJob& job,
                                    std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
 {
     tetrace::Hit* const hits = as_hits(output).data();
@@ -78,7 +78,7 @@ void FUNCTION(trace_, KERNEL_NAME)(const PackedScene& packed, std::span<const Ro
 }
 
 #ifdef TAKES_RAYS
-void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row> rays, const TraceJob& job,
+void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
                                   std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
 {
     tetrace::Hit* const hits = as_hits(output).data();
@@ -92,7 +92,7 @@ void FUNCTION(rays_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row
 #endif
 
 #ifdef SEARCHES_EXITS
-void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Row> rays, const TraceJob& job,
+void FUNCTION(search_, KERNEL_NAME)(const PackedScene& packed, std::span<const Quad> rays, const TraceJob& job,
                                     std::span<std::uint32_t> output, unsigned threads, unsigned tile_height)
 {
     for_pixels(packed, job, threads, tile_height,

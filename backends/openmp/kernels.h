@@ -4,9 +4,9 @@
 
 namespace tetrace::openmp {
 
-/// Does all rays of a job, tile after tile, on so many threads. rays: the rows of those that are given, empty for task
+/// Does all rays of a job, tile after tile, on so many threads. rays: the quads of those that are given, empty for task
 /// trace. output: words_per_ray() a ray, row after row.
-using RunFunction = void(const PackedScene& scene, std::span<const Row> rays, const TraceJob& job,
+using RunFunction = void(const PackedScene& scene, std::span<const Quad> rays, const TraceJob& job,
                          std::span<std::uint32_t> output, unsigned threads, unsigned tile_height);
 
 /// One compiled kernel by task, null where it has none; CMake compiles kernel.cpp once for each.

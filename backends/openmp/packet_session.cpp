@@ -32,13 +32,13 @@ constexpr std::size_t huge_page = std::size_t{2} << 20;
 struct Rays {
     scalar::SceneView scene;
     scalar::TraceParams params;
-    std::span<const Row> given;
+    std::span<const Quad> given;
     Hit* hits;
 
-    [[nodiscard]] const Row& direction(std::uint32_t number) const { return given[number]; }
-    [[nodiscard]] const Row& origin(std::uint32_t number) const
+    [[nodiscard]] const Quad& direction(std::uint32_t number) const { return given[number]; }
+    [[nodiscard]] const Quad& origin(std::uint32_t number) const
     {
-        return given[given.size() / GIVEN_RAY_ROWS + number];
+        return given[given.size() / GIVEN_RAY_QUADS + number];
     }
 };
 
@@ -70,13 +70,13 @@ std::vector<PacketKernel> kernels_of_host()
     return kernels;
 }
 
-std::uint32_t* copy_of(const std::vector<Row>& rows)
+std::uint32_t* copy_of(const std::vector<Quad>& quads)
 {
-    if (rows.size() > (std::uint64_t{1} << 32) / 4)
+    if (quads.size() > (std::uint64_t{1} << 32) / 4)
         throw Error(ErrorKind::unsupported, "packets number the words of records with 32 bits, too few for " +
-                                                std::to_string(rows.size() * sizeof(Row)) +
+                                                std::to_string(quads.size() * sizeof(Quad)) +
                                                 " bytes; schedule tiles takes them");
-    const std::size_t bytes = rows.size() * sizeof(Row);
+    const std::size_t bytes = quads.size() * sizeof(Quad);
     const std::size_t whole_pages = std::max(huge_page, (bytes + huge_page - 1) / huge_page * huge_page);
     void* const block = std::aligned_alloc(huge_page, whole_pages);
     if (block == nullptr)
@@ -85,7 +85,7 @@ std::uint32_t* copy_of(const std::vector<Row>& rows)
 #ifdef MADV_HUGEPAGE
     madvise(block, whole_pages, MADV_HUGEPAGE); // a wish: without it walks are slower
 #endif
-    std::memcpy(block, rows.data(), bytes);
+    std::memcpy(block, quads.data(), bytes);
     return static_cast<std::uint32_t*>(block);
 }
 
@@ -165,11 +165,11 @@ SetupTimes PacketSession::setup_times() const
     return times;
 }
 
-void PacketSession::set_rays(std::span<const Row> rows)
+void PacketSession::set_rays(std::span<const Quad> quads)
 {
-    rays_.assign(rows.begin(), rows.end());
-    const auto origins = rows.subspan(rows.size() / GIVEN_RAY_ROWS);
-    rays_end_ = std::ranges::any_of(origins, [](const Row& row) { return std::bit_cast<float>(row.w) < NO_END; });
+    rays_.assign(quads.begin(), quads.end());
+    const auto origins = quads.subspan(quads.size() / GIVEN_RAY_QUADS);
+    rays_end_ = std::ranges::any_of(origins, [](const Quad& quad) { return std::bit_cast<float>(quad.w) < NO_END; });
 }
 
 void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)

@@ -22,7 +22,7 @@ struct PacketKernel {
 class PacketSession : public HostSession {
 public:
     PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads);
-    void set_rays(std::span<const Row> rows) override;
+    void set_rays(std::span<const Quad> quads) override;
     [[nodiscard]] SetupTimes setup_times() const override;
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
@@ -38,7 +38,7 @@ private:
     const PackedScene& scene_;
     unsigned threads_;
     double copy_s_ = 0;
-    std::vector<Row> rays_;
+    std::vector<Quad> rays_;
     bool rays_end_ = false;                        ///< any of them
     std::unique_ptr<std::uint32_t, Free> records_; ///< where no record crosses a line of the cache, on huge pages
 };

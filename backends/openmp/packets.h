@@ -15,7 +15,7 @@ struct PacketJob {
     std::uint32_t divisions;
     float origin[3], corner[3], step_x[3], step_y[3]; ///< of the view
     std::uint32_t width, height, start_tet, max_steps;
-    const std::uint32_t* directions; ///< rows of rays that are given, null where there are none: {direction, link}
+    const std::uint32_t* directions; ///< quads of rays that are given, null where there are none: {direction, link}
     const std::uint32_t* origins;    ///< {origin, end}
     bool has_ends;                   ///< whether any of them ends
     std::uint32_t ray_count;         ///< how many they are

@@ -16,14 +16,14 @@ namespace {
 
 namespace tetrace::openmp {
 
-std::vector<std::uint32_t> PROBE_SYMBOL(std::span<const Row> operations)
+std::vector<std::uint32_t> PROBE_SYMBOL(std::span<const Quad> operations)
 {
     std::fenv_t environment;
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV); // as the kernels' threads
     std::vector<std::uint32_t> results;
-    for (const Row& row : operations)
-        results.push_back(probe(row.x, row.y, row.z, row.w));
+    for (const Quad& quad : operations)
+        results.push_back(probe(quad.x, quad.y, quad.z, quad.w));
     std::fesetenv(&environment);
     return results;
 }

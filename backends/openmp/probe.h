@@ -8,9 +8,9 @@
 
 namespace tetrace::openmp {
 
-/// kernels/probe.h, compiled once per math mode from probe.cpp; a result a row.
-[[nodiscard]] std::vector<std::uint32_t> probe_exact(std::span<const Row> operations);
+/// kernels/probe.h, compiled once per math mode from probe.cpp; a result a quad.
+[[nodiscard]] std::vector<std::uint32_t> probe_exact(std::span<const Quad> operations);
 /// Precondition: host_has_fused_multiply().
-[[nodiscard]] std::vector<std::uint32_t> probe_fast(std::span<const Row> operations);
+[[nodiscard]] std::vector<std::uint32_t> probe_fast(std::span<const Quad> operations);
 
 } // namespace tetrace::openmp

@@ -9,7 +9,7 @@ namespace tetrace::openmp {
 class OpenmpSession : public HostSession {
 public:
     OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height);
-    void set_rays(std::span<const Row> rows) override { rays_.assign(rows.begin(), rows.end()); }
+    void set_rays(std::span<const Quad> quads) override { rays_.assign(quads.begin(), quads.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
@@ -18,7 +18,7 @@ private:
 
     RunFunction* run_;
     const PackedScene& scene_;
-    std::vector<Row> rays_;
+    std::vector<Quad> rays_;
     unsigned threads_, tile_height_;
 };
 

@@ -43,7 +43,7 @@ public:
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
-                                                   std::span<const Row> operations) override
+                                                   std::span<const Quad> operations) override
     {
         return vulkan::run_probe(vulkan::Context(found_.at(device)), math, operations);
     }

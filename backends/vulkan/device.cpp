@@ -117,7 +117,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     facts.type = properties.deviceType == vk::PhysicalDeviceType::eCpu ? "emulated" : "gpu";
     if (facts.type == "emulated") facts.threads = std::max(1u, std::thread::hardware_concurrency());
     // lavapipe 22.3 reads a storage buffer lane after lane, through memory: 3.5 times slower on this walk, and 7 times
-    // where rows are read (results/texels.md).
+    // where quads are read (results/texels.md).
     found.reads_texels = facts.type == "emulated";
     if (facts.type == "emulated") found.shares = facts.threads;
     // Its minimum is three instructions, two of them for NaNs; bvh2 is 7 % faster by selects, cwbvh 3 %.

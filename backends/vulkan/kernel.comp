@@ -26,14 +26,14 @@ layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
 
 #ifndef TRACE
 #ifdef SCENE_IN_TEXELS
-layout(set = 0, binding = FIRST_ROWS_BINDING + RAYS_BINDING) uniform usamplerBuffer rays;
-#define RAY_ROW(index) texelFetch(rays, int(index))
+layout(set = 0, binding = FIRST_QUADS_BINDING + RAYS_BINDING) uniform usamplerBuffer rays;
+#define RAY_QUAD(index) texelFetch(rays, int(index))
 #else
 layout(std430, set = 0, binding = RAYS_BINDING) readonly buffer Rays
 {
     uint4 rays[];
 };
-#define RAY_ROW(index) rays[index]
+#define RAY_QUAD(index) rays[index]
 #endif
 #endif
 
@@ -54,11 +54,11 @@ void main()
     uint ray = ray_index(pixel);
     uint count = ray_count(launch);
     output_words[GUARD_WORDS + ray] =
-        search_exit(scene, RAY_ROW(ray), RAY_ROW(count + ray), RAY_ROW(2u * count + ray));
+        search_exit(scene, RAY_QUAD(ray), RAY_QUAD(count + ray), RAY_QUAD(2u * count + ray));
 #else
 #ifdef RAYS
     uint ray = ray_index(pixel);
-    Hit hit = trace_given(scene, launch.trace, RAY_ROW(ray), RAY_ROW(ray_count(launch) + ray));
+    Hit hit = trace_given(scene, launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
 #else
     TraceParams params = launch.trace;
     params.start_tet = starts_outside ? NO_TET : params.start_tet;

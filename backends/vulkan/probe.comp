@@ -1,5 +1,5 @@
 #version 450
-// The self-test as a compute shader: an item a row of {operation, a, b, c}.
+// The self-test as a compute shader: an item a quad of {operation, a, b, c}.
 #include "kernels/language/dialect_glsl.h"
 
 #include "kernels/probe.h"
@@ -18,6 +18,6 @@ void main()
 {
     uint item = gl_GlobalInvocationID.x;
     if (item >= uint(operations.length())) return;
-    uint4 row = operations[item];
-    results[item] = probe(row.x, row.y, row.z, row.w);
+    uint4 quad = operations[item];
+    results[item] = probe(quad.x, quad.y, quad.z, quad.w);
 }

@@ -10,7 +10,7 @@ constexpr std::uint32_t group_items = 64; // local_size_x of probe.comp
 
 } // namespace
 
-std::vector<std::uint32_t> run_probe(const Context& context, MathMode math, std::span<const Row> operations)
+std::vector<std::uint32_t> run_probe(const Context& context, MathMode math, std::span<const Quad> operations)
 {
     std::vector<std::uint32_t> results(operations.size());
     if (operations.empty()) return results;
@@ -18,11 +18,11 @@ std::vector<std::uint32_t> run_probe(const Context& context, MathMode math, std:
     context.run("running the self-test", operations.size_bytes() + result_bytes.size(), [&] {
         const ProgramId id{.name = std::string("probe_").append(name_of(math)), .bindings = {0, 1}};
         const Program program(context, id, ProgramCache({}));
-        const Buffer rows(context, operations.size_bytes(), Place::device);
+        const Buffer quads(context, operations.size_bytes(), Place::device);
         const Buffer words(context, result_bytes.size(), Place::device);
         const Buffer staging = needs_staging(words) ? Buffer(context, result_bytes.size(), Place::read_back) : Buffer();
-        upload(context, rows, std::as_bytes(operations));
-        program.bind(context, 0, rows);
+        upload(context, quads, std::as_bytes(operations));
+        program.bind(context, 0, quads);
         program.bind(context, 1, words);
         const vk::raii::CommandBuffer commands = context.make_commands();
         commands.begin({});

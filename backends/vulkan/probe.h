@@ -9,8 +9,8 @@
 
 namespace tetrace::vulkan {
 
-/// Runs kernels/probe.h, an item a row; a result a row. Throws Error where the device fails.
+/// Runs kernels/probe.h, an item a quad; a result a quad. Throws Error where the device fails.
 [[nodiscard]] std::vector<std::uint32_t> run_probe(const Context& context, MathMode math,
-                                                   std::span<const Row> operations);
+                                                   std::span<const Quad> operations);
 
 } // namespace tetrace::vulkan

@@ -20,13 +20,13 @@ void require_storage_buffers(const FoundDevice& found, const PackedScene& scene,
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-/// Every array as texels, those of rows apart from those of words: kernels/language/scene_view_texels_glsl.h.
+/// Every array as texels, those of quads apart from those of words: kernels/language/scene_view_texels_glsl.h.
 std::vector<TexelBinding> texel_bindings(Layout layout)
 {
     std::vector<TexelBinding> texels;
     for (const SceneArray& array : scene_arrays(layout))
-        texels.push_back(array.element_bytes == sizeof(Row)
-                             ? TexelBinding{FIRST_ROWS_BINDING + array.binding, vk::Format::eR32G32B32A32Uint}
+        texels.push_back(array.element_bytes == sizeof(Quad)
+                             ? TexelBinding{FIRST_QUADS_BINDING + array.binding, vk::Format::eR32G32B32A32Uint}
                              : TexelBinding{array.binding, vk::Format::eR32Uint});
     return texels;
 }
@@ -47,7 +47,7 @@ constexpr std::uint32_t tiles_of_run = 4;
 
 constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as kernel_rt.comp has it
 
-constexpr TexelBinding rays_as_texels{FIRST_ROWS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
+constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
 
 void require_variant(const KernelId& kernel, const TetParts& parts)
 {
@@ -156,7 +156,7 @@ void VulkanSession::bind_scene()
 {
     if (acceleration_) program_->bind_structure(context_, structure_binding, acceleration_->handle());
     for (const TexelBinding& texels : in_texels_ ? texel_bindings(kernel_.layout) : std::vector<TexelBinding>{})
-        program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_ROWS_BINDING]);
+        program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_QUADS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
         program_->bind(context_, binding, arrays_[binding]);
     for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++) // those beyond the last are never read
@@ -164,17 +164,17 @@ void VulkanSession::bind_scene()
                        part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
 }
 
-void VulkanSession::set_rays(std::span<const Row> rows)
+void VulkanSession::set_rays(std::span<const Quad> quads)
 {
-    require_rays_fit(rows, max_buffer_bytes_);
-    const std::uint64_t words = rows.size_bytes() / sizeof(std::uint32_t);
+    require_rays_fit(quads, max_buffer_bytes_);
+    const std::uint64_t words = quads.size_bytes() / sizeof(std::uint32_t);
     if (in_texels_ && words > context_.found().limits.texels)
         throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(words) + " words, the device's views " +
                                                 std::to_string(context_.found().limits.texels));
-    context_.run("uploading rays", rows.size_bytes(), [&] {
+    context_.run("uploading rays", quads.size_bytes(), [&] {
         take_times(); // of what still reads the old ones
-        if (rays_.bytes() != rows.size_bytes()) bind_rays(Buffer(context_, rows.size_bytes(), Place::device));
-        upload(context_, rays_, std::as_bytes(rows));
+        if (rays_.bytes() != quads.size_bytes()) bind_rays(Buffer(context_, quads.size_bytes(), Place::device));
+        upload(context_, rays_, std::as_bytes(quads));
     });
 }
 

@@ -23,7 +23,7 @@ public:
     VulkanSession(const VulkanSession&) = delete;
     VulkanSession& operator=(const VulkanSession&) = delete;
 
-    void set_rays(std::span<const Row> rows) override;
+    void set_rays(std::span<const Quad> quads) override;
     void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }

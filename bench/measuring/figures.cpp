@@ -47,7 +47,7 @@ double bytes_per_step(const KernelId& kernel)
     switch (kernel.layout) {
     case Layout::tet80: return vertices * 12 + 8;
     case Layout::tet96: return vertices * 16 + 16;
-    case Layout::half32: return 16 * HALF32_ROWS;
+    case Layout::half32: return 16 * HALF32_QUADS;
     case Layout::tet20: return 16 + 8;
     case Layout::tet16: return 16 + 16;
     case Layout::bvh2:

@@ -34,8 +34,8 @@ Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hi
     const PackedScene& packed = row.packed->scene;
     std::vector<std::uint32_t> output(hits.size() * HIT_WORDS, POISON);
     const auto rays = row.key.kernel.task == Task::rays
-                          ? std::span<const Row>(scene.given_rays().rows(scene, row.key, &packed, view))
-                          : std::span<const Row>();
+                          ? std::span<const Quad>(scene.given_rays().rows(scene, row.key, &packed, view))
+                          : std::span<const Quad>();
     count(packed, rays, job_of(row, view), output, threads, tile_height);
     Visits visits;
     const std::span<const Hit> counted = as_hits(output);

@@ -13,14 +13,6 @@ namespace tetrace {
 
 namespace {
 
-std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<RowRun>& rows)
-{
-    std::vector<const RowRun*> found;
-    for (const RowRun& row : rows)
-        if (row.key.scene == scene) found.push_back(&row);
-    return found;
-}
-
 std::string timed_sentence(const BenchResult& result, const Options& options)
 {
     const Measurement& measurement = result.measurement;

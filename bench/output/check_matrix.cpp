@@ -13,14 +13,6 @@ namespace {
 
 using Pointers = std::vector<const RowRun*>;
 
-Pointers rows_of(const std::string& scene, const std::vector<RowRun>& rows)
-{
-    Pointers found;
-    for (const RowRun& row : rows)
-        if (row.key.scene == scene) found.push_back(&row);
-    return found;
-}
-
 /// What `name` says of each row, each text once, in the order of their first appearance.
 template <class Name>
 std::vector<std::string> names_of(const Pointers& rows, const Name& name)

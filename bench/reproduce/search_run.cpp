@@ -36,7 +36,7 @@ public:
         if (session == nullptr)
             session = openmp_backend().open(0, kernel, {nullptr, &run_->tets.at(kernel.layout).scene},
                                             session_options(*options_));
-        session->set_rays(rays.rows);
+        session->set_rays(rays.quads);
         session->launch(search_job(rays.count()));
         static_cast<void>(session->wait());
         Faces faces(rays.count(), POISON);
@@ -98,7 +98,7 @@ private:
     void prepare(RowRun& row, std::size_t batch) override
     {
         load(batch);
-        row.session->set_rays(rays_.rows);
+        row.session->set_rays(rays_.quads);
     }
 
     [[nodiscard]] TraceJob job_of(const RowRun&, std::size_t batch) const override

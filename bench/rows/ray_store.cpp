@@ -58,14 +58,15 @@ const RaySet& RayStore::set(SceneWork& scene, RayKind kind, RayOrder order, std:
     return entry->second;
 }
 
-const std::vector<Row>& RayStore::rows(SceneWork& scene, const RowKey& key, const PackedScene* packed, std::size_t view)
+const std::vector<Quad>& RayStore::rows(SceneWork& scene, const RowKey& key, const PackedScene* packed,
+                                        std::size_t view)
 {
     const SetKey set_key{key.rays, key.ray_order, view};
     const auto [entry, is_new] = rows_.try_emplace({set_key, key.kernel.structure, key.order});
     if (!is_new) return entry->second;
     const RaySet& rays = set(scene, key.rays, key.ray_order, view);
-    entry->second = key.kernel.structure == Structure::cdt ? given_rows(rays, *packed)
-                                                           : given_rows_offset(rays, scene.loaded().scene.mesh);
+    entry->second = key.kernel.structure == Structure::cdt ? given_quads(rays, *packed)
+                                                           : given_quads_offset(rays, scene.loaded().scene.mesh);
     return entry->second;
 }
 

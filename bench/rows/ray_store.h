@@ -21,8 +21,8 @@ public:
 
     /// The same as a kernel's session takes them: from a tet of the packed scene for the cdt; for BVHs, whose rays
     /// start off the surface, packed may be null.
-    [[nodiscard]] const std::vector<Row>& rows(SceneWork& scene, const RowKey& key, const PackedScene* packed,
-                                               std::size_t view);
+    [[nodiscard]] const std::vector<Quad>& rows(SceneWork& scene, const RowKey& key, const PackedScene* packed,
+                                                std::size_t view);
 
 private:
     using SetKey = std::tuple<RayKind, RayOrder, std::size_t>;
@@ -31,7 +31,7 @@ private:
 
     std::map<std::size_t, std::vector<Hit>> primary_hits_; ///< by view
     std::map<SetKey, RaySet> sets_;
-    std::map<std::tuple<SetKey, Structure, TetOrder>, std::vector<Row>> rows_; ///< layouts of a structure share them
+    std::map<std::tuple<SetKey, Structure, TetOrder>, std::vector<Quad>> rows_; ///< layouts of a structure share them
 };
 
 } // namespace tetrace

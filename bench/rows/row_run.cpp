@@ -95,6 +95,14 @@ std::string_view name_of(Status status)
     throw Error(ErrorKind::internal, "name_of(Status): no such status");
 }
 
+std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<RowRun>& rows)
+{
+    std::vector<const RowRun*> found;
+    for (const RowRun& row : rows)
+        if (row.key.scene == scene) found.push_back(&row);
+    return found;
+}
+
 const Traced* traced(const RowRun& row)
 {
     return std::get_if<Traced>(&row.outcome);

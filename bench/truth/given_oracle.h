@@ -8,8 +8,8 @@
 
 namespace tetrace {
 
-/// Where the rays that were traced started: where the set has them (given_rows), or offset, as BVHs get them
-/// (given_rows_offset).
+/// Where the rays that were traced started: where the set has them (given_quads), or offset, as BVHs get them
+/// (given_quads_offset).
 enum class Origins { own, offset };
 
 /// Judges the answers to rays that were given, as Oracle does those to primary ones. Embree gets the set's own origins

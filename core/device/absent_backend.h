@@ -17,7 +17,7 @@ public:
     [[nodiscard]] std::string why_not(std::size_t, const KernelId&) const override { return devices_.front().reason; }
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId&, const SceneData&,
                                                 const SessionOptions&) override;
-    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Row>) override { return {}; }
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Quad>) override { return {}; }
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:

@@ -89,10 +89,10 @@ struct Yardstick {
 class Session {
 public:
     virtual ~Session() = default;
-    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before. rows: as
-    /// many a ray as rows_per_ray() says (kernels/layouts/layout.h), for a multiple of TILE_WIDTH rays. Before any
+    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before. quads:
+    /// as many a ray as quads_per_ray() says (kernels/layouts/layout.h), for a multiple of TILE_WIDTH rays. Before any
     /// launch. Throws Error{unsupported} with both numbers where they exceed the largest buffer.
-    virtual void set_rays(std::span<const Row> rows);
+    virtual void set_rays(std::span<const Quad> quads);
     /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so
     /// long that a watchdog fires (core/device/launch.h).
     virtual void launch(const TraceJob& job) = 0;
@@ -133,10 +133,10 @@ public:
     [[nodiscard]] virtual std::string why_not(std::size_t device, const KernelId& kernel) const = 0;
     [[nodiscard]] virtual std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel,
                                                         const SceneData& scene, const SessionOptions& options) = 0;
-    /// Runs kernels/probe.h, a work item a row of {operation, a, b, c}; a result word each (core/device/self_test.h).
+    /// Runs kernels/probe.h, a work item a quad of {operation, a, b, c}; a result word each (core/device/self_test.h).
     /// Empty where the API runs none of our kernels.
     [[nodiscard]] virtual std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
-                                                           std::span<const Row> operations) = 0;
+                                                           std::span<const Quad> operations) = 0;
     /// Measures the device, in about a second; empty where the API has no memory and no launches of its own.
     [[nodiscard]] virtual std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) = 0;
 };

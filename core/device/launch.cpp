@@ -31,9 +31,9 @@ std::size_t words_per_ray(Task task)
     return task == Task::search ? 1 : HIT_WORDS;
 }
 
-std::size_t rows_per_ray(Task task)
+std::size_t quads_per_ray(Task task)
 {
-    return task == Task::search ? RAY_ROWS : task == Task::rays ? GIVEN_RAY_ROWS : 0;
+    return task == Task::search ? RAY_QUADS : task == Task::rays ? GIVEN_RAY_QUADS : 0;
 }
 
 std::size_t output_words(const TraceJob& job, Task task)
@@ -50,10 +50,10 @@ void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)
                                             "; trace a smaller image");
 }
 
-void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes)
+void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes)
 {
-    if (max_buffer_bytes == 0 || rows.size_bytes() <= max_buffer_bytes) return;
-    throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(rows.size_bytes()) +
+    if (max_buffer_bytes == 0 || quads.size_bytes() <= max_buffer_bytes) return;
+    throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(quads.size_bytes()) +
                                             " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
                                             "; give fewer at once");
 }

@@ -26,8 +26,8 @@ static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; se
 /// Words that a kernel writes a ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 
-/// Rows that a ray is given by; 0 of task trace.
-[[nodiscard]] std::size_t rows_per_ray(Task task);
+/// Quads that a ray is given by; 0 of task trace.
+[[nodiscard]] std::size_t quads_per_ray(Task task);
 
 /// Words of an image's output, guards included.
 [[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
@@ -37,7 +37,7 @@ static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; se
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
 
 /// The same for a session's rays.
-void require_rays_fit(std::span<const Row> rows, std::uint64_t max_buffer_bytes);
+void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes);
 
 /// Throws Error{internal} where other hits are read back than those of the last launch.
 void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words);

@@ -26,7 +26,7 @@ SceneBuffer buffer_of(const char* name, const std::vector<Element>& array)
 std::span<const SceneArray> scene_arrays(Layout layout)
 {
     using uint = std::uint32_t;
-    using uint4 = Row;
+    using uint4 = Quad;
 #define SCENE_ARRAY(element, name, member, binding) {#name, binding, sizeof(element)},
     static constexpr SceneArray cdt[] = {
 #include "kernels/layouts/cdt_arrays.h"

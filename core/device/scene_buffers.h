@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// An array as a layout's kernels read it. One that they read both as words and as rows has two entries.
+/// An array as a layout's kernels read it. One that they read both as words and as quads has two entries.
 struct SceneArray {
     const char* name;
     std::uint32_t binding;

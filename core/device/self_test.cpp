@@ -44,58 +44,58 @@ private:
     std::mt19937_64 engine_{20170401}; // fixed: every device is asked the same
 };
 
-std::vector<Row> make_operations()
+std::vector<Quad> make_operations()
 {
-    std::vector<Row> rows;
+    std::vector<Quad> quads;
     Numbers numbers;
     for (int i = 0; i < 64; i++) {
         const float a = numbers.next(), b = numbers.next(), c = numbers.next();
         // The rounded product taken away again: 0 in two roundings, its error in one.
-        rows.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(-(a * b))});
-        rows.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(c)});
-        rows.push_back({PROBE_DIVIDE, bits(a), bits(b), 0});
-        rows.push_back({PROBE_SQUARE_ROOT, bits(std::fabs(a)), 0, 0});
-        rows.push_back({PROBE_ADD, bits(a), bits(b), 0});
-        rows.push_back({PROBE_MULTIPLY, bits(a), 0, bits(b)});
-        rows.push_back({PROBE_COMPARE, bits(a), bits(i % 3 == 0 ? a : b), 0});
-        rows.push_back({PROBE_CONVERT, numbers.word() >> (i % 32), 0, 0});
-        rows.push_back({PROBE_INTEGER, numbers.word(), numbers.word(), numbers.word()});
-        rows.push_back({PROBE_COPY, numbers.word(), 0, 0});
+        quads.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(-(a * b))});
+        quads.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(c)});
+        quads.push_back({PROBE_DIVIDE, bits(a), bits(b), 0});
+        quads.push_back({PROBE_SQUARE_ROOT, bits(std::fabs(a)), 0, 0});
+        quads.push_back({PROBE_ADD, bits(a), bits(b), 0});
+        quads.push_back({PROBE_MULTIPLY, bits(a), 0, bits(b)});
+        quads.push_back({PROBE_COMPARE, bits(a), bits(i % 3 == 0 ? a : b), 0});
+        quads.push_back({PROBE_CONVERT, numbers.word() >> (i % 32), 0, 0});
+        quads.push_back({PROBE_INTEGER, numbers.word(), numbers.word(), numbers.word()});
+        quads.push_back({PROBE_COPY, numbers.word(), 0, 0});
     }
-    rows.push_back({PROBE_COMPARE, bits(0.0f), bits(-0.0f), 0});
+    quads.push_back({PROBE_COMPARE, bits(0.0f), bits(-0.0f), 0});
     for (const std::uint32_t word : {0u, 1u, 0x00FFFFFFu, 0x01000001u, 0x01000003u, 0xFFFFFFFFu})
-        rows.push_back({PROBE_CONVERT, word, 0, 0}); // halfway cases among them
+        quads.push_back({PROBE_CONVERT, word, 0, 0}); // halfway cases among them
     for (const std::uint32_t word : {0x7F800001u, 0xFFFFFFFEu, 0x00000001u, 0x807FFFFFu})
-        rows.push_back({PROBE_COPY, word, 0, 0}); // a signalling NaN, a NaN with a payload, denormals
+        quads.push_back({PROBE_COPY, word, 0, 0}); // a signalling NaN, a NaN with a payload, denormals
     // Denormal operands, and denormal results of normal operands.
-    rows.push_back({PROBE_ADD, 1u, 1u, 0});
-    rows.push_back({PROBE_ADD, smallest_normal + 1, smallest_normal | 0x80000000u, 0});
-    rows.push_back({PROBE_MULTIPLY, smallest_normal, 0, bits(0.5f)});
-    rows.push_back({PROBE_MULTIPLY, 3u, 0, bits(2.0f)});
-    return rows;
+    quads.push_back({PROBE_ADD, 1u, 1u, 0});
+    quads.push_back({PROBE_ADD, smallest_normal + 1, smallest_normal | 0x80000000u, 0});
+    quads.push_back({PROBE_MULTIPLY, smallest_normal, 0, bits(0.5f)});
+    quads.push_back({PROBE_MULTIPLY, 3u, 0, bits(2.0f)});
+    return quads;
 }
 
 /// What the C++ standard's arithmetic in round-to-nearest gives.
-std::uint32_t expected(const Row& row)
+std::uint32_t expected(const Quad& quad)
 {
-    const float x = number(row.y), y = number(row.z), z = number(row.w);
-    switch (row.x) {
+    const float x = number(quad.y), y = number(quad.z), z = number(quad.w);
+    switch (quad.x) {
     case PROBE_MULTIPLY_ADD: return bits(x * y + z);
     case PROBE_DIVIDE: return bits(x / y);
     case PROBE_ADD: return bits(x + y);
     case PROBE_MULTIPLY: return bits(x * z);
     case PROBE_SQUARE_ROOT: return bits(std::sqrt(x));
-    case PROBE_CONVERT: return bits(static_cast<float>(row.y));
+    case PROBE_CONVERT: return bits(static_cast<float>(quad.y));
     case PROBE_COMPARE: return (x < y ? 1u : 0u) + (x <= y ? 2u : 0u) + (x == y ? 4u : 0u);
-    case PROBE_INTEGER: return ((row.y * row.z + row.w) >> (row.w & 31u)) ^ (row.y << (row.z & 31u));
-    default: return row.y;
+    case PROBE_INTEGER: return ((quad.y * quad.z + quad.w) >> (quad.w & 31u)) ^ (quad.y << (quad.z & 31u));
+    default: return quad.y;
     }
 }
 
-bool involves_denormals(const Row& row)
+bool involves_denormals(const Quad& quad)
 {
-    return is_denormal(number(row.y)) || is_denormal(number(row.z)) || is_denormal(number(row.w)) ||
-           is_denormal(number(expected(row)));
+    return is_denormal(number(quad.y)) || is_denormal(number(quad.z)) || is_denormal(number(quad.w)) ||
+           is_denormal(number(expected(quad)));
 }
 
 void raise_to(std::uint32_t& largest, std::uint32_t result, std::uint32_t right)
@@ -105,11 +105,11 @@ void raise_to(std::uint32_t& largest, std::uint32_t result, std::uint32_t right)
         largest, static_cast<std::uint32_t>(std::min<std::uint64_t>(ulps, std::numeric_limits<std::uint32_t>::max())));
 }
 
-void judge(SelfTest& test, const Row& row, std::uint32_t result)
+void judge(SelfTest& test, const Quad& quad, std::uint32_t result)
 {
-    const std::uint32_t right = expected(row);
+    const std::uint32_t right = expected(quad);
     const bool same = result == right;
-    switch (row.x) {
+    switch (quad.x) {
     case PROBE_MULTIPLY_ADD:
         // A sum that cancels may be a zero of either sign; any other difference is a contraction.
         if (!same && number(result) != number(right)) test.contracts = true;
@@ -118,7 +118,7 @@ void judge(SelfTest& test, const Row& row, std::uint32_t result)
     case PROBE_SQUARE_ROOT: raise_to(test.square_root_ulps, result, right); break;
     case PROBE_ADD:
     case PROBE_MULTIPLY:
-        if (involves_denormals(row))
+        if (involves_denormals(quad))
             test.denormals_kept = test.denormals_kept && same;
         else
             test.sums_right = test.sums_right && same;
@@ -180,9 +180,9 @@ std::string SelfTest::brief() const
     return text;
 }
 
-const std::vector<Row>& self_test_operations()
+const std::vector<Quad>& self_test_operations()
 {
-    static const std::vector<Row> operations = make_operations();
+    static const std::vector<Quad> operations = make_operations();
     return operations;
 }
 

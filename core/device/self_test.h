@@ -33,8 +33,8 @@ struct SelfTest {
     [[nodiscard]] std::string brief() const;
 };
 
-/// The operations to run: rows {operation, a, b, c}, some hundreds.
-[[nodiscard]] const std::vector<Row>& self_test_operations();
+/// The operations to run: quads {operation, a, b, c}, some hundreds.
+[[nodiscard]] const std::vector<Quad>& self_test_operations();
 
 /// results: a word for each of self_test_operations(). Throws Error{internal} where their numbers differ.
 [[nodiscard]] SelfTest judge_self_test(std::span<const std::uint32_t> results);

@@ -54,7 +54,7 @@ TraceJob search_job(std::size_t rays)
     return column_of(rays);
 }
 
-void Session::set_rays(std::span<const Row>)
+void Session::set_rays(std::span<const Quad>)
 {
     throw Error(ErrorKind::internal, "rays are given to a session that makes its own");
 }

@@ -13,9 +13,9 @@
 namespace tetrace {
 namespace {
 
-std::uint32_t rows_of(Layout layout)
+std::uint32_t quads_of(Layout layout)
 {
-    return layout == Layout::tet80 ? TET80_ROWS : TET96_ROWS;
+    return layout == Layout::tet80 ? TET80_QUADS : TET96_QUADS;
 }
 
 // Words of a tet in either layout: where vertex coordinates and faces stand.
@@ -27,15 +27,15 @@ WordMap words_of(Layout layout)
     return layout == Layout::tet80 ? WordMap{3, 12} : WordMap{4, 16};
 }
 
-std::uint32_t& word(std::vector<Row>& rows, std::size_t index)
+std::uint32_t& word(std::vector<Quad>& quads, std::size_t index)
 {
-    static_assert(sizeof(Row) == 4 * sizeof(std::uint32_t));
-    Row& row = rows[index / 4];
-    return index % 4 == 0 ? row.x : index % 4 == 1 ? row.y : index % 4 == 2 ? row.z : row.w;
+    static_assert(sizeof(Quad) == 4 * sizeof(std::uint32_t));
+    Quad& quad = quads[index / 4];
+    return index % 4 == 0 ? quad.x : index % 4 == 1 ? quad.y : index % 4 == 2 ? quad.z : quad.w;
 }
-std::uint32_t word(const std::vector<Row>& rows, std::size_t index)
+std::uint32_t word(const std::vector<Quad>& quads, std::size_t index)
 {
-    return word(const_cast<std::vector<Row>&>(rows), index);
+    return word(const_cast<std::vector<Quad>&>(quads), index);
 }
 
 Double3 unit_centroid(const Scene& scene, const Tet& tet)
@@ -109,7 +109,7 @@ TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& t
 void pack_tet(PackedScene& packed, std::size_t position, const TetMesh& mesh)
 {
     const WordMap map = words_of(packed.layout);
-    const std::size_t first = position * rows_of(packed.layout) * 4;
+    const std::size_t first = position * quads_of(packed.layout) * 4;
     const Tet& tet = mesh.tets[position];
     for (std::size_t i = 0; i < 4; i++) {
         const Float3 vertex = mesh.vertices[tet.vertices[i]];
@@ -121,7 +121,7 @@ void pack_tet(PackedScene& packed, std::size_t position, const TetMesh& mesh)
     }
 }
 
-Row row_of(Float3 a)
+Quad quad_of(Float3 a)
 {
     return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z), 0};
 }
@@ -141,7 +141,7 @@ void pack_tets(PackedScene& packed, const TetMesh& mesh)
         pack_compact(packed, mesh);
         return;
     }
-    packed.tets.assign(mesh.tets.size() * rows_of(packed.layout), Row{});
+    packed.tets.assign(mesh.tets.size() * quads_of(packed.layout), Quad{});
     for (std::size_t position = 0; position < mesh.tets.size(); position++)
         pack_tet(packed, position, mesh);
 }
@@ -149,9 +149,9 @@ void pack_tets(PackedScene& packed, const TetMesh& mesh)
 void pack_triangles(PackedScene& packed, const TriangleMesh& mesh)
 {
     for (const auto& [a, b, c] : mesh.triangles) {
-        packed.triangles.push_back(row_of(mesh.vertices[a]));
-        packed.triangles.push_back(row_of(difference(mesh.vertices[b], mesh.vertices[a])));
-        packed.triangles.push_back(row_of(difference(mesh.vertices[c], mesh.vertices[a])));
+        packed.triangles.push_back(quad_of(mesh.vertices[a]));
+        packed.triangles.push_back(quad_of(difference(mesh.vertices[b], mesh.vertices[a])));
+        packed.triangles.push_back(quad_of(difference(mesh.vertices[c], mesh.vertices[a])));
     }
 }
 
@@ -173,7 +173,7 @@ std::size_t PackedScene::bytes() const
 {
     return (tets.size() + triangles.size() + vertices.size() + entry_faces.size() + nodes.size() +
             leaf_triangles.size()) *
-               sizeof(Row) +
+               sizeof(Quad) +
            (lines.size() + entry_ranges.size() + entry_links.size() + occlusive_faces.size()) * sizeof(std::uint32_t);
 }
 
@@ -182,7 +182,7 @@ std::uint32_t most_tets(Layout layout)
     constexpr std::uint64_t indices = std::uint64_t{1} << 32;
     if (layout == Layout::half32) return HALF32_MAX_TETS;
     if (is_compact(layout)) return layout == Layout::tet20 ? indices / TET20_WORDS : MAX_TETS;
-    const std::uint64_t elements = layout == Layout::tet80 ? 4 * TET80_ROWS : rows_of(layout);
+    const std::uint64_t elements = layout == Layout::tet80 ? 4 * TET80_QUADS : quads_of(layout);
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(MAX_TETS, indices / elements));
 }
 
@@ -221,7 +221,7 @@ TetMesh unpack(const PackedScene& packed)
     TetMesh mesh;
     mesh.tets.resize(packed.tet_count);
     for (std::size_t position = 0; position < packed.tet_count; position++) {
-        const std::size_t first = position * rows_of(packed.layout) * 4;
+        const std::size_t first = position * quads_of(packed.layout) * 4;
         for (std::size_t i = 0; i < 4; i++) {
             const std::size_t at = first + map.vertex_stride * i;
             const std::tuple key(word(packed.tets, at), word(packed.tets, at + 1), word(packed.tets, at + 2));

@@ -10,13 +10,13 @@ namespace tetrace {
 std::uint32_t most_references(Layout layout)
 {
     if (layout == Layout::bvh2) return BVH2_LEAF >> 4;
-    return 0xFFFFFFFFu / LEAF_TRIANGLE_ROWS; // kernels number rows with 32 bits
+    return 0xFFFFFFFFu / LEAF_TRIANGLE_QUADS; // kernels number quads with 32 bits
 }
 
 std::uint32_t add_leaf_triangles(PackedScene& packed, const TriangleMesh& mesh,
                                  std::span<const std::uint32_t> triangles)
 {
-    const auto first = static_cast<std::uint32_t>(packed.leaf_triangles.size() / LEAF_TRIANGLE_ROWS);
+    const auto first = static_cast<std::uint32_t>(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS);
     for (const auto triangle : triangles) {
         std::uint32_t last_word = triangle;
         for (const auto v : mesh.triangles[triangle]) {

@@ -30,7 +30,7 @@ private:
     std::uint32_t add_node(std::uint32_t index)
     {
         const auto& child = bvh_.nodes[index].child;
-        const auto node = add_rows(box(child[0]), box(child[1]));
+        const auto node = add_quads(box(child[0]), box(child[1]));
         std::uint32_t packed_child[2] = {};
         const std::size_t larger = half_area(box(child[1])) > half_area(box(child[0])) ? 1 : 0;
         for (const std::size_t i : {larger, 1 - larger})
@@ -53,15 +53,15 @@ private:
     // A root has two children: the second is empty.
     void add_only_leaf()
     {
-        const auto node = add_rows(box(0), box(0));
+        const auto node = add_quads(box(0), box(0));
         set_children(node, add_leaf(bvh_.nodes.front()), BVH2_LEAF);
     }
 
     [[nodiscard]] Box box(std::uint32_t node) const { return grown(bvh_.nodes[node].box, BOX_MARGIN); }
 
-    std::uint32_t add_rows(const Box& a, const Box& b)
+    std::uint32_t add_quads(const Box& a, const Box& b)
     {
-        const auto node = static_cast<std::uint32_t>(packed_.nodes.size() / BVH2_NODE_ROWS);
+        const auto node = static_cast<std::uint32_t>(packed_.nodes.size() / BVH2_NODE_QUADS);
         packed_.nodes.push_back({float_bits(a.low.x), float_bits(a.high.x), float_bits(a.low.y), float_bits(a.high.y)});
         packed_.nodes.push_back({float_bits(b.low.x), float_bits(b.high.x), float_bits(b.low.y), float_bits(b.high.y)});
         packed_.nodes.push_back({float_bits(a.low.z), float_bits(a.high.z), float_bits(b.low.z), float_bits(b.high.z)});
@@ -71,7 +71,7 @@ private:
 
     void set_children(std::uint32_t node, std::uint32_t a, std::uint32_t b)
     {
-        packed_.nodes[std::size_t{node} * BVH2_NODE_ROWS + 3] = {a, b, 0, 0};
+        packed_.nodes[std::size_t{node} * BVH2_NODE_QUADS + 3] = {a, b, 0, 0};
     }
 
     const TriangleMesh& mesh_;

@@ -62,8 +62,8 @@ std::vector<std::uint32_t> number_vertices(const TetMesh& mesh)
     return number;
 }
 
-/// Rows of the vertices that tets name, each with its rank in the order of is_before() (kernels/methods/signs.h).
-std::vector<Row> vertex_rows(const TetMesh& mesh, const std::vector<std::uint32_t>& number)
+/// Quads of the vertices that tets name, each with its rank in the order of is_before() (kernels/methods/signs.h).
+std::vector<Quad> vertex_quads(const TetMesh& mesh, const std::vector<std::uint32_t>& number)
 {
     std::vector<std::uint32_t> in_order;
     for (std::uint32_t i = 0; i < number.size(); i++)
@@ -72,13 +72,13 @@ std::vector<Row> vertex_rows(const TetMesh& mesh, const std::vector<std::uint32_
         return std::tuple(mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z);
     };
     std::sort(in_order.begin(), in_order.end(), [&](auto a, auto b) { return key(a) < key(b); });
-    std::vector<Row> rows(in_order.size());
+    std::vector<Quad> quads(in_order.size());
     for (std::uint32_t rank = 0; rank < in_order.size(); rank++) {
         const Float3 at = mesh.vertices[in_order[rank]];
-        rows[number[in_order[rank]]] = {std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y),
-                                        std::bit_cast<std::uint32_t>(at.z), FIRST_RANK + rank};
+        quads[number[in_order[rank]]] = {std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y),
+                                         std::bit_cast<std::uint32_t>(at.z), FIRST_RANK + rank};
     }
-    return rows;
+    return quads;
 }
 
 FourWords numbered(const Tet& tet, const std::vector<std::uint32_t>& number)
@@ -122,13 +122,13 @@ std::uint32_t xor_of(const FourWords& words)
     return words[0] ^ words[1] ^ words[2] ^ words[3];
 }
 
-std::vector<Row> rows_of_words(std::vector<std::uint32_t> words)
+std::vector<Quad> quads_of_words(std::vector<std::uint32_t> words)
 {
     words.resize((words.size() + 3) / 4 * 4);
-    std::vector<Row> rows;
+    std::vector<Quad> quads;
     for (std::size_t i = 0; i < words.size(); i += 4)
-        rows.push_back({words[i], words[i + 1], words[i + 2], words[i + 3]});
-    return rows;
+        quads.push_back({words[i], words[i + 1], words[i + 2], words[i + 3]});
+    return quads;
 }
 
 void add_tet(std::vector<std::uint32_t>& words, Layout layout, std::uint32_t vertices, const FourWords& behind)
@@ -171,7 +171,7 @@ public:
 
     std::vector<Decoded> decode()
     {
-        for (const Row& face : packed_.entry_faces)
+        for (const Quad& face : packed_.entry_faces)
             see({face.w, {face.x, face.y, face.z}, NO_LINK});
         while (!waiting_.empty()) {
             const Seen seen = waiting_.back();
@@ -190,8 +190,8 @@ private:
     }
     [[nodiscard]] std::uint32_t word(std::size_t index) const
     {
-        const Row& row = packed_.tets.at(index / 4);
-        return FourWords{row.x, row.y, row.z, row.w}[index % 4];
+        const Quad& quad = packed_.tets.at(index / 4);
+        return FourWords{quad.x, quad.y, quad.z, quad.w}[index % 4];
     }
     void see(const Seen& seen)
     {
@@ -294,7 +294,7 @@ void pack_compact(PackedScene& packed, const TetMesh& mesh)
 {
     require_walkable(mesh, packed.layout);
     packed.number_of_vertex = number_vertices(mesh);
-    packed.vertices = vertex_rows(mesh, packed.number_of_vertex);
+    packed.vertices = vertex_quads(mesh, packed.number_of_vertex);
     const std::vector<FourWords> behind = words_behind(mesh, packed.occlusive_faces, packed.layout);
     std::vector<std::uint32_t> words;
     for (std::size_t tet = 0; tet < mesh.tets.size(); tet++) {
@@ -303,14 +303,14 @@ void pack_compact(PackedScene& packed, const TetMesh& mesh)
         add_tet(words, packed.layout, xor_of(vertices), sorted);
         packed.last_neighbours.push_back(sorted[3]);
     }
-    packed.tets = rows_of_words(std::move(words));
+    packed.tets = quads_of_words(std::move(words));
     name_entry_faces(packed, mesh);
 }
 
 TetMesh unpack_compact(const PackedScene& packed)
 {
     TetMesh mesh;
-    for (const Row& vertex : packed.vertices)
+    for (const Quad& vertex : packed.vertices)
         mesh.vertices.push_back(
             {std::bit_cast<float>(vertex.x), std::bit_cast<float>(vertex.y), std::bit_cast<float>(vertex.z)});
     const std::vector<Decoded> tets = Decoder(packed).decode();

@@ -16,7 +16,7 @@ static_assert(wide_leaf_triangles == CWBVH_LEAF_TRIANGLES);
 
 /// The words of a node as a device reads them.
 struct CwbvhNode {
-    std::array<std::uint32_t, 4 * std::size_t{CWBVH_NODE_ROWS}> words = {};
+    std::array<std::uint32_t, 4 * std::size_t{CWBVH_NODE_QUADS}> words = {};
 
     static constexpr std::size_t grid_word = 3, child_base = 4, triangle_base = 5, meta = 6, low = 8, high = 14;
 
@@ -25,10 +25,10 @@ struct CwbvhNode {
     {
         words[word + slot / 4] |= value << 8 * (slot % 4);
     }
-    void append_to(std::vector<Row>& rows, std::size_t at) const
+    void append_to(std::vector<Quad>& quads, std::size_t at) const
     {
         for (std::size_t i = 0; i < words.size(); i += 4)
-            rows[at + i / 4] = {words[i], words[i + 1], words[i + 2], words[i + 3]};
+            quads[at + i / 4] = {words[i], words[i + 1], words[i + 2], words[i + 3]};
     }
 };
 
@@ -79,7 +79,7 @@ public:
 
     PackedScene pack()
     {
-        packed_.nodes.resize(CWBVH_NODE_ROWS);
+        packed_.nodes.resize(CWBVH_NODE_QUADS);
         pack_node(wide_.nodes.front(), 0);
         return std::move(packed_);
     }
@@ -96,12 +96,12 @@ private:
         CwbvhNode node;
         set_grid(node, grid);
         set_boxes(node, grid, children);
-        const auto first_child = static_cast<std::uint32_t>(packed_.nodes.size() / CWBVH_NODE_ROWS);
+        const auto first_child = static_cast<std::uint32_t>(packed_.nodes.size() / CWBVH_NODE_QUADS);
         node.words[CwbvhNode::child_base] = first_child;
         const std::uint32_t inner = set_inner(node, children);
         set_leaves(node, children);
-        packed_.nodes.resize(packed_.nodes.size() + std::size_t{inner} * CWBVH_NODE_ROWS);
-        node.append_to(packed_.nodes, std::size_t{index} * CWBVH_NODE_ROWS);
+        packed_.nodes.resize(packed_.nodes.size() + std::size_t{inner} * CWBVH_NODE_QUADS);
+        node.append_to(packed_.nodes, std::size_t{index} * CWBVH_NODE_QUADS);
 
         std::uint32_t next = first_child;
         for (const auto* child : children)

@@ -72,31 +72,31 @@ bool is_linked_back(const TetMesh& mesh, std::uint32_t face)
 
 } // namespace
 
-std::vector<Row> half32_records(const TetMesh& mesh)
+std::vector<Quad> half32_records(const TetMesh& mesh)
 {
     const auto ranks = ranks_of(mesh.vertices);
-    std::vector<Row> rows;
-    rows.reserve(mesh.tets.size() * 4 * HALF32_ROWS);
+    std::vector<Quad> quads;
+    quads.reserve(mesh.tets.size() * 4 * HALF32_QUADS);
     for (const Tet& tet : mesh.tets)
         for (std::uint32_t entry = 0; entry < 4; entry++) {
             const Float3 apex = mesh.vertices[tet.vertices[entry]];
-            rows.push_back({std::bit_cast<std::uint32_t>(apex.x), std::bit_cast<std::uint32_t>(apex.y),
-                            std::bit_cast<std::uint32_t>(apex.z), ranks[tet.vertices[entry]]});
-            rows.push_back({exit_word(mesh, tet, entry, 0), exit_word(mesh, tet, entry, 1),
-                            exit_word(mesh, tet, entry, 2), tet.links[entry]});
+            quads.push_back({std::bit_cast<std::uint32_t>(apex.x), std::bit_cast<std::uint32_t>(apex.y),
+                             std::bit_cast<std::uint32_t>(apex.z), ranks[tet.vertices[entry]]});
+            quads.push_back({exit_word(mesh, tet, entry, 0), exit_word(mesh, tet, entry, 1),
+                             exit_word(mesh, tet, entry, 2), tet.links[entry]});
         }
-    return rows;
+    return quads;
 }
 
-TetMesh half32_tets(const std::vector<Row>& records)
+TetMesh half32_tets(const std::vector<Quad>& records)
 {
     std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
     TetMesh mesh;
-    mesh.tets.resize(records.size() / (4 * HALF32_ROWS));
+    mesh.tets.resize(records.size() / (4 * HALF32_QUADS));
     for (std::size_t record = 0; record < 4 * mesh.tets.size(); record++) {
         Tet& tet = mesh.tets[record / 4];
         const std::size_t entry = record % 4;
-        const Row &apex = records[HALF32_ROWS * record], &exits = records[HALF32_ROWS * record + 1];
+        const Quad &apex = records[HALF32_QUADS * record], &exits = records[HALF32_QUADS * record + 1];
         const auto [place, is_new] =
             index.try_emplace({apex.x, apex.y, apex.z}, static_cast<std::uint32_t>(mesh.vertices.size()));
         if (is_new)
@@ -111,10 +111,10 @@ TetMesh half32_tets(const std::vector<Row>& records)
     }
     for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); record++)
         if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
-    const std::vector<Row> again = half32_records(mesh);
+    const std::vector<Quad> again = half32_records(mesh);
     const auto differing = std::mismatch(records.begin(), records.end(), again.begin()).first;
     if (differing != records.end())
-        reject(static_cast<std::size_t>(differing - records.begin()) / HALF32_ROWS,
+        reject(static_cast<std::size_t>(differing - records.begin()) / HALF32_QUADS,
                "it contradicts the others of its tet, or those of its neighbours");
     return mesh;
 }

@@ -11,12 +11,12 @@
 namespace tetrace {
 
 /// 16 bytes as they lie in a device's buffer; floats are stored by their bits.
-struct Row {
+struct Quad {
     std::uint32_t x, y, z, w;
 
-    friend bool operator==(const Row&, const Row&) = default;
+    friend bool operator==(const Quad&, const Quad&) = default;
 };
-static_assert(sizeof(Row) == 16, "rows are uvec4 / uint4 on a device");
+static_assert(sizeof(Quad) == 16, "quads are uvec4 / uint4 on a device");
 
 /// The tet that rays start in, where tets cannot name their vertices.
 struct StartTet {
@@ -33,18 +33,18 @@ struct PackedScene {
     std::uint32_t tet_count = 0;
     std::uint32_t divisions = 1;
 
-    std::vector<Row> tets;                   ///< TET80_ROWS or TET96_ROWS a tet, or HALF32_ROWS for each of its faces
-    std::vector<Row> triangles;              ///< TRIANGLE_ROWS an input triangle
-    std::vector<std::uint32_t> lines;        ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
+    std::vector<Quad> tets;           ///< TET80_QUADS or TET96_QUADS a tet, or HALF32_QUADS for each of its faces
+    std::vector<Quad> triangles;      ///< TRIANGLE_QUADS an input triangle
+    std::vector<std::uint32_t> lines; ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
     std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
     std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
 
-    std::vector<Row> vertices;                  ///< of tet20 and tet16: position and rank (kernels/layouts/layout.h)
-    std::vector<Row> entry_faces;               ///< of those, in place of entry_links: three vertices and a tet
+    std::vector<Quad> vertices;                 ///< of tet20 and tet16: position and rank (kernels/layouts/layout.h)
+    std::vector<Quad> entry_faces;              ///< of those, in place of entry_links: three vertices and a tet
     std::vector<std::uint32_t> occlusive_faces; ///< of those: OCCLUSIVE_WORDS a face
 
-    std::vector<Row> nodes;          ///< of a BVH: BVH2_NODE_ROWS or CWBVH_NODE_ROWS a node, the root first
-    std::vector<Row> leaf_triangles; ///< LEAF_TRIANGLE_ROWS a reference of a leaf to a triangle
+    std::vector<Quad> nodes;          ///< of a BVH: BVH2_NODE_QUADS or CWBVH_NODE_QUADS a node, the root first
+    std::vector<Quad> leaf_triangles; ///< LEAF_TRIANGLE_QUADS a reference of a leaf to a triangle
 
     std::vector<std::uint32_t> packed_of_mesh;   ///< stays on the host: position of each tet of the scene in `tets`
     std::vector<std::uint32_t> number_of_vertex; ///< of tet20 and tet16, stays too: of each vertex of the scene's tets
@@ -54,7 +54,7 @@ struct PackedScene {
 };
 
 /// The most tets that a layout's links of 30 bits can name and its kernels reach: they index the array of tets, by word
-/// (tet80) or by row (tet96), with 32 bits; half32's exits have 28 bits for it.
+/// (tet80) or by quad (tet96), with 32 bits; half32's exits have 28 bits for it.
 [[nodiscard]] std::uint32_t most_tets(Layout layout);
 
 /// Packs a scene's tets.

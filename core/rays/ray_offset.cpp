@@ -19,7 +19,7 @@ float offset_coordinate(float coordinate, float normal)
     return std::bit_cast<float>(bits);
 }
 
-Row given_row(Float3 a, std::uint32_t last)
+Quad given_quad(Float3 a, std::uint32_t last)
 {
     return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z),
             last};
@@ -34,18 +34,18 @@ std::uint32_t packed_link(std::uint32_t link, const PackedScene& packed)
     return make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
 }
 
-// link_of and origin_of: what the rows have of a ray.
+// link_of and origin_of: what the quads have of a ray.
 template <class LinkOf, class OriginOf>
-std::vector<Row> rows_of_rays(const RaySet& set, const LinkOf& link_of, const OriginOf& origin_of)
+std::vector<Quad> quads_of_rays(const RaySet& set, const LinkOf& link_of, const OriginOf& origin_of)
 {
     const std::size_t count = set.rays.size();
-    std::vector<Row> rows(GIVEN_RAY_ROWS * count);
+    std::vector<Quad> quads(GIVEN_RAY_QUADS * count);
     for (std::size_t i = 0; i < count; i++) {
         const GivenRay& ray = set.rays[i];
-        rows[i] = given_row(ray.direction, link_of(ray));
-        rows[count + i] = given_row(origin_of(ray), std::bit_cast<std::uint32_t>(ray.end));
+        quads[i] = given_quad(ray.direction, link_of(ray));
+        quads[count + i] = given_quad(origin_of(ray), std::bit_cast<std::uint32_t>(ray.end));
     }
-    return rows;
+    return quads;
 }
 
 } // namespace
@@ -66,16 +66,16 @@ Float3 offset_origin(const GivenRay& ray, const TriangleMesh& mesh)
     return offset_point(ray.origin, to_float(normal * side));
 }
 
-std::vector<Row> given_rows(const RaySet& set, const PackedScene& packed)
+std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed)
 {
-    return rows_of_rays(
+    return quads_of_rays(
         set, [&](const GivenRay& ray) { return packed_link(ray.link, packed); },
         [](const GivenRay& ray) { return ray.origin; });
 }
 
-std::vector<Row> given_rows_offset(const RaySet& set, const TriangleMesh& mesh)
+std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh)
 {
-    return rows_of_rays(
+    return quads_of_rays(
         set, [](const GivenRay&) { return NO_LINK; }, [&](const GivenRay& ray) { return offset_origin(ray, mesh); });
 }
 

@@ -18,12 +18,12 @@ namespace tetrace {
 /// that it goes to; its own where it starts on none.
 [[nodiscard]] Float3 offset_origin(const GivenRay& ray, const TriangleMesh& mesh);
 
-/// The rays as Session::set_rays wants them: GIVEN_RAY_ROWS a ray (kernels/layouts/layout.h).
+/// The rays as Session::set_rays wants them: GIVEN_RAY_QUADS a ray (kernels/layouts/layout.h).
 /// packed: tets of the set's scene; links are numbered as it is.
 /// Throws Error{internal} where a link names none of its tets.
-[[nodiscard]] std::vector<Row> given_rows(const RaySet& set, const PackedScene& packed);
+[[nodiscard]] std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed);
 
 /// The same for a BVH: origins offset, no links.
-[[nodiscard]] std::vector<Row> given_rows_offset(const RaySet& set, const TriangleMesh& mesh);
+[[nodiscard]] std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh);
 
 } // namespace tetrace

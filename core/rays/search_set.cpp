@@ -143,19 +143,19 @@ StabbingRay ray_of(const Corners& corners, std::uint32_t tet, std::uint32_t numb
     }
 }
 
-Row row_of(Float3 a, std::uint32_t last)
+Quad quad_of(Float3 a, std::uint32_t last)
 {
     return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z),
             last};
 }
 
-/// What row_of() made of it.
-Int3 to_int(const Row& row)
+/// What quad_of() made of it.
+Int3 to_int(const Quad& quad)
 {
     const auto scaled = [](std::uint32_t bits) {
         return static_cast<std::int64_t>(static_cast<double>(std::bit_cast<float>(bits)) * one);
     };
-    return {scaled(row.x), scaled(row.y), scaled(row.z)};
+    return {scaled(quad.x), scaled(quad.y), scaled(quad.z)};
 }
 
 Double3 to_double(Int3 a)
@@ -202,7 +202,7 @@ SearchRays search_rays(std::uint32_t first_tet, std::uint32_t tets, std::uint32_
                                              std::to_string(rays_per_tet));
     const std::size_t count = std::size_t{tets} * rays_per_tet;
     SearchRays rays;
-    rays.rows.resize(RAY_ROWS * count);
+    rays.quads.resize(RAY_QUADS * count);
     rays.exits.resize(count);
     std::size_t i = 0;
     for (std::uint32_t tet = first_tet; tet < first_tet + tets; tet++) {
@@ -210,9 +210,9 @@ SearchRays search_rays(std::uint32_t first_tet, std::uint32_t tets, std::uint32_
         for (std::uint32_t number = 0; number < rays_per_tet; number++, i++) {
             const StabbingRay stab = ray_of(corners, tet, number);
             const Float3 origin = to_float(stab.ray.origin), direction = to_float(stab.ray.direction);
-            rays.rows[i] = row_of(direction, make_link(tet, stab.entry));
-            rays.rows[count + i] = row_of(origin, 0);
-            rays.rows[2 * count + i] = row_of(cross(origin, direction), 0);
+            rays.quads[i] = quad_of(direction, make_link(tet, stab.entry));
+            rays.quads[count + i] = quad_of(origin, 0);
+            rays.quads[2 * count + i] = quad_of(cross(origin, direction), 0);
             rays.exits[i] = stab.exits;
         }
     }
@@ -225,7 +225,7 @@ SearchVerdict judge(const SearchRays& rays, std::size_t number, std::uint32_t fa
     if ((rays.exits[number] >> face & 1u) != 0) return SearchVerdict::right;
     const std::uint32_t link = rays.link(number);
     if (face == link_face(link)) return SearchVerdict::wrong;
-    const IntRay ray = {to_int(rays.rows[rays.count() + number]), to_int(rays.rows[number])};
+    const IntRay ray = {to_int(rays.quads[rays.count() + number]), to_int(rays.quads[number])};
     const double bound = tie_bound(to_float(ray.origin));
     const Corners corners = tet_of(link_tet(link));
     for (std::size_t i = 0; i < 3; i++) {

@@ -18,12 +18,12 @@ namespace tetrace {
 
 /// Rays that each enter a tet through the inside of a known face.
 struct SearchRays {
-    std::vector<Row> rows;           ///< as Session::set_rays wants them
+    std::vector<Quad> quads;         ///< as Session::set_rays wants them
     std::vector<std::uint8_t> exits; ///< by ray: the faces that it exactly leaves by, a bit each; several where it
                                      ///< meets an edge
 
     [[nodiscard]] std::size_t count() const { return exits.size(); }
-    [[nodiscard]] std::uint32_t link(std::size_t ray) const { return rows[ray].w; } ///< the tet and its entry face
+    [[nodiscard]] std::uint32_t link(std::size_t ray) const { return quads[ray].w; } ///< the tet and its entry face
 };
 
 /// The first rays_per_tet rays of each of the tets from first_tet on, tet after tet. A ray goes from a random point of

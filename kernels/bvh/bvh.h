@@ -75,9 +75,9 @@ KERNEL_FN Nearest nothing_before(Ray ray, real end)
     return nearest;
 }
 
-KERNEL_FN Vec3 seen_from(Vec3 origin, uint4 row)
+KERNEL_FN Vec3 seen_from(Vec3 origin, uint4 quad)
 {
-    return sub3(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), origin);
+    return sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), origin);
 }
 
 // Quotients that are compared must be the same bits everywhere, which division is not. a: normal, 2^-126 to 2^124.
@@ -100,10 +100,10 @@ KERNEL_FN bool has_two_signs(real a, real b, real c)
 KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
 {
     COUNT_TRIANGLE();
-    uint4 row = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at);
-    Vec3 v0 = seen_from(frame.origin, row);
-    Vec3 v1 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 1u));
-    Vec3 v2 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * at + 2u));
+    uint4 quad = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at);
+    Vec3 v0 = seen_from(frame.origin, quad);
+    Vec3 v1 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 1u));
+    Vec3 v2 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 2u));
     Sheared a = sheared(frame.shear, v0);
     Sheared b = sheared(frame.shear, v1);
     Sheared c = sheared(frame.shear, v2);
@@ -119,11 +119,11 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
     PRECISE real inverse = reciprocal(magnitude(determinant));
     PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
     PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
-    bool nearer = depth < nearest.depth || (depth == nearest.depth && row.w < nearest.triangle);
+    bool nearer = depth < nearest.depth || (depth == nearest.depth && quad.w < nearest.triangle);
     if (scaled < LEAST_DEPTH || !nearer) return nearest;
     Nearest found;
     found.depth = depth;
-    found.triangle = row.w;
+    found.triangle = quad.w;
     found.at = at;
     return found;
 }
@@ -131,9 +131,9 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
 KERNEL_FN Hit hit_of(SceneView scene, Ray ray, Nearest nearest)
 {
     if (nearest.triangle == NO_HIT) return make_no_hit(NO_HIT, NO_TET, 0u);
-    uint4 r0 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * nearest.at);
-    uint4 r1 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * nearest.at + 1u);
-    uint4 r2 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_ROWS * nearest.at + 2u);
+    uint4 r0 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at);
+    uint4 r1 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at + 1u);
+    uint4 r2 = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * nearest.at + 2u);
     Vec3 v0 = VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z));
     Vec3 v1 = VEC3(as_real(r1.x), as_real(r1.y), as_real(r1.z));
     Vec3 v2 = VEC3(as_real(r2.x), as_real(r2.y), as_real(r2.z));

@@ -34,10 +34,10 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
         if ((child & BVH2_LEAF) == 0u) {
             do {
                 COUNT_NODE();
-                uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_ROWS * child);
-                uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 1u);
-                uint4 z = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 2u);
-                uint4 children = FETCH(scene, nodes, BVH2_NODE_ROWS * child + 3u);
+                uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_QUADS * child);
+                uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 1u);
+                uint4 z = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 2u);
+                uint4 children = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 3u);
                 real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
                 real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
                 bool b_first = b < a;

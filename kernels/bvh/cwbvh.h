@@ -12,15 +12,15 @@ STRUCT(GridFrame)
     Vec3 start;
 };
 
-KERNEL_FN GridFrame grid_frame(RayFrame frame, uint4 row)
+KERNEL_FN GridFrame grid_frame(RayFrame frame, uint4 quad)
 {
     GridFrame grid;
-    PRECISE real step_x = as_real((row.w & 0xFFu) << 23u) * frame.inverse.x;
-    PRECISE real step_y = as_real((row.w >> 8u & 0xFFu) << 23u) * frame.inverse.y;
-    PRECISE real step_z = as_real((row.w >> 16u & 0xFFu) << 23u) * frame.inverse.z;
-    PRECISE real start_x = as_real(row.x) * frame.inverse.x - frame.offset.x;
-    PRECISE real start_y = as_real(row.y) * frame.inverse.y - frame.offset.y;
-    PRECISE real start_z = as_real(row.z) * frame.inverse.z - frame.offset.z;
+    PRECISE real step_x = as_real((quad.w & 0xFFu) << 23u) * frame.inverse.x;
+    PRECISE real step_y = as_real((quad.w >> 8u & 0xFFu) << 23u) * frame.inverse.y;
+    PRECISE real step_z = as_real((quad.w >> 16u & 0xFFu) << 23u) * frame.inverse.z;
+    PRECISE real start_x = as_real(quad.x) * frame.inverse.x - frame.offset.x;
+    PRECISE real start_y = as_real(quad.y) * frame.inverse.y - frame.offset.y;
+    PRECISE real start_z = as_real(quad.z) * frame.inverse.z - frame.offset.z;
     grid.step = VEC3(step_x, step_y, step_z);
     grid.start = VEC3(start_x, start_y, start_z);
     return grid;
@@ -93,11 +93,11 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
             waiting++;
         }
         COUNT_NODE();
-        uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node);
-        uint4 r1 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 1u);
-        uint4 r2 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 2u);
-        uint4 r3 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 3u);
-        uint4 r4 = FETCH(scene, nodes, CWBVH_NODE_ROWS * node + 4u);
+        uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node);
+        uint4 r1 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 1u);
+        uint4 r2 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 2u);
+        uint4 r3 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 3u);
+        uint4 r4 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 4u);
         uint node_hits = hits_of_node(frame, nearest.depth, turn, r0, r1, r2, r3, r4);
         uint triangles = node_hits & ~CWBVH_INNER_HITS;
         while (triangles != 0u) {

@@ -8,7 +8,7 @@
 #define FETCH(scene, array, index) (assert((index) < (scene).array##_size), (scene).array[(index)])
 
 using uint = std::uint32_t;
-using uint4 = tetrace::Row;
+using uint4 = tetrace::Quad;
 #ifndef KERNEL_REAL // the test that counts operations brings its own number type
 #define KERNEL_REAL float
 #endif

@@ -1,5 +1,5 @@
 // How kernels reach a scene's arrays in GLSL: storage buffers by name, and FETCH(). A buffer that is read as words and
-// as rows is declared twice with one binding.
+// as quads is declared twice with one binding.
 #define SCENE_ARRAY(element, name, member, number)                                                                     \
     layout(std430, set = 0, binding = number) readonly buffer Buffer_##name                                            \
     {                                                                                                                  \
@@ -25,9 +25,9 @@ STRUCT(SceneView)
     {                                                                                                                  \
         uint tet_words_##part[];                                                                                       \
     };                                                                                                                 \
-    layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_rows_##part          \
+    layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_quads_##part         \
     {                                                                                                                  \
-        uint4 tet_rows_##part[];                                                                                       \
+        uint4 tet_quads_##part[];                                                                                      \
     };
 TET_PART(1)
 TET_PART(2)
@@ -56,7 +56,7 @@ TET_PART(7)
         }                                                                                                              \
     }
 FETCH_FROM_PARTS(uint, tet_words, 2u)
-FETCH_FROM_PARTS(uint4, tet_rows, 4u)
+FETCH_FROM_PARTS(uint4, tet_quads, 4u)
 #undef FETCH_FROM_PARTS
 
 #define fetch_triangles(scene, index) triangles[index]

@@ -25,7 +25,7 @@ STRUCT(SceneView)
 // Selected, not indexed: an array of pointers would live in memory on some devices.
 KERNEL_FN __global const uint4* tet_part(SceneView scene, uint part)
 {
-    __global const uint4* of_01 = (part & 1u) == 0u ? scene.tet_rows : scene.part_1;
+    __global const uint4* of_01 = (part & 1u) == 0u ? scene.tet_quads : scene.part_1;
     __global const uint4* of_23 = (part & 1u) == 0u ? scene.part_2 : scene.part_3;
     __global const uint4* of_45 = (part & 1u) == 0u ? scene.part_4 : scene.part_5;
     __global const uint4* of_67 = (part & 1u) == 0u ? scene.part_6 : scene.part_7;

@@ -1,8 +1,8 @@
 // How kernels reach a scene's arrays in GLSL on devices that read storage buffers slowly: as texels of one or four
-// unsigned words, by name through FETCH(). Same bytes, same answers; scene_view_glsl.h is the other way. Arrays of rows
-// stand FIRST_ROWS_BINDING behind their binding: the tets are bound twice.
+// unsigned words, by name through FETCH(). Same bytes, same answers; scene_view_glsl.h is the other way. Arrays of
+// quads stand FIRST_QUADS_BINDING behind their binding: the tets are bound twice.
 #define TEXELS_BINDING_uint 0
-#define TEXELS_BINDING_uint4 FIRST_ROWS_BINDING
+#define TEXELS_BINDING_uint4 FIRST_QUADS_BINDING
 #define SCENE_ARRAY(element, name, member, number)                                                                     \
     layout(set = 0, binding = TEXELS_BINDING_##element + number) uniform usamplerBuffer name;                          \
     element fetch_##name(uint index)                                                                                   \
@@ -12,7 +12,7 @@
 #include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
 #define FETCH(scene, array, index) fetch_##array(index)
-#define ROWS_COST_AS_WORDS // a texel is a texel
+#define QUADS_COST_AS_WORDS // a texel is a texel
 
 STRUCT(SceneView)
 {

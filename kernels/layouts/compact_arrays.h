@@ -1,7 +1,7 @@
 // Every array that a CDT brings to a device whose tets share their vertices, as cdt_arrays.h has those of one whose
 // tets hold them.
 SCENE_ARRAY(uint, tet_words, tets, 0)
-SCENE_ARRAY(uint4, tet_rows, tets, 0)
+SCENE_ARRAY(uint4, tet_quads, tets, 0)
 SCENE_ARRAY(uint4, triangles, triangles, 1)
 SCENE_ARRAY(uint, lines, lines, 2)
 SCENE_ARRAY(uint, entry_ranges, entry_ranges, 3)

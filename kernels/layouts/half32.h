@@ -4,12 +4,12 @@
 
 KERNEL_FN uint4 record_apex(SceneView scene, uint record)
 {
-    return FETCH(scene, tet_rows, HALF32_ROWS * record);
+    return FETCH(scene, tet_quads, HALF32_QUADS * record);
 }
 
 KERNEL_FN uint4 record_exits(SceneView scene, uint record)
 {
-    return FETCH(scene, tet_rows, HALF32_ROWS * record + 1u);
+    return FETCH(scene, tet_quads, HALF32_QUADS * record + 1u);
 }
 
 // The vertex opposite the record's face.

@@ -12,13 +12,13 @@
 // A launch's output: guard words, six words a hit row after row, guard words; all of it is POISON before.
 #define HIT_WORDS 6u
 #define GUARD_WORDS 64u
-// A ray that is given: its rows stand a whole list of rays apart, all first rows before all second ones. Task search:
+// A ray that is given: its quads stand a whole list of rays apart, all first quads before all second ones. Task search:
 //   {direction, link of its entry face}  {origin, 0}  {moment, 0}
-#define RAY_ROWS 3u
+#define RAY_QUADS 3u
 // Task rays, with the link of the face that the ray starts on or enters by, NO_LINK where it comes from outside the
 // domain (BVHs have no use for it), and the ray parameter of its end:
 //   {direction, link}  {origin, end}
-#define GIVEN_RAY_ROWS 2u
+#define GIVEN_RAY_QUADS 2u
 #define NO_END 3.0e38f // of a ray that goes on for ever
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.
 #define TILE_WIDTH 8u
@@ -49,12 +49,12 @@
 #define SECOND_PART_BINDING 9u
 #define MAX_TET_PARTS 8u
 #define RAYS_BINDING (SECOND_PART_BINDING + MAX_TET_PARTS - 1u)
-#define FIRST_ROWS_BINDING 32u // of rows, where words and rows of one array are bound apart
+#define FIRST_QUADS_BINDING 32u // of quads, where words and quads of one array are bound apart
 
-// tet80: rows of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
-#define TET80_ROWS 5u
+// tet80: quads of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
+#define TET80_QUADS 5u
 // tet96: 4 vertices of 16 bytes (w is 0), then 4 faces of 8 bytes {link, input triangle}.
-#define TET96_ROWS 6u
+#define TET96_QUADS 6u
 // The rank of a vertex: how many are before it, by x, then y, then z, and FIRST_RANK. It lies beside the vertex's
 // coordinates, and compilers compute with all four words at once: as a float it must not be denormal, since some
 // processors multiply those a hundred times slower.
@@ -64,24 +64,24 @@
 // Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows, the
 // corners of whose entry face are the ray's three vertices turned by so many; else triangle << 2 | HALF32_END for the
 // input triangle that is hit there, or NO_LINK at the domain's boundary.
-#define HALF32_ROWS 2u // of a record; a tet has four
+#define HALF32_QUADS 2u // of a record; a tet has four
 #define HALF32_END 3u
 #define HALF32_MAX_TETS 0x0FFFFFFFu
 #define HALF32_MAX_TRIANGLES 0x3FFFFFFFu
 // tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
 #define TET20_WORDS 5u
-// tet16: a row, the same words but the last one, and those of neighbours xor that one.
+// tet16: a quad, the same words but the last one, and those of neighbours xor that one.
 // vertices of both: {x, y, z, rank}
 // What is behind a face: a tet, OCCLUSIVE | 2 * occlusive face + side, or NO_LINK.
 #define OCCLUSIVE 0x80000000u
 // occlusive_faces: {input triangle, the tet on side 0, that on side 1}
 #define OCCLUSIVE_WORDS 3u
 // entry_faces: {three vertices in the order of faces.h, tet}
-// triangles: v0, v1 - v0, v2 - v0 of each input triangle, a row of 16 bytes each (w is 0).
-#define TRIANGLE_ROWS 3u
+// triangles: v0, v1 - v0, v2 - v0 of each input triangle, a quad of 16 bytes each (w is 0).
+#define TRIANGLE_QUADS 3u
 
 // leaf triangles of a BVH: {v0, input triangle}, {v1, 0}, {v2, 0}, as the mesh has them.
-#define LEAF_TRIANGLE_ROWS 3u
+#define LEAF_TRIANGLE_QUADS 3u
 // Boxes of BVHs are that much larger on every side than what is in them: the triangle test decides on rounded
 // projections (SPEC.md, BVHs).
 #define BOX_MARGIN 7.62939453125e-6f // 2^-17
@@ -90,7 +90,7 @@
 //   {a.low.z, a.high.z, b.low.z, b.high.z} {a, b, 0, 0}
 // A child is a node, or BVH2_LEAF | first << 4 | count for so many leaf triangles from `first` on; an empty leaf has
 // its sibling's box.
-#define BVH2_NODE_ROWS 4u
+#define BVH2_NODE_QUADS 4u
 #define BVH2_LEAF 0x80000000u
 #define BVH2_STACK 32u // children that wait on a ray's stack at most: packing refuses deeper trees
 // cwbvh: eight children, boxes as bytes on a grid of the node's own.
@@ -99,7 +99,7 @@
 //   {low.x 0..3, low.x 4..7, low.y 0..3, low.y 4..7} {low.z 0..3, low.z 4..7, high.x 0..3, high.x 4..7}
 //   {high.y 0..3, high.y 4..7, high.z 0..3, high.z 4..7}
 // meta: 0 of an empty slot; 0x20 | 24 + slot of an inner child; count in unary << 5 | offset of a leaf's triangles.
-#define CWBVH_NODE_ROWS 5u
+#define CWBVH_NODE_QUADS 5u
 #define CWBVH_LEAF_TRIANGLES 3u
 #define CWBVH_STACK 16u // pairs of words that wait on a ray's stack at most
 

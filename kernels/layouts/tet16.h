@@ -1,5 +1,5 @@
-// Layout tet16 (Aman, Demirci, Guedukbay 2022): a row of the xor of a tet's four vertices, and the xor of each of three
-// neighbours with the fourth: who knows one of the four, as a walk does that comes from it, knows all.
+// Layout tet16 (Aman, Demirci, Guedukbay 2022): a quad of the xor of a tet's four vertices, and the xor of each of
+// three neighbours with the fourth: who knows one of the four, as a walk does that comes from it, knows all.
 STRUCT(CompactTet)
 {
     uint vertices; // their xor
@@ -10,12 +10,12 @@ STRUCT(CompactTet)
 
 KERNEL_FN CompactTet compact_tet(SceneView scene, uint tet)
 {
-    uint4 row = FETCH(scene, tet_rows, tet);
+    uint4 quad = FETCH(scene, tet_quads, tet);
     CompactTet result;
-    result.vertices = row.x;
-    result.n0 = row.y;
-    result.n1 = row.z;
-    result.n2 = row.w;
+    result.vertices = quad.x;
+    result.n0 = quad.y;
+    result.n1 = quad.z;
+    result.n2 = quad.w;
     return result;
 }
 

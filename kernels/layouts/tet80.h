@@ -1,8 +1,8 @@
 // Layout tet80 (the paper, section 4.1): a tet holds its vertices as 12 floats, then {link, triangle} per face.
-#ifdef ROWS_COST_AS_WORDS
-#include "kernels/layouts/tet80_rows.h"
+#ifdef QUADS_COST_AS_WORDS
+#include "kernels/layouts/tet80_quads.h"
 #else
-#define TET80_WORDS (4u * TET80_ROWS)
+#define TET80_WORDS (4u * TET80_QUADS)
 
 KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
 {

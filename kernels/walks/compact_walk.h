@@ -27,10 +27,10 @@ STRUCT(Gate)
 
 KERNEL_FN Carried carried(SceneView scene, Ray ray, Shear shear, uint vertex)
 {
-    uint4 row = FETCH(scene, vertices, vertex);
+    uint4 quad = FETCH(scene, vertices, vertex);
     Carried result;
-    result.seen = sheared(shear, sub3(VEC3(as_real(row.x), as_real(row.y), as_real(row.z)), ray.origin));
-    result.rank = row.w;
+    result.seen = sheared(shear, sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), ray.origin));
+    result.rank = quad.w;
     result.vertex = vertex;
     return result;
 }
@@ -110,13 +110,13 @@ KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
 // The boundary face of that number, from outside.
 KERNEL_FN Gate entry_gate(SceneView scene, Ray ray, Shear shear, uint entry)
 {
-    uint4 row = FETCH(scene, entry_faces, entry);
+    uint4 quad = FETCH(scene, entry_faces, entry);
     Gate gate;
-    gate.p0 = carried(scene, ray, shear, row.x);
-    gate.p1 = carried(scene, ray, shear, row.y);
-    gate.p2 = carried(scene, ray, shear, row.z);
+    gate.p0 = carried(scene, ray, shear, quad.x);
+    gate.p1 = carried(scene, ray, shear, quad.y);
+    gate.p2 = carried(scene, ray, shear, quad.z);
     gate.tet = NO_TET;
-    gate.behind = row.w;
+    gate.behind = quad.w;
     gate.before = NO_LINK;
     return gate;
 }

@@ -8,17 +8,17 @@ STRUCT(EntryFace)
 
 KERNEL_FN Vec3 position_of(SceneView scene, uint vertex)
 {
-    uint4 row = FETCH(scene, vertices, vertex);
-    return VEC3(as_real(row.x), as_real(row.y), as_real(row.z));
+    uint4 quad = FETCH(scene, vertices, vertex);
+    return VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z));
 }
 
 KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
 {
-    uint4 row = FETCH(scene, entry_faces, index);
+    uint4 quad = FETCH(scene, entry_faces, index);
     EntryFace face;
-    face.a = position_of(scene, row.x);
-    face.b = position_of(scene, row.y);
-    face.c = position_of(scene, row.z);
+    face.a = position_of(scene, quad.x);
+    face.b = position_of(scene, quad.y);
+    face.c = position_of(scene, quad.z);
     return face;
 }
 

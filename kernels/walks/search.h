@@ -1,5 +1,5 @@
 // The exit search alone, without the walk around it: the paper's Table 5. A given ray enters a tet by a known face; a
-// method says by which face it leaves, or NO_EXIT. Methods get the moment as in a walk, made once a ray; a row that a
+// method says by which face it leaves, or NO_EXIT. Methods get the moment as in a walk, made once a ray; a quad that a
 // method has no use for is not loaded.
 #define SEARCHES_EXITS
 

@@ -2,9 +2,9 @@
 // The hit on an input triangle; none where the ray ends before it.
 KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint steps, real end)
 {
-    uint4 r0 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle);
-    uint4 r1 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 1u);
-    uint4 r2 = FETCH(scene, triangles, TRIANGLE_ROWS * triangle + 2u);
+    uint4 r0 = FETCH(scene, triangles, TRIANGLE_QUADS * triangle);
+    uint4 r1 = FETCH(scene, triangles, TRIANGLE_QUADS * triangle + 1u);
+    uint4 r2 = FETCH(scene, triangles, TRIANGLE_QUADS * triangle + 2u);
     Vec3 v0 = VEC3(as_real(r0.x), as_real(r0.y), as_real(r0.z));
     Vec3 edge_1 = VEC3(as_real(r1.x), as_real(r1.y), as_real(r1.z));
     Vec3 edge_2 = VEC3(as_real(r2.x), as_real(r2.y), as_real(r2.z));

@@ -61,7 +61,7 @@ std::vector<std::uint32_t> right_results()
 }
 
 /// The results with those of one operation changed.
-SelfTest judged_with(std::uint32_t operation, const std::function<std::uint32_t(const Row&, std::uint32_t)>& change)
+SelfTest judged_with(std::uint32_t operation, const std::function<std::uint32_t(const Quad&, std::uint32_t)>& change)
 {
     auto results = right_results();
     for (std::size_t i = 0; i < results.size(); i++)
@@ -285,7 +285,7 @@ TEST(launch_params, carry_the_job_word_for_word)
     EXPECT_EQ(output_words(job, Task::search), 2 * GUARD_WORDS + 17 * 9);
 }
 
-TEST(searches, are_of_whole_rows_of_a_tile)
+TEST(searches, are_of_whole_quads_of_a_tile)
 {
     EXPECT_EQ(search_job(24).width * search_job(24).height, 24u);
     EXPECT_EQ(search_job(24).width, TILE_WIDTH);
@@ -353,8 +353,8 @@ TEST(self_test, the_host_is_exact)
 
 TEST(self_test, finds_contraction)
 {
-    const auto fused = [](const Row& row, std::uint32_t) {
-        return std::bit_cast<std::uint32_t>(std::fma(number(row.y), number(row.z), number(row.w)));
+    const auto fused = [](const Quad& quad, std::uint32_t) {
+        return std::bit_cast<std::uint32_t>(std::fma(number(quad.y), number(quad.z), number(quad.w)));
     };
     const SelfTest test = judged_with(PROBE_MULTIPLY_ADD, fused);
     EXPECT_TRUE(test.contracts);
@@ -365,7 +365,7 @@ TEST(self_test, finds_contraction)
 
 TEST(self_test, measures_division_and_decides_the_tolerance)
 {
-    const auto off = [](const Row&, std::uint32_t right) { return right + 2; };
+    const auto off = [](const Quad&, std::uint32_t right) { return right + 2; };
     const SelfTest test = judged_with(PROBE_DIVIDE, off);
     EXPECT_EQ(test.division_ulps, 2u);
     EXPECT_TRUE(test.is_exact());
@@ -375,13 +375,13 @@ TEST(self_test, measures_division_and_decides_the_tolerance)
 
 TEST(self_test, finds_each_other_defect)
 {
-    const auto flushed = [](const Row&, std::uint32_t right) {
+    const auto flushed = [](const Quad&, std::uint32_t right) {
         return std::fpclassify(number(right)) == FP_SUBNORMAL ? right & 0x80000000u : right;
     };
     EXPECT_FALSE(judged_with(PROBE_MULTIPLY, flushed).denormals_kept);
     EXPECT_TRUE(judged_with(PROBE_MULTIPLY, flushed).is_exact()) << "no decision meets a denormal";
     EXPECT_FALSE(judged_with(PROBE_COPY, flushed).bits_kept);
-    const auto off = [](const Row&, std::uint32_t right) { return right + 1; };
+    const auto off = [](const Quad&, std::uint32_t right) { return right + 1; };
     EXPECT_FALSE(judged_with(PROBE_ADD, off).sums_right);
     EXPECT_FALSE(judged_with(PROBE_CONVERT, off).conversions_right);
     EXPECT_FALSE(judged_with(PROBE_COMPARE, off).comparisons_right);

@@ -25,9 +25,9 @@ class GivenRays : public UsableDevices, public ::testing::WithParamInterface<std
 protected:
     GivenRays() : UsableDevices(backend_named(GetParam())) {}
 
-    std::vector<Hit> traced_given(Session& session, const RaySet& set, const std::vector<Row>& rows) const
+    std::vector<Hit> traced_given(Session& session, const RaySet& set, const std::vector<Quad>& quads) const
     {
-        session.set_rays(rows);
+        session.set_rays(quads);
         return traced(session, given_job(set.rays.size(), cubes.packed.tet_count + 1, set.any_hit));
     }
     std::uint32_t allowed_ulps(std::size_t device) const
@@ -54,7 +54,7 @@ TEST_P(GivenRays, of_kind_primary_are_those_that_kernels_make)
         by_ray[i] = cubes.hits[set.rays[i].pixel];
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, {.task = Task::rays}, {&cubes.scene.mesh, &cubes.packed}, {});
-        const auto hits = traced_given(*session, set, given_rows(set, cubes.packed));
+        const auto hits = traced_given(*session, set, given_quads(set, cubes.packed));
         EXPECT_EQ(different_rays(hits, by_ray, allowed_ulps(device)), 0u) << backend.devices()[device].name;
     }
 }
@@ -71,7 +71,7 @@ TEST_P(GivenRays, of_walks_that_ask_for_their_path_have_the_bits_of_openmp)
             const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &packed}, {});
             for (const RaySet& set :
                  {hard, make_rays(RayKind::shadow, cubes.source()), make_rays(RayKind::diffuse, cubes.source())})
-                EXPECT_EQ(different_rays(traced_given(*session, set, given_rows(set, packed)),
+                EXPECT_EQ(different_rays(traced_given(*session, set, given_quads(set, packed)),
                                          cubes.answers(set, Method::project), allowed_ulps(device)),
                           0u)
                     << backend.devices()[device].name << ' ' << name_of(kernel);
@@ -88,7 +88,7 @@ TEST_P(GivenRays, are_those_that_were_given_last)
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, {.task = Task::rays}, {&cubes.scene.mesh, &cubes.packed}, {});
         for (const RaySet* set : {&first, &second, &fewer, &first})
-            EXPECT_EQ(different_rays(traced_given(*session, *set, given_rows(*set, cubes.packed)), cubes.answers(*set),
+            EXPECT_EQ(different_rays(traced_given(*session, *set, given_quads(*set, cubes.packed)), cubes.answers(*set),
                                      allowed_ulps(device)),
                       0u)
                 << backend.devices()[device].name;
@@ -98,19 +98,19 @@ TEST_P(GivenRays, are_those_that_were_given_last)
 TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
 {
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
+        const PackedScene packed = test::make_bvh_scene(cubes.scene.mesh, layout);
         const SceneData data{&cubes.scene.mesh, &packed};
         for (const RayKind kind : {RayKind::ao, RayKind::random}) {
             const RaySet set = make_rays(kind, cubes.source());
-            const auto rows = given_rows_offset(set, cubes.scene.mesh);
+            const auto quads = given_quads_offset(set, cubes.scene.mesh);
             const KernelId kernel = bvh_kernel(layout, Task::rays);
             const auto on_host = openmp_backend().open(0, kernel, data, {.threads = 2});
-            const auto right = traced_given(*on_host, set, rows);
+            const auto right = traced_given(*on_host, set, quads);
             ASSERT_TRUE(std::ranges::any_of(right, [](const Hit& hit) { return hit.face_id < POISON; }));
             for (const std::size_t device : usable) {
                 const auto session = backend.open(device, kernel, data, {});
                 const std::uint32_t ulps = allowed_ulps(device);
-                const auto hits = traced_given(*session, set, rows);
+                const auto hits = traced_given(*session, set, quads);
                 if (ulps == 0 || !set.any_hit) {
                     EXPECT_EQ(different_rays(hits, right, ulps), 0u) << name_of(kernel) << ' ' << name_of(kind);
                 }
@@ -123,8 +123,8 @@ TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
 
 TEST_P(GivenRays, of_bvhs_that_exceed_a_buffer_are_refused_with_both_numbers)
 {
-    const PackedScene packed = make_bvh_scene(cubes.scene.mesh, Layout::bvh2);
-    const std::string bytes = std::to_string(packed.nodes.size() * sizeof(Row));
+    const PackedScene packed = test::make_bvh_scene(cubes.scene.mesh, Layout::bvh2);
+    const std::string bytes = std::to_string(packed.nodes.size() * sizeof(Quad));
     for (const std::size_t device : usable) {
         if (backend.name() == openmp_backend().name()) GTEST_SKIP() << "the host has no limit";
         std::string problem;

@@ -58,7 +58,7 @@ Backend& backend_of(const Api& api)
 /// The faces of one launch.
 std::vector<std::uint32_t> searched(Session& session, const SearchRays& rays)
 {
-    session.set_rays(rays.rows);
+    session.set_rays(rays.quads);
     session.launch(search_job(rays.count()));
     EXPECT_GT(session.wait(), 0);
     std::vector<std::uint32_t> faces(rays.count());
@@ -313,7 +313,7 @@ TEST_P(Devices, search_exits_of_the_rays_that_they_were_given_last)
     const auto first = search_rays(0, 1, 4096), second = search_rays(1, 1, 4096); // as many
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, kernel, {nullptr, &tets}, {});
-        session->set_rays(first.rows);
+        session->set_rays(first.quads);
         session->launch(search_job(first.count())); // nobody waits for it
         EXPECT_EQ(wrong_searches(second, searched(*session, second)), 0u);
         EXPECT_EQ(wrong_searches(first, searched(*session, first)), 0u);
@@ -327,7 +327,7 @@ TEST_P(Devices, refuse_rays_that_exceed_a_buffer)
     const auto rays = search_rays(0, 1, 2048);
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, kernel, {nullptr, &tets}, {.max_buffer_bytes = 50'000});
-        const std::string problem = error_of([&] { session->set_rays(rays.rows); });
+        const std::string problem = error_of([&] { session->set_rays(rays.quads); });
         EXPECT_TRUE(problem.starts_with("unsupported: ")) << problem;
         EXPECT_TRUE(contains(problem, "98304") && contains(problem, "50000; give fewer")) << problem;
     }

@@ -50,10 +50,10 @@ void expect_scalar_bits(const tetrace::DeviceRays& rays, const TraceJob& job, co
             << kernel.lanes << " lanes, " << job.width << " x " << job.height << ", " << what;
 }
 
-std::vector<tetrace::Hit> traced_given(tetrace::Session& session, const std::vector<tetrace::Row>& rows,
+std::vector<tetrace::Hit> traced_given(tetrace::Session& session, const std::vector<tetrace::Quad>& quads,
                                        const TraceJob& job)
 {
-    session.set_rays(rows);
+    session.set_rays(quads);
     return traced(session, job);
 }
 
@@ -63,14 +63,14 @@ void expect_scalar_bits_given(const tetrace::PackedScene& packed, const tetrace:
 {
     const TraceJob job =
         tetrace::given_job(set.rays.size(), max_steps == 0 ? packed.tet_count + 1 : max_steps, set.any_hit);
-    const auto rows = given_rows(set, packed);
+    const auto quads = given_quads(set, packed);
     KernelId kernel = scalar;
     kernel.task = tetrace::Task::rays;
     const auto session = tetrace::openmp_backend().open(0, kernel, {nullptr, &packed}, {.threads = 2});
-    const auto expected = traced_given(*session, rows, job);
+    const auto expected = traced_given(*session, quads, job);
     for (const PacketKernel& width : packet_kernels()) {
         tetrace::openmp::PacketSession tested(width, tetrace::Task::rays, packed, 2);
-        EXPECT_EQ(different_rays(traced_given(tested, rows, job), expected, 0), 0u)
+        EXPECT_EQ(different_rays(traced_given(tested, quads, job), expected, 0), 0u)
             << width.lanes << " lanes, " << set.rays.size() << " rays, " << what;
     }
 }

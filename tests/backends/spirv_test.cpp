@@ -63,21 +63,21 @@ std::map<std::string, Array> expected_arrays(std::string_view module, bool in_pa
     for (const SceneArray& array : scene_arrays(layout_of_module(module)))
         arrays[array.name] = {array.binding, array.element_bytes, false};
     arrays["output_words"] = {OUTPUT_BINDING, 4, true};
-    if (takes_rays(module)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
+    if (takes_rays(module)) arrays["rays"] = {RAYS_BINDING, sizeof(Quad), false};
     for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++) {
         arrays["tet_words_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 4, false};
-        arrays["tet_rows_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
+        arrays["tet_quads_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
     }
     return arrays;
 }
 
-/// What a kernel's texel buffers must be: words at their array's binding, rows FIRST_ROWS_BINDING behind it.
+/// What a kernel's texel buffers must be: words at their array's binding, quads FIRST_QUADS_BINDING behind it.
 std::map<std::string, std::uint32_t> expected_texels(std::string_view module)
 {
     std::map<std::string, std::uint32_t> bindings;
     for (const SceneArray& array : scene_arrays(layout_of_module(module)))
-        bindings[array.name] = array.binding + (array.element_bytes == sizeof(Row) ? FIRST_ROWS_BINDING : 0u);
-    if (takes_rays(module)) bindings["rays"] = FIRST_ROWS_BINDING + RAYS_BINDING;
+        bindings[array.name] = array.binding + (array.element_bytes == sizeof(Quad) ? FIRST_QUADS_BINDING : 0u);
+    if (takes_rays(module)) bindings["rays"] = FIRST_QUADS_BINDING + RAYS_BINDING;
     return bindings;
 }
 
@@ -177,7 +177,7 @@ TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_sa
         if (!is_drivers(kernel.name)) continue;
         const Module module(kernel.bytes);
         std::map<std::string, Array> arrays = {{"output_words", {OUTPUT_BINDING, 4, true}}};
-        if (takes_rays(kernel.name)) arrays["rays"] = {RAYS_BINDING, sizeof(Row), false};
+        if (takes_rays(kernel.name)) arrays["rays"] = {RAYS_BINDING, sizeof(Quad), false};
         EXPECT_EQ(module.arrays(), arrays) << kernel.name;
         EXPECT_EQ(module.texels(), (std::map<std::string, std::uint32_t>{{"scene", 0}})) << "the top level";
         EXPECT_EQ(module.push_constants(), expected_push_constants()) << kernel.name;
@@ -188,7 +188,7 @@ TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_sa
     EXPECT_EQ(checked, 2u);
 }
 
-TEST(Spirv, vectors_of_three_and_rows_read_as_words_would_be_found)
+TEST(Spirv, vectors_of_three_and_quads_read_as_words_would_be_found)
 {
     EXPECT_NE(twin().push_constants(), expected_push_constants());
     ASSERT_FALSE(twin().push_constants().empty());

@@ -42,7 +42,7 @@ std::vector<Hit> traced(Session& session, const TraceJob& job)
 
 std::vector<Hit> answers(Session& session, const RaySet& set, const TriangleMesh& mesh)
 {
-    session.set_rays(given_rows_offset(set, mesh));
+    session.set_rays(given_quads_offset(set, mesh));
     return traced(session, given_job(set.rays.size(), 1, set.any_hit));
 }
 

@@ -121,7 +121,7 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
     const DeviceRays rays(make_cubes(8), Layout::tet80);
     const test::GivenScene cubes{40, false, 6};
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
+        const PackedScene packed = test::make_bvh_scene(cubes.scene.mesh, layout);
         const SceneData data{&cubes.scene.mesh, &packed};
         const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::trace), data, {.threads = 2});
         const auto given_on_host = openmp_backend().open(0, bvh_kernel(layout, Task::rays), data, {.threads = 2});
@@ -132,10 +132,10 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
             vulkan::VulkanSession given(found, bvh_kernel(layout, Task::rays), packed, {});
             for (const RayKind kind : {RayKind::ao, RayKind::diffuse}) {
                 const RaySet set = make_rays(kind, cubes.source());
-                const auto rows = given_rows_offset(set, cubes.scene.mesh);
+                const auto quads = given_quads_offset(set, cubes.scene.mesh);
                 const TraceJob job = given_job(set.rays.size(), 0, set.any_hit);
-                given_on_host->set_rays(rows);
-                given.set_rays(rows);
+                given_on_host->set_rays(quads);
+                given.set_rays(quads);
                 EXPECT_EQ(different_rays(traced(given, job), traced(*given_on_host, job), 3), 0u) << name_of(kind);
             }
         });

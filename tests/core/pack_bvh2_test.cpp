@@ -28,8 +28,8 @@ struct Bvh2Node {
 };
 Bvh2Node read_node(const PackedScene& packed, std::uint32_t node)
 {
-    const Row* rows = &packed.nodes[std::size_t{node} * BVH2_NODE_ROWS];
-    const auto& [a, b, z, child] = std::array{rows[0], rows[1], rows[2], rows[3]};
+    const Quad* quads = &packed.nodes[std::size_t{node} * BVH2_NODE_QUADS];
+    const auto& [a, b, z, child] = std::array{quads[0], quads[1], quads[2], quads[3]};
     return {{{{number(a.x), number(a.z), number(z.x)}, {number(a.y), number(a.w), number(z.y)}},
              {{number(b.x), number(b.z), number(z.z)}, {number(b.y), number(b.w), number(z.w)}}},
             {child.x, child.y}};
@@ -75,13 +75,13 @@ private:
     void read_triangle(std::uint32_t leaf_triangle, const Box& box)
     {
         leaf_order.push_back(leaf_triangle);
-        const Row* rows = &packed_.leaf_triangles[std::size_t{leaf_triangle} * LEAF_TRIANGLE_ROWS];
-        const std::uint32_t triangle = rows[0].w;
-        EXPECT_EQ(rows[1].w, 0u);
-        EXPECT_EQ(rows[2].w, 0u);
+        const Quad* quads = &packed_.leaf_triangles[std::size_t{leaf_triangle} * LEAF_TRIANGLE_QUADS];
+        const std::uint32_t triangle = quads[0].w;
+        EXPECT_EQ(quads[1].w, 0u);
+        EXPECT_EQ(quads[2].w, 0u);
         for (std::size_t k = 0; k < 3; k++)
             EXPECT_EQ(mesh_.vertices[mesh_.triangles[triangle][k]],
-                      (Float3{number(rows[k].x), number(rows[k].y), number(rows[k].z)}));
+                      (Float3{number(quads[k].x), number(quads[k].y), number(quads[k].z)}));
         triangle_boxes[triangle] = merged(triangle_boxes[triangle], box);
     }
 
@@ -105,12 +105,12 @@ std::vector<std::uint32_t> counted_up_to(std::size_t count)
 TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
 {
     const TriangleMesh mesh = GetParam().make();
-    const PackedScene packed = make_bvh_scene(mesh, Layout::bvh2);
+    const PackedScene packed = test::make_bvh_scene(mesh, Layout::bvh2);
     EXPECT_EQ(packed.layout, Layout::bvh2);
     EXPECT_EQ(packed.tet_count, 0u);
     const Bvh2Reader read(packed, mesh);
-    EXPECT_EQ(read.node_order, counted_up_to(packed.nodes.size() / BVH2_NODE_ROWS)) << "depth first, larger first";
-    EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_ROWS));
+    EXPECT_EQ(read.node_order, counted_up_to(packed.nodes.size() / BVH2_NODE_QUADS)) << "depth first, larger first";
+    EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS));
     EXPECT_LE(read.most_waiting, BVH2_STACK);
     for (std::size_t i = 0; i < mesh.triangles.size(); i++)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, PackBvh2Of,
                                          MeshRow{"one_triangle", [] { return test::identical_triangles(1); }},
                                          MeshRow{"same_triangles", [] { return test::identical_triangles(500); }},
                                          MeshRow{"deep", [] { return test::nested_groups(2, 30, 300); }}),
-                         [](const auto& row) { return row.param.name; });
+                         [](const auto& info) { return info.param.name; });
 
 TEST(PackBvh2, boxes_are_the_trees_and_the_margin)
 {
@@ -138,7 +138,7 @@ TEST(PackBvh2, one_leaf_has_an_empty_sibling_of_the_same_box)
     const TriangleMesh mesh = test::identical_triangles(3);
     const PackedScene packed = pack_bvh(mesh, {{{triangle_box(mesh, 0), {}, 0, 3}}, {2, 0, 1}}, Layout::bvh2);
     const Bvh2Node root = read_node(packed, 0);
-    EXPECT_EQ(packed.nodes.size(), BVH2_NODE_ROWS);
+    EXPECT_EQ(packed.nodes.size(), BVH2_NODE_QUADS);
     EXPECT_EQ(root.child[0], BVH2_LEAF | 3u);
     EXPECT_EQ(root.child[1], BVH2_LEAF);
     EXPECT_EQ(root.box[0], root.box[1]);
@@ -182,14 +182,14 @@ TEST(PackBvh, leaves_of_more_than_15_triangles_are_refused)
 TEST(PackBvh, a_layout_numbers_no_more_references_than_its_words_hold)
 {
     EXPECT_EQ(most_references(Layout::bvh2), 1u << 27) << "31 bits, four of them for the count";
-    EXPECT_EQ(most_references(Layout::cwbvh), 1'431'655'765u) << "three rows each, rows numbered with 32 bits";
+    EXPECT_EQ(most_references(Layout::cwbvh), 1'431'655'765u) << "three quads each, quads numbered with 32 bits";
 }
 
 TEST(PackBvh, layouts_of_tets_are_refused)
 {
     const TriangleMesh mesh = test::identical_triangles(1);
-    EXPECT_THROW((void)make_bvh_scene(mesh, Layout::tet80), Error);
-    EXPECT_THROW((void)make_bvh_scene(mesh, Layout::embree), Error);
+    EXPECT_THROW((void)test::make_bvh_scene(mesh, Layout::tet80), Error);
+    EXPECT_THROW((void)test::make_bvh_scene(mesh, Layout::embree), Error);
 }
 
 } // namespace

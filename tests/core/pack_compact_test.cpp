@@ -67,7 +67,7 @@ TEST_P(CompactPacking, sizes_are_those_of_the_layout)
     const Scene scene = make_cubes(4);
     const std::size_t tets = scene.tets.tets.size();
     const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
-    EXPECT_EQ(packed.tets.size() * sizeof(Row), (GetParam() == Layout::tet20 ? 20 : 16) * tets);
+    EXPECT_EQ(packed.tets.size() * sizeof(Quad), (GetParam() == Layout::tet20 ? 20 : 16) * tets);
     EXPECT_EQ(packed.vertices.size(), scene.tets.vertices.size());
     EXPECT_EQ(packed.occlusive_faces.size(), OCCLUSIVE_WORDS * count_faces(scene.tets).occlusive_faces);
     EXPECT_TRUE(packed.entry_links.empty());
@@ -86,8 +86,8 @@ TEST_P(CompactPacking, vertices_have_the_rank_of_their_place)
     const Scene scene = make_cubes(4);
     const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
     std::map<std::uint32_t, Place> places;
-    for (const Row& row : packed.vertices)
-        places[row.w] = {std::bit_cast<float>(row.x), std::bit_cast<float>(row.y), std::bit_cast<float>(row.z)};
+    for (const Quad& quad : packed.vertices)
+        places[quad.w] = {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
     ASSERT_EQ(places.size(), packed.vertices.size());
     EXPECT_EQ(places.begin()->first, FIRST_RANK);
     EXPECT_EQ(places.rbegin()->first, FIRST_RANK + packed.vertices.size() - 1);
@@ -122,8 +122,8 @@ TEST_P(CompactPacking, every_bit_of_a_tet_matters)
     for (std::size_t word = 0; word < 20; word++)
         for (const std::uint32_t bit : {0u, 3u, 17u, 31u}) {
             PackedScene spoilt = packed;
-            Row& row = spoilt.tets[word / 4];
-            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            Quad& quad = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= 1u << bit;
             try {
                 EXPECT_FALSE(unpack(spoilt) == whole) << "word " << word << " bit " << bit;
@@ -148,12 +148,12 @@ TEST_P(CompactPacking, refuses_tets_that_a_walk_would_not_know_the_vertices_of)
 }
 
 INSTANTIATE_TEST_SUITE_P(EachLayout, CompactPacking, testing::Values(Layout::tet20, Layout::tet16),
-                         [](const auto& row) { return std::string(name_of(row.param)); });
+                         [](const auto& info) { return std::string(name_of(info.param)); });
 
 TEST(CompactLimits, are_what_32_bits_index_and_links_name)
 {
     EXPECT_EQ(most_tets(Layout::tet20), 858'993'459u) << "5 words each";
-    EXPECT_EQ(most_tets(Layout::tet16), MAX_TETS) << "a row each";
+    EXPECT_EQ(most_tets(Layout::tet16), MAX_TETS) << "a quad each";
 }
 
 } // namespace tetrace

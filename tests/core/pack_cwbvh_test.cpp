@@ -23,8 +23,8 @@ class CwbvhNode {
 public:
     CwbvhNode(const PackedScene& packed, std::uint32_t node)
     {
-        for (std::size_t row = 0; row < CWBVH_NODE_ROWS; row++) {
-            const Row& r = packed.nodes[std::size_t{node} * CWBVH_NODE_ROWS + row];
+        for (std::size_t quad = 0; quad < CWBVH_NODE_QUADS; quad++) {
+            const Quad& r = packed.nodes[std::size_t{node} * CWBVH_NODE_QUADS + quad];
             words_.insert(words_.end(), {r.x, r.y, r.z, r.w});
         }
         for (int axis = 0; axis < 3; axis++) {
@@ -71,7 +71,7 @@ public:
     CwbvhReader(const PackedScene& packed, const TriangleMesh& mesh)
         : triangle_boxes(mesh.triangles.size()), packed_(packed), mesh_(mesh)
     {
-        node_seen.resize(packed.nodes.size() / CWBVH_NODE_ROWS);
+        node_seen.resize(packed.nodes.size() / CWBVH_NODE_QUADS);
         read(0, 0);
     }
 
@@ -126,12 +126,12 @@ private:
         EXPECT_TRUE(unary == 1 || unary == 3 || unary == 7);
         for (std::uint32_t i = first; i < first + static_cast<std::uint32_t>(std::popcount(unary)); i++) {
             leaf_order.push_back(i);
-            const Row* rows = &packed_.leaf_triangles[std::size_t{i} * LEAF_TRIANGLE_ROWS];
-            const std::uint32_t triangle = rows[0].w;
+            const Quad* quads = &packed_.leaf_triangles[std::size_t{i} * LEAF_TRIANGLE_QUADS];
+            const std::uint32_t triangle = quads[0].w;
             for (std::size_t k = 0; k < 3; k++)
                 EXPECT_EQ(mesh_.vertices[mesh_.triangles[triangle][k]],
-                          (Float3{std::bit_cast<float>(rows[k].x), std::bit_cast<float>(rows[k].y),
-                                  std::bit_cast<float>(rows[k].z)}));
+                          (Float3{std::bit_cast<float>(quads[k].x), std::bit_cast<float>(quads[k].y),
+                                  std::bit_cast<float>(quads[k].z)}));
             triangle_boxes[triangle] = merged(triangle_boxes[triangle], box);
         }
     }
@@ -149,12 +149,12 @@ class PackCwbvhOf : public testing::TestWithParam<MeshRow> {};
 TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
 {
     const TriangleMesh mesh = GetParam().make();
-    const PackedScene packed = make_bvh_scene(mesh, Layout::cwbvh);
+    const PackedScene packed = test::make_bvh_scene(mesh, Layout::cwbvh);
     EXPECT_EQ(packed.layout, Layout::cwbvh);
     EXPECT_EQ(packed.tet_count, 0u);
     const CwbvhReader read(packed, mesh);
     EXPECT_EQ(read.node_seen, std::vector<int>(read.node_seen.size(), 1));
-    std::vector<std::uint32_t> numbers(packed.leaf_triangles.size() / LEAF_TRIANGLE_ROWS);
+    std::vector<std::uint32_t> numbers(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS);
     std::iota(numbers.begin(), numbers.end(), 0u);
     EXPECT_EQ(read.leaf_order, numbers) << "in the order of their leaves";
     EXPECT_LE(read.most_waiting, CWBVH_STACK);
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, PackCwbvhOf,
                                          MeshRow{"one_triangle", [] { return test::identical_triangles(1); }},
                                          MeshRow{"same_triangles", [] { return test::identical_triangles(500); }},
                                          MeshRow{"deep", [] { return test::nested_groups(2, 30, 300); }}),
-                         [](const auto& row) { return row.param.name; });
+                         [](const auto& info) { return info.param.name; });
 
 TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)
 {
@@ -182,16 +182,16 @@ TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)
 TEST(PackCwbvh, nodes_of_a_surface_are_nearly_full)
 {
     const TriangleMesh mesh = make_cubes(10).mesh;
-    const PackedScene packed = make_bvh_scene(mesh, Layout::cwbvh);
+    const PackedScene packed = test::make_bvh_scene(mesh, Layout::cwbvh);
     const CwbvhReader read(packed, mesh);
     EXPECT_GT(static_cast<double>(read.children) / static_cast<double>(read.node_seen.size()), 7.0);
 }
 
 TEST(PackCwbvh, one_triangle_is_one_child_of_the_root)
 {
-    const PackedScene packed = make_bvh_scene(test::identical_triangles(1), Layout::cwbvh);
+    const PackedScene packed = test::make_bvh_scene(test::identical_triangles(1), Layout::cwbvh);
     const CwbvhNode root(packed, 0);
-    EXPECT_EQ(packed.nodes.size(), CWBVH_NODE_ROWS);
+    EXPECT_EQ(packed.nodes.size(), CWBVH_NODE_QUADS);
     int leaves = 0;
     for (std::size_t slot = 0; slot < 8; slot++)
         leaves += root.meta(slot) == 0x20 ? 1 : 0;
@@ -202,12 +202,12 @@ TEST(PackCwbvh, one_triangle_is_one_child_of_the_root)
 // Bit 2 of a slot: the child is high in x, which rays towards low x meet first; bit 1 y, bit 0 z.
 TEST(PackCwbvh, children_stand_in_the_slots_of_their_octants)
 {
-    const PackedScene packed = make_bvh_scene(test::cube_corners(), Layout::cwbvh);
+    const PackedScene packed = test::make_bvh_scene(test::cube_corners(), Layout::cwbvh);
     const CwbvhNode root(packed, 0);
     for (std::uint32_t slot = 0; slot < 8; slot++) {
         ASSERT_NE(root.meta(slot), 0u);
         const std::uint32_t first = root.triangle_base() + (root.meta(slot) & 31);
-        EXPECT_EQ(packed.leaf_triangles[std::size_t{first} * LEAF_TRIANGLE_ROWS].w, slot);
+        EXPECT_EQ(packed.leaf_triangles[std::size_t{first} * LEAF_TRIANGLE_QUADS].w, slot);
     }
 }
 
@@ -219,7 +219,7 @@ TEST(PackCwbvh, a_leaf_has_a_triangle_once)
     const CwbvhReader read(packed, mesh);
     const std::size_t leaves = read.children - (read.node_seen.size() - 1);
     EXPECT_LT(leaves, 41u) << "some were merged";
-    EXPECT_EQ(packed.leaf_triangles.size(), leaves * LEAF_TRIANGLE_ROWS);
+    EXPECT_EQ(packed.leaf_triangles.size(), leaves * LEAF_TRIANGLE_QUADS);
 }
 
 } // namespace

@@ -45,24 +45,24 @@ TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
 INSTANTIATE_TEST_SUITE_P(EachLayoutAndOrder, Packing,
                          testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32),
                                           testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
-                         [](const auto& row) {
-                             return std::string(name_of(std::get<0>(row.param))) + "_" +
-                                    std::string(name_of(std::get<1>(row.param)));
+                         [](const auto& info) {
+                             return std::string(name_of(std::get<0>(info.param))) + "_" +
+                                    std::string(name_of(std::get<1>(info.param)));
                          });
 
 TEST(Pack, sizes_are_those_of_the_layout)
 {
     const Scene scene = make_cubes(3);
     const auto tets = scene.tets.tets.size();
-    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Row), 80 * tets);
-    EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Row), 96 * tets);
-    EXPECT_EQ(pack(scene, Layout::half32, TetOrder::hilbert).tets.size() * sizeof(Row), 4 * 32 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Quad), 80 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Quad), 96 * tets);
+    EXPECT_EQ(pack(scene, Layout::half32, TetOrder::hilbert).tets.size() * sizeof(Quad), 4 * 32 * tets);
 }
 
 TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
 {
     EXPECT_EQ(most_tets(Layout::tet80), 214'748'364u) << "20 words each";
-    EXPECT_EQ(most_tets(Layout::tet96), 715'827'882u) << "6 rows each";
+    EXPECT_EQ(most_tets(Layout::tet96), 715'827'882u) << "6 quads each";
     EXPECT_EQ(most_tets(Layout::half32), 268'435'455u) << "28 bits in an exit";
 }
 
@@ -111,7 +111,7 @@ TEST(Pack, layouts_number_the_tets_alike)
               pack(scene, Layout::tet96, TetOrder::hilbert).packed_of_mesh);
 }
 
-// One flipped bit anywhere in the tets' rows must be visible after unpacking: no word is ignored but tet96's w.
+// One flipped bit anywhere in the tets' quads must be visible after unpacking: no word is ignored but tet96's w.
 TEST(Pack, every_word_of_a_tet_matters)
 {
     const Scene scene = make_cubes(2);
@@ -122,8 +122,8 @@ TEST(Pack, every_word_of_a_tet_matters)
         for (std::size_t word = 0; word < words; word++) {
             if (layout == Layout::tet96 && word < 16 && word % 4 == 3) continue; // padding
             PackedScene spoilt = packed;
-            Row& row = spoilt.tets[word / 4];
-            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            Quad& quad = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= 1u;
             EXPECT_FALSE(unpack(spoilt) == whole) << name_of(layout) << " word " << word;
         }
@@ -135,11 +135,11 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
 {
     const Scene scene = make_cubes(2);
     const PackedScene packed = pack(scene, Layout::half32, TetOrder::hilbert);
-    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_ROWS; word++)
+    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_QUADS; word++)
         for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
             PackedScene spoilt = packed;
-            Row& row = spoilt.tets[word / 4];
-            std::uint32_t* at[] = {&row.x, &row.y, &row.z, &row.w};
+            Quad& quad = spoilt.tets[word / 4];
+            std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= bit;
             EXPECT_THROW((void)unpack(spoilt), Error) << "word " << word << ", bit " << bit;
         }
@@ -149,8 +149,8 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
 TEST(Pack, no_rank_is_denormal_as_a_float)
 {
     const PackedScene packed = pack(make_cubes(4), Layout::half32, TetOrder::hilbert);
-    for (std::size_t row = 0; row < packed.tets.size(); row += HALF32_ROWS)
-        ASSERT_TRUE(std::isnormal(std::bit_cast<float>(packed.tets[row].w))) << "row " << row;
+    for (std::size_t quad = 0; quad < packed.tets.size(); quad += HALF32_QUADS)
+        ASSERT_TRUE(std::isnormal(std::bit_cast<float>(packed.tets[quad].w))) << "quad " << quad;
 }
 
 TEST(Pack, triangles_hold_a_corner_and_two_edges)
@@ -159,7 +159,7 @@ TEST(Pack, triangles_hold_a_corner_and_two_edges)
     const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
     ASSERT_EQ(packed.triangles.size(), 3 * scene.mesh.triangles.size());
     const auto& [a, b, c] = scene.mesh.triangles[1];
-    const auto x = [](const Row& row) { return std::bit_cast<float>(row.x); };
+    const auto x = [](const Quad& quad) { return std::bit_cast<float>(quad.x); };
     EXPECT_EQ(x(packed.triangles[3]), scene.mesh.vertices[a].x);
     EXPECT_EQ(x(packed.triangles[4]), scene.mesh.vertices[b].x - scene.mesh.vertices[a].x);
     EXPECT_EQ(x(packed.triangles[5]), scene.mesh.vertices[c].x - scene.mesh.vertices[a].x);

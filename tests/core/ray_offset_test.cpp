@@ -69,12 +69,12 @@ TEST(RayOffset, every_ray_starts_on_its_side_of_the_exact_triangle)
 TEST(GivenRows, hold_the_rays_with_links_as_the_scene_is_packed)
 {
     const RaySet set = make_rays(RayKind::ao, given().source());
-    const auto rows = given_rows(set, given().packed);
-    ASSERT_EQ(rows.size(), GIVEN_RAY_ROWS * set.rays.size());
+    const auto quads = given_quads(set, given().packed);
+    ASSERT_EQ(quads.size(), GIVEN_RAY_QUADS * set.rays.size());
     bool renumbered = false;
     for (std::size_t i = 0; i < set.rays.size(); i++) {
         const GivenRay& ray = set.rays[i];
-        const Row &first = rows[i], &second = rows[set.rays.size() + i];
+        const Quad &first = quads[i], &second = quads[set.rays.size() + i];
         EXPECT_EQ((Float3{as_float(first.x), as_float(first.y), as_float(first.z)}), ray.direction);
         EXPECT_EQ((Float3{as_float(second.x), as_float(second.y), as_float(second.z)}), ray.origin);
         EXPECT_EQ(as_float(second.w), ray.end);
@@ -88,10 +88,10 @@ TEST(GivenRows, hold_the_rays_with_links_as_the_scene_is_packed)
 TEST(GivenRows, rays_from_outside_have_no_link)
 {
     const RaySet set = make_rays(RayKind::random, given().source());
-    for (const auto& rows : {given_rows(set, given().packed), given_rows_offset(set, given().scene.mesh)})
+    for (const auto& quads : {given_quads(set, given().packed), given_quads_offset(set, given().scene.mesh)})
         for (std::size_t i = 0; i < set.rays.size(); i++) {
-            ASSERT_EQ(rows[i].w, NO_LINK);
-            ASSERT_EQ(as_float(rows[set.rays.size() + i].x), set.rays[i].origin.x) << "and no offset";
+            ASSERT_EQ(quads[i].w, NO_LINK);
+            ASSERT_EQ(as_float(quads[set.rays.size() + i].x), set.rays[i].origin.x) << "and no offset";
         }
 }
 
@@ -99,20 +99,20 @@ TEST(GivenRows, of_another_scene_are_refused)
 {
     RaySet set = make_rays(RayKind::ao, given().source());
     set.rays.front().link = make_link(given().packed.tet_count, 0);
-    EXPECT_THROW((void)given_rows(set, given().packed), Error);
+    EXPECT_THROW((void)given_quads(set, given().packed), Error);
 }
 
 TEST(GivenRows, of_a_bvh_start_offset)
 {
     const RaySet set = make_rays(RayKind::diffuse, given().source());
-    const auto rows = given_rows_offset(set, given().scene.mesh);
+    const auto quads = given_quads_offset(set, given().scene.mesh);
     for (std::size_t i = 0; i < set.rays.size(); i++) {
-        const Row& second = rows[set.rays.size() + i];
+        const Quad& second = quads[set.rays.size() + i];
         const Float3 origin{as_float(second.x), as_float(second.y), as_float(second.z)};
         ASSERT_NE(origin, set.rays[i].origin);
         // 256 units in the last place of numbers below 1 are at most 2^-16.
         ASSERT_LE(length(to_double(origin) - to_double(set.rays[i].origin)), 0x1p-16 * 1.0001);
-        ASSERT_EQ(rows[i].w, NO_LINK);
+        ASSERT_EQ(quads[i].w, NO_LINK);
     }
 }
 

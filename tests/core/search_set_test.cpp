@@ -16,19 +16,19 @@ namespace {
 
 constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-Float3 vector_of(const Row& row)
+Float3 vector_of(const Quad& quad)
 {
-    return {std::bit_cast<float>(row.x), std::bit_cast<float>(row.y), std::bit_cast<float>(row.z)};
+    return {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
 }
 
 using Tet4 = std::array<Float3, 4>;
 
-/// Of layout tet96, whose first four rows are the corners.
+/// Of layout tet96, whose first four quads are the corners.
 Tet4 tet_at(const PackedScene& tets, std::size_t number)
 {
     Tet4 corners;
     for (std::size_t i = 0; i < 4; i++)
-        corners[i] = vector_of(tets.tets[TET96_ROWS * number + i]);
+        corners[i] = vector_of(tets.tets[TET96_QUADS * number + i]);
     return corners;
 }
 
@@ -37,8 +37,8 @@ struct TestRay {
 };
 TestRay ray_at(const SearchRays& rays, std::size_t number)
 {
-    return {vector_of(rays.rows[rays.count() + number]), vector_of(rays.rows[number]),
-            vector_of(rays.rows[2 * rays.count() + number])};
+    return {vector_of(rays.quads[rays.count() + number]), vector_of(rays.quads[number]),
+            vector_of(rays.quads[2 * rays.count() + number])};
 }
 
 ExactCrossing cross_face(const TestRay& ray, const Tet4& tet, std::size_t face)
@@ -72,7 +72,7 @@ std::pair<double, double> distances(const TestRay& ray, const Tet4& tet, std::si
 TEST(SearchSet, tets_have_a_volume_and_the_orientation_of_packed_ones)
 {
     const PackedScene tets = search_tets(2000, Layout::tet96);
-    ASSERT_EQ(tets.tets.size(), 2000u * TET96_ROWS);
+    ASSERT_EQ(tets.tets.size(), 2000u * TET96_QUADS);
     for (std::size_t i = 0; i < 2000; i++) {
         const Tet4 tet = tet_at(tets, i);
         EXPECT_EQ(orientation(tet[0], tet[1], tet[2], tet[3]), -1) << i;
@@ -85,7 +85,7 @@ TEST(SearchSet, tets_have_a_volume_and_the_orientation_of_packed_ones)
 TEST(SearchSet, is_the_same_on_every_machine)
 {
     EXPECT_EQ(hash_of(search_tets(100, Layout::tet80).tets), 9813976517486629394u);
-    EXPECT_EQ(hash_of(search_rays(0, 100, 64).rows), 16852513402178649653u);
+    EXPECT_EQ(hash_of(search_rays(0, 100, 64).quads), 16852513402178649653u);
 }
 
 TEST(SearchSet, a_tet_is_the_same_in_both_layouts_and_in_any_number_of_them)
@@ -95,9 +95,9 @@ TEST(SearchSet, a_tet_is_the_same_in_both_layouts_and_in_any_number_of_them)
     const PackedScene wide = search_tets(3, Layout::tet96);
     for (std::size_t tet = 0; tet < 3; tet++)
         for (std::size_t corner = 0; corner < 4; corner++) {
-            const Row row = wide.tets[TET96_ROWS * tet + corner];
-            const auto* words = &few.tets[TET80_ROWS * tet].x + 3 * corner;
-            EXPECT_TRUE(row.x == words[0] && row.y == words[1] && row.z == words[2] && row.w == 0);
+            const Quad quad = wide.tets[TET96_QUADS * tet + corner];
+            const auto* words = &few.tets[TET80_QUADS * tet].x + 3 * corner;
+            EXPECT_TRUE(quad.x == words[0] && quad.y == words[1] && quad.z == words[2] && quad.w == 0);
         }
 }
 
@@ -106,8 +106,8 @@ TEST(SearchSet, rays_of_a_tet_are_the_same_whatever_the_batch)
     const SearchRays all = search_rays(0, 4, 16), part = search_rays(2, 2, 8);
     for (std::size_t i = 0; i < part.count(); i++) {
         const std::size_t same = (2 + i / 8) * 16 + i % 8;
-        EXPECT_EQ(part.rows[i], all.rows[same]);
-        EXPECT_EQ(part.rows[part.count() + i], all.rows[all.count() + same]);
+        EXPECT_EQ(part.quads[i], all.quads[same]);
+        EXPECT_EQ(part.quads[part.count() + i], all.quads[all.count() + same]);
         EXPECT_EQ(part.exits[i], all.exits[same]);
     }
 }
@@ -174,7 +174,7 @@ TEST(SearchSet, openmp_finds_the_exits_with_every_method)
         if (!openmp_backend().why_not(0, kernel).empty()) continue;
         const PackedScene tets = search_tets(200, kernel.layout);
         const auto session = openmp_backend().open(0, kernel, {nullptr, &tets}, {.threads = 2});
-        session->set_rays(rays.rows);
+        session->set_rays(rays.quads);
         session->launch(search_job(rays.count()));
         EXPECT_GT(session->wait(), 0);
         std::vector<std::uint32_t> found(rays.count());

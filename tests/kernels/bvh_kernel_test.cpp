@@ -111,7 +111,7 @@ Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
     const SceneView view = view_of(packed);
     const RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    for (std::size_t at = packed.leaf_triangles.size() / LEAF_TRIANGLE_ROWS; at-- > 0;)
+    for (std::size_t at = packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS; at-- > 0;)
         nearest = nearer_triangle(view, frame, nearest, static_cast<uint>(at));
     return hit_of(view, ray, nearest);
 }

@@ -166,8 +166,8 @@ TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
         return (mesh.vertices[a][axis] + mesh.vertices[b][axis] + mesh.vertices[c][axis]) / 3;
     };
     tetrace::PackedScene packed = box().packed;
-    for (std::size_t row = 0; row < 3; row++)
-        packed.triangles[row].z = 0; // the first triangle, flattened into z = 0
+    for (std::size_t quad = 0; quad < 3; quad++)
+        packed.triangles[quad].z = 0; // the first triangle, flattened into z = 0
     const Hit hit =
         hit_on(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7, NO_END);
     EXPECT_NEAR(hit.t, 2, 1e-6);

@@ -72,7 +72,7 @@ bool is_that_of_a_ray_nearby(const Scene& scene, const embree::Accelerator& acce
     return false;
 }
 
-/// Traces that many rays with trace(set, rows), and judges each.
+/// Traces that many rays with trace(set, quads), and judges each.
 template <class Trace>
 Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count, const Trace& trace)
 {
@@ -82,7 +82,7 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
     for (std::uint64_t first = 0; first < count; first += rays_at_once) {
         const std::size_t size = std::min(rays_at_once, count - first) / TILE_WIDTH * TILE_WIDTH;
         const RaySet set = test::hard_ray_set(scene, first, size);
-        const std::vector<Hit> hits = trace(set, given_rows(set, packed));
+        const std::vector<Hit> hits = trace(set, given_quads(set, packed));
         const Verdicts verdicts = oracle.judge(set, hits, Origins::own);
         all.verdicts.add(verdicts);
         for (const std::uint32_t ray : verdicts.flawed) {
@@ -106,10 +106,10 @@ Judged judged_on_openmp(const Scene& scene, std::uint64_t count)
     const PackedScene records = pack(scene, of_records.layout, TetOrder::hilbert);
     const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {});
     const auto other = openmp_backend().open(0, of_records, {&scene.mesh, &records}, {});
-    return judged(scene, packed, count, [&](const RaySet& set, const std::vector<Row>& rows) {
+    return judged(scene, packed, count, [&](const RaySet& set, const std::vector<Quad>& quads) {
         const TraceJob job = given_job(set.rays.size(), packed.tet_count + 1, false);
-        session->set_rays(rows);
-        other->set_rays(given_rows(set, records));
+        session->set_rays(quads);
+        other->set_rays(given_quads(set, records));
         std::vector<Hit> hits = traced(*session, job);
         EXPECT_EQ(different_rays(traced(*other, job), hits, 0), 0u);
         return hits;
@@ -158,10 +158,10 @@ TEST(HardRays, find_a_walk_without_the_rule_for_ties)
     const mutant::SceneView view = mutant::view_of(packed);
     mutant::TraceParams params{};
     params.max_steps = packed.tet_count + 1;
-    const Judged all = judged(scene, packed, 1'800, [&](const RaySet& set, const std::vector<Row>& rows) {
+    const Judged all = judged(scene, packed, 1'800, [&](const RaySet& set, const std::vector<Quad>& quads) {
         std::vector<Hit> hits;
         for (std::size_t i = 0; i < set.rays.size(); i++)
-            hits.push_back(std::bit_cast<Hit>(mutant::trace_given(view, params, rows[i], rows[set.rays.size() + i])));
+            hits.push_back(std::bit_cast<Hit>(mutant::trace_given(view, params, quads[i], quads[set.rays.size() + i])));
         return hits;
     });
     EXPECT_GT(all.verdicts.lost + all.verdicts.wrong - all.nearby, 20u);

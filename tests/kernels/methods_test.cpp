@@ -245,8 +245,8 @@ TEST(Methods, a_walk_that_finds_no_exit_is_lost_where_it_stands)
 TEST(Methods, a_walk_that_goes_in_circles_is_lost_at_its_cap_or_begins_anew)
 {
     auto packed = misled();
-    for (std::uint32_t row : {4u, 5u, 10u, 11u}) { // every face of each tet leads to face 0 of the other
-        packed.tets[row].x = packed.tets[row].z = row < TET96_ROWS ? 1u << 2u : 0u;
+    for (std::uint32_t quad : {4u, 5u, 10u, 11u}) { // every face of each tet leads to face 0 of the other
+        packed.tets[quad].x = packed.tets[quad].z = quad < TET96_QUADS ? 1u << 2u : 0u;
     }
     packed.entry_ranges.assign(7, 0); // no face of a boundary, where project begins anew: it finds no path
     for (const Method& method : methods()) {

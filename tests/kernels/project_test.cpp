@@ -281,18 +281,18 @@ TEST(Project, loses_no_ray_that_is_given_and_never_hits_the_face_that_it_starts_
     std::uint64_t elsewhere = 0, from_beginning = 0, beyond = 0;
     for (const auto& grid : grids()) {
         const auto set = tetrace::test::hard_ray_set(grid->scene, 0, 9 * 800);
-        const auto rows = given_rows(set, grid->packed);
+        const auto quads = given_quads(set, grid->packed);
         sought = {};
         for (std::size_t i = 0; i < set.rays.size(); i++) {
             const auto hit =
-                right::trace_given(grid->view, params_of(*grid, NO_TET), rows[i], rows[set.rays.size() + i]);
+                right::trace_given(grid->view, params_of(*grid, NO_TET), quads[i], quads[set.rays.size() + i]);
             ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
             if (set.rays[i].triangle != FREE_FACE) {
                 ASSERT_NE(hit.face_id, set.rays[i].triangle) << grid->name << ", ray " << i;
             }
-            if (rows[i].w == NO_LINK) continue;
-            const auto ray = right::given_ray(rows[i], rows[set.rays.size() + i]);
-            elsewhere += !holds(*grid, rows[i].w, ray);
+            if (quads[i].w == NO_LINK) continue;
+            const auto ray = right::given_ray(quads[i], quads[set.rays.size() + i]);
+            elsewhere += !holds(*grid, quads[i].w, ray);
         }
         from_beginning += sought[1];
         beyond += sought[2];
@@ -422,7 +422,7 @@ tetrace::RaySet given_among_others(const Grid& grid, const std::vector<CyclicSta
 std::vector<tetrace::Hit> hits_of_given(tetrace::Session& session, const tetrace::PackedScene& packed,
                                         const tetrace::RaySet& set)
 {
-    session.set_rays(given_rows(set, packed));
+    session.set_rays(given_quads(set, packed));
     return traced(session, tetrace::given_job(set.rays.size(), packed.tet_count + 1, false));
 }
 

@@ -20,7 +20,7 @@ public:
     DamagedSession(std::unique_ptr<Session> inner, Damage damage) : inner_(std::move(inner)), damage_(std::move(damage))
     {
     }
-    void set_rays(std::span<const Row> rows) override { inner_->set_rays(rows); }
+    void set_rays(std::span<const Quad> quads) override { inner_->set_rays(quads); }
     void launch(const TraceJob& job) override { inner_->launch(job); }
     [[nodiscard]] double wait() override { return inner_->wait(); }
     void read_output(std::span<std::uint32_t> words) override
@@ -57,7 +57,7 @@ public:
         return std::make_unique<DamagedSession>(inner_.open(device, kernel, scene, options), damage_);
     }
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
-                                                   std::span<const Row> operations) override
+                                                   std::span<const Quad> operations) override
     {
         return inner_.probe(device, math, operations);
     }

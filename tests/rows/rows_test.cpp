@@ -36,7 +36,7 @@ public:
     {
         throw Error(ErrorKind::unsupported, why_not(0, kernel));
     }
-    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Row>) override { return {}; }
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Quad>) override { return {}; }
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:

@@ -1,12 +1,15 @@
 #pragma once
 
-#include "core/mesh/triangle_mesh.h"
-#include "core/pack/packed_scene.h"
+#include "backends/embree/bvh_builder.h"
+#include "core/pack/pack_bvh.h"
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// Builds a mesh's BVH and packs it: build_bvh() and pack_bvh(), and what they throw.
-/// layout: bvh2 or cwbvh. threads: of the build; 0: all.
-[[nodiscard]] PackedScene make_bvh_scene(const TriangleMesh& mesh, Layout layout, unsigned threads = 0);
+/// layout: bvh2 or cwbvh.
+[[nodiscard]] inline PackedScene make_bvh_scene(const TriangleMesh& mesh, Layout layout)
+{
+    return pack_bvh(mesh, build_bvh(mesh).bvh, layout);
+}
 
-} // namespace tetrace
+} // namespace tetrace::test

@@ -50,7 +50,7 @@ struct GivenScene {
         std::vector<Hit> answers(set.rays.size());
         const auto session =
             openmp_backend().open(0, {.method = method, .task = Task::rays}, {&scene.mesh, &packed}, {.threads = 2});
-        session->set_rays(given_rows(set, packed));
+        session->set_rays(given_quads(set, packed));
         session->launch(given_job(set.rays.size(), packed.tet_count + 1, set.any_hit));
         (void)session->wait();
         session->read_back(answers);

@@ -52,7 +52,7 @@ std::vector<Hit> bvh_answers(const TriangleMesh& mesh, const PackedScene& bvh, c
     const KernelId kernel{
         .structure = Structure::bvh, .method = Method::single, .layout = bvh.layout, .task = Task::rays};
     const auto session = openmp_backend().open(0, kernel, {&mesh, &bvh}, {.threads = 2});
-    session->set_rays(given_rows_offset(set, mesh));
+    session->set_rays(given_quads_offset(set, mesh));
     session->launch(given_job(set.rays.size(), 1, set.any_hit));
     (void)session->wait();
     std::vector<Hit> answers(set.rays.size());

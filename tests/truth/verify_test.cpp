@@ -24,7 +24,7 @@ public:
     DamagedSession(std::unique_ptr<Session> inner, Damage damage) : inner_(std::move(inner)), damage_(std::move(damage))
     {
     }
-    void set_rays(std::span<const Row> rows) override { inner_->set_rays(rows); }
+    void set_rays(std::span<const Quad> rows) override { inner_->set_rays(rows); }
     void launch(const TraceJob& job) override { inner_->launch(job); }
     [[nodiscard]] double wait() override { return inner_->wait(); }
     void read_output(std::span<std::uint32_t> words) override

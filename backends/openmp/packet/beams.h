@@ -209,7 +209,7 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
     else
         leave_start(job, eye, walk, lanes);
     walk.begun = walk.live | walk.ended;
-    store(walk.offsets, walk.record * (4 * HALF32_ROWS));
+    store(walk.offsets, walk.record * (4 * HALF32_QUADS));
 }
 
 LANE_FN void end(Packets& packets, uint first, const BeamWalk& walk)

@@ -4,7 +4,7 @@ constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes rays when it walk
 constexpr uint rays_at_once = 512;           // that a thread takes
 constexpr uint rays_ahead = 32;              // whose tets are asked for before the rays are taken
 
-constexpr uint record_words = 4 * HALF32_ROWS, tet_words = 4 * record_words;
+constexpr uint record_words = 4 * HALF32_QUADS, tet_words = 4 * record_words;
 
 using GivenWalk = Walk<any_axis>;
 
@@ -40,7 +40,7 @@ LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
     const Mask mask = mask_of(lanes);
     LaneWords offsets;
     store(offsets, *reinterpret_cast<const Words*>(packet.numbers.of) * 4);
-    const Quad direction = load_rows(job.directions, offsets), origin = load_rows(job.origins, offsets);
+    const Quad direction = load_quads(job.directions, offsets), origin = load_quads(job.origins, offsets);
     for (uint axis = 0; axis < 3; axis++) {
         packet.direction[axis] = select(mask, as_floats(direction.of[axis]), packet.direction[axis]);
         packet.origin[axis] = select(mask, as_floats(origin.of[axis]), packet.origin[axis]);
@@ -68,8 +68,8 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     store(offsets, select(mask, (links >> 2) * tet_words, Words{}));
     const Records first = load_records(job.records, offsets),
                   second = load_records(job.records + record_words, offsets);
-    const Quad apexes[4] = {first.apex, second.apex, load_rows(job.records + 2 * record_words, offsets),
-                            load_rows(job.records + 3 * record_words, offsets)};
+    const Quad apexes[4] = {first.apex, second.apex, load_quads(job.records + 2 * record_words, offsets),
+                            load_quads(job.records + 3 * record_words, offsets)};
     Seen v[4];
     for (uint i = 0; i < 4; i++)
         v[i] = seen_at(packet, walk.shear, apexes[i].of);
@@ -160,7 +160,7 @@ template <bool has_ends>
             }
             if (walks[i].live != 0) {
                 step<any_axis, has_ends>(job, packets[i], walks[i], steps + 1);
-                prefetch_rows(job.records, walks[i].offsets);
+                prefetch_quads(job.records, walks[i].offsets);
             }
             goes_on = goes_on || packets[i].lanes != 0;
         }

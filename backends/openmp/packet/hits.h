@@ -10,13 +10,13 @@ struct Hits {
 LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hits& hits)
 {
     LaneWords offsets;
-    store(offsets, select(mask_of(lanes), (packet.exit >> 2) * (4 * TRIANGLE_ROWS), Words{}));
-    const Quad rows[3] = {load_rows(job.triangles, offsets), load_rows(job.triangles + 4, offsets),
-                          load_rows(job.triangles + 8, offsets)};
-    const auto vectors = [](const Quad& row) {
-        return Vectors{as_floats(row.of[0]), as_floats(row.of[1]), as_floats(row.of[2])};
+    store(offsets, select(mask_of(lanes), (packet.exit >> 2) * (4 * TRIANGLE_QUADS), Words{}));
+    const Quad quads[3] = {load_quads(job.triangles, offsets), load_quads(job.triangles + 4, offsets),
+                           load_quads(job.triangles + 8, offsets)};
+    const auto vectors = [](const Quad& quad) {
+        return Vectors{as_floats(quad.of[0]), as_floats(quad.of[1]), as_floats(quad.of[2])};
     };
-    const Vectors v0 = vectors(rows[0]), edge_1 = vectors(rows[1]), edge_2 = vectors(rows[2]);
+    const Vectors v0 = vectors(quads[0]), edge_1 = vectors(quads[1]), edge_2 = vectors(quads[2]);
     const Vectors direction = {packet.direction[0], packet.direction[1], packet.direction[2]};
     const Vectors offset = sub3({packet.origin[0], packet.origin[1], packet.origin[2]}, v0);
     const Vectors p = cross3(direction, edge_2), q = cross3(offset, edge_1);

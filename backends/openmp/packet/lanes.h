@@ -158,7 +158,7 @@ LANE_FN void store(LaneWords& to, Words a)
     asm("" : "+m"(to));
 }
 
-// Rows of 16 bytes, one a lane, in four vectors of their words. 4 x 4 words are transposed at once.
+// Quads of 16 bytes, one a lane, in four vectors of their words. 4 x 4 words are transposed at once.
 struct Quad {
     Words of[4];
 };
@@ -167,15 +167,15 @@ struct Quad {
 #define HIGH_WORDS 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31
 #define LOW_PAIRS 0, 8, 2, 10, 4, 12, 6, 14
 #define HIGH_PAIRS 1, 9, 3, 11, 5, 13, 7, 15
-#define EVEN_ROWS 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27
-#define ODD_ROWS 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31
+#define EVEN_QUADS 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27
+#define ODD_QUADS 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31
 #elif LANES == 8
 #define LOW_WORDS 0, 8, 1, 9, 4, 12, 5, 13
 #define HIGH_WORDS 2, 10, 3, 11, 6, 14, 7, 15
 #define LOW_PAIRS 0, 4, 2, 6
 #define HIGH_PAIRS 1, 5, 3, 7
-#define EVEN_ROWS 0, 1, 2, 3, 8, 9, 10, 11
-#define ODD_ROWS 4, 5, 6, 7, 12, 13, 14, 15
+#define EVEN_QUADS 0, 1, 2, 3, 8, 9, 10, 11
+#define ODD_QUADS 4, 5, 6, 7, 12, 13, 14, 15
 #else
 #define LOW_WORDS 0, 4, 1, 5
 #define HIGH_WORDS 2, 6, 3, 7
@@ -201,54 +201,54 @@ LANE_FN Quad transposed(Words a, Words b, Words c, Words d)
              high_pairs(ab_high, cd_high)}};
 }
 
-using Row4 = uint __attribute__((vector_size(16)));
-LANE_FN Row4 row_at(const uint* words)
+using Quad4 = uint __attribute__((vector_size(16)));
+LANE_FN Quad4 quad_at(const uint* words)
 {
-    return *reinterpret_cast<const Row4*>(words);
+    return *reinterpret_cast<const Quad4*>(words);
 }
 #if LANES == 16
-LANE_FN Words rows_at(const uint* base, const uint* offsets)
+LANE_FN Words quads_at(const uint* base, const uint* offsets)
 {
     const auto low =
-        __builtin_shufflevector(row_at(base + offsets[0]), row_at(base + offsets[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+        __builtin_shufflevector(quad_at(base + offsets[0]), quad_at(base + offsets[4]), 0, 1, 2, 3, 4, 5, 6, 7);
     const auto high =
-        __builtin_shufflevector(row_at(base + offsets[8]), row_at(base + offsets[12]), 0, 1, 2, 3, 4, 5, 6, 7);
+        __builtin_shufflevector(quad_at(base + offsets[8]), quad_at(base + offsets[12]), 0, 1, 2, 3, 4, 5, 6, 7);
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 #elif LANES == 8
-LANE_FN Words rows_at(const uint* base, const uint* offsets)
+LANE_FN Words quads_at(const uint* base, const uint* offsets)
 {
-    return __builtin_shufflevector(row_at(base + offsets[0]), row_at(base + offsets[4]), 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(quad_at(base + offsets[0]), quad_at(base + offsets[4]), 0, 1, 2, 3, 4, 5, 6, 7);
 }
 #else
-LANE_FN Words rows_at(const uint* base, const uint* offsets)
+LANE_FN Words quads_at(const uint* base, const uint* offsets)
 {
-    return row_at(base + offsets[0]);
+    return quad_at(base + offsets[0]);
 }
 #endif
-// offsets: in words, of one row a lane.
-LANE_FN Quad load_rows(const uint* base, const LaneWords& offsets)
+// offsets: in words, of one quad a lane.
+LANE_FN Quad load_quads(const uint* base, const LaneWords& offsets)
 {
     const uint* of = offsets.of;
-    return transposed(rows_at(base, of), rows_at(base, of + 1), rows_at(base, of + 2), rows_at(base, of + 3));
+    return transposed(quads_at(base, of), quads_at(base, of + 1), quads_at(base, of + 2), quads_at(base, of + 3));
 }
 
 // Asks for what lanes will load next.
-LANE_FN void prefetch_rows(const uint* base, const LaneWords& offsets)
+LANE_FN void prefetch_quads(const uint* base, const LaneWords& offsets)
 {
     for (const uint offset : offsets.of)
         __builtin_prefetch(base + offset);
 }
 
-// Both rows of half32's records, one a lane. A load takes a whole record, which a cache line holds; so records come
-// with their two rows side by side, and what is transposed holds first and second rows by turns.
+// Both quads of half32's records, one a lane. A load takes a whole record, which a cache line holds; so records come
+// with their two quads side by side, and what is transposed holds first and second quads by turns.
 struct Records {
     Quad apex, exits;
 };
 LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
 {
 #if LANES == 4
-    return {load_rows(base, offsets), load_rows(base + 4, offsets)};
+    return {load_quads(base, offsets), load_quads(base + 4, offsets)};
 #else
     using Record = uint __attribute__((vector_size(32), aligned(16)));
     Quad half[2];
@@ -268,8 +268,8 @@ LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
     }
     Records result;
     for (uint i = 0; i < 4; i++) {
-        result.apex.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], EVEN_ROWS);
-        result.exits.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], ODD_ROWS);
+        result.apex.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], EVEN_QUADS);
+        result.exits.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], ODD_QUADS);
     }
     return result;
 #endif

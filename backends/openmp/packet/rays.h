@@ -147,7 +147,7 @@ LANE_FN Seen seen_at<any_axis>(const Packet& packet, const Shear<any_axis>& shea
 template <int z>
 LANE_FN Seen apex_seen(const PacketJob& job, const Packet& packet, const Shear<z>& shear, uint record)
 {
-    const uint* words = job.records + 4 * HALF32_ROWS * std::size_t{record};
+    const uint* words = job.records + 4 * HALF32_QUADS * std::size_t{record};
     const Words place[3] = {all(words[0]), all(words[1]), all(words[2])};
     return seen_at(packet, shear, place);
 }

@@ -71,8 +71,8 @@ template <int z>
 LANE_FN Quad corners_of(const PacketJob& job, Words links, uint i)
 {
     LaneWords offsets;
-    store(offsets, ((links & all(~3u)) | corner(links & 3u, i)) * (4 * HALF32_ROWS));
-    return load_rows(job.records, offsets);
+    store(offsets, ((links & all(~3u)) | corner(links & 3u, i)) * (4 * HALF32_QUADS));
+    return load_quads(job.records, offsets);
 }
 
 // Asks the faces of squares of the domain, one a lane at a time, until ask(links, lanes) has told that lanes are done;
@@ -120,7 +120,7 @@ LANE_FN Words entry_links(const PacketJob& job, Packet& packet, const Walk<z>& w
 LANE_FN uint exit_through(const PacketJob& job, uint tet, uint face)
 {
     const std::size_t record = 4 * std::size_t{tet} + (face == 0 ? 1 : 0);
-    return job.records[4 * (HALF32_ROWS * record + 1) + (face <= 1 ? 0 : face - 1)];
+    return job.records[4 * (HALF32_QUADS * record + 1) + (face <= 1 ? 0 : face - 1)];
 }
 
 // Lets lanes leave the tet that they start in by one of its faces.

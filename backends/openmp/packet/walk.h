@@ -83,7 +83,7 @@ LANE_FN Words exits_of(Way& way, const Mask* replaced, const Words* exits)
 LANE_FN void enter_tets(Way& way, Words exits)
 {
     way.record = select(mask_of(way.live), exits >> 2, way.record);
-    store(way.offsets, way.record * (4 * HALF32_ROWS));
+    store(way.offsets, way.record * (4 * HALF32_QUADS));
 }
 
 // A step of all live lanes, which is their packet's step of that number.
@@ -121,7 +121,7 @@ template <int z, uint count>
 LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint steps)
 {
     for (uint i = 0; i < count; i++)
-        store(walks[i].offsets, walks[i].record * (4 * HALF32_ROWS));
+        store(walks[i].offsets, walks[i].record * (4 * HALF32_QUADS));
     uint live = every_lane;
     while (live != 0 && steps < job.max_steps) {
         steps++;

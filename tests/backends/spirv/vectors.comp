@@ -1,5 +1,5 @@
 #version 450
-// What the data must not become: push constants with vectors of three, and rows that are read as words.
+// What the data must not become: push constants with vectors of three, and quads that are read as words.
 layout(local_size_x = 8) in;
 struct TraceParams {
     vec3 origin;
