@@ -3,7 +3,7 @@ find_package(nlohmann_json REQUIRED)
 find_path(TETRACE_SPIRV_HEADERS spirv/unified1/spirv.hpp)
 mark_as_advanced(TETRACE_SPIRV_HEADERS)
 
-tetrace_test(vulkan tetrace_vulkan tetrace_openmp tetrace_scenes)
+tetrace_test(vulkan tetrace_vulkan tetrace_openmp tetrace_embree tetrace_scenes)
 tetrace_test(vulkan_rt tetrace_vulkan tetrace_bench tetrace_scenes)
 
 set(here ${CMAKE_CURRENT_BINARY_DIR}/vulkan)
