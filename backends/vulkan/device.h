@@ -1,6 +1,6 @@
 #pragma once
 
-#include "backends/vulkan/ray_queries.h"
+#include "backends/vulkan/rt/ray_queries.h"
 #include "core/device/backend.h"
 
 #include <cstdint>

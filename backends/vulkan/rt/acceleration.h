@@ -1,3 +1,4 @@
+// What Vulkan drivers bring for ray tracing: their own BVHs, and ray queries through them.
 #pragma once
 
 #include "backends/vulkan/buffer.h"

@@ -1,4 +1,4 @@
-#include "backends/vulkan/ray_queries.h"
+#include "backends/vulkan/rt/ray_queries.h"
 
 #include <algorithm>
 

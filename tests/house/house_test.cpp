@@ -1,0 +1,105 @@
+#include "tests/house/house.h"
+#include "tests/support/temporary_folder.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path root = TETRACE_ROOT;
+
+const test::House& house()
+{
+    static const test::House house(root / "tests/house/arrows.txt");
+    return house;
+}
+
+const test::Sources& sources()
+{
+    static const test::Sources sources = test::read_sources(root);
+    return sources;
+}
+
+std::string joined(const std::vector<std::string>& lines)
+{
+    std::string text;
+    for (const std::string& line : lines)
+        text += line + "\n";
+    return text;
+}
+
+std::string first_line(const fs::path& file)
+{
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    return line;
+}
+
+/// The sentence about a folder: the first line of its CMakeLists.txt, else of its first header; empty without one.
+std::string sentence_of(const fs::path& folder)
+{
+    const std::string of_target = first_line(folder / "CMakeLists.txt");
+    if (of_target.starts_with("# ")) return of_target;
+    std::set<fs::path> headers;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".h") headers.insert(entry.path());
+    const std::string of_header = headers.empty() ? std::string() : first_line(*headers.begin());
+    return of_header.starts_with("// ") ? of_header : std::string();
+}
+
+} // namespace
+
+TEST(House, has_an_arrow_for_every_include)
+{
+    EXPECT_EQ(joined(house().forbidden(sources().includes)), "");
+    EXPECT_GT(sources().includes.size(), 1000u) << "the sources were read";
+}
+
+TEST(House, has_no_arrow_that_nothing_needs)
+{
+    EXPECT_EQ(joined(house().unused(sources().includes)), "");
+}
+
+TEST(House, has_no_circle)
+{
+    EXPECT_EQ(house().circle(), "");
+}
+
+TEST(House, has_no_crowded_folder)
+{
+    for (const auto& [folder, files] : sources().files)
+        EXPECT_LE(files, 27) << folder << ": split it by subject";
+}
+
+TEST(House, says_of_each_folder_what_belongs_there)
+{
+    for (const auto& [folder, files] : sources().files) {
+        if (folder.starts_with("tests/")) continue;
+        EXPECT_NE(sentence_of(root / folder), "") << folder;
+    }
+}
+
+TEST(House, finds_what_does_not_belong)
+{
+    const TemporaryFolder folder;
+    fs::create_directories(folder.path() / "core/low/part");
+    fs::create_directories(folder.path() / "core/high");
+    std::ofstream(folder.path() / "core/low/part/a.h") << "#pragma once\n  #  include \"core/high/b.h\"\n";
+    std::ofstream(folder.path() / "core/high/b.h") << "#include \"core/low/part/a.h\"\n#include \"other/c.h\"\n";
+    std::ofstream(folder.path() / "arrows.txt") << "# comment\ncore/low ->\ncore/high -> core/low core/mid\n"
+                                                << "core/mid -> core/high\n";
+    const test::House twin(folder.path() / "arrows.txt");
+    const auto includes = test::read_sources(folder.path()).includes;
+    const std::string problems = joined(twin.forbidden(includes));
+    EXPECT_NE(problems.find("core/low/part/a.h includes core/high/b.h: core/low -> core/high is no arrow"),
+              std::string::npos);
+    EXPECT_NE(problems.find("includes other/c.h"), std::string::npos);
+    EXPECT_EQ(problems.find("core/high -> core/low "), std::string::npos);
+    EXPECT_EQ(joined(twin.unused(includes)), "core/high -> core/mid\ncore/mid -> core/high\n");
+    EXPECT_EQ(twin.circle(), "core/high");
+}
