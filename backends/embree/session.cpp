@@ -14,6 +14,8 @@ namespace tetrace::embree {
 namespace {
 #include "kernels/rays_cpp.h"
 
+#include "kernels/language/params_cpp.h"
+
 constexpr std::uint32_t packet_size = 4; // 4 x 4 pixels
 constexpr std::uint32_t tile_size = 8;
 
@@ -88,7 +90,7 @@ void trace_tile(const Accelerator& accelerator, Method method, const TraceParams
 void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<tetrace::Hit> hits,
                  unsigned threads)
 {
-    const TraceParams params = params_of(job.view);
+    const TraceParams params = params_of(job);
     const std::uint32_t tiles_x = (job.width + tile_size - 1) / tile_size;
     const std::uint32_t tiles = tiles_x * ((job.height + tile_size - 1) / tile_size);
 #pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(threads))
