@@ -204,7 +204,8 @@ std::vector<OptionRow> row_options()
          "or "
          "cwbvh of our BVHs; embree, what Embree "
          "builds for itself; rt, what Vulkan's driver builds for its ray queries. Default: all of the structures kept, "
-         "rt where a device has it.",
+         "rt only on GPUs that have it; on emulated devices it is slow, and a row where rt is named here or in a "
+         "filter.",
          reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "

@@ -37,9 +37,9 @@ struct RowKey {
 /// only; without those options, exact, tiles and (but in `reproduce`) packets, and hilbert, and without methods only
 /// maria and project on half32 of the cdt's. Kinds of rays but primary have rows of the kernels that take rays. A
 /// backend has rows of its usable devices; one that has none, of its first where --backend or --require names it. A
-/// kernel that a backend has and a device cannot run is a row all the same: it will end as unsupported; but rows of
-/// layout rt only where --layout or --filter may mean them. Throws Error{usage} where nothing is selected: it names the
-/// options, and what there would be without them.
+/// kernel that a backend has and a device cannot run is a row all the same: it will end as unsupported. Layout rt has
+/// rows by default only on real GPUs that run it, elsewhere where --layout or a filter names it. Throws Error{usage}
+/// where nothing is selected: it names the options, and what there would be without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 

@@ -43,17 +43,6 @@ private:
     std::vector<Device> devices_;
 };
 
-/// A backend whose kernels trace by the driver's own BVH, on its device number 1 alone.
-class Drivers : public OldHost {
-public:
-    Drivers() : OldHost({Device{}, Device{}}) {}
-    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
-    [[nodiscard]] std::string why_not(std::size_t device, const KernelId&) const override
-    {
-        return device == 1 ? "" : "no extension";
-    }
-};
-
 Device device_named(const char* name, const char* type, bool usable = true)
 {
     Device device;
@@ -64,11 +53,31 @@ Device device_named(const char* name, const char* type, bool usable = true)
     return device;
 }
 
+/// A backend whose kernels trace by the driver's own BVH, on its device number 1 alone.
+class Drivers : public OldHost {
+public:
+    explicit Drivers(const char* type = "gpu") : OldHost({device_named("a", type), device_named("b", type)}) {}
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId&) const override
+    {
+        return device == 1 ? "" : "no extension";
+    }
+};
+
 Options with_required(const char* backend)
 {
     Options options = parse_options({"bench"});
     options.required = {backend};
     return options;
+}
+
+std::vector<std::string> names_on(Backend& backend, std::vector<std::string> arguments)
+{
+    arguments.insert(arguments.begin(), "bench");
+    std::vector<std::string> list;
+    for (const RowKey& key : select_rows(parse_options(arguments), {"s"}, {&backend}))
+        list.push_back(row_name(key));
+    return list;
 }
 
 } // namespace
@@ -127,13 +136,7 @@ TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
 TEST(rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_asked_for)
 {
     Drivers drivers;
-    const auto names_with = [&](std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), "bench");
-        std::vector<std::string> list;
-        for (const RowKey& key : select_rows(parse_options(arguments), {"s"}, {&drivers}))
-            list.push_back(row_name(key));
-        return list;
-    };
+    const auto names_with = [&](const std::vector<std::string>& arguments) { return names_on(drivers, arguments); };
     const std::string without = "bvh/single/rt/s/primary/math:fast/api:old", with = without + ":1";
     EXPECT_EQ(names_with({}), std::vector{with});
     EXPECT_EQ(names_with({"--math", "exact", "--schedule", "persistent"}), std::vector{with});
@@ -142,6 +145,19 @@ TEST(rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_as
     EXPECT_THROW((void)names_with({"--layout", "bvh2"}), Error);
     const KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = Layout::rt};
     EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt");
+}
+
+TEST(rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
+{
+    Drivers drivers("emulated");
+    for (const auto& unnamed : {std::vector<std::string>{}, {"--filter", "api:old"}, {"--filter", "start|/s/"}})
+        EXPECT_THROW((void)names_on(drivers, unnamed), Error);
+    const std::string on_0 = "bvh/single/rt/s/primary/math:fast/api:old", on_1 = on_0 + ":1";
+    for (const auto& named : {std::vector<std::string>{"--layout", "rt"},
+                              {"--layout", "bvh2,rt"},
+                              {"--filter", "bvh/single/(rt|bvh2)/"},
+                              {"--benchmark_filter=rt/"}})
+        EXPECT_EQ(names_on(drivers, named), (std::vector{on_0, on_1}));
 }
 
 TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
