@@ -31,7 +31,7 @@ const float planes_of_domain[] = {-1, 1, -1, 1, -1, 1};
 PacketJob job_of(const tetrace::View& view)
 {
     PacketJob job{};
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         job.origin[axis] = view.origin[axis];
         job.corner[axis] = view.corner[axis];
         job.step_x[axis] = view.step_x[axis];
@@ -87,20 +87,20 @@ void ask(tetrace::test::Random& random, bool has_doubts, Asked& asked)
     if (!has_doubts) eye.doubt = eye.least_doubt = Floats{};
     Packets packets;
     packets.count = LANES;
-    for (std::uint32_t i = 0; i < LANES; i++) {
+    for (std::uint32_t i = 0; i < LANES; ++i) {
         packets.x[i] = packet_width * random.below(image_size / packet_width);
         packets.y[i] = packet_height * random.below(image_size / packet_height);
     }
     BeamWalk walk;
     aim(eye, packets, 0, walk);
-    for (std::uint32_t lane = 0; lane < LANES; lane++) {
+    for (std::uint32_t lane = 0; lane < LANES; ++lane) {
         Packet rays;
         make_rays(job, packets.x[lane], packets.y[lane], rays);
         const std::uint32_t corner_ray = random.below(LANES);
         const float along = random.between(0.25f, 2), beyond = random.between(0.5f, 3);
         const tetrace::Float3 from = random.point(-1, 1);
         tetrace::Float3 to;
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             const float passed = job.origin[axis] + along * rays.direction[axis][corner_ray];
             const float at = from[axis] + beyond * (passed - from[axis]);
             to[axis] = std::min(std::max(at, -1.0f), 1.0f);
@@ -112,7 +112,7 @@ void ask(tetrace::test::Random& random, bool has_doubts, Asked& asked)
         const Sides sides = sides_of(seen_at(rays, shear, p), seen_at(rays, shear, q));
         const bool left = (lanes_of(sure.left) >> lane & 1u) != 0, right = (lanes_of(sure.right) >> lane & 1u) != 0;
         const std::uint32_t lefts = lanes_of(sides.left), ties = lanes_of(sides.tie);
-        asked.answered++;
+        ++asked.answered;
         asked.sure += left || right ? 1 : 0;
         asked.wrong += (left && lefts != every_lane) || (right && (lefts | ties) != 0) ? 1 : 0;
     }
@@ -122,7 +122,7 @@ Asked ask_many(bool has_doubts)
 {
     tetrace::test::Random random(0xBEA5);
     Asked asked;
-    for (int i = 0; i < 100'000; i++)
+    for (int i = 0; i < 100'000; ++i)
         ask(random, has_doubts, asked);
     return asked;
 }
@@ -153,15 +153,15 @@ TEST(Beams, take_the_ways_of_all_their_rays)
         for (std::uint32_t y = 0; y < image_size; y += tetrace::openmp::packet_block_size) {
             Packets packets;
             packets.count = 0;
-            for (std::uint32_t i = 0; i < most_packets; i++) {
+            for (std::uint32_t i = 0; i < most_packets; ++i) {
                 packets.x[packets.count] = i % (image_size / packet_width) * packet_width;
                 packets.y[packets.count++] = y + i / (image_size / packet_width) * packet_height;
             }
             walk_beams(job, packets);
-            for (std::uint32_t i = 0; i < packets.count; i++, asked++) {
+            for (std::uint32_t i = 0; i < packets.count; ++i, ++asked) {
                 begun += packets.record[i] != NO_LINK ? 1 : 0;
                 ended += packets.has_ended[i] ? 1 : 0;
-                for (std::uint32_t lane = 0; lane < LANES && packets.record[i] != NO_LINK; lane++) {
+                for (std::uint32_t lane = 0; lane < LANES && packets.record[i] != NO_LINK; ++lane) {
                     const tetrace::Hit& hit =
                         hits[(packets.y[i] + lane / packet_width) * image_size + packets.x[i] + lane % packet_width];
                     if (!packets.has_ended[i]) {

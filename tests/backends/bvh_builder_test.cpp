@@ -60,11 +60,11 @@ TEST(BvhBuilder, each_point_of_a_split_triangle_is_in_one_of_its_leaves)
     const Bvh bvh = build_bvh(mesh).bvh;
     std::vector<std::vector<Box>> leaves(mesh.triangles.size());
     for (const auto& node : bvh.nodes)
-        for (std::uint32_t i = node.first; i < node.first + node.count; i++)
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
             leaves[bvh.references[i]].push_back(grown(node.box, 0x1p-22)); // the point below is rounded
     test::Random random(4);
-    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle++) {
-        for (int i = 0; i < 20; i++) {
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+        for (int i = 0; i < 20; ++i) {
             const auto& [a, b, c] = mesh.triangles[triangle];
             const float u = random.unit();
             const Float3 point = to_float(to_double(mesh.vertices[a]) * (1 - u) +
@@ -104,7 +104,7 @@ TEST(BvhBuilder, triangles_that_nothing_tells_apart_are_shared_out)
 TEST(BvhBuilder, triangles_without_area_are_kept)
 {
     TriangleMesh mesh;
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
         const float x = static_cast<float>(i) * 0x1p-10f;
         test::add_triangle(mesh, {x, x, x}, {x + 0.5f, x + 0.5f, x + 0.5f},
                            {x + 0.25f, x + 0.25f, x + 0.25f});     // a line
@@ -147,7 +147,7 @@ TEST(BvhBuilder, sizes_down_to_denormals_are_built)
     for (const int exponent : {-30, -60, -100, -120, -126, -140}) {
         TriangleMesh mesh = needles(100);
         for (auto& vertex : mesh.vertices)
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 vertex[axis] = std::ldexp(vertex[axis], exponent);
         test::add_triangle(mesh, {-64, -64, -64}, {64, 64, 64}, {64, -64, 64});
         const Bvh bvh = build_bvh(mesh).bvh;

@@ -139,7 +139,7 @@ TEST_P(CudaWithoutGpu, contracts_in_fast_mode)
     EXPECT_TRUE(judge_self_test(backend->probe(0, MathMode::fast, self_test_operations())).contracts);
 }
 
-INSTANTIATE_TEST_SUITE_P(on, CudaWithoutGpu, ::testing::Values("host", "stub"),
+INSTANTIATE_TEST_SUITE_P(each, CudaWithoutGpu, ::testing::Values("host", "stub"),
                          [](const auto& driver) { return std::string(driver.param); });
 
 TEST(CudaDriver, that_is_not_there_is_a_device_that_says_so)

@@ -23,7 +23,7 @@ struct Defect {
 
 std::uint32_t after_70000_steps(std::uint32_t value)
 {
-    for (int i = 0; i < 70000; i++)
+    for (int i = 0; i < 70000; ++i)
         value = value * 1664525u + 1013904223u;
     return value;
 }
@@ -31,7 +31,7 @@ std::uint32_t after_70000_steps(std::uint32_t value)
 std::vector<Defect> all_defects()
 {
     Words counting(64);
-    for (std::uint32_t i = 0; i < counting.size(); i++)
+    for (std::uint32_t i = 0; i < counting.size(); ++i)
         counting[i] = i;
     return {{"value_after_divergent_loop", counting, [](std::uint32_t item) { return item; }},
             {"loop_of_70000_iterations", counting, after_70000_steps}};
@@ -66,7 +66,7 @@ Words run(const vulkan::Context& context, const Defect& defect)
 std::size_t wrong_items(const Defect& defect, const Words& results)
 {
     std::size_t count = 0;
-    for (std::uint32_t item = 0; item < items; item++)
+    for (std::uint32_t item = 0; item < items; ++item)
         count += results[item] == defect.expected(item) ? 0 : 1;
     return count;
 }
@@ -113,10 +113,10 @@ TEST(Defects, a_kernels_wrong_items_are_counted)
 {
     const Defect defect = all_defects().front();
     Words results(items);
-    for (std::uint32_t item = 0; item < items; item++)
+    for (std::uint32_t item = 0; item < items; ++item)
         results[item] = defect.expected(item);
     EXPECT_EQ(wrong_items(defect, results), 0u);
-    results[3]++;
+    ++results[3];
     EXPECT_EQ(wrong_items(defect, results), 1u);
 }
 

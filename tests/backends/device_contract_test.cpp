@@ -64,7 +64,7 @@ std::vector<std::uint32_t> right_results()
 SelfTest judged_with(std::uint32_t operation, const std::function<std::uint32_t(const Quad&, std::uint32_t)>& change)
 {
     auto results = right_results();
-    for (std::size_t i = 0; i < results.size(); i++)
+    for (std::size_t i = 0; i < results.size(); ++i)
         if (self_test_operations()[i].x == operation) results[i] = change(self_test_operations()[i], results[i]);
     return judge_self_test(results);
 }
@@ -84,7 +84,7 @@ float number(std::uint32_t word)
 
 } // namespace
 
-TEST(session, gives_the_hits_between_the_guard_words)
+TEST(Session, gives_the_hits_between_the_guard_words)
 {
     FixedSession session([](std::span<std::uint32_t> words) { words[GUARD_WORDS + HIT_WORDS + 1] = 77; });
     std::vector<Hit> hits(3);
@@ -93,7 +93,7 @@ TEST(session, gives_the_hits_between_the_guard_words)
     EXPECT_EQ(hits[1].tet, 77u);
 }
 
-TEST(session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
+TEST(Session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
 {
     std::vector<Hit> hits(3);
     FixedSession before([](std::span<std::uint32_t> words) { words[GUARD_WORDS - 1] = 0; });
@@ -102,7 +102,7 @@ TEST(session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
     EXPECT_TRUE(contains(message_of([&] { behind.read_back(hits); }), "behind its output"));
 }
 
-TEST(launch_size, starts_small_grows_by_steps_and_shrinks_at_once)
+TEST(LaunchSize, starts_small_grows_by_steps_and_shrinks_at_once)
 {
     LaunchSize size(8);
     const std::uint32_t first = size.tiles();
@@ -115,26 +115,26 @@ TEST(launch_size, starts_small_grows_by_steps_and_shrinks_at_once)
     EXPECT_EQ(size.tiles(), 1u) << "a launch has a tile at least";
 }
 
-TEST(launch_size, a_steady_device_gets_a_tenth_of_a_second)
+TEST(LaunchSize, a_steady_device_gets_a_tenth_of_a_second)
 {
     LaunchSize size(4);
     constexpr double tiles_per_s = 1e5;
-    for (int i = 0; i < 20; i++)
+    for (int i = 0; i < 20; ++i)
         size.took(size.tiles(), size.tiles() / tiles_per_s);
     EXPECT_NEAR(size.tiles() / tiles_per_s, 0.1, 0.01);
 }
 
-TEST(launch_size, the_short_last_launch_of_an_image_does_not_shrink_the_next)
+TEST(LaunchSize, the_short_last_launch_of_an_image_does_not_shrink_the_next)
 {
     LaunchSize size(8);
-    for (int i = 0; i < 20; i++)
+    for (int i = 0; i < 20; ++i)
         size.took(size.tiles(), size.tiles() * 1e-5);
     const std::uint32_t steady = size.tiles();
     size.took(3, 3e-5);
     EXPECT_GE(size.tiles(), steady * 9 / 10);
 }
 
-TEST(launch_size, stays_within_the_apis_limit)
+TEST(LaunchSize, stays_within_the_apis_limit)
 {
     LaunchSize size(8, 100);
     EXPECT_EQ(size.tiles(), 100u);
@@ -142,7 +142,7 @@ TEST(launch_size, stays_within_the_apis_limit)
     EXPECT_EQ(size.tiles(), 100u);
 }
 
-TEST(launches, cover_each_tile_of_an_image_once_and_in_order)
+TEST(Launches, cover_each_tile_of_an_image_once_and_in_order)
 {
     Launches launches(8, 100);
     const LaunchParams image = params_of(300, 200);
@@ -157,20 +157,20 @@ TEST(launches, cover_each_tile_of_an_image_once_and_in_order)
     EXPECT_EQ(next_tile, tile_count(image));
 }
 
-TEST(launches, ask_for_times_after_each_of_the_first_image_only)
+TEST(Launches, ask_for_times_after_each_of_the_first_image_only)
 {
     Launches launches(8, 100);
     const LaunchParams image = params_of(300, 200);
     for (const bool is_first : {true, false}) {
         int enqueued = 0, asked = 0;
         launches.start(
-            image, [&](const LaunchParams&, std::uint32_t) { enqueued++; }, [&] { asked++; });
+            image, [&](const LaunchParams&, std::uint32_t) { ++enqueued; }, [&] { ++asked; });
         EXPECT_GT(enqueued, 1);
         EXPECT_EQ(asked, is_first ? enqueued : 0);
     }
 }
 
-TEST(launches, add_up_the_seconds_of_one_image)
+TEST(Launches, add_up_the_seconds_of_one_image)
 {
     Launches launches(8, 100);
     const LaunchParams image = params_of(80, 80); // one launch
@@ -184,7 +184,7 @@ TEST(launches, add_up_the_seconds_of_one_image)
     }
 }
 
-TEST(launches, are_sized_by_the_times_they_are_told)
+TEST(Launches, are_sized_by_the_times_they_are_told)
 {
     Launches launches(8);
     std::vector<std::uint32_t> sizes;
@@ -196,7 +196,7 @@ TEST(launches, are_sized_by_the_times_they_are_told)
     EXPECT_NEAR(sizes[2], 100, 1);
 }
 
-TEST(output, is_refused_beyond_the_largest_buffer_with_both_numbers)
+TEST(Output, is_refused_beyond_the_largest_buffer_with_both_numbers)
 {
     EXPECT_NO_THROW(require_output_fits(250, 1000));
     EXPECT_NO_THROW(require_output_fits(1'000'000, 0));
@@ -206,7 +206,7 @@ TEST(output, is_refused_beyond_the_largest_buffer_with_both_numbers)
     EXPECT_TRUE(contains(message_of([] { require_output_of_last_launch(7, 9); }), "last launch has 9"));
 }
 
-TEST(largest_buffer, is_the_smaller_of_the_devices_and_the_options)
+TEST(LargestBuffer, is_the_smaller_of_the_devices_and_the_options)
 {
     const auto largest = [](std::uint64_t of_device, std::uint64_t of_options) {
         Device device;
@@ -220,7 +220,7 @@ TEST(largest_buffer, is_the_smaller_of_the_devices_and_the_options)
     EXPECT_EQ(largest(60, 100), 60u);
 }
 
-TEST(packed_scene, is_checked_before_a_session_opens)
+TEST(PackedScene, is_checked_before_a_session_opens)
 {
     const PackedScene packed = pack(make_cubes(3), Layout::tet80, TetOrder::hilbert);
     const Backend& host = openmp_backend();
@@ -238,14 +238,14 @@ TEST(packed_scene, is_checked_before_a_session_opens)
     EXPECT_EQ(message_of([&] { (void)packed_scene(absent, 0, {}, {nullptr, &packed}); }), "the headers were missing");
 }
 
-TEST(device_facts, are_written_as_the_system_writes_them)
+TEST(DeviceFacts, are_written_as_the_system_writes_them)
 {
     EXPECT_EQ(pci_address(0, 0x41, 0, 0), "0000:41:00.0");
     EXPECT_EQ(pci_address(1, 2, 0x1f, 7), "0001:02:1f.7");
     EXPECT_EQ(hexadecimal(std::array<std::uint8_t, 4>{0x00, 0x0f, 0xa0, 0xff}), "000fa0ff");
 }
 
-TEST(device_facts, call_a_device_by_the_best_that_is_known_of_it)
+TEST(DeviceFacts, call_a_device_by_the_best_that_is_known_of_it)
 {
     Device device;
     device.name = "name";
@@ -256,7 +256,7 @@ TEST(device_facts, call_a_device_by_the_best_that_is_known_of_it)
     EXPECT_EQ(id_of(device), device.uuid);
 }
 
-TEST(device_facts, name_an_implementation_by_driver_and_version)
+TEST(DeviceFacts, name_an_implementation_by_driver_and_version)
 {
     EXPECT_EQ(implementation_name("Some (odd) Driver ", "v7.9.1-3 (LLVM 15)"), "some-odd-driver-7.9");
     EXPECT_EQ(implementation_name("driver", "7."), "driver-7");
@@ -265,7 +265,7 @@ TEST(device_facts, name_an_implementation_by_driver_and_version)
     EXPECT_EQ(implementation_name("", "1.2"), "unknown-1.2");
 }
 
-TEST(launch_params, carry_the_job_word_for_word)
+TEST(LaunchParams, carry_the_job_word_for_word)
 {
     TraceJob job;
     job.view.step_y.z = 5;
@@ -285,7 +285,7 @@ TEST(launch_params, carry_the_job_word_for_word)
     EXPECT_EQ(output_words(job, Task::search), 2 * GUARD_WORDS + 17 * 9);
 }
 
-TEST(searches, are_of_whole_quads_of_a_tile)
+TEST(Searches, are_of_whole_quads_of_a_tile)
 {
     EXPECT_EQ(search_job(24).width * search_job(24).height, 24u);
     EXPECT_EQ(search_job(24).width, TILE_WIDTH);
@@ -294,7 +294,7 @@ TEST(searches, are_of_whole_quads_of_a_tile)
     EXPECT_TRUE(contains(message_of([&] { session.set_rays({}); }), "makes its own"));
 }
 
-TEST(searches, find_faces_and_nothing_else)
+TEST(Searches, find_faces_and_nothing_else)
 {
     std::vector<std::uint32_t> faces(8);
     std::uint32_t written = NO_EXIT;
@@ -316,7 +316,7 @@ TEST(searches, find_faces_and_nothing_else)
     EXPECT_TRUE(contains(message_of([&] { session.read_back(faces); }), "behind its output"));
 }
 
-TEST(tet_parts, cut_the_tets_at_powers_of_two_and_lose_no_byte)
+TEST(TetParts, cut_the_tets_at_powers_of_two_and_lose_no_byte)
 {
     const PackedScene packed = pack(make_cubes(8), Layout::tet80, TetOrder::hilbert);
     const auto tets = scene_buffers(packed)[0].bytes;
@@ -327,14 +327,14 @@ TEST(tet_parts, cut_the_tets_at_powers_of_two_and_lose_no_byte)
     EXPECT_EQ(parts.log2_bytes, 16u);
     ASSERT_EQ(parts.count, (tets.size() + 65'535) / 65'536);
     std::size_t sum = 0;
-    for (unsigned i = 0; i < parts.count; i++) {
+    for (unsigned i = 0; i < parts.count; ++i) {
         EXPECT_EQ(parts.part(tets, i).data(), tets.data() + sum);
         sum += parts.part(tets, i).size();
     }
     EXPECT_EQ(sum, tets.size());
 }
 
-TEST(tet_parts, refuse_with_both_numbers)
+TEST(TetParts, refuse_with_both_numbers)
 {
     const PackedScene packed = pack(make_cubes(8), Layout::tet80, TetOrder::hilbert);
     const std::string too_many = message_of([&] { (void)tet_parts(packed, 20'000); });
@@ -343,7 +343,7 @@ TEST(tet_parts, refuse_with_both_numbers)
     EXPECT_TRUE(contains(message_of([&] { (void)tet_parts(packed, 1000); }), "'triangles'"));
 }
 
-TEST(self_test, the_host_is_exact)
+TEST(SelfTest, the_host_is_exact)
 {
     const SelfTest test = judge_self_test(right_results());
     EXPECT_EQ(test, SelfTest{});
@@ -351,7 +351,7 @@ TEST(self_test, the_host_is_exact)
     EXPECT_EQ(test.allowed_ulps(), 0u);
 }
 
-TEST(self_test, finds_contraction)
+TEST(SelfTest, finds_contraction)
 {
     const auto fused = [](const Quad& quad, std::uint32_t) {
         return std::bit_cast<std::uint32_t>(std::fma(number(quad.y), number(quad.z), number(quad.w)));
@@ -363,7 +363,7 @@ TEST(self_test, finds_contraction)
     EXPECT_TRUE(contains(test.brief(), "contracts"));
 }
 
-TEST(self_test, measures_division_and_decides_the_tolerance)
+TEST(SelfTest, measures_division_and_decides_the_tolerance)
 {
     const auto off = [](const Quad&, std::uint32_t right) { return right + 2; };
     const SelfTest test = judged_with(PROBE_DIVIDE, off);
@@ -373,7 +373,7 @@ TEST(self_test, measures_division_and_decides_the_tolerance)
     EXPECT_EQ(judged_with(PROBE_SQUARE_ROOT, off).square_root_ulps, 2u);
 }
 
-TEST(self_test, finds_each_other_defect)
+TEST(SelfTest, finds_each_other_defect)
 {
     const auto flushed = [](const Quad&, std::uint32_t right) {
         return std::fpclassify(number(right)) == FP_SUBNORMAL ? right & 0x80000000u : right;
@@ -388,14 +388,14 @@ TEST(self_test, finds_each_other_defect)
     EXPECT_FALSE(judged_with(PROBE_INTEGER, off).integers_right);
 }
 
-TEST(self_test, the_hosts_fast_mode_contracts)
+TEST(SelfTest, the_hosts_fast_mode_contracts)
 {
     if (const auto reason = openmp_backend().why_not(0, {.math = MathMode::fast}); !reason.empty())
         GTEST_SKIP() << reason;
     EXPECT_TRUE(judge_self_test(openmp_backend().probe(0, MathMode::fast, self_test_operations())).contracts);
 }
 
-TEST(yardstick, of_the_host_is_plausible)
+TEST(Yardstick, of_the_host_is_plausible)
 {
     const auto yardstick = openmp_backend().yardstick(0, {.threads = 2});
     ASSERT_TRUE(yardstick.has_value());

@@ -50,7 +50,7 @@ TEST_P(GivenRays, of_kind_primary_are_those_that_kernels_make)
     const RaySet set = make_rays(RayKind::primary, cubes.source());
     ASSERT_EQ(set.rays.size(), cubes.hits.size());
     std::vector<Hit> by_ray(cubes.hits.size());
-    for (std::size_t i = 0; i < by_ray.size(); i++)
+    for (std::size_t i = 0; i < by_ray.size(); ++i)
         by_ray[i] = cubes.hits[set.rays[i].pixel];
     for (const std::size_t device : usable) {
         const auto session = backend.open(device, {.task = Task::rays}, {&cubes.scene.mesh, &cubes.packed}, {});
@@ -114,7 +114,7 @@ TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
                 if (ulps == 0 || !set.any_hit) {
                     EXPECT_EQ(different_rays(hits, right, ulps), 0u) << name_of(kernel) << ' ' << name_of(kind);
                 }
-                for (std::size_t i = 0; i < hits.size(); i++)
+                for (std::size_t i = 0; i < hits.size(); ++i)
                     ASSERT_EQ(hits[i].face_id < POISON, right[i].face_id < POISON) << name_of(kernel) << ' ' << i;
             }
         }

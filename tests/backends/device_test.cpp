@@ -69,8 +69,8 @@ std::vector<std::uint32_t> searched(Session& session, const SearchRays& rays)
 std::size_t wrong_searches(const SearchRays& rays, const std::vector<std::uint32_t>& faces)
 {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < faces.size(); i++)
-        if (judge(rays, i, faces[i]) != SearchVerdict::right) count++;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        if (judge(rays, i, faces[i]) != SearchVerdict::right) ++count;
     return count;
 }
 
@@ -203,7 +203,7 @@ TEST_P(Devices, tell_the_seconds_of_all_launches)
         const bool has_latency = backend.devices()[device].type == "gpu"; // longer than such an image takes
         const double wanted_share = has_latency ? 0 : 0.25; // the last of the three steps has a tenth of the tiles
         double largest_share = 0;
-        for (int i = 0; i < most_images && largest_share <= wanted_share; i++) {
+        for (int i = 0; i < most_images && largest_share <= wanted_share; ++i) {
             const auto session = backend.open(device, {}, rays.data(), {}); // its first image is launched in steps
             const auto start = std::chrono::steady_clock::now();
             session->launch(rays.from_outside(300, 300));
@@ -386,7 +386,7 @@ TEST_P(Devices, have_the_kernels_of_the_cdt_and_no_others)
     EXPECT_TRUE(contains(backend.why_not(0, {.method = Method::single}), "has no kernel"));
 }
 
-INSTANTIATE_TEST_SUITE_P(apis, Devices, ::testing::ValuesIn(apis), [](const auto& api) {
+INSTANTIATE_TEST_SUITE_P(each, Devices, ::testing::ValuesIn(apis), [](const auto& api) {
     std::string name = api.param.name;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
@@ -417,7 +417,7 @@ TEST(DeviceRaysTolerances, fail_for_wrong_answers)
     auto nearly = right;
     const auto hit = std::find_if(nearly.begin(), nearly.end(), [](const Hit& h) { return h.t > 0; });
     ASSERT_NE(hit, nearly.end());
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4; ++i)
         hit->t = std::nextafter(hit->t, 1e9F);
     EXPECT_EQ(different_rays(nearly, right, 3), 1u);
     EXPECT_EQ(different_rays(nearly, right, 4), 0u);

@@ -34,7 +34,7 @@ std::string rejection(std::span<const unsigned char> stream, std::size_t length)
 
 } // namespace
 
-TEST(embedded, kernels_are_unpacked_under_their_names_with_a_0_behind_them)
+TEST(Embedded, kernels_are_unpacked_under_their_names_with_a_0_behind_them)
 {
     const auto stream = packed_by_xz("void first() {}void third() {}");
     const PackedKernel packed[] = {{"first", 15}, {"second", 0}, {"third", 15}};
@@ -49,7 +49,7 @@ TEST(embedded, kernels_are_unpacked_under_their_names_with_a_0_behind_them)
     EXPECT_EQ(find_kernel(kernels.list(), "fourth"), nullptr);
 }
 
-TEST(embedded, a_stream_that_is_not_xzs_or_of_another_length_is_an_error_that_says_so)
+TEST(Embedded, a_stream_that_is_not_xzs_or_of_another_length_is_an_error_that_says_so)
 {
     const auto stream = packed_by_xz("void first() {}");
     EXPECT_EQ(rejection(stream, 15), "accepted");

@@ -109,7 +109,7 @@ TEST(Packets, of_views_along_each_axis_and_of_all_round_have_the_scalar_kernels_
 {
     // All deepest axes, both ways, and packets in which they change.
     const tetrace::DeviceRays rays(tetrace::make_cubes(5), tetrace::Layout::half32);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         for (const float sign : {-1.0f, 1.0f}) {
             tetrace::Float3 origin{}, corner{-1.5f, -1.5f, -1.5f}, step_x{}, step_y{};
             origin[axis] = -3 * sign;

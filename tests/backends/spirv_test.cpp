@@ -64,7 +64,7 @@ std::map<std::string, Array> expected_arrays(std::string_view module, bool in_pa
         arrays[array.name] = {array.binding, array.element_bytes, false};
     arrays["output_words"] = {OUTPUT_BINDING, 4, true};
     if (takes_rays(module)) arrays["rays"] = {RAYS_BINDING, sizeof(Quad), false};
-    for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; part++) {
+    for (std::uint32_t part = 1; in_parts && part < MAX_TET_PARTS; ++part) {
         arrays["tet_words_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 4, false};
         arrays["tet_quads_" + std::to_string(part)] = {SECOND_PART_BINDING - 1 + part, 16, false};
     }
@@ -103,7 +103,7 @@ std::vector<Member> expected_push_constants()
     add("trace.start_tet", offsetof(LaunchParams, start_tet));
     add("trace.max_steps", offsetof(LaunchParams, max_steps));
     add("trace.any_hit", offsetof(LaunchParams, any_hit));
-    for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t i = 0; i < 4; ++i)
         add("trace.start_v" + std::to_string(i), offsetof(LaunchParams, start.vertices) + i * sizeof(std::uint32_t));
     add("trace.start_neighbour", offsetof(LaunchParams, start.neighbour));
     add("divisions", offsetof(LaunchParams, divisions));
@@ -131,7 +131,7 @@ TEST(Spirv, no_operation_of_an_exact_module_may_be_contracted)
                                                                                                   : 30u)
             << kernel.name;
         EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
-        checked++;
+        ++checked;
     }
     EXPECT_GE(checked, 23u); // maria on two layouts, seven variants each; two BVHs, four each; the probe
 }
@@ -183,7 +183,7 @@ TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_sa
         EXPECT_EQ(module.push_constants(), expected_push_constants()) << kernel.name;
         EXPECT_TRUE(module.has_specialization_constant(0)) << kernel.name << ": the tile's height";
         EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
-        checked++;
+        ++checked;
     }
     EXPECT_EQ(checked, 2u);
 }

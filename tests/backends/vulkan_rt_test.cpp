@@ -52,7 +52,7 @@ protected:
     void SetUp() override
     {
         std::string reasons;
-        for (std::size_t i = 0; i < backend.devices().size(); i++) {
+        for (std::size_t i = 0; i < backend.devices().size(); ++i) {
             const std::string reason = backend.why_not(i, rt_kernel(Task::trace));
             if (reason.empty()) able.push_back(i);
             reasons += reason;
@@ -100,7 +100,7 @@ TEST(VulkanRayQueries, every_build_has_the_kernels_and_a_device_without_them_ref
     for (const Task task : {Task::trace, Task::rays}) {
         const KernelId kernel = rt_kernel(task);
         EXPECT_TRUE(backend.has_kernel(kernel));
-        for (std::size_t i = 0; i < backend.devices().size(); i++) {
+        for (std::size_t i = 0; i < backend.devices().size(); ++i) {
             const std::string reason = backend.why_not(i, kernel);
             if (reason.empty() || !backend.devices()[i].usable) continue;
             EXPECT_TRUE(contains(reason, "VK_KHR_")) << reason;
@@ -148,7 +148,7 @@ TEST_F(VulkanRt, rays_end_where_they_are_told_to_and_any_hit_tells_whether_there
         const auto with_ends = [&](float factor, bool any_hit) {
             RaySet ended = set;
             ended.any_hit = any_hit;
-            for (std::size_t i = 0; i < nearest.size(); i++)
+            for (std::size_t i = 0; i < nearest.size(); ++i)
                 if (nearest[i].face_id != NO_HIT) ended.rays[i].end = factor * nearest[i].t;
             return answers(*session, ended, given.scene.mesh);
         };

@@ -29,7 +29,7 @@ TEST_F(Vulkan, a_program_cache_changes_no_hit_and_is_filled)
     for (const std::size_t device : usable) {
         const TemporaryFolder folder;
         const SessionOptions options{.program_cache = folder / "programs"};
-        for (int pass = 0; pass < 2; pass++) {
+        for (int pass = 0; pass < 2; ++pass) {
             const auto session = backend.open(device, {}, rays.data(), options);
             EXPECT_EQ(different_rays(traced(*session, job), openmp_hits(rays, job), 3), 0u);
         }

@@ -17,7 +17,7 @@ Box random_box(test::Random& random, float size)
 Float3 between(const Box& box, test::Random& random)
 {
     Float3 point;
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         point[axis] = std::clamp(random.between(box.low[axis], box.high[axis]), box.low[axis], box.high[axis]);
     return point;
 }
@@ -25,14 +25,14 @@ Float3 between(const Box& box, test::Random& random)
 TEST(BoxGrid, boxes_on_the_grid_hold_those_they_came_from_and_are_less_than_a_cell_larger)
 {
     test::Random random(3);
-    for (int i = 0; i < 5000; i++) {
+    for (int i = 0; i < 5000; ++i) {
         const Box outer = random_box(random, i % 2 == 0 ? 1 : 0x1p-12f);
         const Float3 a = between(outer, random);
         const Float3 b = between(outer, random);
         const Box box = i % 7 == 0 ? outer : merged({a, a}, {b, b});
         const BoxGrid grid = make_box_grid(outer);
         const GridBox lines = to_grid(grid, box);
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             const auto k = static_cast<std::size_t>(axis);
             const double low = line_at(grid, axis, lines.low[k]);
             const double high = line_at(grid, axis, lines.high[k]);
@@ -47,10 +47,10 @@ TEST(BoxGrid, boxes_on_the_grid_hold_those_they_came_from_and_are_less_than_a_ce
 TEST(BoxGrid, cells_are_the_smallest_power_of_two_that_covers_the_box)
 {
     test::Random random(4);
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; ++i) {
         const Box box = random_box(random, 1);
         const BoxGrid grid = make_box_grid(box);
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             const double size = double{box.high[axis]} - box.low[axis];
             EXPECT_GE(255 * grid.width(axis), size);
             EXPECT_LT(127.5 * grid.width(axis), size);
@@ -80,7 +80,7 @@ TEST(BoxGrid, far_from_the_origin_lines_still_enclose)
     const Box box = {{63.99999f, -64, 1e-30f}, {64, -63.99999f, 2e-30f}};
     const BoxGrid grid = make_box_grid(box);
     const GridBox lines = to_grid(grid, box);
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         EXPECT_LE(line_at(grid, axis, lines.low[static_cast<std::size_t>(axis)]), box.low[axis]);
         EXPECT_GE(line_at(grid, axis, lines.high[static_cast<std::size_t>(axis)]), box.high[axis]);
     }

@@ -11,10 +11,10 @@ TEST(Box, grown_box_has_the_margin_whatever_the_rounding)
 {
     constexpr double margin = 0x1p-17;
     test::Random random(1);
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; ++i) {
         const Float3 a = random.point(-60, 60);
         const Box box = grown({a, a}, margin);
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             EXPECT_LE(double{box.low[axis]}, a[axis] - margin);
             EXPECT_GE(double{box.high[axis]}, a[axis] + margin);
             EXPECT_GT(double{box.low[axis]}, a[axis] - 2 * margin);
@@ -48,7 +48,7 @@ struct SmallBvh {
 SmallBvh small_bvh()
 {
     SmallBvh small;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4; ++i)
         test::add_triangle(small.mesh, {static_cast<float>(i), 0, 0}, {static_cast<float>(i), 1, 0},
                            {static_cast<float>(i), 0, 1});
     small.bvh.nodes = {

@@ -28,7 +28,7 @@ TEST(Domain, wide_is_a_cube_of_half_size_3_radii)
 {
     const Domain domain = make_domain(triangle, DomainKind::wide, 1);
     const BoundingSphere sphere = bounding_sphere(triangle);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(domain.high()[axis] - domain.low()[axis], 6 * sphere.radius, 4e-6);
 }
 
@@ -62,7 +62,7 @@ TEST(Domain, surface_is_closed_wound_outwards_and_has_two_triangles_a_square)
     double volume = 0;
     for (const auto& [a, b, c] : surface.triangles) {
         for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
-            edges[{from, to}]++;
+            ++edges[{from, to}];
         volume +=
             dot(to_double(surface.vertices[a]), cross(to_double(surface.vertices[b]), to_double(surface.vertices[c]))) /
             6;
@@ -81,7 +81,7 @@ TEST(EntryGrid, every_square_holds_the_two_faces_that_cover_it)
     const EntryGrid grid = make_entry_grid(scene.domain, scene.tets);
     ASSERT_EQ(grid.ranges.size(), 6u * 4 * 4 + 1);
     std::set<std::uint32_t> seen;
-    for (std::size_t square = 0; square + 1 < grid.ranges.size(); square++) {
+    for (std::size_t square = 0; square + 1 < grid.ranges.size(); ++square) {
         EXPECT_EQ(grid.ranges[square + 1] - grid.ranges[square], 2u);
         seen.insert(grid.links.begin() + grid.ranges[square], grid.links.begin() + grid.ranges[square + 1]);
     }

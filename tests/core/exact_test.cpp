@@ -26,8 +26,8 @@ int rational_orientation(Float3 a, Float3 b, Float3 c, Float3 d)
 {
     Rational m[3][3];
     const Float3 points[3] = {b, c, d};
-    for (int row = 0; row < 3; row++)
-        for (int axis = 0; axis < 3; axis++)
+    for (int row = 0; row < 3; ++row)
+        for (int axis = 0; axis < 3; ++axis)
             m[row][axis] = component(points[row], axis) - component(a, axis);
     return determinant(m).sign();
 }
@@ -35,7 +35,7 @@ int rational_orientation(Float3 a, Float3 b, Float3 c, Float3 d)
 TEST(Exact, grid_keeps_floats_from_2_to_the_minus_16_up)
 {
     test::Random random(1);
-    for (int i = 0; i < 10000; i++) {
+    for (int i = 0; i < 10000; ++i) {
         const float x = std::ldexp(1 + random.unit(), -16 + static_cast<int>(random.below(20)));
         EXPECT_EQ(snap_to_grid(x), x);
         EXPECT_EQ(snap_to_grid(-x), -x);
@@ -54,7 +54,7 @@ TEST(Exact, orientation_agrees_with_rational_arithmetic_on_near_degenerate_point
 {
     test::Random random(2);
     int flat = 0;
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000; ++i) {
         const Float3 a = random.point(-1, 1), b = random.point(-1, 1), c = random.point(-1, 1);
         // A point of the plane, rounded: the estimate's sign is then worth nothing.
         const float u = random.unit(), v = random.unit();

@@ -12,7 +12,7 @@ namespace {
 int side_of_face(const Scene& scene, std::uint32_t tet, std::size_t face, Float3 point)
 {
     Float3 corners[4];
-    for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t i = 0; i < 4; ++i)
         corners[i] = scene.tets.vertices[scene.tets.tets[tet].vertices[i]];
     corners[face] = point;
     return orientation(corners[0], corners[1], corners[2], corners[3]);
@@ -21,7 +21,7 @@ int side_of_face(const Scene& scene, std::uint32_t tet, std::size_t face, Float3
 int faces_touched(const Scene& scene, std::uint32_t tet, Float3 point)
 {
     int touched = 0;
-    for (std::size_t face = 0; face < 4; face++) {
+    for (std::size_t face = 0; face < 4; ++face) {
         const int side = side_of_face(scene, tet, face, point);
         EXPECT_LE(side, 0) << "the tet does not hold the point";
         touched += side == 0;
@@ -44,7 +44,7 @@ TEST(Locate, finds_the_tet_of_random_points)
 {
     test::Random random(3);
     const Float3 low = scene().domain.low(), high = scene().domain.high();
-    for (int i = 0; i < 2000; i++) {
+    for (int i = 0; i < 2000; ++i) {
         const Float3 point = snap_to_grid(
             Float3{random.between(low.x, high.x), random.between(low.y, high.y), random.between(low.z, high.z)});
         const auto tet = locate(scene().tets, point);
@@ -89,7 +89,7 @@ TEST(FindStart, moves_a_camera_off_vertices_and_edges_by_little)
             const Start start = find_start(scene(), camera);
             ASSERT_NE(start.tet, NO_TET);
             EXPECT_EQ(faces_touched(scene(), start.tet, start.origin), 0);
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 EXPECT_LE(std::abs(start.origin[axis] - camera[axis]), 0x1p-12f);
         }
     }

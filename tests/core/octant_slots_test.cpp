@@ -13,7 +13,7 @@ namespace {
 std::vector<Double3> random_offsets(std::size_t count, test::Random& random)
 {
     std::vector<Double3> offsets;
-    for (std::size_t i = 0; i < count; i++)
+    for (std::size_t i = 0; i < count; ++i)
         offsets.push_back(to_double(random.point(-1, 1)));
     return offsets;
 }
@@ -21,7 +21,7 @@ std::vector<Double3> random_offsets(std::size_t count, test::Random& random)
 double cost_of(const std::vector<Double3>& offsets, const std::vector<std::uint8_t>& slots)
 {
     double cost = 0;
-    for (std::size_t i = 0; i < offsets.size(); i++)
+    for (std::size_t i = 0; i < offsets.size(); ++i)
         cost += slot_cost(offsets[i], slots[i]);
     return cost;
 }
@@ -45,7 +45,7 @@ TEST(OctantSlots, no_assignment_costs_less)
 TEST(OctantSlots, each_child_has_a_slot_of_its_own)
 {
     test::Random random(12);
-    for (std::size_t count = 0; count <= 8; count++) {
+    for (std::size_t count = 0; count <= 8; ++count) {
         auto slots = octant_slots(random_offsets(count, random));
         EXPECT_EQ(slots.size(), count);
         std::sort(slots.begin(), slots.end());
@@ -59,10 +59,10 @@ TEST(OctantSlots, each_child_has_a_slot_of_its_own)
 TEST(OctantSlots, the_slot_of_a_rays_octant_has_the_child_that_it_meets_first)
 {
     std::vector<Double3> corners;
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < 8; ++i)
         corners.push_back({(i & 4) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 1) != 0 ? 1.0 : -1.0});
     const auto slots = octant_slots(corners);
-    for (std::uint32_t i = 0; i < 8; i++)
+    for (std::uint32_t i = 0; i < 8; ++i)
         EXPECT_EQ(slots[i], i) << "octant " << i << " has negative directions along the axes where the corner is high";
 }
 

@@ -68,7 +68,7 @@ private:
             return;
         }
         const std::uint32_t first = (child & ~BVH2_LEAF) >> 4;
-        for (std::uint32_t i = first; i < first + (child & 15); i++)
+        for (std::uint32_t i = first; i < first + (child & 15); ++i)
             read_triangle(i, box);
     }
 
@@ -79,7 +79,7 @@ private:
         const std::uint32_t triangle = quads[0].w;
         EXPECT_EQ(quads[1].w, 0u);
         EXPECT_EQ(quads[2].w, 0u);
-        for (std::size_t k = 0; k < 3; k++)
+        for (std::size_t k = 0; k < 3; ++k)
             EXPECT_EQ(mesh_.vertices[mesh_.triangles[triangle][k]],
                       (Float3{number(quads[k].x), number(quads[k].y), number(quads[k].z)}));
         triangle_boxes[triangle] = merged(triangle_boxes[triangle], box);
@@ -112,11 +112,11 @@ TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
     EXPECT_EQ(read.node_order, counted_up_to(packed.nodes.size() / BVH2_NODE_QUADS)) << "depth first, larger first";
     EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS));
     EXPECT_LE(read.most_waiting, BVH2_STACK);
-    for (std::size_t i = 0; i < mesh.triangles.size(); i++)
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, PackBvh2Of,
+INSTANTIATE_TEST_SUITE_P(each, PackBvh2Of,
                          testing::Values(MeshRow{"surface", [] { return make_cubes(6).mesh; }},
                                          MeshRow{"needles", [] { return test::needles(300); }},
                                          MeshRow{"one_triangle", [] { return test::identical_triangles(1); }},

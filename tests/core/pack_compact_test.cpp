@@ -25,7 +25,7 @@ std::map<Place, std::pair<std::uint32_t, std::uint32_t>> faces_of(const TetMesh&
                                                                   const std::vector<std::uint32_t>& number_of_tet)
 {
     std::map<Place, std::pair<std::uint32_t, std::uint32_t>> faces;
-    for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t i = 0; i < 4; ++i)
         faces[place_of(mesh, tet.vertices[i])] = {
             tet.links[i] == NO_LINK ? NO_TET : number_of_tet[link_tet(tet.links[i])], tet.faces[i]};
     return faces;
@@ -53,9 +53,9 @@ TEST_P(CompactPacking, unpacking_gives_the_tets_back)
         const TetMesh back = unpack(packed);
         ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
         std::vector<std::uint32_t> same(back.tets.size());
-        for (std::uint32_t i = 0; i < same.size(); i++)
+        for (std::uint32_t i = 0; i < same.size(); ++i)
             same[i] = i;
-        for (std::size_t i = 0; i < scene.tets.tets.size(); i++)
+        for (std::size_t i = 0; i < scene.tets.tets.size(); ++i)
             ASSERT_EQ(faces_of(scene.tets, scene.tets.tets[i], packed.packed_of_mesh),
                       faces_of(back, back.tets[packed.packed_of_mesh[i]], same));
         EXPECT_EQ(find_defect(back, scene.mesh.triangles.size()), std::nullopt);
@@ -101,7 +101,7 @@ TEST_P(CompactPacking, vertices_lie_as_the_tets_do)
     const Scene scene = make_cubes(16);
     const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
     std::vector<std::uint32_t> mesh_of_packed(packed.tet_count);
-    for (std::uint32_t tet = 0; tet < packed.tet_count; tet++)
+    for (std::uint32_t tet = 0; tet < packed.tet_count; ++tet)
         mesh_of_packed[packed.packed_of_mesh[tet]] = tet;
     double spread = 0;
     for (std::uint32_t tet : mesh_of_packed) {
@@ -119,7 +119,7 @@ TEST_P(CompactPacking, every_bit_of_a_tet_matters)
     const Scene scene = make_cubes(2);
     const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
     const TetMesh whole = unpack(packed);
-    for (std::size_t word = 0; word < 20; word++)
+    for (std::size_t word = 0; word < 20; ++word)
         for (const std::uint32_t bit : {0u, 3u, 17u, 31u}) {
             PackedScene spoilt = packed;
             Quad& quad = spoilt.tets[word / 4];
@@ -142,12 +142,12 @@ TEST_P(CompactPacking, refuses_tets_that_a_walk_would_not_know_the_vertices_of)
     EXPECT_NE(unsupported_text(scene, GetParam()).find("do not name each other"), std::string::npos);
     Scene walled = make_cubes(3);
     for (Tet& one : walled.tets.tets)
-        for (std::size_t i = 0; i < 4; i++)
+        for (std::size_t i = 0; i < 4; ++i)
             if (one.links[i] == NO_LINK) one.faces[i] = 0;
     EXPECT_NE(unsupported_text(walled, GetParam()).find("occlusive face on the domain's boundary"), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachLayout, CompactPacking, testing::Values(Layout::tet20, Layout::tet16),
+INSTANTIATE_TEST_SUITE_P(each, CompactPacking, testing::Values(Layout::tet20, Layout::tet16),
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
 TEST(CompactLimits, are_what_32_bits_index_and_links_name)

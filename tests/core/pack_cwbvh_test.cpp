@@ -23,11 +23,11 @@ class CwbvhNode {
 public:
     CwbvhNode(const PackedScene& packed, std::uint32_t node)
     {
-        for (std::size_t quad = 0; quad < CWBVH_NODE_QUADS; quad++) {
+        for (std::size_t quad = 0; quad < CWBVH_NODE_QUADS; ++quad) {
             const Quad& r = packed.nodes[std::size_t{node} * CWBVH_NODE_QUADS + quad];
             words_.insert(words_.end(), {r.x, r.y, r.z, r.w});
         }
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             grid_.origin[axis] = std::bit_cast<float>(words_[static_cast<std::size_t>(axis)]);
             grid_.exponent[static_cast<std::size_t>(axis)] = byte(3, static_cast<std::size_t>(axis));
         }
@@ -43,7 +43,7 @@ public:
     Box box(std::size_t slot) const
     {
         Box box;
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             const std::size_t words = 2 * static_cast<std::size_t>(axis);
             box.low[axis] = float_below(line_at(grid_, axis, byte(8 + words, slot)));
             box.high[axis] = float_above(line_at(grid_, axis, byte(14 + words, slot)));
@@ -84,15 +84,15 @@ public:
 private:
     void read(std::uint32_t index, std::uint32_t waiting)
     {
-        node_seen[index]++;
+        ++node_seen[index];
         const CwbvhNode node(packed_, index);
-        for (std::size_t slot = 0; slot < 8; slot++) {
+        for (std::size_t slot = 0; slot < 8; ++slot) {
             const std::uint32_t meta = node.meta(slot);
             EXPECT_EQ((node.inner_bits() >> slot & 1) != 0, is_inner(meta)) << "node " << index;
             if (meta == 0)
                 EXPECT_TRUE(is_empty(node.box(slot))) << "node " << index;
             else
-                children++;
+                ++children;
             if (meta != 0 && !is_inner(meta)) read_leaf(node.triangle_base() + (meta & 31), meta >> 5, node.box(slot));
         }
         read_inner(node, waiting + (std::popcount(node.inner_bits()) > 1 ? 1 : 0));
@@ -102,7 +102,7 @@ private:
     {
         most_waiting = std::max(most_waiting, waiting);
         std::uint32_t next = node.child_base();
-        for (std::size_t slot = 0; slot < 8; slot++) {
+        for (std::size_t slot = 0; slot < 8; ++slot) {
             if (!is_inner(node.meta(slot))) continue;
             EXPECT_EQ(node.meta(slot), 0x20 | (24 + slot));
             expect_round(node, slot, CwbvhNode(packed_, next));
@@ -114,7 +114,7 @@ private:
     static void expect_round(const CwbvhNode& parent, std::size_t slot, const CwbvhNode& child)
     {
         const Box box = parent.box(slot);
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             EXPECT_LE(box.low[axis], child.grid().origin[axis]);
             EXPECT_GT(box.low[axis] + parent.grid().width(axis), child.grid().origin[axis]);
             EXPECT_LT(box.high[axis] - parent.grid().width(axis), line_at(child.grid(), axis, 255));
@@ -124,11 +124,11 @@ private:
     void read_leaf(std::uint32_t first, std::uint32_t unary, const Box& box)
     {
         EXPECT_TRUE(unary == 1 || unary == 3 || unary == 7);
-        for (std::uint32_t i = first; i < first + static_cast<std::uint32_t>(std::popcount(unary)); i++) {
+        for (std::uint32_t i = first; i < first + static_cast<std::uint32_t>(std::popcount(unary)); ++i) {
             leaf_order.push_back(i);
             const Quad* quads = &packed_.leaf_triangles[std::size_t{i} * LEAF_TRIANGLE_QUADS];
             const std::uint32_t triangle = quads[0].w;
-            for (std::size_t k = 0; k < 3; k++)
+            for (std::size_t k = 0; k < 3; ++k)
                 EXPECT_EQ(mesh_.vertices[mesh_.triangles[triangle][k]],
                           (Float3{std::bit_cast<float>(quads[k].x), std::bit_cast<float>(quads[k].y),
                                   std::bit_cast<float>(quads[k].z)}));
@@ -158,11 +158,11 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
     std::iota(numbers.begin(), numbers.end(), 0u);
     EXPECT_EQ(read.leaf_order, numbers) << "in the order of their leaves";
     EXPECT_LE(read.most_waiting, CWBVH_STACK);
-    for (std::size_t i = 0; i < mesh.triangles.size(); i++)
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, PackCwbvhOf,
+INSTANTIATE_TEST_SUITE_P(each, PackCwbvhOf,
                          testing::Values(MeshRow{"surface", [] { return make_cubes(6).mesh; }},
                                          MeshRow{"needles", [] { return test::needles(300); }},
                                          MeshRow{"one_triangle", [] { return test::identical_triangles(1); }},
@@ -193,7 +193,7 @@ TEST(PackCwbvh, one_triangle_is_one_child_of_the_root)
     const CwbvhNode root(packed, 0);
     EXPECT_EQ(packed.nodes.size(), CWBVH_NODE_QUADS);
     int leaves = 0;
-    for (std::size_t slot = 0; slot < 8; slot++)
+    for (std::size_t slot = 0; slot < 8; ++slot)
         leaves += root.meta(slot) == 0x20 ? 1 : 0;
     EXPECT_EQ(leaves, 1);
     EXPECT_EQ(root.inner_bits(), 0u);
@@ -204,7 +204,7 @@ TEST(PackCwbvh, children_stand_in_the_slots_of_their_octants)
 {
     const PackedScene packed = test::make_bvh_scene(test::cube_corners(), Layout::cwbvh);
     const CwbvhNode root(packed, 0);
-    for (std::uint32_t slot = 0; slot < 8; slot++) {
+    for (std::uint32_t slot = 0; slot < 8; ++slot) {
         ASSERT_NE(root.meta(slot), 0u);
         const std::uint32_t first = root.triangle_base() + (root.meta(slot) & 31);
         EXPECT_EQ(packed.leaf_triangles[std::size_t{first} * LEAF_TRIANGLE_QUADS].w, slot);

@@ -19,10 +19,10 @@ void expect_same_tets(const Scene& scene, const PackedScene& packed)
 {
     const TetMesh back = unpack(packed);
     ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
-    for (std::size_t i = 0; i < scene.tets.tets.size(); i++) {
+    for (std::size_t i = 0; i < scene.tets.tets.size(); ++i) {
         const Tet& tet = scene.tets.tets[i];
         const Tet& other = back.tets[packed.packed_of_mesh[i]];
-        for (std::size_t k = 0; k < 4; k++) {
+        for (std::size_t k = 0; k < 4; ++k) {
             ASSERT_EQ(scene.tets.vertices[tet.vertices[k]], back.vertices[other.vertices[k]]);
             ASSERT_EQ(tet.faces[k], other.faces[k]);
             const auto link = tet.links[k];
@@ -42,7 +42,7 @@ TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
     expect_same_tets(scene, pack(scene, std::get<0>(GetParam()), std::get<1>(GetParam())));
 }
 
-INSTANTIATE_TEST_SUITE_P(EachLayoutAndOrder, Packing,
+INSTANTIATE_TEST_SUITE_P(each, Packing,
                          testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32),
                                           testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
                          [](const auto& info) {
@@ -73,7 +73,7 @@ TEST(Pack, hilbert_order_has_no_long_jumps)
     const auto longest_jump = [&](TetOrder order) {
         const TetMesh mesh = unpack(pack(scene, Layout::tet80, order));
         double longest = 0;
-        for (std::size_t i = 1; i < mesh.tets.size(); i++)
+        for (std::size_t i = 1; i < mesh.tets.size(); ++i)
             longest = std::max(longest, length(to_double(mesh.vertices[mesh.tets[i].vertices[0]]) -
                                                to_double(mesh.vertices[mesh.tets[i - 1].vertices[0]])));
         return longest;
@@ -91,12 +91,12 @@ TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached)
     std::size_t count = 0;
     for (bool grows = true; grows;) {
         grows = false;
-        for (std::size_t tet = 0; tet < mesh.tets.size(); tet++)
-            for (std::size_t face = 0; face < 4 && !reached[tet]; face++) {
+        for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet)
+            for (std::size_t face = 0; face < 4 && !reached[tet]; ++face) {
                 const auto link = mesh.tets[tet].links[face];
                 const bool is_open =
                     link == NO_LINK || (mesh.tets[tet].faces[face] == FREE_FACE && reached[link_tet(link)]);
-                if (is_open) grows = reached[tet] = true, count++;
+                if (is_open) grows = reached[tet] = true, ++count;
             }
     }
     EXPECT_GT(count, 0u);
@@ -119,7 +119,7 @@ TEST(Pack, every_word_of_a_tet_matters)
         const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
         const TetMesh whole = unpack(packed);
         const std::size_t words = layout == Layout::tet80 ? 20 : 24;
-        for (std::size_t word = 0; word < words; word++) {
+        for (std::size_t word = 0; word < words; ++word) {
             if (layout == Layout::tet96 && word < 16 && word % 4 == 3) continue; // padding
             PackedScene spoilt = packed;
             Quad& quad = spoilt.tets[word / 4];
@@ -135,7 +135,7 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
 {
     const Scene scene = make_cubes(2);
     const PackedScene packed = pack(scene, Layout::half32, TetOrder::hilbert);
-    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_QUADS; word++)
+    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_QUADS; ++word)
         for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
             PackedScene spoilt = packed;
             Quad& quad = spoilt.tets[word / 4];
@@ -169,14 +169,14 @@ TEST(Hilbert, neighbouring_cells_follow_each_other)
 {
     // Through the centres of an 8^3 grid the curve visits every cell once, and each step goes to a neighbour.
     std::vector<std::pair<std::uint64_t, std::array<int, 3>>> cells;
-    for (int x = 0; x < 8; x++)
-        for (int y = 0; y < 8; y++)
-            for (int z = 0; z < 8; z++)
+    for (int x = 0; x < 8; ++x)
+        for (int y = 0; y < 8; ++y)
+            for (int z = 0; z < 8; ++z)
                 cells.push_back({hilbert_index({(x + 0.5) / 8, (y + 0.5) / 8, (z + 0.5) / 8}), {x, y, z}});
     std::sort(cells.begin(), cells.end());
-    for (std::size_t i = 1; i < cells.size(); i++) {
+    for (std::size_t i = 1; i < cells.size(); ++i) {
         int apart = 0;
-        for (std::size_t axis = 0; axis < 3; axis++)
+        for (std::size_t axis = 0; axis < 3; ++axis)
             apart += std::abs(cells[i].second[axis] - cells[i - 1].second[axis]);
         EXPECT_EQ(apart, 1) << "at cell " << i;
     }

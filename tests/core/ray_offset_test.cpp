@@ -42,7 +42,7 @@ TEST(RayOffset, near_zero_a_coordinate_moves_by_2_to_the_minus_16)
 TEST(RayOffset, stays_on_the_grid)
 {
     test::Random random(21);
-    for (int i = 0; i < 10'000; i++) {
+    for (int i = 0; i < 10'000; ++i) {
         const Float3 point = random.point(-0.03F, 0.03F);
         const Float3 moved = offset_point(point, to_float(normalized(to_double(random.point(-1, 1)))));
         ASSERT_EQ(moved, snap_to_grid(moved));
@@ -72,7 +72,7 @@ TEST(GivenRows, hold_the_rays_with_links_as_the_scene_is_packed)
     const auto quads = given_quads(set, given().packed);
     ASSERT_EQ(quads.size(), GIVEN_RAY_QUADS * set.rays.size());
     bool renumbered = false;
-    for (std::size_t i = 0; i < set.rays.size(); i++) {
+    for (std::size_t i = 0; i < set.rays.size(); ++i) {
         const GivenRay& ray = set.rays[i];
         const Quad &first = quads[i], &second = quads[set.rays.size() + i];
         EXPECT_EQ((Float3{as_float(first.x), as_float(first.y), as_float(first.z)}), ray.direction);
@@ -89,7 +89,7 @@ TEST(GivenRows, rays_from_outside_have_no_link)
 {
     const RaySet set = make_rays(RayKind::random, given().source());
     for (const auto& quads : {given_quads(set, given().packed), given_quads_offset(set, given().scene.mesh)})
-        for (std::size_t i = 0; i < set.rays.size(); i++) {
+        for (std::size_t i = 0; i < set.rays.size(); ++i) {
             ASSERT_EQ(quads[i].w, NO_LINK);
             ASSERT_EQ(as_float(quads[set.rays.size() + i].x), set.rays[i].origin.x) << "and no offset";
         }
@@ -106,7 +106,7 @@ TEST(GivenRows, of_a_bvh_start_offset)
 {
     const RaySet set = make_rays(RayKind::diffuse, given().source());
     const auto quads = given_quads_offset(set, given().scene.mesh);
-    for (std::size_t i = 0; i < set.rays.size(); i++) {
+    for (std::size_t i = 0; i < set.rays.size(); ++i) {
         const Quad& second = quads[set.rays.size() + i];
         const Float3 origin{as_float(second.x), as_float(second.y), as_float(second.z)};
         ASSERT_NE(origin, set.rays[i].origin);

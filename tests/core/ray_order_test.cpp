@@ -32,7 +32,7 @@ std::vector<GivenRay> sorted(std::vector<GivenRay> rays)
 double mean_jump(const RaySet& set)
 {
     double sum = 0;
-    for (std::size_t i = 1; i < set.rays.size(); i++)
+    for (std::size_t i = 1; i < set.rays.size(); ++i)
         sum += length(to_double(set.rays[i].origin) - to_double(set.rays[i - 1].origin)) +
                length(to_double(set.rays[i].direction) - to_double(set.rays[i - 1].direction));
     return sum / static_cast<double>(set.rays.size());
@@ -57,7 +57,7 @@ TEST(RayOrder, is_the_same_on_every_machine)
 TEST(RayOrder, tiles_are_those_of_8_by_8_pixels)
 {
     const RaySet set = arranged(RayKind::primary, RayOrder::tiles);
-    for (std::uint32_t i = 0; i < set.rays.size(); i++) {
+    for (std::uint32_t i = 0; i < set.rays.size(); ++i) {
         const std::uint32_t tile = i / 64, item = i % 64;
         ASSERT_EQ(set.rays[i].pixel, (tile / 8 * 8 + item / 8) * 64 + tile % 8 * 8 + item % 8);
     }

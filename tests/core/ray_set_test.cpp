@@ -64,7 +64,7 @@ TEST(RandomWords, directions_are_uniform_and_of_length_1)
 {
     Double3 sum, squares;
     constexpr std::uint32_t count = 20'000;
-    for (std::uint32_t i = 0; i < count; i++) {
+    for (std::uint32_t i = 0; i < count; ++i) {
         const Double3 d = random_direction({99, 0, i, 0});
         EXPECT_NEAR(length(d), 1, 1e-15);
         sum = sum + d;
@@ -151,7 +151,7 @@ TEST(RaySet, coordinates_are_such_that_no_product_is_denormal)
 {
     for (const RayKind kind : all_kinds)
         for (const GivenRay& ray : make_rays(kind, outside().source()).rays)
-            for (int axis = 0; axis < 3; axis++) {
+            for (int axis = 0; axis < 3; ++axis) {
                 ASSERT_EQ(ray.origin[axis], snap_to_grid(ray.origin[axis]));
                 ASSERT_TRUE(ray.direction[axis] == 0 || std::abs(ray.direction[axis]) >= 0x1p-20F);
             }
@@ -187,7 +187,7 @@ TEST(RaySet, shadow_rays_end_at_the_light)
 TEST(RaySet, the_light_is_in_the_domain_and_35_to_70_degrees_from_the_camera)
 {
     const Domain& domain = outside().scene.domain;
-    for (std::uint32_t i = 0; i < 200; i++) {
+    for (std::uint32_t i = 0; i < 200; ++i) {
         const Double3 camera = random_direction({3, 0, i, 0}); // far away: 100 domain units
         const Float3 light = light_of(domain, to_float(camera * 100));
         EXPECT_TRUE(domain.contains(light));
@@ -286,7 +286,7 @@ TEST(RaySet, primary_rays_find_what_the_view_s_own_find)
         EXPECT_EQ(given.start_tet != NO_TET, inside);
         const RaySet set = make_rays(RayKind::primary, given.source());
         const auto answers = given.answers(set);
-        for (std::size_t i = 0; i < answers.size(); i++)
+        for (std::size_t i = 0; i < answers.size(); ++i)
             ASSERT_EQ(answers[i], given.hits[set.rays[i].pixel]) << "inside: " << inside << ", ray " << i;
     }
 }
@@ -298,7 +298,7 @@ TEST(RaySet, walks_from_surfaces_are_never_lost_and_never_hit_where_they_start)
         for (const RayKind kind : secondary_kinds) {
             const RaySet set = make_rays(kind, given.source());
             const auto answers = given.answers(set);
-            for (std::size_t i = 0; i < answers.size(); i++) {
+            for (std::size_t i = 0; i < answers.size(); ++i) {
                 ASSERT_NE(answers[i].face_id, LOST) << name_of(kind) << ", ray " << i;
                 ASSERT_NE(answers[i].face_id, set.rays[i].triangle) << name_of(kind) << ", ray " << i;
             }
@@ -312,7 +312,7 @@ RaySet flat_rays_from_edges(const Scene& scene)
 {
     Random random(11);
     RaySet set;
-    for (std::uint32_t tet = 0; tet < scene.tets.tets.size(); tet++)
+    for (std::uint32_t tet = 0; tet < scene.tets.tets.size(); ++tet)
         for (const std::uint32_t triangle : scene.tets.tets[tet].faces) {
             if (triangle == FREE_FACE) continue;
             for (const auto [u, v] :
@@ -336,7 +336,7 @@ TEST(RayStart, flat_rays_from_corners_and_edges_walk_into_their_tet)
     const RaySet set = flat_rays_from_edges(outside().scene);
     ASSERT_GT(set.rays.size(), 1000u);
     const auto answers = outside().answers(set);
-    for (std::size_t i = 0; i < answers.size(); i++) {
+    for (std::size_t i = 0; i < answers.size(); ++i) {
         ASSERT_NE(answers[i].face_id, LOST) << "ray " << i;
         ASSERT_NE(answers[i].face_id, set.rays[i].triangle) << "ray " << i;
     }

@@ -27,7 +27,7 @@ using Tet4 = std::array<Float3, 4>;
 Tet4 tet_at(const PackedScene& tets, std::size_t number)
 {
     Tet4 corners;
-    for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t i = 0; i < 4; ++i)
         corners[i] = vector_of(tets.tets[TET96_QUADS * number + i]);
     return corners;
 }
@@ -58,7 +58,7 @@ double distance(const TestRay& ray, Float3 from, Float3 to)
 std::pair<double, double> distances(const TestRay& ray, const Tet4& tet, std::size_t face, std::size_t entry)
 {
     double furthest = 0, nearest = 1e9;
-    for (std::size_t i = 0; i < 3; i++) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t a = faces[face][i], b = faces[face][(i + 1) % 3];
         if (a != entry && b != entry) continue; // the apex of the entry face is opposite it
         furthest = std::max(furthest, distance(ray, tet[a], tet[b]));
@@ -73,11 +73,11 @@ TEST(SearchSet, tets_have_a_volume_and_the_orientation_of_packed_ones)
 {
     const PackedScene tets = search_tets(2000, Layout::tet96);
     ASSERT_EQ(tets.tets.size(), 2000u * TET96_QUADS);
-    for (std::size_t i = 0; i < 2000; i++) {
+    for (std::size_t i = 0; i < 2000; ++i) {
         const Tet4 tet = tet_at(tets, i);
         EXPECT_EQ(orientation(tet[0], tet[1], tet[2], tet[3]), -1) << i;
         for (const Float3 corner : tet)
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 EXPECT_TRUE(corner[axis] >= -1 && corner[axis] < 1);
     }
 }
@@ -93,8 +93,8 @@ TEST(SearchSet, a_tet_is_the_same_in_both_layouts_and_in_any_number_of_them)
     const PackedScene few = search_tets(3, Layout::tet80), many = search_tets(50, Layout::tet80);
     EXPECT_TRUE(std::equal(few.tets.begin(), few.tets.end(), many.tets.begin()));
     const PackedScene wide = search_tets(3, Layout::tet96);
-    for (std::size_t tet = 0; tet < 3; tet++)
-        for (std::size_t corner = 0; corner < 4; corner++) {
+    for (std::size_t tet = 0; tet < 3; ++tet)
+        for (std::size_t corner = 0; corner < 4; ++corner) {
             const Quad quad = wide.tets[TET96_QUADS * tet + corner];
             const auto* words = &few.tets[TET80_QUADS * tet].x + 3 * corner;
             EXPECT_TRUE(quad.x == words[0] && quad.y == words[1] && quad.z == words[2] && quad.w == 0);
@@ -104,7 +104,7 @@ TEST(SearchSet, a_tet_is_the_same_in_both_layouts_and_in_any_number_of_them)
 TEST(SearchSet, rays_of_a_tet_are_the_same_whatever_the_batch)
 {
     const SearchRays all = search_rays(0, 4, 16), part = search_rays(2, 2, 8);
-    for (std::size_t i = 0; i < part.count(); i++) {
+    for (std::size_t i = 0; i < part.count(); ++i) {
         const std::size_t same = (2 + i / 8) * 16 + i % 8;
         EXPECT_EQ(part.quads[i], all.quads[same]);
         EXPECT_EQ(part.quads[part.count() + i], all.quads[all.count() + same]);
@@ -117,7 +117,7 @@ TEST(SearchSet, rays_enter_by_their_face_and_leave_by_the_exits)
     const PackedScene tets = search_tets(300, Layout::tet96);
     const SearchRays rays = search_rays(0, 300, 64);
     std::array<std::size_t, 16> entries_and_exits{};
-    for (std::size_t i = 0; i < rays.count(); i++) {
+    for (std::size_t i = 0; i < rays.count(); ++i) {
         ASSERT_EQ(link_tet(rays.link(i)), i / 64);
         const Tet4 tet = tet_at(tets, i / 64);
         const TestRay ray = ray_at(rays, i);
@@ -125,18 +125,18 @@ TEST(SearchSet, rays_enter_by_their_face_and_leave_by_the_exits)
         const ExactCrossing in = cross_face(ray, tet, entry);
         ASSERT_TRUE(in.met) << i;
         unsigned exits = 0;
-        for (std::size_t face = 0; face < 4; face++) {
+        for (std::size_t face = 0; face < 4; ++face) {
             const ExactCrossing out = cross_face(ray, tet, face);
             if (face == entry || !out.met) continue;
             EXPECT_GT(out.t, in.t) << "it starts before the tet, and enters first";
             exits |= 1u << face;
-            entries_and_exits[4 * entry + face]++;
+            ++entries_and_exits[4 * entry + face];
         }
         EXPECT_EQ(rays.exits[i], exits) << i;
         const Float3 p = ray.origin, u = ray.direction;
         EXPECT_EQ(ray.moment, (Float3{p.y * u.z - p.z * u.y, p.z * u.x - p.x * u.z, p.x * u.y - p.y * u.x}));
     }
-    for (std::size_t i = 0; i < 16; i++) // twelve pairs of faces, each as often as the others
+    for (std::size_t i = 0; i < 16; ++i) // twelve pairs of faces, each as often as the others
         EXPECT_NEAR(static_cast<double>(entries_and_exits[i]), i % 5 == 0 ? 0 : 1600, 200) << i;
 }
 
@@ -145,11 +145,11 @@ TEST(SearchSet, a_face_within_rounding_is_a_tie_and_any_other_is_wrong)
     const PackedScene tets = search_tets(100, Layout::tet96);
     const SearchRays rays = search_rays(0, 100, 4096);
     std::size_t ties = 0;
-    for (std::size_t i = 0; i < rays.count(); i++) {
+    for (std::size_t i = 0; i < rays.count(); ++i) {
         const std::size_t entry = link_face(rays.link(i));
         EXPECT_EQ(judge(rays, i, NO_EXIT), SearchVerdict::lost);
         EXPECT_EQ(judge(rays, i, static_cast<std::uint32_t>(entry)), SearchVerdict::wrong);
-        for (std::size_t face = 0; face < 4; face++) {
+        for (std::size_t face = 0; face < 4; ++face) {
             const SearchVerdict verdict = judge(rays, i, static_cast<std::uint32_t>(face));
             EXPECT_EQ(verdict == SearchVerdict::right, (rays.exits[i] >> face & 1u) != 0);
             if (verdict == SearchVerdict::right || face == entry) continue;
@@ -157,7 +157,7 @@ TEST(SearchSet, a_face_within_rounding_is_a_tie_and_any_other_is_wrong)
             const auto [furthest, nearest] = distances(ray, tet_at(tets, i / 4096), face, entry);
             if (verdict == SearchVerdict::tie) {
                 EXPECT_LE(nearest, tie_bound(ray.origin));
-                ties++;
+                ++ties;
             } else {
                 EXPECT_GT(furthest, tie_bound(ray.origin));
             }
@@ -180,8 +180,8 @@ TEST(SearchSet, openmp_finds_the_exits_with_every_method)
         std::vector<std::uint32_t> found(rays.count());
         session->read_back(found);
         std::size_t others = 0;
-        for (std::size_t i = 0; i < found.size(); i++)
-            if (judge(rays, i, found[i]) != SearchVerdict::right) others++;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (judge(rays, i, found[i]) != SearchVerdict::right) ++others;
         EXPECT_LE(others, 20u) << name_of(kernel) << ' ' << name_of(kernel.math) << ", of 102,400";
     }
 }

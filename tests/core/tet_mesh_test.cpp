@@ -35,7 +35,7 @@ std::optional<Kind> gap_after(const Spoil& spoil)
 
 std::uint32_t inner_face_of(const Tet& tet)
 {
-    for (std::uint32_t face = 0; face < 4; face++)
+    for (std::uint32_t face = 0; face < 4; ++face)
         if (tet.links[face] != NO_LINK) return face;
     return 4;
 }
@@ -98,7 +98,7 @@ TEST(TetMesh, an_inverted_and_a_flat_tet_are_told_apart)
                   std::swap(tet.vertices[0], tet.vertices[1]);
                   std::swap(tet.links[0], tet.links[1]);
                   std::swap(tet.faces[0], tet.faces[1]);
-                  for (std::uint32_t face = 0; face < 2; face++) {
+                  for (std::uint32_t face = 0; face < 2; ++face) {
                       const auto link = tet.links[face];
                       if (link != NO_LINK) s.tets.tets[link_tet(link)].links[link_face(link)] = make_link(0, face);
                   }

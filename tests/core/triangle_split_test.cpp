@@ -12,7 +12,7 @@ constexpr Box everywhere = {{-64, -64, -64}, {64, 64, 64}};
 Float3 point_of(const Float3 (&corners)[3], float u, float v)
 {
     Float3 point;
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         point[axis] =
             corners[0][axis] + u * (corners[1][axis] - corners[0][axis]) + v * (corners[2][axis] - corners[0][axis]);
     return point;
@@ -21,7 +21,7 @@ Float3 point_of(const Float3 (&corners)[3], float u, float v)
 TEST(TriangleSplit, each_point_of_the_triangle_is_in_a_part)
 {
     test::Random random(7);
-    for (int i = 0; i < 2000; i++) {
+    for (int i = 0; i < 2000; ++i) {
         const Float3 corners[3] = {random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)};
         const int axis = static_cast<int>(random.below(3));
         const float position = random.between(-1, 1);
@@ -37,7 +37,7 @@ TEST(TriangleSplit, each_point_of_the_triangle_is_in_a_part)
 TEST(TriangleSplit, parts_stay_on_their_side_and_in_the_box)
 {
     test::Random random(8);
-    for (int i = 0; i < 2000; i++) {
+    for (int i = 0; i < 2000; ++i) {
         const Float3 corners[3] = {random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)};
         const Box box = {{-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}};
         const auto parts = split_triangle(corners, 1, 0.25f, box);

@@ -142,7 +142,7 @@ private:
 
 TEST(WideBvh, no_other_way_to_collapse_costs_less)
 {
-    for (std::uint64_t seed = 1; seed <= 20; seed++) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const Bvh bvh = RandomTree(11, seed).bvh;
         EXPECT_NEAR(cost_of(make_wide(bvh, Collapse::cheapest)), EveryWay(bvh).below(0), 1e-9) << "seed " << seed;
     }
@@ -152,22 +152,22 @@ void expect_whole(const WideBvh& wide, const Bvh& bvh)
 {
     std::vector<int> seen(bvh.references.size());
     std::vector<int> is_child(wide.nodes.size());
-    for (std::size_t i = 0; i < wide.nodes.size(); i++) {
+    for (std::size_t i = 0; i < wide.nodes.size(); ++i) {
         ASSERT_GE(wide.nodes[i].size(), i == 0 ? 1u : 2u);
         ASSERT_LE(wide.nodes[i].size(), wide_children);
         for (const auto& child : wide.nodes[i]) {
             ASSERT_LE(child.count, wide_leaf_triangles);
-            for (std::uint32_t k = child.first; k < child.first + child.count; k++)
-                seen[k]++;
+            for (std::uint32_t k = child.first; k < child.first + child.count; ++k)
+                ++seen[k];
             if (child.count > 0) continue;
             ASSERT_GT(child.node, i);
-            is_child[child.node]++;
+            ++is_child[child.node];
             for (const auto& grandchild : wide.nodes[child.node])
                 EXPECT_TRUE(contains(child.box, grandchild.box));
         }
     }
     EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
-    is_child[0]++;
+    ++is_child[0];
     EXPECT_EQ(is_child, std::vector<int>(is_child.size(), 1));
 }
 
@@ -176,7 +176,7 @@ TEST(WideBvh, each_reference_is_in_one_leaf)
     for (const auto collapse : {Collapse::cheapest, Collapse::shallow}) {
         const Bvh bvh = single_leaves_of(test::needles(500));
         expect_whole(make_wide(bvh, collapse), bvh);
-        for (std::uint32_t count = 1; count < 30; count++) {
+        for (std::uint32_t count = 1; count < 30; ++count) {
             const Bvh random = RandomTree(count, count).bvh;
             expect_whole(make_wide(random, collapse), random);
         }

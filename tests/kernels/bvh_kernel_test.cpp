@@ -119,7 +119,7 @@ Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
 void expect_same_everywhere(const Trees& trees, const Ray& ray, float end = NO_END)
 {
     const Hit expected = trace_all(trees.packed[0], ray, end);
-    for (std::size_t tree = 0; tree < trees.packed.size(); tree++) {
+    for (std::size_t tree = 0; tree < trees.packed.size(); ++tree) {
         ASSERT_EQ(bits_of(trees.trace(tree, ray, end)), bits_of(expected)) << "tree " << tree;
         const Hit any = trees.trace(tree, ray, end, true);
         ASSERT_EQ(any.face_id == NO_HIT, expected.face_id == NO_HIT) << "tree " << tree;
@@ -137,10 +137,10 @@ TriangleMesh cube(int n)
         if (is_new) mesh.vertices.push_back({line(at[0]), line(at[1]), line(at[2])});
         return found->second;
     };
-    for (std::size_t axis = 0; axis < 3; axis++)
+    for (std::size_t axis = 0; axis < 3; ++axis)
         for (int side = 0; side <= n; side += n)
-            for (int i = 0; i < n; i++)
-                for (int j = 0; j < n; j++) {
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) {
                     const auto corner = [&](int di, int dj) {
                         std::array<int, 3> at{};
                         at[axis] = side;
@@ -171,7 +171,7 @@ TriangleMesh soup(std::uint32_t count, std::uint64_t seed)
 {
     TriangleMesh mesh;
     Random random(seed);
-    for (std::uint32_t i = 0; i < count; i++) {
+    for (std::uint32_t i = 0; i < count; ++i) {
         const Float3 a = random.point(-0.9f, 0.9f), b = random.point(-0.9f, 0.9f);
         Float3 c = random.point(-0.9f, 0.9f);
         if (i % 2 == 1) {
@@ -220,7 +220,7 @@ protected:
 TEST_P(Meshes, every_tree_gives_the_nearest_of_all_triangles_to_rays_that_are_aimed_at_them)
 {
     Random random(11);
-    for (int i = 0; i < 1500; i++)
+    for (int i = 0; i < 1500; ++i)
         ASSERT_NO_FATAL_FAILURE(
             expect_same_everywhere(trees(), ray_to(random.point(-4, 4), point_of(trees(), random))));
 }
@@ -228,7 +228,7 @@ TEST_P(Meshes, every_tree_gives_the_nearest_of_all_triangles_to_rays_that_are_ai
 TEST_P(Meshes, every_tree_gives_the_nearest_of_all_triangles_to_rays_between_two_of_their_points)
 {
     Random random(12);
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < 1500; ++i) {
         const Float3 from = tetrace::snap_to_grid(point_of(trees(), random));
         const float end = random.below(2) == 0 ? NO_END : random.between(0, 2);
         ASSERT_NO_FATAL_FAILURE(expect_same_everywhere(trees(), ray_to(from, point_of(trees(), random)), end));
@@ -238,7 +238,7 @@ TEST_P(Meshes, every_tree_gives_the_nearest_of_all_triangles_to_rays_between_two
 TEST_P(Meshes, rays_along_the_axes_are_answered_by_every_tree_alike)
 {
     Random random(13);
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; ++i) {
         Float3 origin = random.below(2) == 0 ? point_of(trees(), random) : random.point(-1, 1);
         Float3 direction{};
         const int axis = static_cast<int>(random.below(3));
@@ -254,13 +254,13 @@ TEST_P(Meshes, the_first_exact_hit_is_found_but_for_rays_within_rounding_of_an_e
     Random random(14);
     int compared = 0;
     int differing = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; ++i) {
         const Float3 origin = random.point(-3, 3);
         const Ray ray = ray_to(origin, random.point(-0.7f, 0.7f));
         const Float3 direction{ray.direction.x, ray.direction.y, ray.direction.z};
         std::uint32_t first = NO_HIT;
         double t = NO_END;
-        for (std::uint32_t triangle = 0; triangle < trees().mesh.triangles.size(); triangle++) {
+        for (std::uint32_t triangle = 0; triangle < trees().mesh.triangles.size(); ++triangle) {
             const auto [a, b, c] = trees().corners(triangle);
             const auto crossing = tetrace::cross_exactly(origin, direction, a, b, c);
             if (!crossing.met || crossing.t >= t) continue;
@@ -268,7 +268,7 @@ TEST_P(Meshes, the_first_exact_hit_is_found_but_for_rays_within_rounding_of_an_e
             t = crossing.t;
         }
         const Hit hit = trees().trace(0, ray);
-        compared++;
+        ++compared;
         differing += hit.face_id != first;
         if (hit.face_id == first && first != NO_HIT) {
             EXPECT_NEAR(hit.t, t, 1e-3 * t);
@@ -282,12 +282,12 @@ TEST_P(Meshes, a_ray_ends_behind_its_hit_or_has_none)
     if (GetParam() == needles) return; // t of a needle is rounded by more than a hundredth
     Random random(15);
     int hits = 0;
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
         const Ray ray = ray_to(random.point(-3, 3), point_of(trees(), random));
         const Hit hit = trees().trace(0, ray);
         if (hit.face_id == NO_HIT || hit.t < 0.01f) continue;
-        hits++;
-        for (std::size_t tree = 0; tree < trees().packed.size(); tree++) {
+        ++hits;
+        for (std::size_t tree = 0; tree < trees().packed.size(); ++tree) {
             EXPECT_EQ(bits_of(trees().trace(tree, ray, hit.t * 1.01f)), bits_of(hit));
             EXPECT_EQ(trees().trace(tree, ray, hit.t * 0.99f).face_id, NO_HIT);
             EXPECT_EQ(trees().trace(tree, ray, 0).face_id, NO_HIT);
@@ -302,7 +302,7 @@ TEST_P(Meshes, a_device_that_flushes_denormals_gives_the_same_bits)
 {
     Random random(16);
     const unsigned kept = _mm_getcsr();
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
         const Ray ray = ray_to(tetrace::snap_to_grid(random.point(-3, 3)), point_of(trees(), random));
         const Words expected = bits_of(trees().trace(0, ray));
         _mm_setcsr(kept | 0x8040); // flush to zero, denormals are zero
@@ -313,17 +313,17 @@ TEST_P(Meshes, a_device_that_flushes_denormals_gives_the_same_bits)
 }
 #endif
 
-INSTANTIATE_TEST_SUITE_P(BvhKernel, Meshes, testing::Range(0, 4));
+INSTANTIATE_TEST_SUITE_P(each, Meshes, testing::Range(0, 4));
 
 TEST(BvhKernel, no_ray_from_inside_gets_out_through_a_vertex_or_an_edge)
 {
-    for (int shape = 0; shape < 3; shape++) {
+    for (int shape = 0; shape < 3; ++shape) {
         const Trees trees(shape == 0 ? cube(3) : boulder(8, 20 + static_cast<std::uint64_t>(shape)));
         Random random(21);
-        for (int i = 0; i < 3000; i++) {
+        for (int i = 0; i < 3000; ++i) {
             const Float3 target = point_of(trees, random);
             const Ray ray = ray_to(random.point(-0.1f, 0.1f), target);
-            for (std::size_t tree = 0; tree < trees.packed.size(); tree++)
+            for (std::size_t tree = 0; tree < trees.packed.size(); ++tree)
                 ASSERT_NE(trees.trace(tree, ray).face_id, NO_HIT) << target.x << ' ' << target.y << ' ' << target.z;
         }
     }
@@ -337,15 +337,15 @@ TEST(BvhKernel, of_triangles_that_are_met_at_once_the_first_is_the_hit)
     mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
     const Trees twice(mesh);
     Random random(22);
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; ++i) {
         const Ray ray = ray_to(random.point(-0.1f, 0.1f), point_of(twice, random));
-        for (std::size_t tree = 0; tree < twice.packed.size(); tree++)
+        for (std::size_t tree = 0; tree < twice.packed.size(); ++tree)
             ASSERT_LT(twice.trace(tree, ray).face_id, count);
     }
     // The vertex in the middle of the side x = 3/4: all its triangles are met at t = 1.
     const Hit hit = twice.trace(0, ray_of({0, 0, 0}, {0.75f, 0, 0}));
     EXPECT_EQ(hit.t, 1);
-    for (std::uint32_t triangle = 0; triangle < hit.face_id; triangle++)
+    for (std::uint32_t triangle = 0; triangle < hit.face_id; ++triangle)
         for (const Float3 corner : twice.corners(triangle))
             EXPECT_FALSE((corner == Float3{0.75f, 0, 0}));
 }
@@ -353,7 +353,7 @@ TEST(BvhKernel, of_triangles_that_are_met_at_once_the_first_is_the_hit)
 TEST(BvhKernel, a_ray_does_not_hit_what_it_starts_on)
 {
     const Trees trees(cube(2));
-    for (std::size_t tree = 0; tree < trees.packed.size(); tree++) {
+    for (std::size_t tree = 0; tree < trees.packed.size(); ++tree) {
         EXPECT_EQ(trees.trace(tree, ray_of({0.75f, 0.25f, 0.125f}, {1, 0.25f, 0})).face_id, NO_HIT);
         EXPECT_EQ(trees.trace(tree, ray_of({0.75f, 0.25f, 0.125f}, {-1, 0, 0})).t, 1.5f);
     }
@@ -362,7 +362,7 @@ TEST(BvhKernel, a_ray_does_not_hit_what_it_starts_on)
 TEST(BvhKernel, a_ray_in_a_side_of_a_cube_meets_the_sides_that_it_runs_into)
 {
     const Trees trees(cube(2));
-    for (std::size_t tree = 0; tree < trees.packed.size(); tree++) {
+    for (std::size_t tree = 0; tree < trees.packed.size(); ++tree) {
         EXPECT_EQ(trees.trace(tree, ray_of({-2, 0.25f, 0.75f}, {1, 0, 0})).t, 1.25f);
         EXPECT_EQ(trees.trace(tree, ray_of({-2, 0.25f, 0.75f + 0x1p-16f}, {1, 0, 0})).face_id, NO_HIT);
     }
@@ -371,7 +371,7 @@ TEST(BvhKernel, a_ray_in_a_side_of_a_cube_meets_the_sides_that_it_runs_into)
 TEST(BvhKernel, a_ray_without_a_direction_hits_nothing)
 {
     const Trees trees(cube(1));
-    for (std::size_t tree = 0; tree < trees.packed.size(); tree++)
+    for (std::size_t tree = 0; tree < trees.packed.size(); ++tree)
         EXPECT_EQ(trees.trace(tree, ray_of({0, 0, 0}, {0, 0, 0})).face_id, NO_HIT);
 }
 
@@ -379,7 +379,7 @@ TEST(BvhKernel, the_side_of_an_edge_is_right_or_zero)
 {
     Random random(23);
     int told = 0;
-    for (int i = 0; i < 100000; i++) {
+    for (int i = 0; i < 100000; ++i) {
         const Float3 a = random.point(-1, 1);
         const float scale = 1 + 0x1p-23f * static_cast<float>(random.below(8));
         const Sheared from{a.x, a.y};
@@ -399,7 +399,7 @@ TEST(BvhKernel, the_side_of_an_edge_is_right_or_zero)
 TEST(BvhKernel, a_reciprocal_is_right_to_some_units_in_the_last_place)
 {
     Random random(24);
-    for (int i = 0; i < 100000; i++) {
+    for (int i = 0; i < 100000; ++i) {
         const float a = std::ldexp(random.between(1, 2), static_cast<int>(random.below(180)) - 120);
         ASSERT_NEAR(double{a} * reciprocal(a), 1, 3 * 0x1p-24);
     }

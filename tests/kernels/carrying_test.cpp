@@ -25,7 +25,7 @@ Scene regular_cubes(std::uint32_t n)
         return snap_to_grid(2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f);
     };
     std::map<std::tuple<float, float, float>, Float3> moved;
-    for (std::uint32_t i = 0; i < scene.tets.vertices.size(); i++) {
+    for (std::uint32_t i = 0; i < scene.tets.vertices.size(); ++i) {
         Float3& vertex = scene.tets.vertices[i];
         const Float3 place{at(i % (n + 1)), at(i / (n + 1) % (n + 1)), at(i / (n + 1) / (n + 1))};
         moved[{vertex.x, vertex.y, vertex.z}] = place;
@@ -34,7 +34,7 @@ Scene regular_cubes(std::uint32_t n)
     for (Float3& vertex : scene.mesh.vertices)
         vertex = moved.at({vertex.x, vertex.y, vertex.z});
     for (auto& axis : scene.domain.lines)
-        for (std::uint32_t i = 0; i <= n; i++)
+        for (std::uint32_t i = 0; i <= n; ++i)
             axis[i] = at(i);
     return scene;
 }
@@ -123,7 +123,7 @@ TEST(Carrying, has_the_same_bits_on_every_device)
     for (const Scene& scene : {regular_cubes(8), make_cubes(8)}) {
         const auto right = hits_on(openmp_backend(), 0, scene, Layout::tet80, awkward_origins(scene));
         for (Backend* backend : all_backends())
-            for (std::size_t device = 0; device < backend->devices().size(); device++)
+            for (std::size_t device = 0; device < backend->devices().size(); ++device)
                 for (const Layout layout : carrying_layouts) {
                     if (!backend->devices()[device].usable || backend->name() == "embree") continue;
                     const auto hits = hits_on(*backend, device, scene, layout, awkward_origins(scene));
@@ -141,7 +141,7 @@ TEST(Carrying, has_the_same_bits_with_the_tets_in_parts)
         const std::uint64_t limit = layout == Layout::half32 ? 100'000 : 40'000;
         ASSERT_GT(tet_parts(pack(scene, layout, TetOrder::hilbert), limit).count, 1u);
         for (Backend* backend : all_backends())
-            for (std::size_t device = 0; device < backend->devices().size(); device++) {
+            for (std::size_t device = 0; device < backend->devices().size(); ++device) {
                 const bool cuts_tets = backend->name() == "opencl" || backend->name() == "vulkan";
                 if (!backend->devices()[device].usable || !cuts_tets) continue;
                 const auto hits = hits_on(*backend, device, scene, layout, origins, 10'000, limit);

@@ -38,7 +38,7 @@ const Box& box()
 bool grazes(Float3 origin, Float3 direction)
 {
     double enter = 0, leave = HUGE_VAL;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const auto& lines = box().scene.domain.lines[static_cast<std::size_t>(axis)];
         const double o = origin[axis], d = direction[axis];
         if (d == 0 && (o <= lines.front() || o >= lines.back())) return true;
@@ -56,8 +56,8 @@ std::set<uint> brute_force(Float3 origin, Float3 direction)
     std::set<uint> met;
     if (grazes(origin, direction)) return met;
     const auto& mesh = box().scene.tets;
-    for (uint index = 0; index < mesh.tets.size(); index++) {
-        for (uint face = 0; face < 4; face++) {
+    for (uint index = 0; index < mesh.tets.size(); ++index) {
+        for (uint face = 0; face < 4; ++face) {
             if (mesh.tets[index].links[face] != NO_LINK) continue;
             const auto v = [&](uint k) { return mesh.vertices[mesh.tets[index].vertices[corner(face, k)]]; };
             const auto crossing = tetrace::cross_exactly(origin, direction, v(0), v(1), v(2));
@@ -96,7 +96,7 @@ TEST(Entry, agrees_with_brute_force_from_all_round)
     tetrace::test::Random random(8);
     int differing = 0;
     int entered = 0;
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < 3000; ++i) {
         const Float3 origin = random.point(-3, 3);
         if (box().scene.domain.contains(origin)) continue;
         const Float3 direction = toward(origin, random.point(-1.2f, 1.2f));
@@ -124,8 +124,8 @@ TEST(Entry, rays_through_corners_and_edges_of_the_box_and_of_squares_find_a_face
 {
     const auto& lines = box().scene.domain.lines;
     const std::size_t n = box().scene.domain.divisions;
-    for (std::size_t i = 0; i <= n; i++) {
-        for (std::size_t j = 0; j <= n; j++) {
+    for (std::size_t i = 0; i <= n; ++i) {
+        for (std::size_t j = 0; j <= n; ++j) {
             const Float3 corner_on_side{lines[0][i], lines[1][j], lines[2][n]};
             const Float3 origin{corner_on_side.x + 0.25f, corner_on_side.y - 0.5f, corner_on_side.z + 1};
             expect_brute_force(origin, {-0.25f, 0.5f, -1}); // exact: it passes through the corner itself
@@ -151,7 +151,7 @@ TEST(Entry, a_ray_through_a_line_belongs_to_the_square_above_it)
 {
     const auto& lines = box().scene.domain.lines;
     const uint n = box().packed.divisions;
-    for (uint i = 0; i < n; i++) {
+    for (uint i = 0; i < n; ++i) {
         const float y = 0.5f * (lines[1][2] + lines[1][3]);
         const Ray ray = make_ray(VEC3(lines[0][i] - 0.25f, y, lines[2][n] + 1), VEC3(0.25f, 0, -1));
         EXPECT_EQ(entry_square(view_of(box().packed), ray), ((2 * 2 + 1) * n + 2) * n + i);
@@ -166,7 +166,7 @@ TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
         return (mesh.vertices[a][axis] + mesh.vertices[b][axis] + mesh.vertices[c][axis]) / 3;
     };
     tetrace::PackedScene packed = box().packed;
-    for (std::size_t quad = 0; quad < 3; quad++)
+    for (std::size_t quad = 0; quad < 3; ++quad)
         packed.triangles[quad].z = 0; // the first triangle, flattened into z = 0
     const Hit hit =
         hit_on(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7, NO_END);

@@ -59,7 +59,7 @@ bool is_that_of_a_ray_nearby(const Scene& scene, const embree::Accelerator& acce
     const bool is_hit = hit.face_id < scene.mesh.triangles.size();
     if (!is_hit && hit.face_id != NO_HIT) return false;
     if (is_hit && !names_one_point(scene.mesh, {ray.origin, ray.direction}, hit, bound)) return false;
-    for (std::uint32_t i = 0; i < rays_nearby; i++) {
+    for (std::uint32_t i = 0; i < rays_nearby; ++i) {
         const Double3 shift = random_direction({stream, i, 0, 0}) * (bound * (i % 4 + 1) / 4);
         const Double3 far_shift = random_direction({stream, i, 1, 0}) * (bound * (i / 4 % 5) / 4);
         const Double3 bend = (far_shift - shift) * (length(to_double(ray.direction)) / 2);
@@ -87,10 +87,10 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
         all.verdicts.add(verdicts);
         for (const std::uint32_t ray : verdicts.flawed) {
             if (is_that_of_a_ray_nearby(scene, accelerator, set.rays[ray], hits[ray])) {
-                all.nearby++;
+                ++all.nearby;
                 continue;
             }
-            all.flawed[(first + ray) % test::hard_kinds]++;
+            ++all.flawed[(first + ray) % test::hard_kinds];
             if (all.first.empty()) all.first = fmt::format("ray {}", first + ray);
         }
     }
@@ -160,7 +160,7 @@ TEST(HardRays, find_a_walk_without_the_rule_for_ties)
     params.max_steps = packed.tet_count + 1;
     const Judged all = judged(scene, packed, 1'800, [&](const RaySet& set, const std::vector<Quad>& quads) {
         std::vector<Hit> hits;
-        for (std::size_t i = 0; i < set.rays.size(); i++)
+        for (std::size_t i = 0; i < set.rays.size(); ++i)
             hits.push_back(std::bit_cast<Hit>(mutant::trace_given(view, params, quads[i], quads[set.rays.size() + i])));
         return hits;
     });

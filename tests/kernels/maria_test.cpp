@@ -33,9 +33,9 @@ Ray ray_of(Float3 origin, Float3 direction)
 TEST(Faces, corners_wind_one_way_on_all_faces)
 {
     Random random(4);
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 100; ++i) {
         const RandomTet tet = random_tet(random);
-        for (uint face = 0; face < 4; face++)
+        for (uint face = 0; face < 4; ++face)
             EXPECT_LT(orientation(tet.corners[face], tet.corners[corner(face, 0)], tet.corners[corner(face, 1)],
                                   tet.corners[corner(face, 2)]),
                       0);
@@ -45,10 +45,10 @@ TEST(Faces, corners_wind_one_way_on_all_faces)
 TEST(Maria, a_step_is_28_operations_and_a_start_three_products)
 {
     Random random(5);
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; ++i) {
         const auto packed = packed_tets({random_tet(random)});
         const Ray ray = ray_of(random.point(-2, 2), random_direction(random));
-        for (uint entry = 0; entry < 4; entry++) {
+        for (uint entry = 0; entry < 4; ++entry) {
             Counted::operations = 0;
             (void)exit_face(view_of(packed), 0, entry, ray);
             EXPECT_EQ(Counted::operations, 28);
@@ -64,14 +64,14 @@ TEST(Maria, leaves_by_the_face_that_the_exact_line_leaves_by)
     Random random(6);
     int compared = 0;
     int differing = 0;
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000; ++i) {
         const RandomTet tet = random_tet(random);
         const Float3 origin = random.point(-2, 2);
         const Float3 direction = direction_between(origin, inner_point(tet, random));
         const Crossed crossed = crossed_faces(tet, origin, direction);
         if (crossed.count != 2) continue;
         const auto packed = packed_tets({tet});
-        compared++;
+        ++compared;
         differing += exit_face(view_of(packed), 0, crossed.first, ray_of(origin, direction)) != crossed.last;
     }
     EXPECT_GT(compared, 15000);
@@ -84,7 +84,7 @@ RandomTet coarse_tet(Random& random)
     for (;;) {
         RandomTet tet;
         for (Float3& corner_point : tet.corners)
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 corner_point[axis] = 0x1p-8f * 12 * (static_cast<float>(random.below(5)) - 2);
         if (orient(tet)) return tet;
     }
@@ -96,13 +96,13 @@ TEST(Maria, a_line_through_an_edge_leaves_by_the_face_that_the_tie_rule_names)
     Random random(9);
     constexpr uint excluded[] = {1, 2,
                                  0}; // the exit is opposite this corner when the line meets the edge of c0, c1, c2
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
         const RandomTet tet = coarse_tet(random);
         const auto packed = packed_tets({tet});
-        for (uint entry = 0; entry < 4; entry++) {
-            for (uint on_edge = 0; on_edge < 3; on_edge++) {
+        for (uint entry = 0; entry < 4; ++entry) {
+            for (uint on_edge = 0; on_edge < 3; ++on_edge) {
                 Float3 inside_face, on_apex_edge, direction, origin;
-                for (int axis = 0; axis < 3; axis++) {
+                for (int axis = 0; axis < 3; ++axis) {
                     const auto at = [&](uint k) { return tet.corners[corner(entry, k)][axis]; };
                     inside_face[axis] = (at(0) + at(1) + 2 * at(2)) / 4;
                     on_apex_edge[axis] = (at(on_edge) + tet.corners[entry][axis]) / 2;
@@ -131,14 +131,14 @@ TEST(Maria, starts_by_the_face_that_the_exact_ray_leaves_by)
     Random random(7);
     int compared = 0;
     int differing = 0;
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000; ++i) {
         const RandomTet tet = random_tet(random);
         const Float3 origin = inner_point(tet, random);
         const Float3 direction = random_direction(random);
         const Crossed crossed = crossed_faces(tet, origin, direction);
         if (crossed.count != 1) continue; // the origin fell on a face, or the ray meets an edge
         const auto packed = packed_tets({tet});
-        compared++;
+        ++compared;
         differing += start_face(view_of(packed), 0, ray_of(origin, direction)) != crossed.last;
     }
     EXPECT_GT(compared, 15000);

@@ -141,7 +141,7 @@ Stabbed stabbed_tet(Random& random)
     }
 }
 
-class methods_of : public testing::TestWithParam<std::size_t> {
+class MethodsOf : public testing::TestWithParam<std::size_t> {
 protected:
     [[nodiscard]] static const Method& method() { return methods()[GetParam()]; }
 };
@@ -150,19 +150,19 @@ constexpr int samples = 20'000;
 
 } // namespace
 
-TEST_P(methods_of, a_step_costs_what_the_specification_says)
+TEST_P(MethodsOf, a_step_costs_what_the_specification_says)
 {
     Random random(20);
     double sum = 0;
     std::map<int, int> counts;
-    for (int i = 0; i < samples; i++) {
+    for (int i = 0; i < samples; ++i) {
         const Stabbed stabbed = stabbed_tet(random);
         const auto packed = packed_tets({stabbed.tet});
         Counted::operations = 0;
         const auto face = method().exit_face(packed, 0, stabbed.crossed.first, stabbed.origin, stabbed.direction);
         // That of make_ray() and of the moment is once a ray.
         const int operations = Counted::operations - 9;
-        if (face == stabbed.crossed.last) counts[operations]++;
+        if (face == stabbed.crossed.last) ++counts[operations];
         sum += operations;
     }
     std::set<int> seen;
@@ -175,11 +175,11 @@ TEST_P(methods_of, a_step_costs_what_the_specification_says)
     EXPECT_LT(tolerance, 0.6) << "a product more in one step of a hundred would pass";
 }
 
-TEST_P(methods_of, leaves_by_the_face_that_the_exact_line_leaves_by)
+TEST_P(MethodsOf, leaves_by_the_face_that_the_exact_line_leaves_by)
 {
     Random random(21);
     int differing = 0;
-    for (int i = 0; i < samples; i++) {
+    for (int i = 0; i < samples; ++i) {
         const Stabbed stabbed = stabbed_tet(random);
         const auto packed = packed_tets({stabbed.tet});
         differing += method().exit_face(packed, 0, stabbed.crossed.first, stabbed.origin, stabbed.direction) !=
@@ -189,11 +189,11 @@ TEST_P(methods_of, leaves_by_the_face_that_the_exact_line_leaves_by)
         << "only a line within rounding of an edge may leave by its other face, or none";
 }
 
-TEST_P(methods_of, starts_by_the_face_that_the_exact_ray_leaves_by)
+TEST_P(MethodsOf, starts_by_the_face_that_the_exact_ray_leaves_by)
 {
     Random random(22);
     int compared = 0, differing = 0;
-    for (int i = 0; i < samples; i++) {
+    for (int i = 0; i < samples; ++i) {
         const RandomTet tet = random_tet(random);
         const Float3 origin = inner_point(tet, random), direction = random_direction(random);
         const Crossed crossed = crossed_faces(tet, origin, direction);
@@ -202,7 +202,7 @@ TEST_P(methods_of, starts_by_the_face_that_the_exact_ray_leaves_by)
         Counted::operations = 0;
         differing += method().start_face(packed, origin, direction) != crossed.last;
         EXPECT_TRUE(method().start.contains(Counted::operations - 9)) << Counted::operations - 9;
-        compared++;
+        ++compared;
     }
     EXPECT_GT(compared, samples / 2);
     EXPECT_LE(differing, compared / 5000);
@@ -256,5 +256,5 @@ TEST(Methods, a_walk_that_goes_in_circles_is_lost_at_its_cap_or_begins_anew)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(each, methods_of, testing::Range<std::size_t>(0, methods().size()),
+INSTANTIATE_TEST_SUITE_P(each, MethodsOf, testing::Range<std::size_t>(0, methods().size()),
                          [](const auto& test) { return std::string(methods()[test.param].name); });

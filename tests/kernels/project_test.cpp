@@ -27,9 +27,9 @@ namespace {
 using tetrace::Float3;
 
 std::array<std::uint64_t, 3> decided{}; // signs by level: float products, what they lost, the order of the vertices
-#define COUNT_SIGN(level) (decided[level]++)
+#define COUNT_SIGN(level) (++decided[level])
 std::array<std::uint64_t, 3> sought{}; // see COUNT_SEARCH in kernels/walks/entry.h
-#define COUNT_SEARCH(where) (sought[where]++)
+#define COUNT_SEARCH(where) (++sought[where])
 
 #define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
 #define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
@@ -92,7 +92,7 @@ Float3 special_point(const Grid& grid, tetrace::test::Random& random)
 
 Float3 without_small(Float3 direction)
 {
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         if (std::abs(direction[axis]) < 0x1p-20f) direction[axis] = 0;
     return direction;
 }
@@ -103,7 +103,7 @@ Line line_through(const Grid& grid, Float3 point, tetrace::test::Random& random)
     for (;;) {
         Float3 direction;
         if (random.below(2) == 0) {
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 direction[axis] = static_cast<float>(random.below(3)) - 1.0f;
         } else {
             const Float3 other = special_point(grid, random);
@@ -136,7 +136,7 @@ template <class Side>
 Held faces_that_hold(const tetrace::TetMesh& mesh, const tetrace::Tet& tet, const Side& side)
 {
     Held held;
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         const auto v = [&](std::uint32_t i) { return mesh.vertices[tet.vertices[right::corner(face, i)]]; };
         const float ab = side(v(0), v(1)), bc = side(v(1), v(2)), ca = side(v(2), v(0));
         held.entered += ab > 0 && bc > 0 && ca > 0;
@@ -191,7 +191,7 @@ std::uint32_t nearest_triangle(const tetrace::TriangleMesh& mesh, const Line& li
 {
     std::uint32_t nearest = NO_HIT;
     double t = HUGE_VAL;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); i++) {
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto& [a, b, c] = mesh.triangles[i];
         const auto crossing =
             tetrace::cross_exactly(line.origin, line.direction, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
@@ -216,7 +216,7 @@ TEST(Project, every_tet_has_no_face_that_holds_the_ray_or_one_to_enter_and_one_t
 {
     tetrace::test::Random random(60);
     for (const auto& grid : grids())
-        for (int i = 0; i < 20; i++) {
+        for (int i = 0; i < 20; ++i) {
             const Line line = line_through(*grid, special_point(*grid, random), random);
             const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
             const auto side = [&](Float3 a, Float3 b) {
@@ -231,7 +231,7 @@ TEST(Project, without_the_rule_for_ties_tets_are_torn)
     tetrace::test::Random random(60); // the same rays
     for (const auto& grid : grids()) {
         int torn = 0;
-        for (int i = 0; i < 20; i++) {
+        for (int i = 0; i < 20; ++i) {
             const Line line = line_through(*grid, special_point(*grid, random), random);
             const auto ray = mutant::make_ray(mutant::to_vec3(line.origin), mutant::to_vec3(line.direction));
             torn += torn_tets(*grid, [&](Float3 a, Float3 b) {
@@ -247,7 +247,7 @@ TEST(Project, each_level_of_a_sign_decides_some)
     tetrace::test::Random random(61);
     decided = {};
     for (const auto& grid : grids())
-        for (int i = 0; i < 1500; i++) {
+        for (int i = 0; i < 1500; ++i) {
             const Line line = from_outside(*grid, line_through(*grid, special_point(*grid, random), random));
             (void)traced(*grid, line, NO_TET);
         }
@@ -263,7 +263,7 @@ TEST(Project, loses_no_ray_from_outside_and_no_ray_from_a_vertex_an_edge_or_a_fa
     tetrace::test::Random random(62);
     for (const auto& grid : grids()) {
         int elsewhere = 0;
-        for (int i = 0; i < 1500; i++) {
+        for (int i = 0; i < 1500; ++i) {
             const Line inside = line_through(*grid, special_point(*grid, random), random);
             const Line outside = from_outside(*grid, inside);
             ASSERT_NE(traced(*grid, outside, NO_TET).face_id, LOST) << grid->name << ", ray " << i;
@@ -283,7 +283,7 @@ TEST(Project, loses_no_ray_that_is_given_and_never_hits_the_face_that_it_starts_
         const auto set = tetrace::test::hard_ray_set(grid->scene, 0, 9 * 800);
         const auto quads = given_quads(set, grid->packed);
         sought = {};
-        for (std::size_t i = 0; i < set.rays.size(); i++) {
+        for (std::size_t i = 0; i < set.rays.size(); ++i) {
             const auto hit =
                 right::trace_given(grid->view, params_of(*grid, NO_TET), quads[i], quads[set.rays.size() + i]);
             ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
@@ -312,7 +312,7 @@ std::uint32_t tets_on_path(const Grid& grid, const right::Ray& ray)
 {
     std::uint32_t count = 0;
     const std::uint32_t entry = right::entry_anywhere(grid.view, ray, 0, 0);
-    for (std::uint32_t link = entry == NO_ENTRY ? NO_LINK : grid.packed.entry_links[entry]; link != NO_LINK; count++)
+    for (std::uint32_t link = entry == NO_ENTRY ? NO_LINK : grid.packed.entry_links[entry]; link != NO_LINK; ++count)
         link = right::face_link(grid.view, link >> 2, right::exit_face(grid.view, link >> 2, link & 3u, ray));
     return count;
 }
@@ -321,7 +321,7 @@ std::uint32_t tets_on_path(const Grid& grid, const right::Ray& ray)
 double clearance(const tetrace::TetMesh& mesh, std::uint32_t tet, Float3 point)
 {
     double least = HUGE_VAL;
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         const auto at = [&](std::uint32_t i) {
             return to_double(mesh.vertices[mesh.tets[tet].vertices[i < 3 ? right::corner(face, i) : face]]);
         };
@@ -336,7 +336,7 @@ double clearance(const tetrace::TetMesh& mesh, std::uint32_t tet, Float3 point)
 std::uint32_t cycle_length(const Grid& grid, const right::Ray& ray, std::uint32_t tet)
 {
     std::uint32_t link = right::face_link(grid.view, tet, right::start_face(grid.view, tet, ray));
-    for (std::uint32_t steps = 1; link != NO_LINK; steps++) {
+    for (std::uint32_t steps = 1; link != NO_LINK; ++steps) {
         if (link >> 2 == tet) return steps;
         link = right::face_link(grid.view, link >> 2, right::exit_face(grid.view, link >> 2, link & 3u, ray));
     }
@@ -348,7 +348,7 @@ bool is_lost_without_beginning_anew(const Grid& grid, const right::Ray& ray, std
 {
     const std::uint32_t length = cycle_length(grid, ray, tet);
     std::uint32_t at = tet, face = right::start_face(grid.view, tet, ray);
-    for (std::uint32_t steps = 0; steps < length; steps++) {
+    for (std::uint32_t steps = 0; steps < length; ++steps) {
         if (right::face_triangle(grid.view, at, face) != FREE_FACE) return false;
         const std::uint32_t link = right::face_link(grid.view, at, face);
         at = link >> 2;
@@ -368,10 +368,10 @@ std::vector<CyclicStart> cyclic_starts(const Grid& grid, std::uint64_t rays)
 {
     const tetrace::test::HardRays hard(grid.scene);
     std::vector<CyclicStart> starts;
-    for (std::uint64_t number = 0; number < rays; number++) {
+    for (std::uint64_t number = 0; number < rays; ++number) {
         const auto given = hard.ray(number);
         const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
-        for (std::uint32_t tet = 0; tet < grid.packed.tet_count; tet++) {
+        for (std::uint32_t tet = 0; tet < grid.packed.tet_count; ++tet) {
             const std::uint32_t packed = grid.packed.packed_of_mesh[tet];
             if (right::start_face(grid.view, packed, ray) == NO_EXIT) continue;
             if (is_lost_without_beginning_anew(grid, ray, packed))
@@ -409,7 +409,7 @@ tetrace::RaySet given_among_others(const Grid& grid, const std::vector<CyclicSta
 {
     const auto count = (3 * starts.size() + TILE_WIDTH - 1) / TILE_WIDTH * TILE_WIDTH;
     tetrace::RaySet set = tetrace::test::hard_ray_set(grid.scene, 0, count);
-    for (std::size_t i = 0; i < starts.size(); i++) {
+    for (std::size_t i = 0; i < starts.size(); ++i) {
         tetrace::GivenRay& ray = set.rays[3 * i];
         ray.origin = starts[i].line.origin;
         ray.direction = starts[i].line.direction;
@@ -439,25 +439,25 @@ TEST(Project, goes_in_circles_only_from_tets_within_rounding_and_then_begins_ane
     EXPECT_FALSE(find_defect(grid.scene.tets, grid.scene.mesh.triangles.size()));
     const tetrace::test::HardRays rays(grid.scene);
     std::uint32_t on_cycles = 0, longest = 0, begun_anew = 0, hits = 0;
-    for (std::uint64_t number = 0; number < 3000; number++) {
+    for (std::uint64_t number = 0; number < 3000; ++number) {
         const auto given = rays.ray(number);
         const Line line{given.origin, given.direction};
         const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
         std::uint32_t crossed = 0, cyclic = 0;
-        for (std::uint32_t tet = 0; tet < grid.packed.tet_count; tet++) {
+        for (std::uint32_t tet = 0; tet < grid.packed.tet_count; ++tet) {
             if (right::start_face(grid.view, tet, ray) == NO_EXIT) continue;
-            crossed++;
+            ++crossed;
             const std::uint32_t length = cycle_length(grid, ray, tet);
             longest = std::max(longest, length);
             if (length == 0) continue;
-            cyclic++;
+            ++cyclic;
             sought = {};
             const tetrace::Hit hit = traced(grid, line, tet);
             ASSERT_NE(hit.face_id, LOST) << "ray " << number;
             const bool anew = is_lost_without_beginning_anew(grid, ray, tet); // else a triangle lies on the cycle
             ASSERT_EQ(sought[1], anew ? 1u : 0u) << "ray " << number;
             if (!anew) continue;
-            begun_anew++;
+            ++begun_anew;
             ASSERT_LE(hit.steps, tets_on_path(grid, ray)) << "ray " << number;
             const std::uint32_t exact = nearest_triangle(grid.scene.mesh, line);
             hits += exact != NO_HIT;
@@ -490,7 +490,7 @@ TEST(Project, begins_anew_with_the_same_bits_on_every_layout_and_device)
         const auto packed = tetrace::pack(grid.scene, layout, tetrace::TetOrder::hilbert);
         const tetrace::KernelId kernel{.method = tetrace::Method::project, .layout = layout};
         for (tetrace::Backend* backend : tetrace::all_backends())
-            for (std::size_t device = 0; device < backend->devices().size(); device++) {
+            for (std::size_t device = 0; device < backend->devices().size(); ++device) {
                 if (!is_usable(*backend, device)) continue;
                 const auto session = backend->open(device, kernel, {&grid.scene.mesh, &packed}, {.threads = 2});
                 const auto hits = hits_from(*session, grid, packed, starts);
@@ -516,7 +516,7 @@ TEST(Project, begins_given_rays_anew_with_the_same_bits_on_every_layout_and_devi
                                            .schedule = schedule,
                                            .task = tetrace::Task::rays};
             for (tetrace::Backend* backend : tetrace::all_backends())
-                for (std::size_t device = 0; device < backend->devices().size(); device++) {
+                for (std::size_t device = 0; device < backend->devices().size(); ++device) {
                     const bool has_packets = backend->name() == "openmp" && layout == Layout::half32;
                     if (schedule == tetrace::Schedule::packets && !has_packets) continue;
                     if (!is_usable(*backend, device)) continue;
@@ -535,19 +535,19 @@ TEST(Project, stays_lost_at_a_small_cap_where_it_is_on_no_cycle)
     tetrace::test::Random random(66);
     const Grid& grid = *grids().front();
     int lost = 0;
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
         const Line line = line_through(grid, special_point(grid, random), random);
         const std::uint32_t tet = grid.packed.packed_of_mesh[locate(grid.scene.tets, line.origin)];
         const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
         if (right::start_face(grid.view, tet, ray) == NO_EXIT) continue;
         const std::uint32_t steps = traced(grid, line, tet).steps;
-        for (std::uint32_t cap = 1; cap < steps; cap++) {
+        for (std::uint32_t cap = 1; cap < steps; ++cap) {
             auto params = params_of(grid, tet);
             params.max_steps = cap;
             const tetrace::Hit hit = to_hit(right::trace(grid.view, params, ray));
             ASSERT_EQ(hit.face_id, LOST) << "ray " << i << ", cap " << cap;
             ASSERT_EQ(hit.steps, cap);
-            lost++;
+            ++lost;
         }
     }
     EXPECT_GT(lost, 500);
@@ -558,12 +558,12 @@ TEST(Project, is_on_its_path_where_it_starts_in_a_tet_by_more_than_the_bound)
     const Grid grid("cluster", tetrace::test::cluster_of(0x1p-24f));
     const tetrace::test::HardRays rays(grid.scene);
     int starts = 0, through_cluster = 0;
-    for (std::uint64_t number = 0; number < 60'000; number++) {
+    for (std::uint64_t number = 0; number < 60'000; ++number) {
         const auto given = rays.ray(number);
         if (rays.kind_of(number) != tetrace::test::HardKind::from_inside) continue;
         const std::uint32_t tet = given.link >> 2;
         if (clearance(grid.scene.tets, tet, given.origin) <= tetrace::tie_bound(given.origin)) continue;
-        starts++;
+        ++starts;
         const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));
         ASSERT_NE(right::start_face(grid.view, grid.packed.packed_of_mesh[tet], ray), NO_EXIT) << "ray " << number;
         ASSERT_EQ(cycle_length(grid, ray, grid.packed.packed_of_mesh[tet]), 0u) << "ray " << number;
@@ -578,7 +578,7 @@ TEST(Project, is_right_by_exact_arithmetic_or_within_rounding_of_an_edge)
     tetrace::test::Random random(63);
     for (const auto& grid : grids()) {
         int hits = 0, ties = 0;
-        for (int i = 0; i < 200; i++) {
+        for (int i = 0; i < 200; ++i) {
             const Line line = from_outside(*grid, line_through(*grid, special_point(*grid, random), random));
             if (!is_in_range(line)) continue;
             const std::uint32_t ours = traced(*grid, line, NO_TET).face_id;
@@ -605,7 +605,7 @@ TEST(Project, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
         const auto at = [&](std::size_t axis) {
             return lines[axis][random.below(static_cast<std::uint32_t>(lines[axis].size()))];
         };
-        for (int i = 0; i < 300; i++) {
+        for (int i = 0; i < 300; ++i) {
             const Float3 from{2 * at(0), 2 * at(1), 3}, to{at(0), at(1), at(2)};
             const Line line{from, without_small({to.x - from.x, to.y - from.y, to.z - from.z})};
             const tetrace::Hit hit = traced(*grid, line, NO_TET);

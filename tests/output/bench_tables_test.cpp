@@ -11,9 +11,9 @@ using namespace tetrace;
 namespace {
 
 /// The host under five APIs, as on a machine with every emulation, and a GPU under two; two layouts each.
-class bench_tables : public testing::Test {
+class BenchTables : public testing::Test {
 protected:
-    bench_tables()
+    BenchTables()
     {
         for (const Layout layout : {Layout::tet80, Layout::tet96})
             for (FakeBackend* backend : {&vulkan_, &opencl_, &cuda_host_, &openmp_, &cuda_, &vulkan_gpu_})
@@ -70,7 +70,7 @@ std::size_t widest(const std::string& text)
 
 } // namespace
 
-TEST_F(bench_tables, rows_stand_by_device_under_what_they_may_be_ranked_with)
+TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)
 {
     const std::string text = rate_table("bunny", result_).text();
     const auto cpu = text.find("CPU (cpu)"), openmp = text.find("openmp  "), emulated = text.find("emulated by"),
@@ -80,28 +80,28 @@ TEST_F(bench_tables, rows_stand_by_device_under_what_they_may_be_ranked_with)
     EXPECT_TRUE(cpu < openmp && openmp < emulated && emulated < opencl && opencl < gpu && gpu < cuda) << text;
 }
 
-TEST_F(bench_tables, fit_a_page_of_110_columns)
+TEST_F(BenchTables, fit_a_page_of_110_columns)
 {
     EXPECT_LE(widest(rate_table("bunny", result_).text(2)), 110u) << rate_table("bunny", result_).text(2);
     EXPECT_LE(widest(time_table(result_).text(2)), 110u);
     EXPECT_LE(widest(device_table(result_.devices).text(2)), 110u);
 }
 
-TEST_F(bench_tables, comparisons_show_their_interval_and_references_none)
+TEST_F(BenchTables, comparisons_show_their_interval_and_references_none)
 {
     const Table table = rate_table("bunny", result_);
     int with = 0;
     for (const auto& row : table.rows()) {
         const auto* text = std::get_if<std::string>(&row[4]);
         if (text == nullptr) continue;
-        with++;
+        ++with;
         EXPECT_EQ(text->substr(0, 7), " 1.00 [") << *text;
     }
     EXPECT_EQ(with, 2 * 4) << "three emulations beside openmp, and Vulkan's GPU beside cuda, in two layouts";
     EXPECT_EQ(table.columns()[4].title, "x reference") << "openmp and cuda both are";
 }
 
-TEST_F(bench_tables, a_row_that_did_not_run_comes_last)
+TEST_F(BenchTables, a_row_that_did_not_run_comes_last)
 {
     result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
     result_.run.rows[0].backend = nullptr;

@@ -34,7 +34,7 @@ void expect_well_formed(const std::string& xml)
 
 } // namespace
 
-TEST(junit, texts_are_escaped_and_what_xml_cannot_hold_is_replaced)
+TEST(Junit, texts_are_escaped_and_what_xml_cannot_hold_is_replaced)
 {
     EXPECT_EQ(xml_text("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &apos;d&apos;");
     EXPECT_EQ(xml_text(std::string("\x1b[1m\0", 5)), "?[1m?");
@@ -46,7 +46,7 @@ TEST(junit, texts_are_escaped_and_what_xml_cannot_hold_is_replaced)
     EXPECT_EQ(xml_text("\xc0\x80 \xed\xa0\x80"), "?? ???");
 }
 
-TEST(junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
+TEST(Junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
 {
     std::vector<RowRun> rows;
     rows.push_back(skipped_row("buffers of 3 < 4 & 5 \x01 GB"));
@@ -60,7 +60,7 @@ TEST(junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
     expect_well_formed(xml);
 }
 
-TEST(junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
+TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
 {
     const Options options = parse_options({"check", "--size", "16", "--views", "0"});
     LoadedScene loaded;

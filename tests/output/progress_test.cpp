@@ -8,20 +8,20 @@
 
 using namespace tetrace;
 
-TEST(progress, tells_stage_time_and_percentage_where_known)
+TEST(Progress, tells_stage_time_and_percentage_where_known)
 {
     EXPECT_EQ(progress_text("TetGen", 3.21, -1, 80), "TetGen  3.2 s");
     EXPECT_EQ(progress_text("verifying bunny", 75, 0.416, 80), "verifying bunny  1 min 15 s  42 %");
     EXPECT_EQ(progress_text("table4", 75, 0.25, 80, 225), "table4  1 min 15 s  25 %  3 min 45 s left");
 }
 
-TEST(progress, is_cut_at_the_terminals_width_between_characters)
+TEST(Progress, is_cut_at_the_terminals_width_between_characters)
 {
     EXPECT_EQ(progress_text("abcdef", 1, -1, 4), "abcd");
     EXPECT_EQ(progress_text("äöüß", 1, -1, 3), "äöü");
 }
 
-TEST(progress, draws_nothing_where_it_may_not_or_before_two_seconds)
+TEST(Progress, draws_nothing_where_it_may_not_or_before_two_seconds)
 {
     testing::internal::CaptureStderr();
     {
@@ -32,7 +32,7 @@ TEST(progress, draws_nothing_where_it_may_not_or_before_two_seconds)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(progress, draws_after_two_seconds_and_leaves_the_line_empty)
+TEST(Progress, draws_after_two_seconds_and_leaves_the_line_empty)
 {
     testing::internal::CaptureStderr();
     {

@@ -43,7 +43,7 @@ Bar bar_of(double value)
 
 } // namespace
 
-TEST(axis, linear_ticks_are_round_and_enclose_the_values)
+TEST(Axis, linear_ticks_are_round_and_enclose_the_values)
 {
     EXPECT_EQ(Axis::linear(0, 39.15, 4).ticks(), (std::vector<double>{0, 10, 20, 30, 40}));
     EXPECT_EQ(Axis::linear(-3, 7, 5).ticks(), (std::vector<double>{-4, -2, 0, 2, 4, 6, 8}));
@@ -61,7 +61,7 @@ TEST(axis, linear_ticks_are_round_and_enclose_the_values)
     }
 }
 
-TEST(axis, one_value_still_has_room)
+TEST(Axis, one_value_still_has_room)
 {
     for (const double value : {0.0, 5.0, -5.0, 1e-12, 1e15}) {
         const Axis axis = Axis::linear(value, value);
@@ -73,7 +73,7 @@ TEST(axis, one_value_still_has_room)
     EXPECT_LT(Axis::linear(1, std::nextafter(1.0, 2.0)).ticks().size(), 12u);
 }
 
-TEST(axis, logarithmic_ticks_are_powers_of_ten_or_finer)
+TEST(Axis, logarithmic_ticks_are_powers_of_ten_or_finer)
 {
     EXPECT_EQ(Axis::logarithmic(0.8, 1.5).ticks(), (std::vector<double>{0.5, 1, 2}));
     EXPECT_EQ(Axis::logarithmic(1, 1).ticks(), (std::vector<double>{1, 2}));
@@ -83,7 +83,7 @@ TEST(axis, logarithmic_ticks_are_powers_of_ten_or_finer)
     EXPECT_EQ(Axis::logarithmic(10, 1000).high(), 1000);
 }
 
-TEST(axis, places_values_linearly_or_by_their_logarithm)
+TEST(Axis, places_values_linearly_or_by_their_logarithm)
 {
     const Axis linear = Axis::linear(0, 40, 4);
     EXPECT_DOUBLE_EQ(linear.place(10, 100, 200), 125);
@@ -94,7 +94,7 @@ TEST(axis, places_values_linearly_or_by_their_logarithm)
     EXPECT_NEAR(logarithmic.place(1000, 0, 100), 60, 1e-9);
 }
 
-TEST(axis, of_bars_ends_with_the_longest)
+TEST(Axis, of_bars_ends_with_the_longest)
 {
     const Axis axis = Axis::from_zero(39.15);
     EXPECT_EQ(axis.high(), 39.15);
@@ -104,7 +104,7 @@ TEST(axis, of_bars_ends_with_the_longest)
     EXPECT_THROW(static_cast<void>(Axis::from_zero(-1)), Error);
 }
 
-TEST(axis, with_ticks_at_values_has_each_once_and_room_beside_them)
+TEST(Axis, with_ticks_at_values_has_each_once_and_room_beside_them)
 {
     const Axis axis = Axis::logarithmic_at({64, 44, 64}, 1.5);
     EXPECT_EQ(axis.ticks(), (std::vector<double>{44, 64}));
@@ -115,7 +115,7 @@ TEST(axis, with_ticks_at_values_has_each_once_and_room_beside_them)
     EXPECT_THROW(static_cast<void>(Axis::logarithmic_at({0, 1}, 1.5)), Error);
 }
 
-TEST(axis, what_is_not_finite_is_no_range_and_has_no_place)
+TEST(Axis, what_is_not_finite_is_no_range_and_has_no_place)
 {
     const double nan = std::nan("");
     for (const auto& [low, high] : std::vector<std::pair<double, double>>{
@@ -128,7 +128,7 @@ TEST(axis, what_is_not_finite_is_no_range_and_has_no_place)
     EXPECT_THROW(static_cast<void>(draw(chart)), Error);
 }
 
-TEST(axis, labels_have_the_decimals_of_the_step)
+TEST(Axis, labels_have_the_decimals_of_the_step)
 {
     const Axis axis = Axis::linear(0, 1, 4);
     EXPECT_EQ(axis.label(0.5), "0.5");
@@ -138,7 +138,7 @@ TEST(axis, labels_have_the_decimals_of_the_step)
     EXPECT_EQ(Axis::logarithmic(0.01, 10).label(0.05), "0.05");
 }
 
-TEST(short_number, has_three_digits_and_loses_none_before_the_point)
+TEST(ShortNumber, has_three_digits_and_loses_none_before_the_point)
 {
     const std::vector<std::pair<double, const char*>> cases = {
         {0, "0"},          {5.1, "5.10"},       {22.97, "23.0"}, {146.4, "146"}, {1234.4, "1,234"}, {0.01234, "0.0123"},
@@ -158,7 +158,7 @@ TEST(short_number, has_three_digits_and_loses_none_before_the_point)
     EXPECT_EQ(short_percent(1.35), "135 %");
 }
 
-TEST(spread_apart, keeps_order_and_distance_and_moves_nothing_without_need)
+TEST(SpreadApart, keeps_order_and_distance_and_moves_nothing_without_need)
 {
     EXPECT_EQ(spread_apart({10, 50, 90}, 17, 0, 100), (std::vector<double>{10, 50, 90}));
     EXPECT_EQ(spread_apart({50, 50}, 10, 0, 100), (std::vector<double>{45, 55}));
@@ -168,7 +168,7 @@ TEST(spread_apart, keeps_order_and_distance_and_moves_nothing_without_need)
     EXPECT_TRUE(spread_apart({}, 10, 0, 100).empty());
 }
 
-TEST(spread_apart, never_overlaps)
+TEST(SpreadApart, never_overlaps)
 {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> place(0, 400);
@@ -184,7 +184,7 @@ TEST(spread_apart, never_overlaps)
     }
 }
 
-TEST(bar_chart, bars_are_as_long_as_their_values)
+TEST(BarChart, bars_are_as_long_as_their_values)
 {
     BarChart chart{"a chart", "Mrays/s", {bar_of(40), bar_of(10), bar_of(20)}};
     const auto widths = attribute_of(draw(chart).str(), "bar", "width");
@@ -193,7 +193,7 @@ TEST(bar_chart, bars_are_as_long_as_their_values)
     EXPECT_NEAR(widths[2] / widths[0], 0.5, 0.01);
 }
 
-TEST(bar_chart, has_a_mark_a_bar_a_tick_a_sample_and_a_whisker_where_there_is_a_spread)
+TEST(BarChart, has_a_mark_a_bar_a_tick_a_sample_and_a_whisker_where_there_is_a_spread)
 {
     BarChart chart{"a chart", "Mrays/s", {bar_of(40), bar_of(10)}};
     chart.bars[0].samples = {39, 40, 44};
@@ -208,7 +208,7 @@ TEST(bar_chart, has_a_mark_a_bar_a_tick_a_sample_and_a_whisker_where_there_is_a_
     EXPECT_TRUE(contains(drawing, "40.0</text>"));
 }
 
-TEST(bar_chart, nothing_is_drawn_beyond_the_drawing)
+TEST(BarChart, nothing_is_drawn_beyond_the_drawing)
 {
     BarChart chart{"a chart", "Mrays/s", {bar_of(1e-15), bar_of(123456789)}};
     chart.bars[0].label = std::string(300, 'W');
@@ -225,7 +225,7 @@ TEST(bar_chart, nothing_is_drawn_beyond_the_drawing)
     EXPECT_TRUE(contains(drawing, "WWW…</text>"));
 }
 
-TEST(interval_chart, close_ratios_fill_a_linear_axis)
+TEST(IntervalChart, close_ratios_fill_a_linear_axis)
 {
     IntervalChart chart{
         "ratios", "slower", "faster", {{"a", "a", "", 0, 0.98, 0.97, 0.99}, {"b", "b", "", 1, 1, 0.99, 1.01}}};
@@ -235,7 +235,7 @@ TEST(interval_chart, close_ratios_fill_a_linear_axis)
     EXPECT_GT(ends[0] - begins[0], 40) << "two of four hundredths that are drawn";
 }
 
-TEST(interval_chart, an_interval_that_holds_one_is_hollow)
+TEST(IntervalChart, an_interval_that_holds_one_is_hollow)
 {
     IntervalChart chart{
         "ratios", "slower", "faster", {{"a", "a", "", 0, 1.2, 0.9, 1.5}, {"b", "b", "", 1, 2, 1.5, 2.5}}};
@@ -246,7 +246,7 @@ TEST(interval_chart, an_interval_that_holds_one_is_hollow)
     EXPECT_TRUE(contains(drawing, "1.20 [0.90, 1.50]"));
 }
 
-TEST(roofline, ceiling_and_share_are_those_of_the_copy_bandwidth)
+TEST(Roofline, ceiling_and_share_are_those_of_the_copy_bandwidth)
 {
     Roofline roofline{"a device", 12.8e9, {{"a", "maria tet96", 0, 64, 50}}};
     EXPECT_DOUBLE_EQ(roofline.ceiling(64), 200) << "12.8e9 bytes a second, 64 bytes a step";
@@ -255,7 +255,7 @@ TEST(roofline, ceiling_and_share_are_those_of_the_copy_bandwidth)
     EXPECT_TRUE(contains(draw(roofline).str(), "12.8 GB/s"));
 }
 
-TEST(roofline, a_point_below_the_ceiling_is_drawn_below_the_line_and_one_above_above_it)
+TEST(Roofline, a_point_below_the_ceiling_is_drawn_below_the_line_and_one_above_above_it)
 {
     for (const double rate : {50.0, 400.0}) {
         const Roofline roofline{"a device", 12.8e9, {{"a", "maria tet96", 0, 64, rate}}};
@@ -270,7 +270,7 @@ TEST(roofline, a_point_below_the_ceiling_is_drawn_below_the_line_and_one_above_a
     }
 }
 
-TEST(roofline, has_a_mark_a_point_however_many)
+TEST(Roofline, has_a_mark_a_point_however_many)
 {
     Roofline roofline{"a device", 1e10, {}};
     for (int i = 0; i < 60; ++i)
@@ -284,7 +284,7 @@ TEST(roofline, has_a_mark_a_point_however_many)
         EXPECT_GE(labels[i] - labels[i - 1], 13) << "labels overlap";
 }
 
-TEST(line_chart, ascending_x_make_a_line_and_others_a_cloud)
+TEST(LineChart, ascending_x_make_a_line_and_others_a_cloud)
 {
     LineChart chart{
         "a figure", "view", "time, ms", {{"time", {{0, 1}, {1, 2}, {2, 3}}}, {"scatter", {{2, 1}, {1, 2}}}}};
@@ -295,7 +295,7 @@ TEST(line_chart, ascending_x_make_a_line_and_others_a_cloud)
     EXPECT_TRUE(contains(drawing, "time, ms"));
 }
 
-TEST(line_chart, takes_one_point_empty_series_and_thousands)
+TEST(LineChart, takes_one_point_empty_series_and_thousands)
 {
     LineChart chart{"a figure", "x", "y", {{"one", {{3, 4}}}, {"none", {}}}};
     EXPECT_EQ(occurrences(draw(chart).str(), "class=\"mark "), 1u);
@@ -306,7 +306,7 @@ TEST(line_chart, takes_one_point_empty_series_and_thousands)
     EXPECT_LT(drawing.size(), 60'000u) << "a line's points have no marks of their own";
 }
 
-TEST(line_chart, a_power_law_is_a_straight_line_between_logarithmic_axes)
+TEST(LineChart, a_power_law_is_a_straight_line_between_logarithmic_axes)
 {
     LineChart chart{"a figure", "faces", "ns a ray", {{"bvh2", {{1e2, 1e0}, {1e3, 1e1}, {1e4, 1e2}}}}, true, true};
     const std::string drawing = draw(chart).str();
@@ -319,7 +319,7 @@ TEST(line_chart, a_power_law_is_a_straight_line_between_logarithmic_axes)
     EXPECT_LT(at(6), at(2)) << "upwards";
 }
 
-TEST(line_chart, every_label_of_twenty_series_lies_within_the_drawing)
+TEST(LineChart, every_label_of_twenty_series_lies_within_the_drawing)
 {
     LineChart chart{"a figure", "tets", "time, ms", {}};
     for (int i = 0; i < 20; ++i)

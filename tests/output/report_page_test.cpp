@@ -172,7 +172,7 @@ std::string section_of(const std::string& page, const std::string& id)
     return page.substr(begin, page.find("</section>", begin) - begin);
 }
 
-class report_page : public testing::Test {
+class ReportPage : public testing::Test {
 protected:
     std::string page_of(const std::vector<json>& results, std::vector<std::filesystem::path> pictures = {})
     {
@@ -199,7 +199,7 @@ const std::string
 
 } // namespace
 
-TEST_F(report_page, tags_are_balanced)
+TEST_F(ReportPage, tags_are_balanced)
 {
     write_file(folder_ / "a.png", white_pixel);
     std::vector<std::string> open;
@@ -214,7 +214,7 @@ TEST_F(report_page, tags_are_balanced)
     EXPECT_TRUE(open.empty());
 }
 
-TEST_F(report_page, names_of_whatever_characters_change_no_markup)
+TEST_F(ReportPage, names_of_whatever_characters_change_no_markup)
 {
     const auto tags = [&](const Names& names) {
         return tags_of(page_of({bench_json(names), check_json(names), reproduce_json(names)}));
@@ -224,7 +224,7 @@ TEST_F(report_page, names_of_whatever_characters_change_no_markup)
     EXPECT_TRUE(contains(page, "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp; &apos;Co&apos;"));
 }
 
-TEST_F(report_page, loads_nothing_and_runs_nothing)
+TEST_F(ReportPage, loads_nothing_and_runs_nothing)
 {
     write_file(folder_ / "a.png", white_pixel);
     const std::string page = page_of({bench_json(hostile), check_json(hostile)}, {folder_ / "a.png"});
@@ -241,7 +241,7 @@ TEST_F(report_page, loads_nothing_and_runs_nothing)
     EXPECT_TRUE(contains(page, "content=\"default-src &apos;none&apos;; style-src"));
 }
 
-TEST_F(report_page, every_row_has_its_mark_or_its_reason)
+TEST_F(ReportPage, every_row_has_its_mark_or_its_reason)
 {
     const std::string page = page_of({bench_json()});
     using Rows = std::multiset<std::string>;
@@ -252,7 +252,7 @@ TEST_F(report_page, every_row_has_its_mark_or_its_reason)
     EXPECT_TRUE(contains(section_of(page, "rates"), "a reason"));
 }
 
-TEST_F(report_page, emulated_devices_and_gpus_share_no_chart)
+TEST_F(ReportPage, emulated_devices_and_gpus_share_no_chart)
 {
     const std::string rates = section_of(page_of({bench_json(), bench_json()}), "rates");
     const auto drawings = drawings_of(rates);
@@ -264,7 +264,7 @@ TEST_F(report_page, emulated_devices_and_gpus_share_no_chart)
     }
 }
 
-TEST_F(report_page, other_rays_have_a_chart_of_their_own)
+TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
 {
     json other = bench_json();
     other["tetrace"]["scenes"][0]["hash"] = "fedcba9876543210";
@@ -272,7 +272,7 @@ TEST_F(report_page, other_rays_have_a_chart_of_their_own)
     EXPECT_EQ(drawings_of(rates).size(), 6u);
 }
 
-TEST_F(report_page, what_is_not_in_the_results_is_a_sentence)
+TEST_F(ReportPage, what_is_not_in_the_results_is_a_sentence)
 {
     json empty = bench_json();
     for (const char* const key : {"devices", "rows", "ratios", "scenes"})
@@ -284,7 +284,7 @@ TEST_F(report_page, what_is_not_in_the_results_is_a_sentence)
     EXPECT_TRUE(contains(section_of(page, "rates"), "No row of these results has a rate"));
 }
 
-TEST_F(report_page, a_row_of_an_unmeasured_device_is_on_no_roofline)
+TEST_F(ReportPage, a_row_of_an_unmeasured_device_is_on_no_roofline)
 {
     json result = bench_json();
     for (json& device : result["tetrace"]["devices"])
@@ -292,7 +292,7 @@ TEST_F(report_page, a_row_of_an_unmeasured_device_is_on_no_roofline)
     EXPECT_TRUE(contains(section_of(page_of({result}), "roofline"), "No device of these results"));
 }
 
-TEST_F(report_page, the_papers_values_stand_beside_ours_with_the_verdicts)
+TEST_F(ReportPage, the_papers_values_stand_beside_ours_with_the_verdicts)
 {
     const std::string paper = section_of(page_of({reproduce_json()}), "paper");
     EXPECT_TRUE(contains(paper, "12.5<small>12.0 to 13.0</small><small class=\"paper\">paper 25.0, × 0.500</small>"));
@@ -302,7 +302,7 @@ TEST_F(report_page, the_papers_values_stand_beside_ours_with_the_verdicts)
     EXPECT_TRUE(contains(page_of({reproduce_json()}), "2 claims of the paper: 1 hold, 1 do not hold"));
 }
 
-TEST_F(report_page, numbers_have_the_decimals_of_their_column)
+TEST_F(ReportPage, numbers_have_the_decimals_of_their_column)
 {
     json result = reproduce_json();
     json& table = result["tetrace"]["tables"][0];
@@ -314,7 +314,7 @@ TEST_F(report_page, numbers_have_the_decimals_of_their_column)
     EXPECT_TRUE(contains(error_of_page(result), "columns[1].decimals: is no number of decimals"));
 }
 
-TEST_F(report_page, pictures_are_in_the_page_byte_for_byte)
+TEST_F(ReportPage, pictures_are_in_the_page_byte_for_byte)
 {
     write_file(folder_ / "bunny-0-normals.png", white_pixel);
     const std::string page = page_of({bench_json()}, {folder_ / "bunny-0-normals.png"});
@@ -324,7 +324,7 @@ TEST_F(report_page, pictures_are_in_the_page_byte_for_byte)
     EXPECT_TRUE(contains(section_of(page_of({result}), "paper"), base64(white_pixel))) << "relative to the result";
 }
 
-TEST_F(report_page, a_named_picture_that_is_missing_is_a_sentence_and_one_asked_for_an_error)
+TEST_F(ReportPage, a_named_picture_that_is_missing_is_a_sentence_and_one_asked_for_an_error)
 {
     json result = reproduce_json();
     result["tetrace"]["figures"][0]["pictures"] = {"none.png"};
@@ -333,7 +333,7 @@ TEST_F(report_page, a_named_picture_that_is_missing_is_a_sentence_and_one_asked_
     EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_ / "none.png"}), "missing: reading the picture"));
 }
 
-TEST_F(report_page, values_that_cannot_be_drawn_are_named_with_their_key)
+TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
 {
     const auto error_with = [&](json result, const char* pointer, const json& value) {
         result[json::json_pointer(std::string("/tetrace") + pointer)] = value;
@@ -356,7 +356,7 @@ TEST_F(report_page, values_that_cannot_be_drawn_are_named_with_their_key)
     EXPECT_TRUE(contains(error_with(reproduce_json(), "/tables/0/rows/0/rate", false), "rows[0].rate"));
 }
 
-TEST(base64, is_that_of_the_standards_examples)
+TEST(Base64, is_that_of_the_standards_examples)
 {
     EXPECT_EQ(base64(""), "");
     EXPECT_EQ(base64("f"), "Zg==");
@@ -380,7 +380,7 @@ struct Browsed {
     std::string document, console;
 };
 
-class report_in_chromium : public report_page {
+class ReportInChromium : public ReportPage {
 protected:
     void SetUp() override
     {
@@ -409,7 +409,7 @@ protected:
 
 } // namespace
 
-TEST_F(report_in_chromium, opens_without_a_word_on_the_console_and_every_chart_has_its_data)
+TEST_F(ReportInChromium, opens_without_a_word_on_the_console_and_every_chart_has_its_data)
 {
     write_file(folder_ / "a.png", white_pixel);
     const Browsed browsed =
@@ -423,7 +423,7 @@ TEST_F(report_in_chromium, opens_without_a_word_on_the_console_and_every_chart_h
     EXPECT_TRUE(contains(section_of(browsed.document, "paper"), "class=\"line\""));
 }
 
-TEST_F(report_in_chromium, a_page_that_loads_or_runs_something_would_be_told)
+TEST_F(ReportInChromium, a_page_that_loads_or_runs_something_would_be_told)
 {
     std::string page = page_of({bench_json()});
     const std::size_t body = page.find("<body>") + 6;

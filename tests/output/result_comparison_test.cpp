@@ -58,7 +58,7 @@ Json result_of(const std::vector<Json>& rows)
               {"rows", rows}}}};
 }
 
-class result_comparison : public testing::Test {
+class ResultComparisons : public testing::Test {
 protected:
     const ResultFile& file(const char* name, const Json& json)
     {
@@ -84,7 +84,7 @@ protected:
 
 } // namespace
 
-TEST_F(result_comparison, judges_each_row_by_its_name)
+TEST_F(ResultComparisons, judges_each_row_by_its_name)
 {
     const auto comparison =
         compare(result_of({timed_row("same", 1), timed_row("slower", 1), timed_row("faster", 1)}),
@@ -103,7 +103,7 @@ TEST_F(result_comparison, judges_each_row_by_its_name)
     EXPECT_NEAR(comparison.error(), 0.01, 1e-12);
 }
 
-TEST_F(result_comparison, lists_rows_that_failed_or_are_missing_and_counts_none_as_fast)
+TEST_F(ResultComparisons, lists_rows_that_failed_or_are_missing_and_counts_none_as_fast)
 {
     const Json before = result_of({timed_row("good", 1), timed_row("broken", 1), timed_row("differs", 1),
                                    timed_row("skipped", 1), timed_row("gone", 1), untimed_row("old", "error")});
@@ -127,21 +127,21 @@ TEST_F(result_comparison, lists_rows_that_failed_or_are_missing_and_counts_none_
     EXPECT_EQ(comparison.regressions(true).size(), 2u);
 }
 
-TEST_F(result_comparison, has_no_mean_where_all_failed)
+TEST_F(ResultComparisons, has_no_mean_where_all_failed)
 {
     const auto comparison = compare(result_of({timed_row("one", 1)}), result_of({untimed_row("one", "wrong")}));
     EXPECT_FALSE(comparison.geometric_mean());
     EXPECT_EQ(comparison.regressions(true).size(), 1u);
 }
 
-TEST_F(result_comparison, a_row_that_is_wrong_has_no_rate_even_where_it_has_samples)
+TEST_F(ResultComparisons, a_row_that_is_wrong_has_no_rate_even_where_it_has_samples)
 {
     Json wrong = timed_row("one", 1e-6);
     wrong["status"] = "wrong";
     EXPECT_EQ(compare(result_of({timed_row("one", 1)}), result_of({wrong})).rows[0].verdict(), "FAILED");
 }
 
-TEST_F(result_comparison, of_different_work_is_refused_naming_the_rows)
+TEST_F(ResultComparisons, of_different_work_is_refused_naming_the_rows)
 {
     const std::string hits = refusal([](Json& tetrace) { tetrace["rows"][1]["hit_hash"] = "00000000000000fe"; });
     EXPECT_TRUE(contains(hits, "invalid_input: "));
@@ -158,7 +158,7 @@ TEST_F(result_comparison, of_different_work_is_refused_naming_the_rows)
     EXPECT_EQ(refusal([](Json&) {}), "");
 }
 
-TEST_F(result_comparison, leaves_out_by_the_filter_what_would_be_refused)
+TEST_F(ResultComparisons, leaves_out_by_the_filter_what_would_be_refused)
 {
     const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
     Json after = before;
@@ -166,7 +166,7 @@ TEST_F(result_comparison, leaves_out_by_the_filter_what_would_be_refused)
     EXPECT_EQ(compare(before, after, "^o").rows.size(), 1u);
 }
 
-TEST_F(result_comparison, of_nothing_is_refused)
+TEST_F(ResultComparisons, of_nothing_is_refused)
 {
     const auto refused = [&](const Json& before, const Json& after, const std::string& filter = {}) {
         return error_of([&] { static_cast<void>(compare(before, after, filter)); });

@@ -20,7 +20,7 @@ nlohmann::json small_result()
             {"name": "cdt/b", "scene": "cubes", "backend": "cuda", "status": "skipped", "reason": "no\ndevice"}]}})");
 }
 
-class result_file : public testing::Test {
+class ResultFiles : public testing::Test {
 protected:
     [[nodiscard]] ResultFile read(const std::string& text) const
     {
@@ -48,7 +48,7 @@ protected:
 
 } // namespace
 
-TEST_F(result_file, is_read)
+TEST_F(ResultFiles, is_read)
 {
     const ResultFile result = read(small_result().dump());
     EXPECT_EQ(result.head.verb, "bench");
@@ -68,18 +68,18 @@ TEST_F(result_file, is_read)
     EXPECT_EQ(result.section().at("rows").items().at(1).at("backend").text(), "cuda");
 }
 
-TEST_F(result_file, of_the_repository_is_read_in_every_schema_version)
+TEST_F(ResultFiles, of_the_repository_is_read_in_every_schema_version)
 {
     int files = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(TETRACE_RESULTS)) {
         if (entry.path().extension() != ".json" || entry.path().filename() == "result.schema.json") continue;
         EXPECT_FALSE(read_result(entry.path()).head.date.empty()) << entry.path();
-        files++;
+        ++files;
     }
     EXPECT_GT(files, 0);
 }
 
-TEST_F(result_file, that_is_not_there_is_missing)
+TEST_F(ResultFiles, that_is_not_there_is_missing)
 {
     const std::string error = error_of([&] { static_cast<void>(read_result(folder_ / "none.json")); });
     EXPECT_TRUE(contains(error, "missing: "));
@@ -88,12 +88,12 @@ TEST_F(result_file, that_is_not_there_is_missing)
         contains(error_of([&] { static_cast<void>(read_result(folder_.path())); }), "invalid_input: reading the"));
 }
 
-TEST_F(result_file, without_an_end_is_refused_and_not_read_for_ever)
+TEST_F(ResultFiles, without_an_end_is_refused_and_not_read_for_ever)
 {
     EXPECT_TRUE(contains(error_of([] { static_cast<void>(read_result("/dev/zero")); }), "larger than 256 MiB"));
 }
 
-TEST_F(result_file, that_is_no_json_or_was_cut_off_names_file_and_place)
+TEST_F(ResultFiles, that_is_no_json_or_was_cut_off_names_file_and_place)
 {
     const std::string whole = small_result().dump();
     for (const std::string& text :
@@ -107,14 +107,14 @@ TEST_F(result_file, that_is_no_json_or_was_cut_off_names_file_and_place)
     EXPECT_TRUE(contains(error_of_text(""), "it is empty"));
 }
 
-TEST_F(result_file, that_is_another_programs_json_is_no_result)
+TEST_F(ResultFiles, that_is_another_programs_json_is_no_result)
 {
     EXPECT_TRUE(contains(error_of_text("{\"context\": {}, \"benchmarks\": []}"), "no section 'tetrace'"));
     EXPECT_TRUE(contains(error_of_text("[1, 2]"), "is not an object (array)"));
     EXPECT_TRUE(contains(error_of_text("{\"tetrace\": 3}"), "tetrace: is not an object (number)"));
 }
 
-TEST_F(result_file, of_another_schema_version_is_refused)
+TEST_F(ResultFiles, of_another_schema_version_is_refused)
 {
     for (const int version : {0, 3, 99})
         EXPECT_TRUE(contains(error_with("/schema_version", version), "tetrace.schema_version: is ")) << version;
@@ -122,7 +122,7 @@ TEST_F(result_file, of_another_schema_version_is_refused)
     EXPECT_EQ(error_with("/schema_version", 1), "");
 }
 
-TEST_F(result_file, that_lacks_a_key_names_it)
+TEST_F(ResultFiles, that_lacks_a_key_names_it)
 {
     for (const char* const key : {"/schema_version", "/verb", "/date", "/version", "/commit", "/host", "/host/cpu",
                                   "/scenes/0/name", "/scenes/0/hash", "/scenes/0/views", "/rows/0/name",
@@ -134,7 +134,7 @@ TEST_F(result_file, that_lacks_a_key_names_it)
     EXPECT_TRUE(contains(error_with("/rows/0/status", nullptr), "tetrace.rows[0]: has no 'status'"));
 }
 
-TEST_F(result_file, with_a_value_of_another_kind_names_its_key)
+TEST_F(ResultFiles, with_a_value_of_another_kind_names_its_key)
 {
     const auto refused = [&](const char* pointer, const nlohmann::json& value, const char* text) {
         const std::string error = error_with(pointer, value);
@@ -153,7 +153,7 @@ TEST_F(result_file, with_a_value_of_another_kind_names_its_key)
     refused("/rows/0/name", "cdt/\x1b[2J", "tetrace.rows[0].name: holds a control character");
 }
 
-TEST_F(result_file, with_two_rows_of_one_name_is_refused)
+TEST_F(ResultFiles, with_two_rows_of_one_name_is_refused)
 {
     EXPECT_TRUE(contains(error_with("/rows/1/name", "cdt/a"), "tetrace.rows[1]: has the name 'cdt/a'"));
 }

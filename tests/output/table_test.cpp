@@ -19,7 +19,7 @@ Table example()
 
 } // namespace
 
-TEST(table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
+TEST(Table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
 {
     EXPECT_EQ(example().text(), "name      tets  build\n"
                                 "                    s\n"
@@ -27,7 +27,7 @@ TEST(table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
                                 "Dürer       12      -\n");
 }
 
-TEST(table, a_heading_stands_before_its_rows_and_in_text_alone)
+TEST(Table, a_heading_stands_before_its_rows_and_in_text_alone)
 {
     Table table(std::vector<Column>{{"a", "a"}});
     table.add_heading("first");
@@ -38,7 +38,7 @@ TEST(table, a_heading_stands_before_its_rows_and_in_text_alone)
     EXPECT_EQ(table.csv(), "a\nx\ny\n");
 }
 
-TEST(table, csv_has_keys_all_digits_and_quotes_where_needed)
+TEST(Table, csv_has_keys_all_digits_and_quotes_where_needed)
 {
     Table table({{"a", "a"}, {"b_s", "b", "s", 1}});
     table.add({std::string("x, \"y\""), 0.123456789});
@@ -46,14 +46,14 @@ TEST(table, csv_has_keys_all_digits_and_quotes_where_needed)
     EXPECT_EQ(table.csv(), "a,b_s\n\"x, \"\"y\"\"\",0.123456789\n,1234567\n");
 }
 
-TEST(table, markdown_names_units_in_the_header_and_escapes_bars)
+TEST(Table, markdown_names_units_in_the_header_and_escapes_bars)
 {
     Table table({{"a", "a"}, {"b_s", "b", "s", 1}});
     table.add({std::string("x|y"), 0.25});
     EXPECT_EQ(table.markdown(), "| a | b (s) |\n|---|---:|\n| x\\|y | 0.2 |\n");
 }
 
-TEST(table, a_number_that_is_not_finite_is_never_printed)
+TEST(Table, a_number_that_is_not_finite_is_never_printed)
 {
     Table table({Column{"a", "a"}});
     table.add({std::numeric_limits<double>::quiet_NaN()});
@@ -62,18 +62,18 @@ TEST(table, a_number_that_is_not_finite_is_never_printed)
     EXPECT_EQ(table.text(), "a\n-\n-\n");
 }
 
-TEST(table, a_row_of_another_length_is_rejected)
+TEST(Table, a_row_of_another_length_is_rejected)
 {
     Table table({Column{"a", "a"}});
     EXPECT_THROW(table.add({}), Error);
 }
 
-TEST(text, paragraphs_are_filled_and_indented)
+TEST(Text, paragraphs_are_filled_and_indented)
 {
     EXPECT_EQ(wrapped("one two three\n\nfour", 9, 2), "  one two\n  three\n\n  four\n");
 }
 
-TEST(text, numbers_and_sizes_read_well)
+TEST(Text, numbers_and_sizes_read_well)
 {
     EXPECT_EQ(with_commas(0), "0");
     EXPECT_EQ(with_commas(999), "999");

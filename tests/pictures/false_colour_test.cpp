@@ -41,7 +41,7 @@ bool contains(const Pixmap& pixmap, Colour colour)
 } // namespace
 
 // Floats hold colours to 1e-7 and the matrices are printed to 1e-10: 1e-3 of the range is far above both.
-TEST(false_colour, lightness_rises_evenly)
+TEST(FalseColour, lightness_rises_evenly)
 {
     const double first = to_oklab(false_colour(0.0)).lightness, last = to_oklab(false_colour(1.0)).lightness;
     ASSERT_GT(last - first, 0.6);
@@ -51,7 +51,7 @@ TEST(false_colour, lightness_rises_evenly)
     }
 }
 
-TEST(false_colour, equal_differences_look_equal)
+TEST(FalseColour, equal_differences_look_equal)
 {
     double least = 1e9, most = 0;
     for (int i = 0; i < 100; ++i) {
@@ -62,13 +62,13 @@ TEST(false_colour, equal_differences_look_equal)
     EXPECT_LT(most / least, 1.15);
 }
 
-TEST(false_colour, values_outside_are_clamped)
+TEST(FalseColour, values_outside_are_clamped)
 {
     EXPECT_EQ(false_colour(-3.0), false_colour(0.0));
     EXPECT_EQ(false_colour(7.0), false_colour(1.0));
 }
 
-TEST(scale_ticks, are_few_round_and_within)
+TEST(ScaleTicks, are_few_round_and_within)
 {
     for (const std::uint32_t top : {1u, 2u, 6u, 7u, 10u, 63u, 64u, 99u, 100u, 1000u, 12345u, 4294967295u}) {
         const auto ticks = scale_ticks(top);
@@ -86,7 +86,7 @@ TEST(scale_ticks, are_few_round_and_within)
     EXPECT_EQ(scale_ticks(63), (std::vector<std::uint32_t>{0, 10, 20, 30, 40, 50, 60}));
 }
 
-TEST(summarize_steps, lost_rays_count_apart)
+TEST(SummarizeSteps, lost_rays_count_apart)
 {
     const std::vector<Hit> hits{hit_after(1), hit_after(3), {NO_HIT, NO_TET, 0, 0, 0, 5}, {LOST, 7, 0, 0, 0, 60000}};
     const StepSummary summary = summarize_steps(hits);
@@ -95,7 +95,7 @@ TEST(summarize_steps, lost_rays_count_apart)
     EXPECT_DOUBLE_EQ(summary.mean, 3.0);
 }
 
-TEST(summarize_steps, a_few_long_rays_do_not_stretch_the_scale)
+TEST(SummarizeSteps, a_few_long_rays_do_not_stretch_the_scale)
 {
     std::vector<Hit> hits(10000, hit_after(20));
     hits[1234].steps = 3000;
@@ -103,14 +103,14 @@ TEST(summarize_steps, a_few_long_rays_do_not_stretch_the_scale)
     EXPECT_EQ(summarize_steps(hits).most, 3000u);
 }
 
-TEST(summarize_steps, an_image_without_steps_has_a_scale)
+TEST(SummarizeSteps, an_image_without_steps_has_a_scale)
 {
     const std::vector<Hit> hits(4, Hit{NO_HIT, NO_TET, 0, 0, 0, 0});
     EXPECT_EQ(summarize_steps(hits).top, 1u);
     EXPECT_EQ(summarize_steps({}).top, 1u);
 }
 
-TEST(draw_steps, pixels_are_those_of_the_rays)
+TEST(DrawSteps, pixels_are_those_of_the_rays)
 {
     std::vector<Hit> hits(600 * 4, hit_after(10));
     hits[0].steps = 0;
@@ -124,7 +124,7 @@ TEST(draw_steps, pixels_are_those_of_the_rays)
     EXPECT_EQ(pixmap.at(599, 3), false_colour(1.0));
 }
 
-TEST(draw_steps, has_a_bar_from_end_to_end_below_the_picture)
+TEST(DrawSteps, has_a_bar_from_end_to_end_below_the_picture)
 {
     std::vector<Hit> hits(600 * 4, hit_after(10));
     Pixmap footer = draw_steps(hits, 600, 4, "cubes");
@@ -135,7 +135,7 @@ TEST(draw_steps, has_a_bar_from_end_to_end_below_the_picture)
     EXPECT_FALSE(contains(footer, lost_colour()));
 }
 
-TEST(draw_steps, a_tiny_picture_is_widened_for_its_title)
+TEST(DrawSteps, a_tiny_picture_is_widened_for_its_title)
 {
     const std::vector<Hit> hits(2 * 2, hit_after(1));
     EXPECT_GT(draw_steps(hits, 2, 2, "cubes").width, 200u);

@@ -15,7 +15,7 @@ namespace tetrace {
 namespace {
 
 /// A folder of the test's own, removed at its end, and the module that the build made.
-class ImagesModuleTest : public testing::Test {
+class ImagesModule : public testing::Test {
 protected:
     void SetUp() override
     {
@@ -71,7 +71,7 @@ double encode_srgb(double linear)
 
 } // namespace
 
-TEST_F(ImagesModuleTest, png_comes_back_as_srgb_bytes)
+TEST_F(ImagesModule, png_comes_back_as_srgb_bytes)
 {
     writer_.write(folder_ / "a.png", sample());
     const auto values = read_floats(folder_ / "a.png");
@@ -83,7 +83,7 @@ TEST_F(ImagesModuleTest, png_comes_back_as_srgb_bytes)
     }
 }
 
-TEST_F(ImagesModuleTest, exr_comes_back_as_linear_light)
+TEST_F(ImagesModule, exr_comes_back_as_linear_light)
 {
     writer_.write(folder_ / "a.exr", sample());
     const auto values = read_floats(folder_ / "a.exr");
@@ -94,7 +94,7 @@ TEST_F(ImagesModuleTest, exr_comes_back_as_linear_light)
     }
 }
 
-TEST_F(ImagesModuleTest, colours_beyond_the_screen_are_clamped)
+TEST_F(ImagesModule, colours_beyond_the_screen_are_clamped)
 {
     Pixmap pixmap(3, 2, {7.0f, -1.0f, std::numeric_limits<float>::quiet_NaN()});
     writer_.write(folder_ / "a.png", pixmap);
@@ -105,19 +105,19 @@ TEST_F(ImagesModuleTest, colours_beyond_the_screen_are_clamped)
     EXPECT_EQ(values[2], 0.0f);
 }
 
-TEST_F(ImagesModuleTest, a_folder_that_is_not_there_is_an_error_with_the_file_name)
+TEST_F(ImagesModule, a_folder_that_is_not_there_is_an_error_with_the_file_name)
 {
     const auto path = folder_ / "none" / "a.png";
     EXPECT_NE(refusal(path, sample()).find(path.string()), std::string::npos) << refusal(path, sample());
 }
 
-TEST_F(ImagesModuleTest, other_endings_are_refused_with_the_accepted_ones)
+TEST_F(ImagesModule, other_endings_are_refused_with_the_accepted_ones)
 {
     EXPECT_NE(refusal(folder_ / "a.jpg", sample()).find(".png or .exr"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a.jpg"));
 }
 
-TEST_F(ImagesModuleTest, an_empty_picture_is_refused)
+TEST_F(ImagesModule, an_empty_picture_is_refused)
 {
     EXPECT_NE(refusal(folder_ / "a.png", Pixmap{}).find("no pixels"), std::string::npos);
 }

@@ -15,7 +15,7 @@ namespace tetrace {
 namespace {
 
 /// A folder of the test's own, removed at its end.
-class ImagesTest : public testing::Test {
+class Images : public testing::Test {
 protected:
     void SetUp() override
     {
@@ -47,7 +47,7 @@ std::string message_of(const std::function<void()>& action)
 
 } // namespace
 
-TEST_F(ImagesTest, a_missing_module_names_the_package)
+TEST_F(Images, a_missing_module_names_the_package)
 {
     const auto module = folder_ / "tetrace_images.so";
     try {
@@ -60,14 +60,14 @@ TEST_F(ImagesTest, a_missing_module_names_the_package)
     }
 }
 
-TEST_F(ImagesTest, a_module_that_is_no_library_is_refused)
+TEST_F(Images, a_module_that_is_no_library_is_refused)
 {
     const auto module = folder_ / "tetrace_images.so";
     std::ofstream(module) << "not a shared object";
     EXPECT_NE(message_of([&] { const ImageWriter writer(module); }).find("libopenimageio-dev"), std::string::npos);
 }
 
-TEST_F(ImagesTest, openimageio_is_loaded_by_the_first_picture_and_not_before)
+TEST_F(Images, openimageio_is_loaded_by_the_first_picture_and_not_before)
 {
     EXPECT_FALSE(process_has_openimageio()) << "what measures must not link the images module's libraries";
     try {

@@ -24,7 +24,7 @@ std::string drawn(std::string_view text, std::uint32_t scale = 1)
 
 } // namespace
 
-TEST(draw_text, every_letter_has_a_shape_of_its_own)
+TEST(DrawText, every_letter_has_a_shape_of_its_own)
 {
     std::set<std::string> shapes;
     const std::string letters = "0123456789abcdefghijklmnopqrstuvwxyz.,:;-_+/()%=<>";
@@ -35,24 +35,24 @@ TEST(draw_text, every_letter_has_a_shape_of_its_own)
     EXPECT_FALSE(shapes.contains(drawn("?"))) << "a letter is drawn as the box of unknown ones";
 }
 
-TEST(draw_text, capitals_are_drawn_as_lower_case)
+TEST(DrawText, capitals_are_drawn_as_lower_case)
 {
     EXPECT_EQ(drawn("Q"), drawn("q"));
 }
 
-TEST(draw_text, unknown_characters_are_drawn_as_a_box)
+TEST(DrawText, unknown_characters_are_drawn_as_a_box)
 {
     EXPECT_EQ(drawn("\xc3"), drawn("?"));
     EXPECT_NE(drawn("?"), drawn(" "));
 }
 
-TEST(draw_text, scale_enlarges_each_dot)
+TEST(DrawText, scale_enlarges_each_dot)
 {
     const auto count = [](const std::string& dots) { return std::count(dots.begin(), dots.end(), '#'); };
     EXPECT_EQ(count(drawn("k", 3)), 9 * count(drawn("k")));
 }
 
-TEST(draw_text, is_cut_off_at_the_edges)
+TEST(DrawText, is_cut_off_at_the_edges)
 {
     Pixmap pixmap(4, 4);
     draw_text(pixmap, -3, -3, "tetrace", ink, 2);

@@ -12,23 +12,23 @@ const PictureKey key{"bunny", 3, Picture::steps};
 
 } // namespace
 
-TEST(picture_path, a_single_picture_has_the_name_that_was_given)
+TEST(PicturePath, a_single_picture_has_the_name_that_was_given)
 {
     EXPECT_EQ(picture_path("/none/a.exr", key, ".exr", true), "/none/a.exr");
 }
 
-TEST(picture_path, several_pictures_have_what_tells_them_apart_before_the_ending)
+TEST(PicturePath, several_pictures_have_what_tells_them_apart_before_the_ending)
 {
     EXPECT_EQ(picture_path("/none/a.exr", key, ".exr", false), "/none/a-bunny-3-steps.exr");
 }
 
-TEST(picture_path, a_folder_gets_the_default_name)
+TEST(PicturePath, a_folder_gets_the_default_name)
 {
     EXPECT_EQ(picture_path("/tmp", key, ".ppm", true), "/tmp/bunny-3-steps.ppm");
     EXPECT_EQ(picture_path(std::nullopt, key, ".png", false), "bunny-3-steps.png");
 }
 
-TEST(picture_ending, is_that_of_the_file_else_what_can_be_written)
+TEST(PictureEnding, is_that_of_the_file_else_what_can_be_written)
 {
     EXPECT_EQ(picture_ending("/none/a.exr", false), ".exr");
     EXPECT_EQ(picture_ending("/tmp", true), ".png");
@@ -36,7 +36,7 @@ TEST(picture_ending, is_that_of_the_file_else_what_can_be_written)
     EXPECT_EQ(picture_ending(std::nullopt, false), ".ppm");
 }
 
-TEST(check_picture_ending, refuses_other_forms_and_names_the_accepted_ones)
+TEST(CheckPictureEnding, refuses_other_forms_and_names_the_accepted_ones)
 {
     EXPECT_NO_THROW(check_picture_ending(std::nullopt));
     EXPECT_NO_THROW(check_picture_ending("/tmp"));

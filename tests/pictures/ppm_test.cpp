@@ -8,7 +8,7 @@
 
 using namespace tetrace;
 
-TEST(ppm, has_a_header_and_three_bytes_a_pixel_row_after_row)
+TEST(Ppm, has_a_header_and_three_bytes_a_pixel_row_after_row)
 {
     Pixmap pixmap(2, 2);
     pixmap.at(1, 0) = from_srgb(0x336699);
@@ -16,20 +16,20 @@ TEST(ppm, has_a_header_and_three_bytes_a_pixel_row_after_row)
     EXPECT_EQ(ppm_bytes(pixmap), std::string("P6\n2 2\n255\n\0\0\0\x33\x66\x99\xFF\xFF\xFF\0\0\0", 23));
 }
 
-TEST(ppm, every_byte_survives_the_way_to_linear_light_and_back)
+TEST(Ppm, every_byte_survives_the_way_to_linear_light_and_back)
 {
-    for (std::uint32_t byte = 0; byte < 256; byte++)
+    for (std::uint32_t byte = 0; byte < 256; ++byte)
         EXPECT_EQ(to_srgb(from_srgb(byte).b), byte);
 }
 
-TEST(ppm, light_beyond_what_a_screen_shows_is_clamped)
+TEST(Ppm, light_beyond_what_a_screen_shows_is_clamped)
 {
     EXPECT_EQ(to_srgb(-1.0f), 0);
     EXPECT_EQ(to_srgb(7.0f), 255);
     EXPECT_EQ(to_srgb(std::numeric_limits<float>::quiet_NaN()), 0);
 }
 
-TEST(ppm, a_file_that_cannot_be_written_is_named)
+TEST(Ppm, a_file_that_cannot_be_written_is_named)
 {
     const TemporaryFolder folder;
     try {

@@ -23,7 +23,7 @@ std::string pixels_of(const Png& png)
     return line.substr(1);
 }
 
-class report_picture : public testing::Test {
+class ReportPicture : public testing::Test {
 protected:
     std::string error_of_reading(const std::string& bytes)
     {
@@ -36,7 +36,7 @@ protected:
 
 } // namespace
 
-TEST_F(report_picture, a_ppm_becomes_a_png_of_the_same_pixels)
+TEST_F(ReportPicture, a_ppm_becomes_a_png_of_the_same_pixels)
 {
     write_file(folder_ / "a.ppm", ppm);
     const Png png = read_picture(folder_ / "a.ppm");
@@ -51,7 +51,7 @@ TEST_F(report_picture, a_ppm_becomes_a_png_of_the_same_pixels)
     EXPECT_EQ(read_picture(folder_ / "a.png").bytes, png.bytes) << "a PNG stays as it is";
 }
 
-TEST_F(report_picture, what_is_no_picture_is_named_with_the_reason)
+TEST_F(ReportPicture, what_is_no_picture_is_named_with_the_reason)
 {
     EXPECT_TRUE(contains(error_of_reading("P3 1 1 255 0 0 0 and more bytes than a head has"), "neither PNG nor PPM"));
     EXPECT_TRUE(contains(error_of_reading("\x89PNG\r\n\x1a\n"), "neither PNG nor PPM"));
@@ -64,7 +64,7 @@ TEST_F(report_picture, what_is_no_picture_is_named_with_the_reason)
     EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_picture(folder_.path())); }), "it is no file"));
 }
 
-TEST_F(report_picture, a_named_one_is_shown_or_a_sentence)
+TEST_F(ReportPicture, a_named_one_is_shown_or_a_sentence)
 {
     write_file(folder_ / "a.ppm", ppm);
     EXPECT_TRUE(contains(named_picture(folder_.path(), "a.ppm").str(), base64(read_picture(folder_ / "a.ppm").bytes)));

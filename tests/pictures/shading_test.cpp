@@ -34,19 +34,19 @@ Hit hit_of(std::uint32_t face)
 
 } // namespace
 
-TEST(shade, faces_towards_the_light_are_brighter_than_faces_seen_edge_on)
+TEST(Shade, faces_towards_the_light_are_brighter_than_faces_seen_edge_on)
 {
     const double towards = brightness(shade(viewer, viewer, right, up));
     const double edge_on = brightness(shade(right, viewer, right, up));
     EXPECT_GT(towards, 2.0 * edge_on);
 }
 
-TEST(shade, the_sky_lights_more_than_the_ground)
+TEST(Shade, the_sky_lights_more_than_the_ground)
 {
     EXPECT_GT(brightness(shade(up, viewer, right, up)), brightness(shade(up * -1.0, viewer, right, up)));
 }
 
-TEST(shade, no_direction_is_black_or_burnt_out)
+TEST(Shade, no_direction_is_black_or_burnt_out)
 {
     for (int i = 0; i < 64; ++i) {
         const double angle = i * 0.0982, tilt = i * 0.31;
@@ -58,14 +58,14 @@ TEST(shade, no_direction_is_black_or_burnt_out)
     }
 }
 
-TEST(shade_hits, both_windings_of_a_triangle_look_alike)
+TEST(ShadeHits, both_windings_of_a_triangle_look_alike)
 {
     const std::vector<Hit> one{hit_of(0), hit_of(0)}, other{hit_of(1), hit_of(1)};
     EXPECT_EQ(shade_hits(one, small_view(), 2, 1, square()).pixels,
               shade_hits(other, small_view(), 2, 1, square()).pixels);
 }
 
-TEST(shade_hits, lost_rays_stand_out_from_misses_and_hits)
+TEST(ShadeHits, lost_rays_stand_out_from_misses_and_hits)
 {
     const std::vector<Hit> hits{hit_of(LOST), hit_of(NO_HIT)};
     const Pixmap pixmap = shade_hits(hits, small_view(), 2, 1, square());
@@ -73,13 +73,13 @@ TEST(shade_hits, lost_rays_stand_out_from_misses_and_hits)
     EXPECT_GT(brightness(pixmap.at(1, 0)), 0.6) << "the background is light";
 }
 
-TEST(shade_hits, refuses_hits_that_were_never_written)
+TEST(ShadeHits, refuses_hits_that_were_never_written)
 {
     const std::vector<Hit> hits{hit_of(0), hit_of(POISON)};
     EXPECT_THROW((void)shade_hits(hits, small_view(), 2, 1, square()), Error);
 }
 
-TEST(shade_hits, draws_triangles_without_area)
+TEST(ShadeHits, draws_triangles_without_area)
 {
     const TriangleMesh needle{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
     const std::vector<Hit> hits{hit_of(0), hit_of(0)};

@@ -13,7 +13,7 @@ std::string anonymous(const std::string& text)
     return anonymous_text(text, {});
 }
 
-class anonymous_program : public ProgramTest {
+class AnonymousProgram : public ProgramTest {
 protected:
     /// The program as on a host of that name; false where this system does not let one be named.
     static bool can_name_a_host() { return std::system("unshare -u true 2> /dev/null") == 0; }
@@ -33,7 +33,7 @@ constexpr const char* tiny = " --scene cubes --resolution 3 --size 8 --backend o
 
 } // namespace
 
-TEST(anonymous, keeps_of_a_path_its_last_part)
+TEST(Anonymous, keeps_of_a_path_its_last_part)
 {
     EXPECT_EQ(anonymous("reading '/home/ann/my meshes/dragon.ply': it is empty"), "reading 'dragon.ply': it is empty");
     EXPECT_EQ(anonymous("/srv/ann/a.tet"), "a.tet");
@@ -43,7 +43,7 @@ TEST(anonymous, keeps_of_a_path_its_last_part)
     EXPECT_EQ(anonymous("<failure message=&apos;/a/b/c.ply&apos;>"), "<failure message=&apos;c.ply&apos;>");
 }
 
-TEST(anonymous, leaves_no_folder_of_a_person)
+TEST(Anonymous, leaves_no_folder_of_a_person)
 {
     EXPECT_EQ(anonymous("the folder /home/ann is full"), "the folder (a folder) is full");
     EXPECT_EQ(anonymous("'/home/ann'"), "'(a folder)'");
@@ -53,7 +53,7 @@ TEST(anonymous, leaves_no_folder_of_a_person)
     EXPECT_EQ(anonymous("/data/people/anne/x.ply"), "x.ply");
 }
 
-TEST(anonymous, leaves_all_else_as_it_is)
+TEST(Anonymous, leaves_all_else_as_it_is)
 {
     for (const char* const text :
          {"cdt/maria/tet80/bunny/primary/math:exact/api:openmp", "Mrays/s", "1 / 2", "a /", "/", "", "and/or",
@@ -61,7 +61,7 @@ TEST(anonymous, leaves_all_else_as_it_is)
         EXPECT_EQ(anonymous(text), text);
 }
 
-TEST(anonymous, shortens_the_paths_that_the_options_name)
+TEST(Anonymous, shortens_the_paths_that_the_options_name)
 {
     Options options;
     options.scenes = {"secret project/dragon.ply", "bunny"};
@@ -69,7 +69,7 @@ TEST(anonymous, shortens_the_paths_that_the_options_name)
               "scene dragon.ply: broken; bunny/primary");
 }
 
-TEST(anonymous, takes_the_host_out_of_a_result_and_goes_through_all_of_it)
+TEST(Anonymous, takes_the_host_out_of_a_result_and_goes_through_all_of_it)
 {
     const nlohmann::json result = {{"context", {{"host_name", "secret"}, {"num_cpus", 2}}},
                                    {"tetrace", {{"rows", {{{"reason", "'/home/ann/x.ply'"}, {"bytes", 7}}}}}}};
@@ -78,7 +78,7 @@ TEST(anonymous, takes_the_host_out_of_a_result_and_goes_through_all_of_it)
     EXPECT_EQ(anonymous_json(result, {}), expected);
 }
 
-TEST_F(anonymous_program, results_hold_neither_the_hosts_name_nor_a_folder)
+TEST_F(AnonymousProgram, results_hold_neither_the_hosts_name_nor_a_folder)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";
     const std::string folder = folder_.path().string();
@@ -100,14 +100,14 @@ TEST_F(anonymous_program, results_hold_neither_the_hosts_name_nor_a_folder)
     }
 }
 
-TEST_F(anonymous_program, google_benchmark_names_the_host_unless_told_otherwise)
+TEST_F(AnonymousProgram, google_benchmark_names_the_host_unless_told_otherwise)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";
     ASSERT_EQ(run_on_host("secrethost", std::string("bench --samples 3 --out named.json") + tiny).code, 0);
     EXPECT_TRUE(contains(file("named.json"), "secrethost")) << "so the other test can fail";
 }
 
-TEST_F(anonymous_program, does_not_go_with_google_benchmarks_own_json)
+TEST_F(AnonymousProgram, does_not_go_with_google_benchmarks_own_json)
 {
     for (const char* const flag : {"--benchmark_format=json", "--benchmark_out=gb.json"}) {
         const Ended ended = run(std::string("bench --samples 3 --anonymous ") + tiny + flag);

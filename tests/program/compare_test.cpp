@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// `tetrace compare` of results that `tetrace bench` made, changed here and there.
-class compare : public ProgramTest {
+class Compare : public ProgramTest {
 protected:
     /// What bench wrote, with seven samples a row that leave no doubt.
     Json result()
@@ -52,7 +52,7 @@ protected:
 
 } // namespace
 
-TEST_F(compare, finds_a_result_the_same_as_itself)
+TEST_F(Compare, finds_a_result_the_same_as_itself)
 {
     const Ended ended = compare_with([](Json&) {});
     EXPECT_EQ(ended.code, 0) << ended.errors;
@@ -61,7 +61,7 @@ TEST_F(compare, finds_a_result_the_same_as_itself)
     EXPECT_TRUE(contains(unwrapped(ended), "is at most 1 %"));
 }
 
-TEST_F(compare, exits_with_1_on_a_regression_beyond_the_tolerance)
+TEST_F(Compare, exits_with_1_on_a_regression_beyond_the_tolerance)
 {
     const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.05); };
     const Ended ended = compare_with(slower);
@@ -75,14 +75,14 @@ TEST_F(compare, exits_with_1_on_a_regression_beyond_the_tolerance)
     EXPECT_FALSE(contains(more_tolerant.out, "Regressed"));
 }
 
-TEST_F(compare, finds_an_improvement_without_complaint)
+TEST_F(Compare, finds_an_improvement_without_complaint)
 {
     const Ended ended = compare_with([](Json& section) { slow_down(section["rows"][0], 0.8); });
     EXPECT_EQ(ended.code, 0) << ended.out;
     EXPECT_TRUE(contains(unwrapped(ended), "1 FASTER"));
 }
 
-TEST_F(compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_allowed)
+TEST_F(Compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_allowed)
 {
     const auto fail = [](Json& section) {
         section["rows"][0]["status"] = "error";
@@ -97,7 +97,7 @@ TEST_F(compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_all
     EXPECT_EQ(compare_with(drop, "--allow-missing").code, 0);
 }
 
-TEST_F(compare, tells_what_else_differs)
+TEST_F(Compare, tells_what_else_differs)
 {
     const Ended ended = compare_with([](Json& section) {
         section["commit"] = "fedcba9";
@@ -108,7 +108,7 @@ TEST_F(compare, tells_what_else_differs)
     EXPECT_TRUE(contains(unwrapped(ended), "(fedcba9)"));
 }
 
-TEST_F(compare, tells_of_threads_compiler_flags_and_version)
+TEST_F(Compare, tells_of_threads_compiler_flags_and_version)
 {
     const Ended ended = compare_with([](Json& section) {
         section["version"] = "0.0.1";
@@ -123,7 +123,7 @@ TEST_F(compare, tells_of_threads_compiler_flags_and_version)
         << ended.out;
 }
 
-TEST_F(compare, says_so_where_samples_are_too_few_to_tell)
+TEST_F(Compare, says_so_where_samples_are_too_few_to_tell)
 {
     const Ended ended = compare_with([](Json& section) {
         section["rows"][1]["times"]["samples_s"] = {10.00, 10.01, 10.02};
@@ -133,7 +133,7 @@ TEST_F(compare, says_so_where_samples_are_too_few_to_tell)
     EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
 }
 
-TEST_F(compare, never_replaces_what_it_compares)
+TEST_F(Compare, never_replaces_what_it_compares)
 {
     ASSERT_EQ(compare_with([](Json&) {}).code, 0);
     std::filesystem::create_symlink("b.json", folder_ / "link.json");
@@ -153,7 +153,7 @@ TEST_F(compare, never_replaces_what_it_compares)
     EXPECT_EQ(run("compare a.json b.json --out c.json").code, 0);
 }
 
-TEST_F(compare, refuses_other_scenes_and_other_hits_naming_the_row)
+TEST_F(Compare, refuses_other_scenes_and_other_hits_naming_the_row)
 {
     const Ended scene = compare_with([](Json& section) { section["scenes"][0]["hash"] = "0000000000000000"; });
     EXPECT_EQ(scene.code, 2);
@@ -167,7 +167,7 @@ TEST_F(compare, refuses_other_scenes_and_other_hits_naming_the_row)
     EXPECT_EQ(compare_with(other_hits, "--filter math:exact").code, 0);
 }
 
-TEST_F(compare, gives_a_table_csv_markdown_and_json)
+TEST_F(Compare, gives_a_table_csv_markdown_and_json)
 {
     const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.25); };
     const Ended csv = compare_with(slower, "--format csv");
@@ -186,7 +186,7 @@ TEST_F(compare, gives_a_table_csv_markdown_and_json)
     EXPECT_NEAR(comparison["geometric_mean"].get<double>(), std::pow(0.8, 1.0 / 8), 1e-9);
 }
 
-TEST_F(compare, refuses_files_that_it_cannot_compare)
+TEST_F(Compare, refuses_files_that_it_cannot_compare)
 {
     const Json measured = result();
     write("good.json", measured);
@@ -213,7 +213,7 @@ TEST_F(compare, refuses_files_that_it_cannot_compare)
     EXPECT_EQ(run("compare good.json none.json").code, 3);
 }
 
-TEST_F(compare, takes_two_files)
+TEST_F(Compare, takes_two_files)
 {
     for (const char* const bad :
          {"compare", "compare a.json", "compare a.json b.json c.json", "compare a.json b.json --tolerance -1",

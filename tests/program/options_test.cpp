@@ -29,7 +29,7 @@ bool contains(const std::string& text, const std::string& part)
 
 } // namespace
 
-TEST(options, without_arguments_help_is_asked_for)
+TEST(Options, without_arguments_help_is_asked_for)
 {
     EXPECT_EQ(parse_options({}).verb, Verb::help);
     EXPECT_EQ(parse_options({"--help"}).verb, Verb::help);
@@ -38,7 +38,7 @@ TEST(options, without_arguments_help_is_asked_for)
     EXPECT_EQ(parse_options({"--version"}).verb, Verb::version);
 }
 
-TEST(options, defaults_are_those_of_the_main_job)
+TEST(Options, defaults_are_those_of_the_main_job)
 {
     const Options options = parse_options({"bench"});
     EXPECT_TRUE(options.scenes.empty());
@@ -50,7 +50,7 @@ TEST(options, defaults_are_those_of_the_main_job)
     EXPECT_FALSE(options.format.has_value());
 }
 
-TEST(options, lists_take_commas_and_repetition)
+TEST(Options, lists_take_commas_and_repetition)
 {
     const Options options =
         parse_options({"bench", "--scene", "cubes,banana", "--scene=bunny", "--layout", "tet80,tet96"});
@@ -59,7 +59,7 @@ TEST(options, lists_take_commas_and_repetition)
     EXPECT_TRUE(contains(rejection({"bench", "--scene", "cubes,,bunny"}), "empty value"));
 }
 
-TEST(options, an_unknown_option_is_answered_with_the_accepted_ones)
+TEST(Options, an_unknown_option_is_answered_with_the_accepted_ones)
 {
     const std::string text = rejection({"bench", "--scenes", "cubes"});
     EXPECT_TRUE(contains(text, "--scenes"));
@@ -69,7 +69,7 @@ TEST(options, an_unknown_option_is_answered_with_the_accepted_ones)
         EXPECT_EQ(contains(text, row.name), takes(Verb::bench, row) || of_bench_too.count(row.name) > 0) << row.name;
 }
 
-TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
+TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)
 {
     EXPECT_TRUE(contains(rejection({"bench", "--method", "bsp"}),
                          "all, plane, plucker, stp, ms06, maria, project, single or packet16"));
@@ -85,7 +85,7 @@ TEST(options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
 }
 
-TEST(options, options_of_other_verbs_are_not_accepted)
+TEST(Options, options_of_other_verbs_are_not_accepted)
 {
     EXPECT_TRUE(contains(rejection({"scenes", "--samples", "3"}), "--samples"));
     EXPECT_TRUE(contains(rejection({"check", "--benchmark_filter=x"}), "--benchmark_filter"));
@@ -93,7 +93,7 @@ TEST(options, options_of_other_verbs_are_not_accepted)
     EXPECT_TRUE(contains(rejection({"bench", "--scene", "cubes", "stray"}), "stray")) << "a value each";
 }
 
-TEST(options, build_takes_lists_where_others_take_one_value)
+TEST(Options, build_takes_lists_where_others_take_one_value)
 {
     const Options options =
         parse_options({"build", "--switches", "p,pq5Y", "--domain", "tight,wide", "--divisions", "4,8"});
@@ -104,7 +104,7 @@ TEST(options, build_takes_lists_where_others_take_one_value)
     EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "--size", "9"}), "one value"));
 }
 
-TEST(options, values_reach_the_scene_requests)
+TEST(Options, values_reach_the_scene_requests)
 {
     const Options options =
         parse_options({"bench", "--scene", "cubes", "--domain", "wide", "--divisions", "3", "--switches", "pq",
@@ -119,7 +119,7 @@ TEST(options, values_reach_the_scene_requests)
     EXPECT_EQ(requests[0].build.memory_limit_bytes, 3u << 20);
 }
 
-TEST(options, google_benchmarks_flags_pass_through)
+TEST(Options, google_benchmarks_flags_pass_through)
 {
     const Options options =
         parse_options({"bench", "--benchmark_repetitions=5", "--size", "8", "--benchmark_filter=maria"});
@@ -127,7 +127,7 @@ TEST(options, google_benchmarks_flags_pass_through)
               (std::vector<std::string>{"--benchmark_repetitions=5", "--benchmark_filter=maria"}));
 }
 
-TEST(options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
+TEST(Options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
 {
     std::set<std::pair<std::string, unsigned>> seen;
     for (const OptionRow& row : option_table()) {
@@ -141,7 +141,7 @@ TEST(options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
     }
 }
 
-TEST(options, compare_takes_two_files_and_a_tolerance_in_percent)
+TEST(Options, compare_takes_two_files_and_a_tolerance_in_percent)
 {
     const Options options = parse_options({"compare", "a.json", "--tolerance", "2.5%", "b.json"});
     EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b.json"}));
@@ -154,7 +154,7 @@ TEST(options, compare_takes_two_files_and_a_tolerance_in_percent)
         EXPECT_THROW(static_cast<void>(parse_percent("--tolerance", bad)), Error) << bad;
 }
 
-TEST(option_values, views_take_numbers_ranges_and_strides)
+TEST(OptionValues, views_take_numbers_ranges_and_strides)
 {
     EXPECT_EQ(parse_views("0,3,10-12", 20), (std::vector<std::uint32_t>{0, 3, 10, 11, 12}));
     EXPECT_EQ(parse_views("0-1281:640", 1282), (std::vector<std::uint32_t>{0, 640, 1280}));
@@ -164,14 +164,14 @@ TEST(option_values, views_take_numbers_ranges_and_strides)
         EXPECT_THROW(static_cast<void>(parse_views(bad, 4)), Error) << bad;
 }
 
-TEST(option_values, a_view_beyond_the_set_is_named)
+TEST(OptionValues, a_view_beyond_the_set_is_named)
 {
     EXPECT_TRUE(contains(rejection({"bench", "--views", "4"}), "no view 4; this camera set has views 0 to 3"));
     EXPECT_EQ(selected_views(parse_options({"bench", "--views", "4", "--camera-set", "orbit"})),
               std::vector<std::uint32_t>{4});
 }
 
-TEST(option_values, sizes_counts_times_and_bytes_are_read_or_rejected)
+TEST(OptionValues, sizes_counts_times_and_bytes_are_read_or_rejected)
 {
     EXPECT_EQ(parse_size("--size", "640x480"), (std::pair<std::uint32_t, std::uint32_t>{640, 480}));
     EXPECT_EQ(parse_size("--size", "7"), (std::pair<std::uint32_t, std::uint32_t>{7, 7}));
@@ -188,7 +188,7 @@ TEST(option_values, sizes_counts_times_and_bytes_are_read_or_rejected)
     EXPECT_THROW(static_cast<void>(parse_count("--samples", "2", 3, 10)), Error);
 }
 
-TEST(options, devices_schedules_tiles_and_buffer_limits_are_read)
+TEST(Options, devices_schedules_tiles_and_buffer_limits_are_read)
 {
     const Options options = parse_options(
         {"bench", "--device", "gpu,pocl", "--schedule", "persistent", "--tile", "8x4", "--buffer-limit", "64K"});
@@ -200,7 +200,7 @@ TEST(options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent or packets"));
 }
 
-TEST(options, files_stand_between_options_wherever_they_are_given)
+TEST(Options, files_stand_between_options_wherever_they_are_given)
 {
     const Options options = parse_options({"report", "a.json", "--out", "page.html", "b,c.json"});
     EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b,c.json"}));
@@ -211,7 +211,7 @@ TEST(options, files_stand_between_options_wherever_they_are_given)
     EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "9"}), "not expected: 9"));
 }
 
-TEST(options, a_picture_is_a_kind_of_render_and_a_folder_of_check)
+TEST(Options, a_picture_is_a_kind_of_render_and_a_folder_of_check)
 {
     EXPECT_EQ(parse_options({"check", "--picture", "folder"}).picture_folder, "folder");
     EXPECT_EQ(parse_options({"check", "--junit", "check.xml"}).junit, "check.xml");
@@ -219,7 +219,7 @@ TEST(options, a_picture_is_a_kind_of_render_and_a_folder_of_check)
     EXPECT_TRUE(contains(rejection({"check", "--junit", ""}), "--junit: the file name is empty"));
 }
 
-TEST(options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
+TEST(Options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
 {
     const Options options = parse_options({"reproduce", "--scene", "cubes", "figure6,table4", "--resume"});
     EXPECT_EQ(options.targets, (std::vector<PaperTarget>{PaperTarget::figure6, PaperTarget::table4}));
@@ -229,7 +229,7 @@ TEST(options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
     EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6 or growth"));
 }
 
-TEST(options, searches_are_tets_times_rays_and_the_papers_unless_told)
+TEST(Options, searches_are_tets_times_rays_and_the_papers_unless_told)
 {
     EXPECT_EQ(parse_options({"reproduce", "table5"}).searches, (SearchSize{10'000, 16'384}));
     EXPECT_EQ(parse_options({"reproduce", "--searches", "3x1048576"}).searches, (SearchSize{3, 1'048'576}));

@@ -14,11 +14,11 @@ using namespace tetrace;
 
 namespace {
 
-class program : public ProgramTest {};
+class Program : public ProgramTest {};
 
 } // namespace
 
-TEST_F(program, describes_itself)
+TEST_F(Program, describes_itself)
 {
     EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
     EXPECT_TRUE(contains(run("--version").out, "tetrace "));
@@ -32,7 +32,7 @@ TEST_F(program, describes_itself)
     EXPECT_TRUE(contains(run("help options").out, "| `--scene SCENE` |"));
 }
 
-TEST_F(program, report_writes_a_page_from_results)
+TEST_F(Program, report_writes_a_page_from_results)
 {
     ASSERT_EQ(bench("--out a.json").code, 0);
     const Ended report = run("report a.json a.json --out page.html");
@@ -44,7 +44,7 @@ TEST_F(program, report_writes_a_page_from_results)
     EXPECT_FALSE(file("report.html").empty()) << "the default name";
 }
 
-TEST_F(program, report_names_what_it_cannot_use)
+TEST_F(Program, report_names_what_it_cannot_use)
 {
     const Ended nothing = run("report");
     EXPECT_EQ(nothing.code, 2);
@@ -54,7 +54,7 @@ TEST_F(program, report_names_what_it_cannot_use)
     EXPECT_TRUE(contains(run("help report").out, "Usage: tetrace report RESULT... [OPTION]..."));
 }
 
-TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)
+TEST_F(Program, usage_errors_go_to_standard_error_with_exit_code_2)
 {
     for (const char* const bad :
          {"draw", "bench --sizes 3", "bench --size 0", "bench --scene nothing-of-that-name", "check --filter '('",
@@ -70,7 +70,7 @@ TEST_F(program, usage_errors_go_to_standard_error_with_exit_code_2)
                          "matches none of the 8 rows"));
 }
 
-TEST_F(program, renders_without_openimageio)
+TEST_F(Program, renders_without_openimageio)
 {
     const Ended ended = run("render --backend openmp --scene cubes --resolution 3 --views 0 --size 16 --out a.ppm");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -81,7 +81,7 @@ TEST_F(program, renders_without_openimageio)
     EXPECT_NE(picture.find_first_not_of(picture.back(), header.size()), std::string::npos) << "of one colour";
 }
 
-TEST_F(program, lists_devices_with_their_backends)
+TEST_F(Program, lists_devices_with_their_backends)
 {
     const Ended ended = run("devices --require openmp,embree --format json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -92,7 +92,7 @@ TEST_F(program, lists_devices_with_their_backends)
     EXPECT_TRUE(contains(run("devices").out, "openmp"));
 }
 
-TEST_F(program, lists_scenes_and_clears_the_cache)
+TEST_F(Program, lists_scenes_and_clears_the_cache)
 {
     const Ended table = run("scenes");
     EXPECT_EQ(table.code, 0) << table.errors;
@@ -103,7 +103,7 @@ TEST_F(program, lists_scenes_and_clears_the_cache)
     EXPECT_EQ(nlohmann::json::parse(cleared.out)["tetrace"]["cache"]["files"].size(), 0u);
 }
 
-TEST_F(program, benches_and_writes_the_table_and_the_json)
+TEST_F(Program, benches_and_writes_the_table_and_the_json)
 {
     const Ended ended = bench("--out result.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -128,7 +128,7 @@ TEST_F(program, benches_and_writes_the_table_and_the_json)
     EXPECT_EQ(json["tetrace"]["scenes"][0]["hash"].get<std::string>().size(), 16u);
 }
 
-TEST_F(program, the_same_rays_give_the_same_hashes_whatever_the_number_of_threads)
+TEST_F(Program, the_same_rays_give_the_same_hashes_whatever_the_number_of_threads)
 {
     const auto hash = [&](const std::string& more) {
         return nlohmann::json::parse(
@@ -139,7 +139,7 @@ TEST_F(program, the_same_rays_give_the_same_hashes_whatever_the_number_of_thread
     EXPECT_NE(first, hash("--views 0"));
 }
 
-TEST_F(program, benches_as_csv_and_markdown)
+TEST_F(Program, benches_as_csv_and_markdown)
 {
     const Ended csv = bench("--format csv");
     ASSERT_EQ(csv.code, 0) << csv.errors;
@@ -151,7 +151,7 @@ TEST_F(program, benches_as_csv_and_markdown)
     EXPECT_EQ(file("table.csv").rfind("name,scene", 0), 0u);
 }
 
-TEST_F(program, lists_rows_without_loading_scenes)
+TEST_F(Program, lists_rows_without_loading_scenes)
 {
     const Ended ours = run("bench --backend openmp,embree --scene bunny,armadillo --list");
     EXPECT_EQ(ours.code, 0) << ours.errors;
@@ -164,7 +164,7 @@ TEST_F(program, lists_rows_without_loading_scenes)
         "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n");
 }
 
-TEST_F(program, google_benchmarks_flags_keep_their_meaning)
+TEST_F(Program, google_benchmarks_flags_keep_their_meaning)
 {
     const Ended ended = bench("--benchmark_filter='tet80.*openmp$' --benchmark_repetitions=5 --benchmark_out=gb.json "
                               "--out ours.json");
@@ -179,7 +179,7 @@ TEST_F(program, google_benchmarks_flags_keep_their_meaning)
     EXPECT_EQ(bench("--benchmark_format=csv").out.rfind("name,iterations,", 0), 0u);
 }
 
-TEST_F(program, checks_every_ray)
+TEST_F(Program, checks_every_ray)
 {
     const Ended ended = run(
         "check --backend openmp,embree --scene cubes --resolution 6 --size 24 --math exact,fast --order hilbert,input "
@@ -196,7 +196,7 @@ TEST_F(program, checks_every_ray)
     }
 }
 
-TEST_F(program, check_shows_rows_against_devices_and_writes_junit)
+TEST_F(Program, check_shows_rows_against_devices_and_writes_junit)
 {
     const Ended ended = run("check --backend openmp --scene cubes --resolution 6 --size 24 --junit check.xml "
                             "--out check.json");
@@ -211,7 +211,7 @@ TEST_F(program, check_shows_rows_against_devices_and_writes_junit)
     EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
 }
 
-TEST_F(program, a_check_of_which_no_row_could_run_does_not_pass)
+TEST_F(Program, a_check_of_which_no_row_could_run_does_not_pass)
 {
     ::setenv("CUDA_VISIBLE_DEVICES", "", 1); // where there is a GPU, CUDA has none for this program
     const Ended ended = run("check --backend cuda --scene cubes --resolution 6 --size 24");
@@ -219,7 +219,7 @@ TEST_F(program, a_check_of_which_no_row_could_run_does_not_pass)
     EXPECT_TRUE(contains(ended.errors, "nothing was checked")) << ended.errors;
 }
 
-TEST_F(program, checks_embree_where_it_is_asked_for)
+TEST_F(Program, checks_embree_where_it_is_asked_for)
 {
     const auto rows_of = [&](const std::string& options) { return run("check --scene cubes --list" + options).out; };
     EXPECT_FALSE(contains(rows_of(""), "api:embree"));
@@ -227,7 +227,7 @@ TEST_F(program, checks_embree_where_it_is_asked_for)
     EXPECT_TRUE(contains(rows_of(" --require embree"), "api:embree"));
 }
 
-TEST_F(program, builds_every_combination_and_goes_on_after_a_failure)
+TEST_F(Program, builds_every_combination_and_goes_on_after_a_failure)
 {
     std::ofstream(folder_.path() / "broken.tet") << "no scene";
     const Ended ended = run("build --scene cubes,broken.tet --resolution 6 --size 24 --format json");
@@ -241,7 +241,7 @@ TEST_F(program, builds_every_combination_and_goes_on_after_a_failure)
     EXPECT_TRUE(contains(builds[1]["reason"].get<std::string>(), "broken.tet")) << builds[1];
 }
 
-TEST_F(program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
+TEST_F(Program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
 {
     std::ofstream(folder_.path() / "broken.tet") << "no scene";
     const Ended ended = run(
@@ -255,14 +255,14 @@ TEST_F(program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
     }
 }
 
-TEST_F(program, a_result_that_cannot_be_written_is_told_before_any_work)
+TEST_F(Program, a_result_that_cannot_be_written_is_told_before_any_work)
 {
     const Ended ended = bench("--out no/such/folder/result.json");
     EXPECT_EQ(ended.code, 2);
     EXPECT_TRUE(contains(ended.errors, "no/such/folder/result.json")) << ended.errors;
 }
 
-TEST_F(program, google_benchmarks_result_that_cannot_be_written_is_told_before_any_work)
+TEST_F(Program, google_benchmarks_result_that_cannot_be_written_is_told_before_any_work)
 {
     const Ended ended = bench("--benchmark_out=no/such/folder/gb.json");
     EXPECT_EQ(ended.code, 2);
@@ -271,7 +271,7 @@ TEST_F(program, google_benchmarks_result_that_cannot_be_written_is_told_before_a
     EXPECT_TRUE(contains(ended.errors, "--benchmark_out"));
 }
 
-TEST_F(program, a_result_leaves_out_what_does_not_apply_and_where_files_lie)
+TEST_F(Program, a_result_leaves_out_what_does_not_apply_and_where_files_lie)
 {
     const Ended ended = bench("--layout tet80 --out result.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -288,7 +288,7 @@ TEST_F(program, a_result_leaves_out_what_does_not_apply_and_where_files_lie)
     EXPECT_TRUE(contains(section["flags"].get<std::string>(), "fast: -ffp-contract=fast -ffast-math"));
 }
 
-TEST_F(program, google_benchmarks_context_is_added_once)
+TEST_F(Program, google_benchmarks_context_is_added_once)
 {
     const Ended ended = bench("--layout tet80 --benchmark_context=a=b --format json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -296,7 +296,7 @@ TEST_F(program, google_benchmarks_context_is_added_once)
     EXPECT_FALSE(contains(ended.errors, "ontext")) << ended.errors;
 }
 
-TEST_F(program, a_result_tells_the_threads_that_worked)
+TEST_F(Program, a_result_tells_the_threads_that_worked)
 {
     const auto threads = [&](const std::string& more) {
         return nlohmann::json::parse(bench("--layout tet80 --format json " + more).out)["tetrace"]["threads"];
@@ -308,7 +308,7 @@ TEST_F(program, a_result_tells_the_threads_that_worked)
     EXPECT_EQ(threads("--threads 2"), 2);
 }
 
-TEST_F(program, a_required_backend_without_a_selected_row_is_no_success)
+TEST_F(Program, a_required_backend_without_a_selected_row_is_no_success)
 {
     const std::string check = "check --scene cubes --resolution 6 --size 24 ";
     const Ended ended = run(check + "--require embree --backend openmp");
@@ -317,7 +317,7 @@ TEST_F(program, a_required_backend_without_a_selected_row_is_no_success)
     EXPECT_EQ(run(check + "--require openmp --backend openmp").code, 0);
 }
 
-TEST_F(program, no_progress_line_without_a_terminal)
+TEST_F(Program, no_progress_line_without_a_terminal)
 {
     const Ended ended = bench("");
     EXPECT_FALSE(contains(ended.errors, "\r")) << ended.errors;

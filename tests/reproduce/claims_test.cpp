@@ -26,14 +26,14 @@ Estimate unbounded(double value)
 
 } // namespace
 
-TEST(claims, all_rays_of_all_views_prove_that_there_is_none)
+TEST(Claims, all_rays_of_all_views_prove_that_there_is_none)
 {
     const Estimate none = mean_count(std::vector<double>(1282, 0), Sampling::whole);
     EXPECT_EQ(judge_none(none), ClaimVerdict::holds);
     EXPECT_EQ(judge_some(none), ClaimVerdict::does_not_hold);
 }
 
-TEST(claims, one_wrong_ray_refutes_that_there_is_none_in_a_sample_too)
+TEST(Claims, one_wrong_ray_refutes_that_there_is_none_in_a_sample_too)
 {
     std::vector<double> counts(64, 0);
     counts[17] = 1;
@@ -44,7 +44,7 @@ TEST(claims, one_wrong_ray_refutes_that_there_is_none_in_a_sample_too)
     }
 }
 
-TEST(claims, no_sample_without_a_wrong_ray_proves_that_there_is_none)
+TEST(Claims, no_sample_without_a_wrong_ray_proves_that_there_is_none)
 {
     for (const Sampling sampling : {Sampling::even, Sampling::chosen})
         for (const std::size_t views : {1u, 64u, 1282u}) { // of smaller images, say
@@ -54,7 +54,7 @@ TEST(claims, no_sample_without_a_wrong_ray_proves_that_there_is_none)
         }
 }
 
-TEST(claims, less_needs_intervals_apart)
+TEST(Claims, less_needs_intervals_apart)
 {
     EXPECT_EQ(judge_less(exactly(0), {between(1, 2), between(0.5, 3)}), ClaimVerdict::holds);
     EXPECT_EQ(judge_less(between(0, 1), {between(1, 2)}), ClaimVerdict::not_testable) << "they touch";
@@ -65,7 +65,7 @@ TEST(claims, less_needs_intervals_apart)
     EXPECT_EQ(judge_less(between(2, 3), {between(1, 2)}), ClaimVerdict::does_not_hold) << "nowhere above it";
 }
 
-TEST(claims, above_needs_every_interval_above_and_one_below_refutes)
+TEST(Claims, above_needs_every_interval_above_and_one_below_refutes)
 {
     EXPECT_EQ(judge_above({between(1.01, 1.2), between(1.5, 2)}, 1), ClaimVerdict::holds);
     EXPECT_EQ(judge_above({between(1, 1.2)}, 1), ClaimVerdict::not_testable) << "it reaches the boundary";
@@ -75,14 +75,14 @@ TEST(claims, above_needs_every_interval_above_and_one_below_refutes)
     EXPECT_EQ(judge_above({}, 1), ClaimVerdict::not_testable);
 }
 
-TEST(claims, equal_means_within_the_tolerance)
+TEST(Claims, equal_means_within_the_tolerance)
 {
     EXPECT_EQ(judge_equal(101, 100, 0.01), ClaimVerdict::holds);
     EXPECT_EQ(judge_equal(99, 100, 0.01), ClaimVerdict::holds);
     EXPECT_EQ(judge_equal(101.1, 100, 0.01), ClaimVerdict::does_not_hold);
 }
 
-TEST(claims, within_needs_every_interval_inside_and_one_outside_refutes)
+TEST(Claims, within_needs_every_interval_inside_and_one_outside_refutes)
 {
     EXPECT_EQ(judge_within({between(-0.05, 0.02), between(0, 0.1)}, 0.1), ClaimVerdict::holds);
     EXPECT_EQ(judge_within({between(0.05, 0.2)}, 0.1), ClaimVerdict::not_testable);
@@ -92,7 +92,7 @@ TEST(claims, within_needs_every_interval_inside_and_one_outside_refutes)
     EXPECT_EQ(judge_within({}, 0.1), ClaimVerdict::not_testable);
 }
 
-TEST(claims, both_hold_where_each_does_and_one_refutes_both)
+TEST(Claims, both_hold_where_each_does_and_one_refutes_both)
 {
     using enum ClaimVerdict;
     EXPECT_EQ(judge_both(holds, holds), holds);
@@ -101,7 +101,7 @@ TEST(claims, both_hold_where_each_does_and_one_refutes_both)
     EXPECT_EQ(judge_both(does_not_hold, holds), does_not_hold);
 }
 
-TEST(claims, views_are_even_where_no_gap_is_twice_the_mean)
+TEST(Claims, views_are_even_where_no_gap_is_twice_the_mean)
 {
     const auto strided = [](std::uint32_t from, std::uint32_t to, std::uint32_t stride) {
         std::vector<std::uint32_t> views;
@@ -120,7 +120,7 @@ TEST(claims, views_are_even_where_no_gap_is_twice_the_mean)
     EXPECT_FALSE(is_even({}, 4));
 }
 
-TEST(claims, few_views_and_chosen_ones_bound_nothing)
+TEST(Claims, few_views_and_chosen_ones_bound_nothing)
 {
     const std::vector<double> nine = {1, 2, 3, 4, 5, 6, 7, 8, 9}, ten = {1, 2, 3, 4, 5, 6, 7, 8, 9, 12};
     EXPECT_FALSE(mean_count(nine, Sampling::even).high);
@@ -133,7 +133,7 @@ TEST(claims, few_views_and_chosen_ones_bound_nothing)
     EXPECT_FALSE(intercept_share(ten, ten, Sampling::chosen).high);
 }
 
-TEST(claims, counts_without_any_have_no_upper_bound)
+TEST(Claims, counts_without_any_have_no_upper_bound)
 {
     const Estimate none = mean_count(std::vector<double>(60, 0), Sampling::even);
     EXPECT_EQ(none.value, 0);
@@ -141,7 +141,7 @@ TEST(claims, counts_without_any_have_no_upper_bound)
     EXPECT_FALSE(none.exact);
 }
 
-TEST(claims, all_rays_of_all_views_have_no_interval)
+TEST(Claims, all_rays_of_all_views_have_no_interval)
 {
     const Estimate all = mean_count({1, 2, 6}, Sampling::whole);
     EXPECT_DOUBLE_EQ(all.value, 3);
@@ -152,7 +152,7 @@ TEST(claims, all_rays_of_all_views_have_no_interval)
 
 // Counts as of rare rays: none in most views, more in a few. The percentile bootstrap is known to cover less than it
 // claims on skewed samples of this size; 88 % of 200 is three standard deviations below its 93 %.
-TEST(claims, the_interval_of_a_mean_covers_the_truth)
+TEST(Claims, the_interval_of_a_mean_covers_the_truth)
 {
     std::mt19937_64 random(1);
     constexpr double share = 0.3, size = 4;
@@ -168,7 +168,7 @@ TEST(claims, the_interval_of_a_mean_covers_the_truth)
     EXPECT_LT(covered, 200) << "an interval that always covers is too wide";
 }
 
-TEST(claims, a_ratio_of_sums_is_paired_by_views)
+TEST(Claims, a_ratio_of_sums_is_paired_by_views)
 {
     std::vector<double> slow, fast;
     for (int view = 1; view <= 40; ++view) {
@@ -185,7 +185,7 @@ TEST(claims, a_ratio_of_sums_is_paired_by_views)
 }
 
 // Expected values: the formulas evaluated by Python's math module.
-TEST(claims, the_correlation_has_fishers_interval)
+TEST(Claims, the_correlation_has_fishers_interval)
 {
     const std::vector<double> x = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
     const auto r = correlation(x, {2.1, 3.9, 6.2, 7.8, 9.7, 12.4, 13.9, 16.3, 17.6, 20.2});
@@ -197,7 +197,7 @@ TEST(claims, the_correlation_has_fishers_interval)
     EXPECT_NEAR(fit_line({1, 2, 3}, {5, 7, 9}).intercept, 3, 1e-12);
 }
 
-TEST(claims, no_correlation_of_few_views_or_of_what_does_not_vary)
+TEST(Claims, no_correlation_of_few_views_or_of_what_does_not_vary)
 {
     const std::vector<double> x = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, same(10, 1),
                               twice = {2, 4, 6, 8, 10, 12, 14, 16, 18, 20};
@@ -207,7 +207,7 @@ TEST(claims, no_correlation_of_few_views_or_of_what_does_not_vary)
     EXPECT_THROW((void)correlation(x, {1, 2, 3}), Error);
 }
 
-TEST(claims, the_intercepts_share_tells_a_line_from_proportion)
+TEST(Claims, the_intercepts_share_tells_a_line_from_proportion)
 {
     std::vector<double> x, proportional, line;
     for (int view = 0; view < 60; ++view) {
@@ -223,12 +223,12 @@ TEST(claims, the_intercepts_share_tells_a_line_from_proportion)
     EXPECT_EQ(judge_within({intercept_share(x, line)}, 0.1), ClaimVerdict::does_not_hold);
 }
 
-TEST(claims, a_claim_is_not_testable_until_something_decides)
+TEST(Claims, a_claim_is_not_testable_until_something_decides)
 {
     EXPECT_EQ((Claim{"id", "text", {}, ""}.verdict), ClaimVerdict::not_testable);
 }
 
-TEST(claims, a_claim_in_json_has_all_its_parts)
+TEST(Claims, a_claim_in_json_has_all_its_parts)
 {
     const auto json = claim_json({"id", "text", ClaimVerdict::not_testable, "why"});
     EXPECT_EQ(json["verdict"], "not testable here");

@@ -77,7 +77,7 @@ bool is_empty(const PaperTable& table, std::size_t row, const std::string& key)
 
 } // namespace
 
-TEST(power_law, is_found_again_without_an_interval_where_all_points_are_on_it)
+TEST(PowerLaw, is_found_again_without_an_interval_where_all_points_are_on_it)
 {
     for (const double exponent : {-0.5, 0.0, 1.0 / 3, 1.5}) {
         const auto law = fit_power_law(sizes, powers(sizes, 3, exponent));
@@ -89,7 +89,7 @@ TEST(power_law, is_found_again_without_an_interval_where_all_points_are_on_it)
     }
 }
 
-TEST(power_law, has_the_interval_of_a_textbooks_regression)
+TEST(PowerLaw, has_the_interval_of_a_textbooks_regression)
 {
     // log2 y of log2 x = 0, 1, 2: 0, 1, 1. Slope 1/2, residuals -1/6, 1/3, -1/6: standard error sqrt(1/6 / 2).
     const auto law = fit_power_law({1, 2, 4}, {1, 2, 2});
@@ -99,7 +99,7 @@ TEST(power_law, has_the_interval_of_a_textbooks_regression)
     EXPECT_NEAR(0.5 - law->exponent.low.value(), 12.7062 * std::sqrt(1.0 / 12), 1e-9);
 }
 
-TEST(power_law, its_interval_holds_the_exponent_in_19_of_20_noisy_fits)
+TEST(PowerLaw, its_interval_holds_the_exponent_in_19_of_20_noisy_fits)
 {
     std::mt19937_64 random(20261123);
     constexpr int trials = 4000;
@@ -118,7 +118,7 @@ TEST(power_law, its_interval_holds_the_exponent_in_19_of_20_noisy_fits)
     EXPECT_NEAR(missed, trials * 0.05, 4 * std::sqrt(trials * 0.05 * 0.95));
 }
 
-TEST(power_law, needs_three_points_that_have_logarithms)
+TEST(PowerLaw, needs_three_points_that_have_logarithms)
 {
     EXPECT_FALSE(fit_power_law({1, 2}, {1, 2}));
     EXPECT_FALSE(fit_power_law({1, 2, 3}, {1, 0, 3}));
@@ -127,7 +127,7 @@ TEST(power_law, needs_three_points_that_have_logarithms)
     EXPECT_THROW(static_cast<void>(fit_power_law({1, 2, 3}, {1, 2})), Error);
 }
 
-TEST(growth, sizes_are_builds_of_their_own_ascending_and_once)
+TEST(Growth, sizes_are_builds_of_their_own_ascending_and_once)
 {
     const auto banana = growth_builds({"banana", {}}, {6000, 1500, 6000});
     ASSERT_EQ(banana.size(), 2u);
@@ -140,7 +140,7 @@ TEST(growth, sizes_are_builds_of_their_own_ascending_and_once)
     EXPECT_GE(growth_sizes().size(), 5u);
 }
 
-TEST(growth, each_row_has_the_exponent_of_its_own_times)
+TEST(Growth, each_row_has_the_exponent_of_its_own_times)
 {
     Sizes all;
     const std::size_t rows = all.runs.front().rows.size();
@@ -157,7 +157,7 @@ TEST(growth, each_row_has_the_exponent_of_its_own_times)
     }
 }
 
-TEST(growth, the_table_has_what_rays_visit_of_the_structures_that_have_it)
+TEST(Growth, the_table_has_what_rays_visit_of_the_structures_that_have_it)
 {
     Sizes all;
     all.set_times(0, 2e-8, 0);
@@ -180,7 +180,7 @@ TEST(growth, the_table_has_what_rays_visit_of_the_structures_that_have_it)
     EXPECT_TRUE(is_empty(table, 2, "build_s")) << "not known";
 }
 
-TEST(growth, a_size_without_a_rate_has_no_part_in_the_fit)
+TEST(Growth, a_size_without_a_rate_has_no_part_in_the_fit)
 {
     Sizes all;
     for (std::size_t row = 0; row < 6; ++row)
@@ -192,7 +192,7 @@ TEST(growth, a_size_without_a_rate_has_no_part_in_the_fit)
     EXPECT_TRUE(is_empty(growth_table(all.all()), 2 * 6 + 2, "ns_a_ray"));
 }
 
-TEST(growth, figures_are_lines_over_the_faces_with_logarithmic_axes)
+TEST(Growth, figures_are_lines_over_the_faces_with_logarithmic_axes)
 {
     const Sizes all;
     const auto figures = growth_figures(all.all());

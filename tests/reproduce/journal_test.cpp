@@ -9,7 +9,7 @@ using nlohmann::json;
 
 namespace {
 
-class journal : public testing::Test {
+class Journals : public testing::Test {
 protected:
     [[nodiscard]] std::vector<json> resumed(const json& head) const { return Journal(path_, head, true).entries(); }
 
@@ -20,7 +20,7 @@ protected:
 
 } // namespace
 
-TEST_F(journal, gives_back_what_was_appended)
+TEST_F(Journals, gives_back_what_was_appended)
 {
     {
         Journal first(path_, head_, false);
@@ -33,7 +33,7 @@ TEST_F(journal, gives_back_what_was_appended)
     EXPECT_EQ(entries[1]["seconds"].get<double>(), 1.0 / 3) << "every bit of a time";
 }
 
-TEST_F(journal, goes_on_where_a_line_was_cut_off)
+TEST_F(Journals, goes_on_where_a_line_was_cut_off)
 {
     Journal(path_, head_, false).append({{"view", 1}});
     std::ofstream(path_, std::ios::app) << R"({"view": 2, "sec)";
@@ -45,14 +45,14 @@ TEST_F(journal, goes_on_where_a_line_was_cut_off)
     EXPECT_EQ(resumed(head_).size(), 2u) << "the cut line is gone from the file too";
 }
 
-TEST_F(journal, begins_anew_where_the_head_itself_was_cut_off)
+TEST_F(Journals, begins_anew_where_the_head_itself_was_cut_off)
 {
     write_file(path_, R"({"journal": {"com)");
     EXPECT_EQ(resumed(head_).size(), 0u);
     EXPECT_EQ(resumed(head_).size(), 0u) << "and is whole now";
 }
 
-TEST_F(journal, of_another_run_is_refused_with_what_differs)
+TEST_F(Journals, of_another_run_is_refused_with_what_differs)
 {
     Journal(path_, head_, false).append({{"view", 1}});
     json other = head_;
@@ -64,14 +64,14 @@ TEST_F(journal, of_another_run_is_refused_with_what_differs)
     EXPECT_EQ(resumed(head_).size(), 1u) << "it is as it was";
 }
 
-TEST_F(journal, of_a_run_that_did_not_end_is_not_overwritten_unasked)
+TEST_F(Journals, of_a_run_that_did_not_end_is_not_overwritten_unasked)
 {
     Journal(path_, head_, false).append({{"view", 1}});
     EXPECT_TRUE(contains(error_of([&] { Journal(path_, head_, false); }), "--resume"));
     EXPECT_EQ(resumed(head_).size(), 1u);
 }
 
-TEST_F(journal, of_a_finished_run_begins_anew_or_repeats_the_run)
+TEST_F(Journals, of_a_finished_run_begins_anew_or_repeats_the_run)
 {
     {
         Journal whole(path_, head_, false);
@@ -83,7 +83,7 @@ TEST_F(journal, of_a_finished_run_begins_anew_or_repeats_the_run)
     EXPECT_EQ(resumed(head_).size(), 0u);
 }
 
-TEST_F(journal, of_a_finished_run_takes_more_and_ends_again)
+TEST_F(Journals, of_a_finished_run_takes_more_and_ends_again)
 {
     {
         Journal whole(path_, head_, false);
@@ -99,25 +99,25 @@ TEST_F(journal, of_a_finished_run_takes_more_and_ends_again)
     EXPECT_TRUE(Journal(path_, head_, false).entries().empty()) << "it has ended: a new one begins unasked";
 }
 
-TEST_F(journal, with_a_damaged_line_is_refused_by_its_number)
+TEST_F(Journals, with_a_damaged_line_is_refused_by_its_number)
 {
     Journal(path_, head_, false).append({{"view", 1}});
     std::ofstream(path_, std::ios::app) << "damage\n{}\n";
     EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "invalid_input: line 3"));
 }
 
-TEST_F(journal, is_written_by_one_run_at_a_time)
+TEST_F(Journals, is_written_by_one_run_at_a_time)
 {
     const Journal first(path_, head_, false);
     EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "being written by another run"));
 }
 
-TEST_F(journal, names_the_file_that_it_cannot_write)
+TEST_F(Journals, names_the_file_that_it_cannot_write)
 {
     EXPECT_TRUE(contains(error_of([&] { Journal(folder_ / "no" / "such", head_, false); }), "no/such"));
 }
 
-TEST(image_record, comes_back_from_json_as_it_was)
+TEST(ImageRecord, comes_back_from_json_as_it_was)
 {
     ImageRecord record;
     record.verdict.totals = {100, 50, 40, 10, 0, 500, 300, 200};
@@ -148,7 +148,7 @@ TEST(image_record, comes_back_from_json_as_it_was)
     EXPECT_EQ(back.any.through_flat, 1u);
 }
 
-TEST(image_record, an_end_of_a_row_comes_back_from_json)
+TEST(ImageRecord, an_end_of_a_row_comes_back_from_json)
 {
     const auto failed = std::get<Failed>(outcome_from_json(outcome_json(Failed{ErrorKind::wrong_result, "gone"})));
     EXPECT_EQ(failed.kind, ErrorKind::wrong_result);

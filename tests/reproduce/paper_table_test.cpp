@@ -33,7 +33,7 @@ PaperFigure figure_of_two_points()
 
 } // namespace
 
-TEST(paper_table, as_csv_has_numbers_texts_points_verdicts_and_notes)
+TEST(PaperTable, as_csv_has_numbers_texts_points_verdicts_and_notes)
 {
     EXPECT_EQ(tidy_table({table_of_two_rows()}, {figure_of_two_points()}).csv(),
               "table,scene,build,method,layout,device,quantity,unit,value,low,high,paper,ratio,x,verdict,text\n"
@@ -47,7 +47,7 @@ TEST(paper_table, as_csv_has_numbers_texts_points_verdicts_and_notes)
               "figure9,,,,,,time-grows,,,,,,,,holds,0.99.\n");
 }
 
-TEST(paper_table, a_figure_without_its_points_says_where_they_are)
+TEST(PaperTable, a_figure_without_its_points_says_where_they_are)
 {
     PaperFigure figure = figure_of_two_points();
     const std::string sentence = "The 2 points are in the result's CSV and JSON.";
@@ -57,7 +57,7 @@ TEST(paper_table, a_figure_without_its_points_says_where_they_are)
     EXPECT_FALSE(contains(figure_markdown(figure), "points are"));
 }
 
-TEST(paper, has_three_scenes_and_no_build_of_others)
+TEST(Paper, has_three_scenes_and_no_build_of_others)
 {
     for (const char* const scene : {"banana", "bunny", "armadillo"}) {
         EXPECT_TRUE(paper::has_scene(scene));

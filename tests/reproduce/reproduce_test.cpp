@@ -6,7 +6,7 @@ using nlohmann::json;
 
 namespace {
 
-class reproduce : public ReproduceTest {};
+class Reproduce : public ReproduceTest {};
 
 const json& claim(const json& table, const std::string& id)
 {
@@ -17,7 +17,7 @@ const json& claim(const json& table, const std::string& id)
 
 } // namespace
 
-TEST_F(reproduce, table4_of_a_sample_of_views)
+TEST_F(Reproduce, table4_of_a_sample_of_views)
 {
     const Ended ended = run("table4 --method maria --size 24 --views 0-1281:100 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -45,7 +45,7 @@ TEST_F(reproduce, table4_of_a_sample_of_views)
     EXPECT_TRUE(contains(ended.out, "table4: Rays with a wrong result"));
 }
 
-TEST_F(reproduce, table4_has_every_method_where_none_is_named_and_none_wrong_of_project)
+TEST_F(Reproduce, table4_has_every_method_where_none_is_named_and_none_wrong_of_project)
 {
     const Ended ended = run("table4 --layout tet80 --size 24 --views 0-1281:100 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -59,7 +59,7 @@ TEST_F(reproduce, table4_has_every_method_where_none_is_named_and_none_wrong_of_
     EXPECT_TRUE(contains(claim(table, "project-has-no-wrong-result")["evidence"], "0 of 7,488 rays in 13 of 1,282"));
 }
 
-TEST_F(reproduce, all_views_of_smaller_images_are_a_sample_still)
+TEST_F(Reproduce, all_views_of_smaller_images_are_a_sample_still)
 {
     const Ended ended = run("table4 --method maria --layout tet80 --size 4 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -68,7 +68,7 @@ TEST_F(reproduce, all_views_of_smaller_images_are_a_sample_still)
     EXPECT_EQ(claim(table, "maria-has-no-wrong-result")["verdict"], "not testable here");
 }
 
-TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
+TEST_F(Reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
 {
     const Ended ended =
         run("figure6 --method maria --layout tet80 --size 64 --samples 3 --views 0-1281:60 --out r.json");
@@ -93,7 +93,7 @@ TEST_F(reproduce, figure6_has_a_point_a_view_and_pictures_of_the_extremes)
               "not testable here");
 }
 
-TEST_F(reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
+TEST_F(Reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
 {
     const Ended ended = run("figure6 --method maria,ms06 --layout tet80 --backend openmp,cuda-host --size 16 "
                             "--samples 3 --views 0-3 --out r.json");
@@ -111,7 +111,7 @@ TEST_F(reproduce, figure6_draws_an_emulated_device_apart_from_the_processor)
     EXPECT_EQ(figures[0]["notes"].size(), figures[1]["notes"].size() + 1) << "which tells of them";
 }
 
-TEST_F(reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
+TEST_F(Reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
 {
     const Ended ended = run("table3 --method maria --size 24 --samples 3 --views 0,1 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -125,7 +125,7 @@ TEST_F(reproduce, table3_has_the_scenes_counts_and_a_rate_a_row)
     EXPECT_GT(rates[0]["mrays_per_s"]["value"], 0);
 }
 
-TEST_F(reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
+TEST_F(Reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
 {
     const std::string octahedron = "OFF\n6 8 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n"
                                    "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n";
@@ -146,7 +146,7 @@ TEST_F(reproduce, table3_has_a_papers_build_of_the_papers_scenes_alone)
     EXPECT_EQ(rates[2]["build"], "paper's");
 }
 
-TEST_F(reproduce, table6_has_maria_beside_the_bvhs_and_no_other_table_has_them)
+TEST_F(Reproduce, table6_has_maria_beside_the_bvhs_and_no_other_table_has_them)
 {
     const std::string common = " --backend openmp,embree --layout tet80 --size 16 --samples 3 --views 0-1281:120 ";
     const Ended ended = run("table6 --out r.json" + common);
@@ -166,7 +166,7 @@ TEST_F(reproduce, table6_has_maria_beside_the_bvhs_and_no_other_table_has_them)
     EXPECT_EQ(of_id(result("b.json")["tables"], "table6")["rows"].size(), 4u);
 }
 
-TEST_F(reproduce, table6_is_the_same_again_from_its_journal_build_times_too)
+TEST_F(Reproduce, table6_is_the_same_again_from_its_journal_build_times_too)
 {
     const std::string arguments = "table6 --backend openmp,embree --size 8 --samples 3 --views 0-2 --out r.json";
     ASSERT_EQ(run(arguments).code, 0);
@@ -181,7 +181,7 @@ TEST_F(reproduce, table6_is_the_same_again_from_its_journal_build_times_too)
     EXPECT_TRUE(contains(run(arguments + " --resume").errors, "a build time in the journal is damaged"));
 }
 
-TEST_F(reproduce, growth_has_a_scene_in_several_sizes_and_no_other_scene)
+TEST_F(Reproduce, growth_has_a_scene_in_several_sizes_and_no_other_scene)
 {
     const Ended ended = run("growth --scene cubes --sizes 4,8,12 --backend openmp,embree --size 16 --samples 3 "
                             "--layout tet80,bvh2 --out r.json");
@@ -202,7 +202,7 @@ TEST_F(reproduce, growth_has_a_scene_in_several_sizes_and_no_other_scene)
     EXPECT_EQ(run("growth --sizes 1").code, 2);
 }
 
-TEST_F(reproduce, table5_has_every_search_of_every_method_without_a_scene)
+TEST_F(Reproduce, table5_has_every_search_of_every_method_without_a_scene)
 {
     const Ended ended = run("table5 --searches 40x64 --samples 3 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -232,7 +232,7 @@ TEST_F(reproduce, table5_has_every_search_of_every_method_without_a_scene)
     EXPECT_EQ(lines("r.json.journal"), 1u + 20 + 1 + 1) << "head, batches, yardstick, end";
 }
 
-TEST_F(reproduce, table5_records_what_it_was_made_from)
+TEST_F(Reproduce, table5_records_what_it_was_made_from)
 {
     const Ended ended = run("table5 --searches 40x64 --method maria --layout tet80 --samples 3 --out r.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
@@ -256,14 +256,14 @@ TEST_F(reproduce, table5_records_what_it_was_made_from)
     EXPECT_EQ(row["msearches_per_s"], table["rows"][0]["msearches_per_s"]["value"]);
 }
 
-TEST_F(reproduce, samples_a_row_are_none_where_nothing_is_timed)
+TEST_F(Reproduce, samples_a_row_are_none_where_nothing_is_timed)
 {
     ASSERT_EQ(run("table4 --method maria --layout tet80 --size 8 --views 0 --samples 7 --out r.json").code, 0);
     EXPECT_EQ(result("r.json")["samples_a_row"], 0);
     EXPECT_FALSE(result("r.json").contains("searches"));
 }
 
-TEST_F(reproduce, refuses_what_it_does_not_make)
+TEST_F(Reproduce, refuses_what_it_does_not_make)
 {
     const Ended unknown = run("table9");
     EXPECT_EQ(unknown.code, 2);
@@ -274,7 +274,7 @@ TEST_F(reproduce, refuses_what_it_does_not_make)
     EXPECT_TRUE(contains(run("table4 --resume").errors, "--out"));
 }
 
-TEST_F(reproduce, as_csv_and_markdown)
+TEST_F(Reproduce, as_csv_and_markdown)
 {
     const std::string arguments = "table4 --method maria --layout tet80 --size 24 --views 0,1 --format ";
     const Ended csv = run(arguments + "csv");
@@ -294,7 +294,7 @@ TEST_F(reproduce, as_csv_and_markdown)
     EXPECT_TRUE(contains(markdown.out, "| maria has no wrong result | not testable here |"));
 }
 
-TEST(flat_tets, flatness_is_the_shortest_altitude_over_the_longest_edge)
+TEST(FlatTets, flatness_is_the_shortest_altitude_over_the_longest_edge)
 {
     TetMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.25f, 0.25f, 1e-4f}};

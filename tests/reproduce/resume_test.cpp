@@ -7,11 +7,11 @@ using nlohmann::json;
 
 namespace {
 
-class resume : public ReproduceTest {};
+class Resume : public ReproduceTest {};
 
 } // namespace
 
-TEST_F(resume, a_damaged_journal_is_refused)
+TEST_F(Resume, a_damaged_journal_is_refused)
 {
     const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
     ASSERT_EQ(run(arguments).code, 0);
@@ -51,7 +51,7 @@ TEST_F(resume, a_damaged_journal_is_refused)
     refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
 }
 
-TEST_F(resume, a_damaged_yardstick_in_the_journal_is_refused)
+TEST_F(Resume, a_damaged_yardstick_in_the_journal_is_refused)
 {
     const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
     ASSERT_EQ(run(arguments).code, 0);
@@ -64,7 +64,7 @@ TEST_F(resume, a_damaged_yardstick_in_the_journal_is_refused)
     EXPECT_TRUE(contains(ended.errors, "a yardstick in the journal is damaged; remove 'r.json.journal'"));
 }
 
-TEST_F(resume, table5_goes_on_after_kill_9_to_the_same_result)
+TEST_F(Resume, table5_goes_on_after_kill_9_to_the_same_result)
 {
     const std::string arguments =
         "table5 --searches 200x2048 --method maria,stp --layout tet80 --samples 3 --out r.json";
@@ -88,7 +88,7 @@ TEST_F(resume, table5_goes_on_after_kill_9_to_the_same_result)
     EXPECT_EQ(again["devices"], resumed["devices"]) << "their bandwidth is not measured again";
 }
 
-TEST_F(resume, goes_on_after_kill_9_to_the_same_result)
+TEST_F(Resume, goes_on_after_kill_9_to_the_same_result)
 {
     const std::string arguments =
         "table4,figure6 --method maria,ms06 --layout tet80 --size 48 --samples 3 --views 0-1281:40 --out ";
@@ -119,7 +119,7 @@ TEST_F(resume, goes_on_after_kill_9_to_the_same_result)
               of_id(resumed["figures"], "figure6-cubes-cpu")["series"]);
 }
 
-TEST_F(resume, a_journal_of_other_options_is_refused)
+TEST_F(Resume, a_journal_of_other_options_is_refused)
 {
     const std::string arguments = "table4 --method maria --size 32 --views 0-1281:20 --out r.json ";
     (void)kill_in_the_middle(arguments + "--layout tet80", "r.json.journal");

@@ -129,7 +129,7 @@ std::vector<ImageRecord> timed_batches(double seconds)
 
 } // namespace
 
-TEST(search_run, openmp_has_a_row_on_one_thread_and_one_on_all)
+TEST(SearchRun, openmp_has_a_row_on_one_thread_and_one_on_all)
 {
     std::string names;
     for (const RowKey& key : select_search_rows(options_of("maria,stp", "2"), {&openmp_backend()}))
@@ -143,7 +143,7 @@ TEST(search_run, openmp_has_a_row_on_one_thread_and_one_on_all)
                          "usage: no row has this combination"));
 }
 
-TEST(search_run, batches_are_whole_tets_and_enough_for_an_interval)
+TEST(SearchRun, batches_are_whole_tets_and_enough_for_an_interval)
 {
     EXPECT_EQ(tets_of_batch({10'000, 16'384}), 100u);
     EXPECT_EQ(batch_count({10'000, 16'384}), 100u);
@@ -153,7 +153,7 @@ TEST(search_run, batches_are_whole_tets_and_enough_for_an_interval)
     EXPECT_EQ(batch_count({45, 64}), 23u);
 }
 
-TEST(search_run, every_search_is_judged_and_compared)
+TEST(SearchRun, every_search_is_judged_and_compared)
 {
     DamagedBackend other("other", leave_as_they_are);
     const SearchRun run = run_on({&openmp_backend(), &other}, "plane,maria");
@@ -176,7 +176,7 @@ TEST(search_run, every_search_is_judged_and_compared)
     EXPECT_FALSE(number_cell(table, 1, "threads").has_value());
 }
 
-TEST(search_run, a_device_with_one_other_face_a_batch_is_wrong_and_has_no_rate)
+TEST(SearchRun, a_device_with_one_other_face_a_batch_is_wrong_and_has_no_rate)
 {
     DamagedBackend other("other", [](Faces faces, std::size_t) { faces[17] = (faces[17] + 1) & 3u; });
     const SearchRun run = run_on({&openmp_backend(), &other});
@@ -190,7 +190,7 @@ TEST(search_run, a_device_with_one_other_face_a_batch_is_wrong_and_has_no_rate)
     EXPECT_TRUE(contains(table.notes.back(), "api:other differs first on ray 17 of tet 0: face "));
 }
 
-TEST(search_run, the_record_of_a_wrong_row_names_its_first_search_and_has_no_rate)
+TEST(SearchRun, the_record_of_a_wrong_row_names_its_first_search_and_has_no_rate)
 {
     DamagedBackend other("other", [](Faces faces, std::size_t) {
         if (faces.size() > 64) faces[64 + 17] = NO_EXIT; // ray 17 of the batch's second tet
@@ -214,7 +214,7 @@ TEST(search_run, the_record_of_a_wrong_row_names_its_first_search_and_has_no_rat
     EXPECT_LT(verification["first_wrong"]["exact_face"], 4);
 }
 
-TEST(search_run, a_device_is_compared_where_openmp_has_no_row)
+TEST(SearchRun, a_device_is_compared_where_openmp_has_no_row)
 {
     DamagedBackend other("other", [](Faces faces, std::size_t) { faces[0] ^= 1u; });
     const SearchRun run = run_on({&other});
@@ -222,7 +222,7 @@ TEST(search_run, a_device_is_compared_where_openmp_has_no_row)
     EXPECT_EQ(traced(run.rows[0])->different, 23u) << reason_of(run.rows[0]);
 }
 
-TEST(search_run, faces_that_change_from_one_launch_to_the_next_are_wrong)
+TEST(SearchRun, faces_that_change_from_one_launch_to_the_next_are_wrong)
 {
     DamagedBackend while_timed("other", [](Faces faces, std::size_t count) { faces[5] ^= count == 3 ? 1u : 0u; });
     EXPECT_EQ(reason_of(run_on({&while_timed}).rows[0]), "the answers changed while they were timed");
@@ -234,7 +234,7 @@ TEST(search_run, faces_that_change_from_one_launch_to_the_next_are_wrong)
     EXPECT_EQ(reason_of(row), "the first answers changed when they were asked for again");
 }
 
-TEST(search_run, wrong_and_lost_faces_are_the_methods_own_where_openmp_has_them)
+TEST(SearchRun, wrong_and_lost_faces_are_the_methods_own_where_openmp_has_them)
 {
     DamagedBackend openmp("openmp", [](Faces faces, std::size_t) {
         faces[3] = NO_EXIT;
@@ -257,7 +257,7 @@ TEST(search_run, wrong_and_lost_faces_are_the_methods_own_where_openmp_has_them)
     EXPECT_TRUE(fails(run.rows[0], true)) << "maria loses none";
 }
 
-TEST(search_run, rows_on_all_threads_say_how_many)
+TEST(SearchRun, rows_on_all_threads_say_how_many)
 {
     const PaperTable table = table5(run_on({&openmp_backend()}, "maria", "2"), {});
     EXPECT_EQ(number_cell(table, 0, "threads"), 1);
@@ -267,7 +267,7 @@ TEST(search_run, rows_on_all_threads_say_how_many)
     EXPECT_TRUE(contains(table.claims[0].evidence, "has no rate beside maria"));
 }
 
-TEST(search_run, the_fastest_is_told_from_the_rows_on_one_thread)
+TEST(SearchRun, the_fastest_is_told_from_the_rows_on_one_thread)
 {
     SearchRun run;
     const auto add = [&](Method method, unsigned threads, double seconds) {
@@ -288,7 +288,7 @@ TEST(search_run, the_fastest_is_told_from_the_rows_on_one_thread)
     EXPECT_EQ(table5(run, {}).claims[0].verdict, ClaimVerdict::not_testable) << "not of all five";
 }
 
-TEST(search_run, a_gpu_decides_whether_plucker_overtakes_stp)
+TEST(SearchRun, a_gpu_decides_whether_plucker_overtakes_stp)
 {
     class Gpu : public DamagedBackend {
     public:
@@ -306,7 +306,7 @@ TEST(search_run, a_gpu_decides_whether_plucker_overtakes_stp)
     EXPECT_TRUE(contains(table.claims[1].evidence, "random-tets tet80 gpu"));
 }
 
-TEST(search_run, no_wrong_one_among_the_papers_number_of_searches_makes_the_claim_hold)
+TEST(SearchRun, no_wrong_one_among_the_papers_number_of_searches_makes_the_claim_hold)
 {
     SearchRun run;
     run.rows.resize(1);
@@ -324,7 +324,7 @@ TEST(search_run, no_wrong_one_among_the_papers_number_of_searches_makes_the_clai
     EXPECT_EQ(table5(run, {}).claims[2].verdict, ClaimVerdict::does_not_hold);
 }
 
-TEST(search_run, rays_that_no_buffer_holds_end_a_row_as_unsupported)
+TEST(SearchRun, rays_that_no_buffer_holds_end_a_row_as_unsupported)
 {
     class SmallBackend : public DamagedBackend {
     public:

@@ -101,7 +101,7 @@ std::string text_of(const PaperTable& table, std::size_t row, const std::string&
 
 } // namespace
 
-TEST(table6, a_ratio_is_of_one_view_and_not_of_two)
+TEST(Table6, a_ratio_is_of_one_view_and_not_of_two)
 {
     const PairedRatio same = paired_ratio(ramp(1), ramp(2), Sampling::even);
     EXPECT_EQ(same.median.value, 2);
@@ -119,14 +119,14 @@ TEST(table6, a_ratio_is_of_one_view_and_not_of_two)
     EXPECT_EQ(other.median.high, 2.0 * 11 / 3);
 }
 
-TEST(table6, equal_times_are_nobodys_view)
+TEST(Table6, equal_times_are_nobodys_view)
 {
     const PairedRatio pair = paired_ratio(ramp(1), ramp(1), Sampling::even);
     EXPECT_EQ(pair.won, 0);
     EXPECT_EQ(pair.median.value, 1);
 }
 
-TEST(table6, times_that_do_not_pair_are_refused)
+TEST(Table6, times_that_do_not_pair_are_refused)
 {
     EXPECT_THROW(static_cast<void>(paired_ratio({1, 2}, {1}, Sampling::even)), Error);
     EXPECT_THROW(static_cast<void>(paired_ratio({}, {}, Sampling::even)), Error);
@@ -134,7 +134,7 @@ TEST(table6, times_that_do_not_pair_are_refused)
     EXPECT_THROW(static_cast<void>(paired_ratio({std::nan("")}, {1}, Sampling::even)), Error);
 }
 
-TEST(table6, too_few_views_or_chosen_ones_bound_no_median)
+TEST(Table6, too_few_views_or_chosen_ones_bound_no_median)
 {
     EXPECT_FALSE(median_of_views(std::vector<double>(least_views - 1, 2)).low);
     EXPECT_TRUE(median_of_views(std::vector<double>(least_views, 2)).low);
@@ -142,7 +142,7 @@ TEST(table6, too_few_views_or_chosen_ones_bound_no_median)
     EXPECT_THROW(static_cast<void>(median_of_views({})), Error);
 }
 
-TEST(table6, the_medians_interval_holds_the_median_in_19_of_20_samples)
+TEST(Table6, the_medians_interval_holds_the_median_in_19_of_20_samples)
 {
     std::mt19937_64 random(20261122);
     for (const std::size_t size : {10u, 13u, 65u, 1282u}) {
@@ -162,7 +162,7 @@ TEST(table6, the_medians_interval_holds_the_median_in_19_of_20_samples)
     }
 }
 
-TEST(table6, a_slower_build_is_paid_by_faster_rays_or_never)
+TEST(Table6, a_slower_build_is_paid_by_faster_rays_or_never)
 {
     using Ahead = BreakEven::Ahead;
     const BreakEven paid = break_even({11, 1e-6}, {1, 2e-6});
@@ -179,7 +179,7 @@ TEST(table6, a_slower_build_is_paid_by_faster_rays_or_never)
     EXPECT_EQ(break_even({1, 1e-6}, {1, 1e-6}).ahead, Ahead::neither);
 }
 
-TEST(table6, rows_pair_on_one_device_and_embree_with_openmp)
+TEST(Table6, rows_pair_on_one_device_and_embree_with_openmp)
 {
     const SceneRun run = open_run("openmp,cuda-host,embree");
     EXPECT_EQ(run.rows.size(), 10u) << "two of maria, bvh2 and cwbvh on two devices, and Embree's two";
@@ -197,7 +197,7 @@ TEST(table6, rows_pair_on_one_device_and_embree_with_openmp)
     EXPECT_EQ(fastest_pairs(run).size(), 4u + 2) << "one layout of the CDT a device";
 }
 
-TEST(table6, the_fastest_layout_stands_for_the_cdt)
+TEST(Table6, the_fastest_layout_stands_for_the_cdt)
 {
     SceneRun run = open_run();
     set_all(run, 2, 3);
@@ -209,7 +209,7 @@ TEST(table6, the_fastest_layout_stands_for_the_cdt)
     EXPECT_DOUBLE_EQ(pair_of(run, Layout::tet80, Layout::bvh2).ratio.median.value, 1.5);
 }
 
-TEST(table6, the_table_has_frames_of_the_papers_size_build_times_and_memory)
+TEST(Table6, the_table_has_frames_of_the_papers_size_build_times_and_memory)
 {
     SceneRun run = open_run();
     set_all(run, pixels / papers_pixels, pixels / papers_pixels / 4); // the CDT takes a second a frame in view 0
@@ -229,7 +229,7 @@ TEST(table6, the_table_has_frames_of_the_papers_size_build_times_and_memory)
     EXPECT_EQ(text_of(table, cdt, "papers_frames_per_s"), "not its scene");
 }
 
-TEST(table6, the_papers_frames_stand_beside_a_gpu_alone)
+TEST(Table6, the_papers_frames_stand_beside_a_gpu_alone)
 {
     SceneRun run = open_run();
     run.build.scene = "armadillo";
@@ -251,7 +251,7 @@ TEST(table6, the_papers_frames_stand_beside_a_gpu_alone)
     EXPECT_EQ(text_of(table6({&run}), cdt, "papers_frames_per_s"), "not known here");
 }
 
-TEST(table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
+TEST(Table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
 {
     SceneRun run = open_run();
     set_all(run, 1e-6 * pixels, 2e-6 * pixels); // 7 times that a view on average: 7 and 14 us a ray
@@ -273,7 +273,7 @@ TEST(table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
     EXPECT_EQ(text_of(table6_pairs({&run}), 0, "ahead"), "the BVH, always");
 }
 
-TEST(table6, rates_that_cannot_be_told_apart_pay_nothing)
+TEST(Table6, rates_that_cannot_be_told_apart_pay_nothing)
 {
     SceneRun run = open_run();
     set_all(run, 1, 1);
@@ -287,7 +287,7 @@ TEST(table6, rates_that_cannot_be_told_apart_pay_nothing)
     EXPECT_EQ(text_of(table6_pairs({&run}), 0, "ahead"), "not to be told");
 }
 
-TEST(table6, claims_are_decided_by_the_interval_on_the_kind_of_device_that_they_name)
+TEST(Table6, claims_are_decided_by_the_interval_on_the_kind_of_device_that_they_name)
 {
     SceneRun run = open_run();
     set_all(run, 1, 2);
@@ -310,7 +310,7 @@ TEST(table6, claims_are_decided_by_the_interval_on_the_kind_of_device_that_they_
     EXPECT_EQ(verdict_of(run, "table6-bvh-is-faster-on-armadillo-gpu"), ClaimVerdict::not_testable);
 }
 
-TEST(table6, claims_need_an_interval_and_quiet_rows_and_heed_bvh2_alone)
+TEST(Table6, claims_need_an_interval_and_quiet_rows_and_heed_bvh2_alone)
 {
     SceneRun run = open_run();
     set_all(run, 1, 2);
@@ -333,7 +333,7 @@ TEST(table6, claims_need_an_interval_and_quiet_rows_and_heed_bvh2_alone)
     EXPECT_EQ(verdict_of(run, id), ClaimVerdict::not_testable) << "noisy";
 }
 
-TEST(table6, a_row_without_a_rate_is_told_and_pairs_with_nothing)
+TEST(Table6, a_row_without_a_rate_is_told_and_pairs_with_nothing)
 {
     SceneRun run = open_run();
     run.rows[find_row(run, Layout::bvh2, Method::single)].outcome = Skipped{Status::skipped, "no such thing"};
@@ -341,7 +341,7 @@ TEST(table6, a_row_without_a_rate_is_told_and_pairs_with_nothing)
     EXPECT_EQ(text_of(table6({&run}), find_row(run, Layout::bvh2, Method::single), "status"), "skipped: no such thing");
 }
 
-TEST(table6, a_curve_ascends_and_ends_with_all_views)
+TEST(Table6, a_curve_ascends_and_ends_with_all_views)
 {
     SceneRun run = open_run();
     set_all(run, 1, 2);

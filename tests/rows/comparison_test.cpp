@@ -29,7 +29,7 @@ std::vector<RowRun> list(Rows... rows)
 
 } // namespace
 
-TEST(comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
+TEST(Comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
 {
     const auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 4), row_on("vulkan", "gpu", 1, "a"),
                            row_on("cuda", "gpu", 0.5, "a"));
@@ -44,7 +44,7 @@ TEST(comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
     EXPECT_FALSE(found[3].has_value());
 }
 
-TEST(comparison, without_cuda_a_gpus_first_api_is_the_reference)
+TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)
 {
     const auto rows = list(row_on("opencl", "gpu", 2, "a"), row_on("vulkan", "gpu", 1, "a"));
     const auto found = compare_rows(rows);
@@ -53,20 +53,20 @@ TEST(comparison, without_cuda_a_gpus_first_api_is_the_reference)
     EXPECT_EQ(found[1]->reference, &rows[0]);
 }
 
-TEST(comparison, an_emulation_without_openmp_beside_it_has_no_ratio)
+TEST(Comparison, an_emulation_without_openmp_beside_it_has_no_ratio)
 {
     for (const auto& found : compare_rows(list(row_on("opencl", "emulated", 2), row_on("vulkan", "emulated", 1))))
         EXPECT_FALSE(found.has_value());
 }
 
-TEST(comparison, no_ratio_joins_host_and_gpu_or_two_gpus)
+TEST(Comparison, no_ratio_joins_host_and_gpu_or_two_gpus)
 {
     for (const auto& found :
          compare_rows(list(row_on("openmp", "cpu", 2), row_on("cuda", "gpu", 1, "a"), row_on("vulkan", "gpu", 1, "b"))))
         EXPECT_FALSE(found.has_value());
 }
 
-TEST(comparison, only_the_same_kernel_on_the_same_scene_compares)
+TEST(Comparison, only_the_same_kernel_on_the_same_scene_compares)
 {
     auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2), row_on("opencl", "emulated", 2),
                      row_on("opencl", "emulated", 2), row_on("opencl", "emulated", 2));
@@ -81,7 +81,7 @@ TEST(comparison, only_the_same_kernel_on_the_same_scene_compares)
     EXPECT_EQ(found[4]->reference, &rows[0]);
 }
 
-TEST(comparison, a_row_without_a_rate_neither_compares_nor_is_a_reference)
+TEST(Comparison, a_row_without_a_rate_neither_compares_nor_is_a_reference)
 {
     auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2));
     std::get<Traced>(rows[0].outcome).different = 1;

@@ -39,7 +39,7 @@ RowRun single_row(const std::string& scene)
 
 } // namespace
 
-TEST(figures, rates_are_counts_over_the_median)
+TEST(Figures, rates_are_counts_over_the_median)
 {
     const auto figures = figures_of(timed_row());
     ASSERT_TRUE(figures.has_value());
@@ -49,7 +49,7 @@ TEST(figures, rates_are_counts_over_the_median)
 }
 
 // Three vertices and a face: 36 + 8 bytes in tet80, four rows of 16 in tet96; a fourth vertex is 12 or 16 bytes more.
-TEST(figures, bandwidth_is_steps_times_what_a_step_loads)
+TEST(Figures, bandwidth_is_steps_times_what_a_step_loads)
 {
     EXPECT_DOUBLE_EQ(bytes_per_step({}), 44);
     EXPECT_DOUBLE_EQ(bytes_per_step({Structure::cdt, Method::maria, Layout::tet96}), 64);
@@ -62,7 +62,7 @@ TEST(figures, bandwidth_is_steps_times_what_a_step_loads)
     EXPECT_DOUBLE_EQ(figures_of(timed_row(Layout::tet96))->gb_per_s.value(), 5.12);
 }
 
-TEST(figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
+TEST(Figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
 {
     const auto figures = figures_of(single_row("a"));
     ASSERT_TRUE(figures.has_value());
@@ -72,7 +72,7 @@ TEST(figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
     EXPECT_FALSE(mean_steps(traced(single_row("a"))->totals).all.has_value());
 }
 
-TEST(figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
+TEST(Figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
 {
     RowRun row = timed_row();
     EXPECT_FALSE(figures_of(row)->overhead_s.has_value());
@@ -81,7 +81,7 @@ TEST(figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_samp
     EXPECT_DOUBLE_EQ(figures_of(row)->wall_s.value(), 0.5625);
 }
 
-TEST(figures, mean_steps_are_apart_for_hits_and_misses)
+TEST(Figures, mean_steps_are_apart_for_hits_and_misses)
 {
     const MeanSteps mean = mean_steps(traced(timed_row())->totals);
     EXPECT_DOUBLE_EQ(mean.all.value(), 10);
@@ -89,7 +89,7 @@ TEST(figures, mean_steps_are_apart_for_hits_and_misses)
     EXPECT_DOUBLE_EQ(mean.miss.value(), 5);
 }
 
-TEST(figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_scene)
+TEST(Figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_scene)
 {
     std::vector<RowRun> rows;
     rows.push_back(single_row("b"));
@@ -102,7 +102,7 @@ TEST(figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_sc
     EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
 }
 
-TEST(figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
+TEST(Figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
 {
     std::vector<RowRun> rows;
     rows.push_back(single_row("a"));
@@ -113,7 +113,7 @@ TEST(figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
     EXPECT_TRUE(ratio_to_single(rows[1], rows).has_value());
 }
 
-TEST(figures, a_row_has_rates_where_it_is_ok_or_flawed_and_was_timed)
+TEST(Figures, a_row_has_rates_where_it_is_ok_or_flawed_and_was_timed)
 {
     RowRun flawed = timed_row();
     std::get<Traced>(flawed.outcome).verdicts.wrong = 1;
@@ -163,7 +163,7 @@ int code_with(Outcome outcome, bool flawed_passes)
 
 } // namespace
 
-TEST(exit_codes, rows_that_are_ok_skipped_or_unsupported_are_no_failure)
+TEST(ExitCodes, rows_that_are_ok_skipped_or_unsupported_are_no_failure)
 {
     for (const bool passes : {false, true}) {
         EXPECT_EQ(code_with(Traced{}, passes), 0);
@@ -172,13 +172,13 @@ TEST(exit_codes, rows_that_are_ok_skipped_or_unsupported_are_no_failure)
     }
 }
 
-TEST(exit_codes, a_flawed_row_fails_unless_it_may_pass)
+TEST(ExitCodes, a_flawed_row_fails_unless_it_may_pass)
 {
     EXPECT_EQ(code_with(judged(2, 0, 0), false), 1);
     EXPECT_EQ(code_with(judged(2, 0, 0), true), 0);
 }
 
-TEST(exit_codes, a_lost_ray_of_a_robust_method_or_one_that_differs_from_openmp_fails_always)
+TEST(ExitCodes, a_lost_ray_of_a_robust_method_or_one_that_differs_from_openmp_fails_always)
 {
     for (const bool passes : {false, true}) {
         EXPECT_EQ(code_with(judged(0, 1, 0), passes), 1);
@@ -190,7 +190,7 @@ TEST(exit_codes, a_lost_ray_of_a_robust_method_or_one_that_differs_from_openmp_f
     EXPECT_EQ(reason_of(row_with(judged(0, 0, 2))), "2 different from openmp's");
 }
 
-TEST(exit_codes, a_method_that_does_not_claim_robustness_fails_only_where_a_device_differs_from_openmp)
+TEST(ExitCodes, a_method_that_does_not_claim_robustness_fails_only_where_a_device_differs_from_openmp)
 {
     for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::single})
         for (const bool passes : {false, true}) {
@@ -204,7 +204,7 @@ TEST(exit_codes, a_method_that_does_not_claim_robustness_fails_only_where_a_devi
         EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = theirs}));
 }
 
-TEST(exit_codes, an_error_gives_that_of_its_kind_unless_something_is_wrong)
+TEST(ExitCodes, an_error_gives_that_of_its_kind_unless_something_is_wrong)
 {
     EXPECT_EQ(code_with(Failed{ErrorKind::internal, ""}, true), exit_code(ErrorKind::internal));
     EXPECT_EQ(code_with(Failed{ErrorKind::invalid_input, ""}, true), exit_code(ErrorKind::invalid_input));

@@ -85,9 +85,9 @@ private:
     std::function<void()> lose_;
 };
 
-class measure : public testing::Test {
+class Measure : public testing::Test {
 protected:
-    measure() { set_up_rows(); }
+    Measure() { set_up_rows(); }
 
     void set_up_rows()
     {
@@ -127,7 +127,7 @@ bool first_row_ends_before_the_second_starts(const std::vector<std::size_t>& lau
 
 } // namespace
 
-TEST_F(measure, every_row_has_its_samples_each_of_all_views)
+TEST_F(Measure, every_row_has_its_samples_each_of_all_views)
 {
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
     EXPECT_EQ(measured.samples, 30u);
@@ -143,7 +143,7 @@ TEST_F(measure, every_row_has_its_samples_each_of_all_views)
 }
 
 // Each of the 60!/(30! 30!) orders of samples is as likely: rows one after the other do not come by chance.
-TEST_F(measure, rows_are_interleaved_unless_a_flag_says_otherwise)
+TEST_F(Measure, rows_are_interleaved_unless_a_flag_says_otherwise)
 {
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
     EXPECT_FALSE(first_row_ends_before_the_second_starts(launched_));
@@ -153,7 +153,7 @@ TEST_F(measure, rows_are_interleaved_unless_a_flag_says_otherwise)
     EXPECT_TRUE(first_row_ends_before_the_second_starts(launched_));
 }
 
-TEST_F(measure, a_budget_that_is_too_small_lowers_the_samples_and_says_so)
+TEST_F(Measure, a_budget_that_is_too_small_lowers_the_samples_and_says_so)
 {
     options_.budget_s = 1e-9;
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
@@ -162,14 +162,14 @@ TEST_F(measure, a_budget_that_is_too_small_lowers_the_samples_and_says_so)
     EXPECT_EQ(rows_[1].samples_s.size(), 5u);
 }
 
-TEST_F(measure, the_budget_counts_warm_passes_not_the_first_which_may_compile)
+TEST_F(Measure, the_budget_counts_warm_passes_not_the_first_which_may_compile)
 {
     for (RowRun& row : rows_)
         std::get<Traced>(row.outcome).wall_s = 1000;
     EXPECT_FALSE(measure_rows(rows_, options_, read_benchmark_flags({})).lowered);
 }
 
-TEST_F(measure, a_device_that_is_lost_ends_its_row_and_the_others_go_on)
+TEST_F(Measure, a_device_that_is_lost_ends_its_row_and_the_others_go_on)
 {
     for (const LostAt at : {LostAt::launch, LostAt::wait, LostAt::read_back}) {
         set_up_rows();
@@ -184,7 +184,7 @@ TEST_F(measure, a_device_that_is_lost_ends_its_row_and_the_others_go_on)
     }
 }
 
-TEST_F(measure, a_device_that_is_lost_among_the_samples_leaves_no_rate)
+TEST_F(Measure, a_device_that_is_lost_among_the_samples_leaves_no_rate)
 {
     int calls = 0;
     rows_[0].session = std::make_unique<LostSession>(std::move(rows_[0].session), LostAt::wait, [&] {
@@ -196,7 +196,7 @@ TEST_F(measure, a_device_that_is_lost_among_the_samples_leaves_no_rate)
     EXPECT_EQ(rows_[1].samples_s.size(), 30u);
 }
 
-TEST_F(measure, an_allocation_that_fails_is_unsupported_and_the_others_go_on)
+TEST_F(Measure, an_allocation_that_fails_is_unsupported_and_the_others_go_on)
 {
     rows_[0].session =
         std::make_unique<LostSession>(std::move(rows_[0].session), LostAt::launch, [] { throw std::bad_alloc(); });
@@ -205,7 +205,7 @@ TEST_F(measure, an_allocation_that_fails_is_unsupported_and_the_others_go_on)
     EXPECT_EQ(rows_[1].samples_s.size(), 30u);
 }
 
-TEST_F(measure, repetitions_are_taken_whatever_the_budget)
+TEST_F(Measure, repetitions_are_taken_whatever_the_budget)
 {
     options_.budget_s = 1e-9;
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({"--benchmark_repetitions=4"}));
@@ -213,7 +213,7 @@ TEST_F(measure, repetitions_are_taken_whatever_the_budget)
     EXPECT_FALSE(measured.lowered);
 }
 
-TEST_F(measure, hits_that_change_after_verification_are_an_error_without_a_rate)
+TEST_F(Measure, hits_that_change_after_verification_are_an_error_without_a_rate)
 {
     changes_ = true;
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
@@ -224,7 +224,7 @@ TEST_F(measure, hits_that_change_after_verification_are_an_error_without_a_rate)
     EXPECT_EQ(exit_code(rows_, true), exit_code(ErrorKind::internal));
 }
 
-TEST_F(measure, rows_that_are_wrong_are_not_timed)
+TEST_F(Measure, rows_that_are_wrong_are_not_timed)
 {
     std::get<Traced>(rows_[0].outcome).different = 1;
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));

@@ -38,31 +38,31 @@ Numbers numbers_of(std::vector<Device> devices)
 
 } // namespace
 
-TEST(physical_devices, what_runs_on_the_host_is_one_whatever_its_uuid)
+TEST(PhysicalDevices, what_runs_on_the_host_is_one_whatever_its_uuid)
 {
     Device lavapipe = host("emulated");
     lavapipe.uuid = "6d657361";
     EXPECT_EQ(numbers_of({host("cpu"), gpu("a", ""), lavapipe, host("emulated")}), (Numbers{0, 1, 0, 0}));
 }
 
-TEST(physical_devices, a_gpu_is_known_by_its_uuid_else_by_its_pci_address)
+TEST(PhysicalDevices, a_gpu_is_known_by_its_uuid_else_by_its_pci_address)
 {
     EXPECT_EQ(numbers_of({gpu("a", "0000:41:00.0"), gpu("a", ""), gpu("", "0000:41:00.0"), gpu("b", "0000:42:00.0")}),
               (Numbers{0, 0, 0, 1}));
 }
 
-TEST(physical_devices, instances_of_a_divided_gpu_stay_apart)
+TEST(PhysicalDevices, instances_of_a_divided_gpu_stay_apart)
 {
     EXPECT_EQ(numbers_of({gpu("a", "0000:41:00.0"), gpu("b", "0000:41:00.0")}), (Numbers{0, 1}));
 }
 
-TEST(physical_devices, a_device_that_knows_both_names_joins_two_that_know_one_each)
+TEST(PhysicalDevices, a_device_that_knows_both_names_joins_two_that_know_one_each)
 {
     EXPECT_EQ(numbers_of({gpu("", "0000:41:00.0"), gpu("a", ""), gpu("b", ""), gpu("a", "0000:41:00.0")}),
               (Numbers{0, 0, 1, 0}));
 }
 
-TEST(physical_devices, nameless_gpus_and_what_is_missing_are_never_one)
+TEST(PhysicalDevices, nameless_gpus_and_what_is_missing_are_never_one)
 {
     EXPECT_EQ(numbers_of({gpu("", ""), gpu("", ""), missing(), missing(), host("cpu")}), (Numbers{0, 1, 2, 3, 4}));
     Device unusable = host("emulated");

@@ -44,7 +44,7 @@ std::vector<RowRun> list(Rows... rows)
 
 } // namespace
 
-TEST(row_devices, are_listed_once_by_hardware_emulations_last)
+TEST(RowDevices, are_listed_once_by_hardware_emulations_last)
 {
     static FakeBackend opencl("opencl", device("PoCL", "emulated")), cuda("cuda", device("GPU", "gpu", "a")),
         vulkan("vulkan", device("GPU", "gpu", "a")), openmp("openmp", device("CPU", "cpu"));
@@ -58,7 +58,7 @@ TEST(row_devices, are_listed_once_by_hardware_emulations_last)
     EXPECT_FALSE(device_of(RowRun{}, devices).has_value());
 }
 
-TEST(row_devices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
+TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
 {
     static FakeBackend slow("a", device("slow", "gpu", "a")), fast("b", device("fast", "gpu", "b"));
     slow.measure = [] { return Yardstick{88e9, 1e-6}; };
@@ -71,7 +71,7 @@ TEST(row_devices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
     EXPECT_DOUBLE_EQ(share_of_copy(rows[1], devices).value(), 0.1);
 }
 
-TEST(row_devices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)
+TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)
 {
     static FakeBackend host("host", device("CPU", "cpu")), gpu("gpu", device("GPU", "gpu"));
     auto devices = devices_of(list(row_of(host), row_of(gpu)));
@@ -81,7 +81,7 @@ TEST(row_devices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_
     EXPECT_FALSE(devices[1].yardstick.has_value());
 }
 
-TEST(row_devices, a_device_that_fails_keeps_the_reason_and_the_others_are_measured)
+TEST(RowDevices, a_device_that_fails_keeps_the_reason_and_the_others_are_measured)
 {
     static FakeBackend lost("lost", device("lost", "gpu", "a")), good("good", device("good", "gpu", "b"));
     lost.measure = []() -> std::optional<Yardstick> { throw Error(ErrorKind::internal, "the device was lost"); };

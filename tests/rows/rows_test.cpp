@@ -82,7 +82,7 @@ std::vector<std::string> names_on(Backend& backend, std::vector<std::string> arg
 
 } // namespace
 
-TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_lacks_is_none)
+TEST(Rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_lacks_is_none)
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--math", "exact,fast"}), {"a"}, {&old});
@@ -94,7 +94,7 @@ TEST(rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
                              [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
 }
 
-TEST(rows, every_usable_device_has_rows_named_by_its_index)
+TEST(Rows, every_usable_device_has_rows_named_by_its_index)
 {
     OldHost old({device_named("a", "gpu"), device_named("b", "gpu", false), device_named("c", "cpu")});
     const auto rows = select_rows(parse_options({"bench", "--layout", "tet80"}), {"s"}, {&old});
@@ -105,7 +105,7 @@ TEST(rows, every_usable_device_has_rows_named_by_its_index)
     EXPECT_TRUE(missing_devices(parse_options({"bench"}), {&old}).empty());
 }
 
-TEST(rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
+TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
 {
     OldHost old({device_named("Radeon", "gpu"), device_named("llvmpipe", "emulated")});
     const auto indices = [&](const char* text) {
@@ -121,7 +121,7 @@ TEST(rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
     EXPECT_THROW(static_cast<void>(indices("geforce")), Error);
 }
 
-TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
+TEST(Rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
 {
     OldHost old({device_named("none", "gpu", false)});
     OldHost usable;
@@ -133,7 +133,7 @@ TEST(rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
     EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
 }
 
-TEST(rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_asked_for)
+TEST(Rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_asked_for)
 {
     Drivers drivers;
     const auto names_with = [&](const std::vector<std::string>& arguments) { return names_on(drivers, arguments); };
@@ -147,7 +147,7 @@ TEST(rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_as
     EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt");
 }
 
-TEST(rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
+TEST(Rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
 {
     Drivers drivers("emulated");
     for (const auto& unnamed : {std::vector<std::string>{}, {"--filter", "api:old"}, {"--filter", "start|/s/"}})
@@ -160,7 +160,7 @@ TEST(rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
         EXPECT_EQ(names_on(drivers, named), (std::vector{on_0, on_1}));
 }
 
-TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
+TEST(Rows, persistent_threads_are_rows_where_they_are_asked_for)
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--schedule", "tiles,persistent"}), {"s"}, {&old});
@@ -168,7 +168,7 @@ TEST(rows, persistent_threads_are_rows_where_they_are_asked_for)
     EXPECT_EQ(row_name(rows[3]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
-TEST(rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
+TEST(Rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
 {
     EXPECT_EQ(names({"bench"}, {"bunny"}),
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
@@ -181,13 +181,13 @@ TEST(rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
                                         "bvh/packet16/embree/bunny/primary/math:fast/api:embree"}));
 }
 
-TEST(rows, the_papers_tables_have_no_packets)
+TEST(Rows, the_papers_tables_have_no_packets)
 {
     const auto list = names({"reproduce", "table4", "--method", "project", "--layout", "half32"}, {"a"});
     EXPECT_EQ(list, std::vector<std::string>{"cdt/project/half32/a/primary/math:exact/api:openmp"});
 }
 
-TEST(rows, every_method_has_rows_where_all_are_asked_for)
+TEST(Rows, every_method_has_rows_where_all_are_asked_for)
 {
     const auto list = names({"bench", "--method", "all", "--layout", "tet80,embree"}, {"a"});
     ASSERT_EQ(list.size(), 8u);
@@ -198,7 +198,7 @@ TEST(rows, every_method_has_rows_where_all_are_asked_for)
     EXPECT_EQ(names({"check", "--method", "plucker"}, {"a"}).size(), 2u);
 }
 
-TEST(rows, options_select_and_rows_go_scene_after_scene)
+TEST(Rows, options_select_and_rows_go_scene_after_scene)
 {
     EXPECT_EQ(names({"bench", "--layout", "tet96"}, {"a", "b"}),
               (std::vector<std::string>{"cdt/maria/tet96/a/primary/math:exact/api:openmp",
@@ -207,7 +207,7 @@ TEST(rows, options_select_and_rows_go_scene_after_scene)
               std::vector<std::string>{"bvh/packet16/embree/a/primary/math:fast/api:embree"});
 }
 
-TEST(rows, embree_has_one_row_whatever_the_math_modes_and_orders)
+TEST(Rows, embree_has_one_row_whatever_the_math_modes_and_orders)
 {
     const auto list =
         names({"bench", "--math", "exact,fast", "--order", "input,hilbert", "--layout", "tet80,embree"}, {"a"});
@@ -219,18 +219,18 @@ TEST(rows, embree_has_one_row_whatever_the_math_modes_and_orders)
     EXPECT_NE(std::find(list.begin(), list.end(), "cdt/maria/tet80/a/primary/math:exact/api:openmp"), list.end());
 }
 
-TEST(rows, values_given_twice_give_a_row_once)
+TEST(Rows, values_given_twice_give_a_row_once)
 {
     EXPECT_EQ(names({"bench", "--layout", "tet80,tet80", "--order", "input,input"}, {"a"}).size(), 1u);
 }
 
-TEST(rows, the_filter_is_a_search_in_names)
+TEST(Rows, the_filter_is_a_search_in_names)
 {
     EXPECT_EQ(names({"bench", "--filter", "tet80|packet16"}, {"a"}).size(), 2u);
     EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 6u);
 }
 
-TEST(rows, an_empty_selection_is_an_error_that_says_so)
+TEST(Rows, an_empty_selection_is_an_error_that_says_so)
 {
     try {
         static_cast<void>(names({"bench", "--filter", "tet97"}, {"a"}));
@@ -248,7 +248,7 @@ TEST(rows, an_empty_selection_is_an_error_that_says_so)
     }
 }
 
-TEST(rows, google_benchmarks_filter_negates_with_a_minus)
+TEST(Rows, google_benchmarks_filter_negates_with_a_minus)
 {
     EXPECT_TRUE(benchmark_filter_keeps("", "x"));
     EXPECT_TRUE(benchmark_filter_keeps("all", "x"));
@@ -257,7 +257,7 @@ TEST(rows, google_benchmarks_filter_negates_with_a_minus)
     EXPECT_THROW(static_cast<void>(benchmark_filter_keeps("(", "x")), Error);
 }
 
-TEST(rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays)
+TEST(Rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays)
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--method", "all", "--layout", "tet80", "--rays",
@@ -272,7 +272,7 @@ TEST(rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays
     EXPECT_EQ(rows[0].kernel.task, Task::trace);
 }
 
-TEST(rows, bvhs_of_ours_have_math_modes_and_schedules_and_embrees_do_not)
+TEST(Rows, bvhs_of_ours_have_math_modes_and_schedules_and_embrees_do_not)
 {
     const auto bvhs = names({"bench", "--structure", "bvh", "--math", "exact,fast"}, {"s"});
     EXPECT_EQ(bvhs, (std::vector<std::string>{"bvh/single/bvh2/s/primary/math:exact/api:openmp",

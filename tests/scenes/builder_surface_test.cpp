@@ -37,12 +37,12 @@ TEST(Place, scales_by_a_power_of_two_and_loses_nothing)
             const TriangleMesh before = mesh;
             const Placement placement = place(mesh, kind);
             EXPECT_EQ(placement.snapped_coordinates, 0u);
-            for (std::size_t i = 0; i < mesh.vertices.size(); i++)
-                for (int axis = 0; axis < 3; axis++)
+            for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+                for (int axis = 0; axis < 3; ++axis)
                     ASSERT_EQ(std::ldexp(mesh.vertices[i][axis], -placement.scale_exponent), before.vertices[i][axis]);
             const Domain domain = make_domain(mesh, kind, 8);
             float reach = 0;
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 reach = std::max({reach, -domain.low()[axis], domain.high()[axis]});
             EXPECT_LE(reach, 1) << size;
             EXPECT_GT(reach, 0.5f) << size;
@@ -87,7 +87,7 @@ TEST(SelfIntersection, finds_every_way_in_which_two_triangles_meet)
 TEST(SelfIntersection, lists_the_first_pairs_in_mesh_units)
 {
     TriangleMesh mesh = crossing_pair();
-    for (std::uint32_t i = 0; i < 8; i++) {
+    for (std::uint32_t i = 0; i < 8; ++i) {
         mesh.triangles.push_back({3, 4, static_cast<std::uint32_t>(mesh.vertices.size())});
         mesh.vertices.push_back({2, 1 + 0.1f * static_cast<float>(i + 1), 1});
     }

@@ -20,13 +20,13 @@ BuilderTalk silence()
 void expect_faces_inside_their_triangles(const Scene& scene)
 {
     for (const Tet& tet : scene.tets.tets) {
-        for (std::size_t face = 0; face < 4; face++) {
+        for (std::size_t face = 0; face < 4; ++face) {
             if (tet.faces[face] == FREE_FACE) continue;
             const auto& [a, b, c] = scene.mesh.triangles[tet.faces[face]];
             const Double3 va = to_double(scene.mesh.vertices[a]), vb = to_double(scene.mesh.vertices[b]),
                           vc = to_double(scene.mesh.vertices[c]);
             Double3 centre;
-            for (std::size_t i = 0; i < 4; i++)
+            for (std::size_t i = 0; i < 4; ++i)
                 if (i != face) centre = centre + to_double(scene.tets.vertices[tet.vertices[i]]) * (1.0 / 3);
             const double whole = length(cross(vb - va, vc - va));
             const double parts = length(cross(va - centre, vb - centre)) + length(cross(vb - centre, vc - centre)) +
@@ -47,7 +47,7 @@ Scene build(const BuilderOptions& options)
 TetMesh four_tets(Float3 middle)
 {
     TetMesh mesh{{{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, middle}, {}};
-    for (std::size_t i = 0; i < 4; i++) {
+    for (std::size_t i = 0; i < 4; ++i) {
         Tet tet{{1, 0, 2, 3}, {NO_LINK, NO_LINK, NO_LINK, NO_LINK}, {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}};
         tet.vertices[i] = 4;
         mesh.tets.push_back(tet);
@@ -112,7 +112,7 @@ TEST(SteinerRounding, leaves_what_may_not_move)
 TEST_F(Builder, fills_both_domains_round_every_kind_of_mesh)
 {
     const std::vector<TriangleMesh> meshes = {tetrahedron(), flat_cube(6), sphere(3)};
-    for (std::size_t i = 0; i < meshes.size(); i++) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
         for (const DomainKind domain : {DomainKind::tight, DomainKind::wide}) {
             for (const std::string switches : {"p", "pq5Y", "pq5", "pq5YM", "pq"}) {
                 SCOPED_TRACE("mesh " + std::to_string(i) + ", domain " + std::to_string(static_cast<int>(domain)) +

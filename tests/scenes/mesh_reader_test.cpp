@@ -208,7 +208,7 @@ TEST_F(MeshReader, returns_floats_printed_with_nine_digits_bit_for_bit)
            "face 1\n"
            "property list uchar int vertex_indices\nend_header\n";
     for (Float3& v : wanted) {
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             do
                 v[axis] = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
             while (!std::isfinite(v[axis]));
@@ -354,11 +354,11 @@ TEST_F(MeshReader, survives_every_truncation_and_seeded_byte_flips)
     constexpr unsigned seed = 20;
     std::mt19937 random(seed);
     for (const auto& [name, bytes] : files) {
-        for (std::size_t size = 0; size < bytes.size(); size++) {
+        for (std::size_t size = 0; size < bytes.size(); ++size) {
             SCOPED_TRACE(name + " cut to " + std::to_string(size));
             expect_valid_or_error(name, bytes.substr(0, size));
         }
-        for (int flip = 0; flip < 1000; flip++) {
+        for (int flip = 0; flip < 1000; ++flip) {
             std::string damaged = bytes;
             for (auto count = 1 + random() % 3; count > 0; count--)
                 damaged[random() % damaged.size()] ^= static_cast<char>(1u << random() % 8);

@@ -18,7 +18,7 @@ Samples times_with_delays(int count, double seconds, std::mt19937_64& random)
     std::normal_distribution<double> noise(0, 0.01);
     std::exponential_distribution<double> delay(100);
     Samples samples;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; ++i)
         samples.push_back(seconds * (1 + noise(random) + delay(random)));
     return samples;
 }
@@ -27,7 +27,7 @@ Samples normal_times(int count, double seconds, double relative_noise, std::mt19
 {
     std::normal_distribution<double> noise(0, relative_noise);
     Samples samples;
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; ++i)
         samples.push_back(seconds * std::exp(noise(random)));
     return samples;
 }
@@ -38,7 +38,7 @@ double coverage(int count)
     constexpr int trials = 400;
     std::mt19937_64 random(static_cast<std::uint64_t>(count));
     int covered = 0;
-    for (int i = 0; i < trials; i++)
+    for (int i = 0; i < trials; ++i)
         covered +=
             ratio_of_medians(times_with_delays(count, 3, random), times_with_delays(count, 2, random)).contains(1.5);
     return static_cast<double>(covered) / trials;
@@ -46,19 +46,19 @@ double coverage(int count)
 
 } // namespace
 
-TEST(median_ratio, is_the_quotient_of_the_medians)
+TEST(MedianRatio, is_the_quotient_of_the_medians)
 {
     EXPECT_DOUBLE_EQ(ratio_of_medians({3, 1, 2}, {4, 5, 3}).value, 0.5);
 }
 
-TEST(median_ratio, samples_without_spread_leave_no_doubt)
+TEST(MedianRatio, samples_without_spread_leave_no_doubt)
 {
     const MedianRatio ratio = ratio_of_medians({3, 3, 3, 3}, {2, 2, 2, 2});
     EXPECT_DOUBLE_EQ(ratio.low, 1.5);
     EXPECT_DOUBLE_EQ(ratio.high, 1.5);
 }
 
-TEST(median_ratio, equal_samples_give_equal_intervals)
+TEST(MedianRatio, equal_samples_give_equal_intervals)
 {
     const Samples a = {1, 1.2, 0.9, 1.1, 1.05, 0.97}, b = {2, 2.1, 1.9, 2.05, 2.2, 1.95};
     const MedianRatio first = ratio_of_medians(a, b), second = ratio_of_medians(a, b);
@@ -69,7 +69,7 @@ TEST(median_ratio, equal_samples_give_equal_intervals)
 }
 
 // Binomial standard deviation of 400 trials at 95 %: 1.1 %. Intervals of medians are known to be a little too wide.
-TEST(median_ratio, the_interval_contains_the_true_ratio_as_often_as_it_says)
+TEST(MedianRatio, the_interval_contains_the_true_ratio_as_often_as_it_says)
 {
     for (const int count : {6, 10, 20, 41}) {
         EXPECT_GE(coverage(count), 0.92) << count << " samples";
@@ -77,25 +77,25 @@ TEST(median_ratio, the_interval_contains_the_true_ratio_as_often_as_it_says)
     }
 }
 
-TEST(median_ratio, two_runs_of_one_program_are_hardly_ever_told_apart)
+TEST(MedianRatio, two_runs_of_one_program_are_hardly_ever_told_apart)
 {
     std::mt19937_64 random(5);
     int equal = 0;
-    for (int i = 0; i < 200; i++)
+    for (int i = 0; i < 200; ++i)
         equal += ratio_of_medians(normal_times(20, 1, 0.02, random), normal_times(20, 1, 0.02, random)).contains(1);
     EXPECT_GE(equal, 184);
 }
 
-TEST(median_ratio, five_percent_are_seen_through_two_percent_of_noise_in_twenty_samples)
+TEST(MedianRatio, five_percent_are_seen_through_two_percent_of_noise_in_twenty_samples)
 {
     std::mt19937_64 random(7);
     int seen = 0;
-    for (int i = 0; i < 200; i++)
+    for (int i = 0; i < 200; ++i)
         seen += !ratio_of_medians(normal_times(20, 1.05, 0.02, random), normal_times(20, 1, 0.02, random)).contains(1);
     EXPECT_GE(seen, 190);
 }
 
-TEST(median_ratio, samples_that_cannot_be_times_are_rejected)
+TEST(MedianRatio, samples_that_cannot_be_times_are_rejected)
 {
     EXPECT_THROW(static_cast<void>(ratio_of_medians({}, {1})), Error);
     EXPECT_THROW(static_cast<void>(ratio_of_medians({1}, {0})), Error);

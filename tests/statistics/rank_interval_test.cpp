@@ -32,7 +32,7 @@ Samples sorted_quotients(const Samples& numerator, const Samples& denominator)
 } // namespace
 
 // Critical values of U, two-sided, from the tables in textbooks (Mann and Whitney's own, extended by Auble in 1953).
-TEST(rank_interval, leaves_out_as_many_quotients_as_the_tables_of_the_test_say)
+TEST(RankInterval, leaves_out_as_many_quotients_as_the_tables_of_the_test_say)
 {
     const auto left_out = [](std::size_t n, std::size_t m, double error) {
         return quotients_left_out(n, m, error).value_or(9999);
@@ -47,7 +47,7 @@ TEST(rank_interval, leaves_out_as_many_quotients_as_the_tables_of_the_test_say)
     EXPECT_EQ(left_out(5, 5, 0.01), 0u);
 }
 
-TEST(rank_interval, needs_samples_enough_for_its_error)
+TEST(RankInterval, needs_samples_enough_for_its_error)
 {
     EXPECT_FALSE(quotients_left_out(4, 4, 0.01));
     EXPECT_FALSE(quotients_left_out(5, 5, 0.0079));
@@ -62,7 +62,7 @@ TEST(rank_interval, needs_samples_enough_for_its_error)
     EXPECT_NEAR(smallest_error(10, 10), 2.0 / 184756, 1e-12);
 }
 
-TEST(rank_interval, ends_at_quotients_of_samples)
+TEST(RankInterval, ends_at_quotients_of_samples)
 {
     std::mt19937_64 random(3);
     for (const auto& [n, m] : {std::pair{5u, 5u}, {7u, 12u}, {20u, 20u}, {60u, 9u}}) {
@@ -75,7 +75,7 @@ TEST(rank_interval, ends_at_quotients_of_samples)
     }
 }
 
-TEST(rank_interval, of_the_inverse_is_the_inverse)
+TEST(RankInterval, of_the_inverse_is_the_inverse)
 {
     std::mt19937_64 random(4);
     const Samples a = drawn(9, random), b = drawn(14, random);
@@ -85,7 +85,7 @@ TEST(rank_interval, of_the_inverse_is_the_inverse)
     EXPECT_DOUBLE_EQ(there->high, 1 / back->low);
 }
 
-TEST(rank_interval, is_not_moved_by_an_outlier)
+TEST(RankInterval, is_not_moved_by_an_outlier)
 {
     Samples a = {1.00, 1.01, 1.02, 1.03, 1.04, 1.05, 1.06, 1.07, 1.08, 1.09}, b = a;
     const auto before = rank_interval(a, b, 0.01);
@@ -98,7 +98,7 @@ TEST(rank_interval, is_not_moved_by_an_outlier)
 
 // All orders that five to seven samples of one distribution and as many of another, equal one can come in: each is
 // equally likely, whatever the distribution.
-TEST(rank_interval, excludes_1_in_fewer_than_one_of_a_hundred_orders_of_equal_samples)
+TEST(RankInterval, excludes_1_in_fewer_than_one_of_a_hundred_orders_of_equal_samples)
 {
     for (const std::size_t n : {5u, 6u, 7u}) {
         std::vector<int> is_first(2 * n, 0);
@@ -117,7 +117,7 @@ TEST(rank_interval, excludes_1_in_fewer_than_one_of_a_hundred_orders_of_equal_sa
 }
 
 // Binomial standard deviation of 2,000 trials at 1 %: 0.22 %.
-TEST(rank_interval, contains_the_factor_as_often_as_it_says_where_the_normal_approximation_serves)
+TEST(RankInterval, contains_the_factor_as_often_as_it_says_where_the_normal_approximation_serves)
 {
     std::mt19937_64 random(6);
     int missed = 0;
@@ -131,7 +131,7 @@ TEST(rank_interval, contains_the_factor_as_often_as_it_says_where_the_normal_app
     EXPECT_GE(missed, 6) << "far wider than need be";
 }
 
-TEST(rank_interval, grows_steadily_from_counting_to_the_approximation)
+TEST(RankInterval, grows_steadily_from_counting_to_the_approximation)
 {
     const auto share = [](std::size_t n) {
         return static_cast<double>(quotients_left_out(n, n, 0.0005).value()) / static_cast<double>(n * n);
@@ -141,7 +141,7 @@ TEST(rank_interval, grows_steadily_from_counting_to_the_approximation)
     EXPECT_LT(share(52) - share(50), 0.01);
 }
 
-TEST(rank_interval, takes_ten_thousand_samples)
+TEST(RankInterval, takes_ten_thousand_samples)
 {
     std::mt19937_64 random(8);
     const auto interval = rank_interval(drawn(10000, random), drawn(10000, random), 0.01);

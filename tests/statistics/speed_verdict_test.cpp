@@ -81,7 +81,7 @@ Samples around(double seconds, double relative)
 } // namespace
 
 // 1 % is promised; the standard deviation of 2,000 trials at 1 % is 0.22 %, so 1.7 % lies three of them above.
-TEST(speed_verdict, raises_false_alarms_in_fewer_than_one_of_a_hundred_comparisons)
+TEST(SpeedVerdict, raises_false_alarms_in_fewer_than_one_of_a_hundred_comparisons)
 {
     const std::pair<const char*, Noise> noises[] = {{"normal", normal(0.02)},
                                                     {"delays", with_delays},
@@ -95,7 +95,7 @@ TEST(speed_verdict, raises_false_alarms_in_fewer_than_one_of_a_hundred_compariso
         }
 }
 
-TEST(speed_verdict, finds_five_percent_through_two_percent_of_noise_in_twenty_samples)
+TEST(SpeedVerdict, finds_five_percent_through_two_percent_of_noise_in_twenty_samples)
 {
     for (const std::size_t rows : {1u, 20u, 100u}) {
         Random random(rows);
@@ -106,7 +106,7 @@ TEST(speed_verdict, finds_five_percent_through_two_percent_of_noise_in_twenty_sa
 
 // 400 comparisons of 20 rows: 4 alarms are promised at most, 10 are three standard deviations above. Intervals of 99 %
 // for each row alone would give 73.
-TEST(speed_verdict, keeps_its_promise_for_all_rows_of_a_comparison_together)
+TEST(SpeedVerdict, keeps_its_promise_for_all_rows_of_a_comparison_together)
 {
     Random random(11);
     int alarms = 0;
@@ -116,7 +116,7 @@ TEST(speed_verdict, keeps_its_promise_for_all_rows_of_a_comparison_together)
 }
 
 // A true difference of 3.5 % is outside the tolerance of 3 %: the same in fewer than 1 of 200.
-TEST(speed_verdict, hardly_ever_calls_the_same_what_differs_by_more_than_the_tolerance)
+TEST(SpeedVerdict, hardly_ever_calls_the_same_what_differs_by_more_than_the_tolerance)
 {
     Random random(12);
     int same = 0, same_within = 0;
@@ -132,20 +132,20 @@ TEST(speed_verdict, hardly_ever_calls_the_same_what_differs_by_more_than_the_tol
     EXPECT_GE(same_within, 990) << "and what is equal is found to be so";
 }
 
-TEST(speed_verdict, is_same_within_the_tolerance_even_where_a_difference_is_certain)
+TEST(SpeedVerdict, is_same_within_the_tolerance_even_where_a_difference_is_certain)
 {
     EXPECT_EQ(verdict_of(around(1, 0.001), around(1.01, 0.001), 0.03), SpeedVerdict::same);
     EXPECT_EQ(verdict_of(around(1, 0.001), around(1.01, 0.001), 0.005), SpeedVerdict::slower);
     EXPECT_EQ(verdict_of(around(1.01, 0.001), around(1, 0.001), 0.005), SpeedVerdict::faster);
 }
 
-TEST(speed_verdict, is_unsure_where_noise_hides_more_than_the_tolerance)
+TEST(SpeedVerdict, is_unsure_where_noise_hides_more_than_the_tolerance)
 {
     EXPECT_EQ(verdict_of(around(1, 0.2), around(1.01, 0.2), 0.03), SpeedVerdict::unsure);
     EXPECT_EQ(verdict_of(around(1, 0.2), around(1.01, 0.2), 1), SpeedVerdict::same);
 }
 
-TEST(speed_verdict, ratio_is_that_of_the_medians_and_lies_in_its_interval)
+TEST(SpeedVerdict, ratio_is_that_of_the_medians_and_lies_in_its_interval)
 {
     const SpeedChange change = compare_speed({2, 2, 2, 2, 4, 4, 4}, {1, 1, 1, 2, 2, 2, 2}, 1, 0.03);
     EXPECT_EQ(change.ratio, 1);
@@ -160,7 +160,7 @@ TEST(speed_verdict, ratio_is_that_of_the_medians_and_lies_in_its_interval)
     EXPECT_EQ(humps.verdict, SpeedVerdict::unsure);
 }
 
-TEST(speed_verdict, of_fewer_than_five_samples_is_unsure)
+TEST(SpeedVerdict, of_fewer_than_five_samples_is_unsure)
 {
     const SpeedChange change = compare_speed({1, 1, 1, 1}, {10, 10, 10, 10}, 1, 0.03);
     EXPECT_EQ(change.verdict, SpeedVerdict::unsure);
@@ -169,7 +169,7 @@ TEST(speed_verdict, of_fewer_than_five_samples_is_unsure)
     EXPECT_EQ(verdict_of({1, 1, 1, 1, 1}, {10, 10, 10, 10, 10}, 0.03), SpeedVerdict::slower);
 }
 
-TEST(speed_verdict, takes_the_smallest_error_that_few_samples_allow)
+TEST(SpeedVerdict, takes_the_smallest_error_that_few_samples_allow)
 {
     const auto error = [](std::size_t samples, std::size_t rows) {
         return compare_speed(Samples(samples, 1), Samples(samples, 1), rows, 0.03).error;
@@ -182,7 +182,7 @@ TEST(speed_verdict, takes_the_smallest_error_that_few_samples_allow)
     EXPECT_DOUBLE_EQ(error(samples_needed(500), 500), 0.01 / 500);
 }
 
-TEST(speed_verdict, is_a_regression_only_beyond_the_tolerance)
+TEST(SpeedVerdict, is_a_regression_only_beyond_the_tolerance)
 {
     const auto regressed = [](double seconds, double tolerance) {
         return compare_speed(around(1, 0.004), around(seconds, 0.004), 1, tolerance).is_regression(tolerance);
@@ -194,7 +194,7 @@ TEST(speed_verdict, is_a_regression_only_beyond_the_tolerance)
     EXPECT_FALSE(regressed(1, 0));
 }
 
-TEST(speed_verdict, of_samples_that_cannot_be_times_is_refused)
+TEST(SpeedVerdict, of_samples_that_cannot_be_times_is_refused)
 {
     EXPECT_THROW(static_cast<void>(compare_speed({}, {1}, 1, 0.03)), Error);
     EXPECT_THROW(static_cast<void>(compare_speed({1, 0}, {1, 1}, 1, 0.03)), Error);

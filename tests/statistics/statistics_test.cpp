@@ -8,7 +8,7 @@
 using namespace tetrace;
 
 // Expected values: numpy.quantile([...], [0.25, 0.5, 0.75]), whose default is the definition used.
-TEST(statistics, quartiles_follow_the_stated_definition)
+TEST(Statistics, quartiles_follow_the_stated_definition)
 {
     const Statistics even = statistics_of({7, 15, 36, 39, 40, 41});
     EXPECT_DOUBLE_EQ(even.lower_quartile, 20.25);
@@ -20,7 +20,7 @@ TEST(statistics, quartiles_follow_the_stated_definition)
     EXPECT_DOUBLE_EQ(odd.upper_quartile, 4);
 }
 
-TEST(statistics, one_sample_is_its_own_median_without_spread)
+TEST(Statistics, one_sample_is_its_own_median_without_spread)
 {
     const Statistics one = statistics_of({2.5});
     EXPECT_DOUBLE_EQ(one.median, 2.5);
@@ -28,18 +28,18 @@ TEST(statistics, one_sample_is_its_own_median_without_spread)
     EXPECT_FALSE(one.noisy());
 }
 
-TEST(statistics, a_spread_above_five_percent_is_noisy)
+TEST(Statistics, a_spread_above_five_percent_is_noisy)
 {
     EXPECT_FALSE(statistics_of({1.0, 1.0, 1.0, 1.04, 1.04}).noisy());
     EXPECT_TRUE(statistics_of({1.0, 1.0, 1.0, 1.06, 1.06}).noisy());
 }
 
-TEST(statistics, one_slow_sample_does_not_make_a_row_noisy)
+TEST(Statistics, one_slow_sample_does_not_make_a_row_noisy)
 {
     EXPECT_FALSE(statistics_of({1, 1, 1, 1, 1, 1, 1, 1, 1, 50}).noisy());
 }
 
-TEST(statistics, samples_that_cannot_be_times_are_rejected)
+TEST(Statistics, samples_that_cannot_be_times_are_rejected)
 {
     EXPECT_THROW(static_cast<void>(statistics_of({})), Error);
     EXPECT_THROW(static_cast<void>(statistics_of({1, 0})), Error);
@@ -47,7 +47,7 @@ TEST(statistics, samples_that_cannot_be_times_are_rejected)
     EXPECT_THROW(static_cast<void>(statistics_of({1, std::numeric_limits<double>::infinity()})), Error);
 }
 
-TEST(affordable_samples, keeps_what_fits_and_never_goes_below_five)
+TEST(AffordableSamples, keeps_what_fits_and_never_goes_below_five)
 {
     EXPECT_EQ(affordable_samples(10, 1.0, 25), 10u);
     EXPECT_EQ(affordable_samples(10, 2.5, 25), 10u);

@@ -29,7 +29,7 @@ namespace tetrace {
 [[nodiscard]] inline TriangleMesh flat_cube(std::uint32_t n)
 {
     std::vector<float> line;
-    for (std::uint32_t i = 0; i <= n; i++)
+    for (std::uint32_t i = 0; i <= n; ++i)
         line.push_back(0.3f + 0.7f * static_cast<float>(i) / static_cast<float>(n));
     return domain_surface({DomainKind::tight, n, {line, line, line}});
 }
@@ -39,7 +39,7 @@ namespace tetrace {
 {
     TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
                       {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
-    for (int i = 0; i < subdivisions; i++) {
+    for (int i = 0; i < subdivisions; ++i) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
         const auto middle = [&](std::uint32_t a, std::uint32_t b) {
             const auto [at, is_new] =

@@ -19,7 +19,7 @@ inline TriangleMesh needles(std::uint32_t count)
 {
     Random random(20);
     TriangleMesh mesh;
-    for (std::uint32_t i = 0; i < count; i++) {
+    for (std::uint32_t i = 0; i < count; ++i) {
         const Float3 a = random.point(-0.5f, 0.5f);
         const Float3 b = random.point(-0.5f, 0.5f);
         add_triangle(mesh, a, b, {b.x + 0.002f, b.y, b.z + 0.002f});
@@ -43,13 +43,13 @@ inline TriangleMesh nested_groups(int halvings, std::uint32_t groups, std::uint3
 {
     Random random(5);
     TriangleMesh mesh;
-    for (std::uint32_t group = 0; group <= groups; group++) {
+    for (std::uint32_t group = 0; group <= groups; ++group) {
         const float size = std::ldexp(1.0f, -halvings * static_cast<int>(group));
         const auto point = [&] {
             const float x = size * random.between(0.5f, 1), y = size * random.unit(), z = size * random.unit();
             return Float3{x, y, z};
         };
-        for (std::uint32_t i = 0; i < (group < groups ? 20 : heap); i++) {
+        for (std::uint32_t i = 0; i < (group < groups ? 20 : heap); ++i) {
             const Float3 a = point(), b = point(), c = point();
             add_triangle(mesh, a, b, c);
         }
@@ -61,7 +61,7 @@ inline TriangleMesh nested_groups(int halvings, std::uint32_t groups, std::uint3
 inline TriangleMesh cube_corners()
 {
     TriangleMesh mesh;
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 8; ++i) {
         const Float3 a = {(i & 4) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 0.5f : -0.5f, (i & 1) != 0 ? 0.5f : -0.5f};
         add_triangle(mesh, a, {a.x + 0.1f, a.y, a.z}, {a.x, a.y + 0.1f, a.z + 0.1f});
     }
@@ -72,7 +72,7 @@ inline TriangleMesh cube_corners()
 inline Bvh chain(std::uint32_t depth, const Box& box)
 {
     Bvh bvh;
-    for (std::uint32_t i = 0; i < depth; i++) {
+    for (std::uint32_t i = 0; i < depth; ++i) {
         bvh.nodes.push_back({box, {2 * i + 1, 2 * i + 2}, 0, 0});
         bvh.nodes.push_back({box, {}, i, 1});
     }

@@ -10,10 +10,10 @@ struct Counted {
 
     Counted() = default;
     explicit Counted(float v) : value(v) {}
-    friend Counted operator+(Counted a, Counted b) { return operations++, Counted(a.value + b.value); }
-    friend Counted operator-(Counted a, Counted b) { return operations++, Counted(a.value - b.value); }
-    friend Counted operator*(Counted a, Counted b) { return operations++, Counted(a.value * b.value); }
-    friend Counted operator/(Counted a, Counted b) { return operations++, Counted(a.value / b.value); }
+    friend Counted operator+(Counted a, Counted b) { return ++operations, Counted(a.value + b.value); }
+    friend Counted operator-(Counted a, Counted b) { return ++operations, Counted(a.value - b.value); }
+    friend Counted operator*(Counted a, Counted b) { return ++operations, Counted(a.value * b.value); }
+    friend Counted operator/(Counted a, Counted b) { return ++operations, Counted(a.value / b.value); }
     friend Counted operator-(Counted a) { return Counted(-a.value); }
     friend bool operator==(Counted a, Counted b) { return a.value == b.value; }
     friend bool operator<(Counted a, Counted b) { return a.value < b.value; }

@@ -22,7 +22,7 @@ protected:
     explicit UsableDevices(Backend& tested) : backend(tested) {}
     void SetUp() override
     {
-        for (std::size_t i = 0; i < backend.devices().size(); i++)
+        for (std::size_t i = 0; i < backend.devices().size(); ++i)
             if (backend.devices()[i].usable) usable.push_back(i);
         if (usable.empty()) GTEST_SKIP() << backend.devices().front().reason;
     }
@@ -106,11 +106,11 @@ private:
 {
     if (a.size() != b.size()) return std::max(a.size(), b.size());
     std::size_t count = 0;
-    for (std::size_t i = 0; i < a.size(); i++) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
         const bool decided = a[i].face_id == b[i].face_id && a[i].tet == b[i].tet && a[i].steps == b[i].steps;
         const std::uint64_t ulps =
             std::max({ulps_between(a[i].t, b[i].t), ulps_between(a[i].u, b[i].u), ulps_between(a[i].v, b[i].v)});
-        if (!decided || ulps > allowed_ulps) count++;
+        if (!decided || ulps > allowed_ulps) ++count;
     }
     return count;
 }
@@ -121,8 +121,8 @@ private:
 {
     if (a.size() != b.size()) return std::max(a.size(), b.size());
     std::size_t count = 0;
-    for (std::size_t i = 0; i < a.size(); i++)
-        if (a[i].face_id != b[i].face_id || !(std::fabs(a[i].t - b[i].t) <= 1e-4F * std::fabs(b[i].t))) count++;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (a[i].face_id != b[i].face_id || !(std::fabs(a[i].t - b[i].t) <= 1e-4F * std::fabs(b[i].t))) ++count;
     return count;
 }
 

@@ -71,7 +71,7 @@ private:
         {
             if (next_ == 4) {
                 words_ = random_words(place_, stream);
-                place_[2]++;
+                ++place_[2];
                 next_ = 0;
             }
             return words_[next_++];
@@ -113,11 +113,11 @@ private:
         Place place{draws.below(static_cast<std::uint32_t>(mesh.tets.size())), draws.below(4), {}, {}};
         const auto& vertices = mesh.tets[place.tet].vertices;
         std::array<std::uint32_t, 3> at{};
-        for (std::uint32_t i = 0, n = 0; i < 4; i++)
+        for (std::uint32_t i = 0, n = 0; i < 4; ++i)
             if (i != place.face) at[n++] = vertices[i];
         std::swap(at[0], at[draws.below(3)]);
         std::swap(at[1], at[1 + draws.below(2)]);
-        for (std::size_t i = 0; i < 3; i++)
+        for (std::size_t i = 0; i < 3; ++i)
             place.corners[i] = mesh.vertices[at[i]];
         place.apex = mesh.vertices[vertices[place.face]];
         return place;
@@ -148,7 +148,7 @@ private:
         int exponent = 0;
         (void)std::frexp(largest, &exponent);
         Float3 cleaned = to_float(direction * std::ldexp(1.0, -exponent)); // exact scaling: the line stays what it is
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             if (std::abs(cleaned[axis]) < 0x1p-20f) cleaned[axis] = 0;
         return cleaned;
     }
@@ -191,7 +191,7 @@ private:
         const Double3 a = to_double(place.corners[0]);
         const Double3 normal = cross(to_double(place.corners[1]) - a, to_double(place.corners[2]) - a);
         if (dot(normal, to_double(place.apex) - a) * dot(normal, to_double(ray.direction)) < 0)
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 ray.direction[axis] = -ray.direction[axis];
         ray.link = make_link(place.tet, place.face);
         ray.triangle = scene_.tets.tets[place.tet].faces[place.face];
@@ -219,7 +219,7 @@ private:
 {
     const HardRays rays(scene);
     RaySet set{RayKind::random, RayOrder::tiles, false, 0, TILE_WIDTH, {}};
-    for (std::size_t i = 0; i < count; i++) {
+    for (std::size_t i = 0; i < count; ++i) {
         set.rays.push_back(rays.ray(first + i));
         set.rays.back().pixel = static_cast<std::uint32_t>(i);
     }

@@ -22,7 +22,7 @@ template <class PlaceOf>
 void move_vertices(Scene& scene, const PlaceOf& place_of)
 {
     std::map<std::tuple<float, float, float>, Float3> moved;
-    for (std::uint32_t i = 0; i < scene.tets.vertices.size(); i++) {
+    for (std::uint32_t i = 0; i < scene.tets.vertices.size(); ++i) {
         Float3& vertex = scene.tets.vertices[i];
         const Float3 place = place_of(i);
         moved[{vertex.x, vertex.y, vertex.z}] = place;
@@ -49,7 +49,7 @@ inline Scene grid_of(const Lines& lines)
 inline Scene cluster_of(float cell)
 {
     std::vector<float> lines{-1};
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < 5; ++i)
         lines.push_back(0.0625f + cell * static_cast<float>(i));
     lines.push_back(1);
     Scene scene = grid_of({lines, lines, lines});
@@ -57,7 +57,7 @@ inline Scene cluster_of(float cell)
     move_vertices(scene, [&](std::uint32_t i) {
         Float3 place = scene.tets.vertices[i];
         if (std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) == 1) return place;
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             place[axis] = snap_to_grid(place[axis] + cell * random.between(-0.3f, 0.3f));
         return place;
     });
@@ -67,7 +67,7 @@ inline Scene cluster_of(float cell)
 inline std::vector<float> even_lines(std::uint32_t n, float reach)
 {
     std::vector<float> lines;
-    for (std::uint32_t i = 0; i <= n; i++)
+    for (std::uint32_t i = 0; i <= n; ++i)
         lines.push_back(snap_to_grid(reach * (2.0f * static_cast<float>(i) / static_cast<float>(n) - 1.0f)));
     return lines;
 }

@@ -41,8 +41,8 @@ inline Float3 inner_point(const RandomTet& tet, Random& random)
     const float weight[4] = {random.unit(), random.unit(), random.unit(), random.unit()};
     const float sum = weight[0] + weight[1] + weight[2] + weight[3];
     Float3 point;
-    for (int axis = 0; axis < 3; axis++)
-        for (int k = 0; k < 4; k++)
+    for (int axis = 0; axis < 3; ++axis)
+        for (int k = 0; k < 4; ++k)
             point[axis] += tet.corners[k][axis] * weight[k] / sum;
     return snap_to_grid(point);
 }
@@ -51,7 +51,7 @@ inline Float3 inner_point(const RandomTet& tet, Random& random)
 inline Float3 direction_between(Float3 from, Float3 to)
 {
     Float3 direction;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const float component = to[axis] - from[axis];
         direction[axis] = std::abs(component) < 0x1p-20f ? 0.0f : component;
     }
@@ -71,7 +71,7 @@ struct Crossed {
 inline Crossed crossed_faces(const RandomTet& tet, Float3 origin, Float3 direction)
 {
     std::vector<std::pair<double, std::uint32_t>> crossings;
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         const auto c = cross_exactly(origin, direction, tet.corners[(face + 1) % 4], tet.corners[(face + 2) % 4],
                                      tet.corners[(face + 3) % 4]);
         if (c.met && std::abs(c.edge_side[0] + c.edge_side[1] + c.edge_side[2]) == 3) crossings.push_back({c.t, face});

@@ -41,7 +41,7 @@ LoadedScene damaged_cubes()
     const auto count = static_cast<std::uint32_t>(tets.size());
     test::Random random(30);
     for (Tet& tet : tets)
-        for (std::size_t face = 0; face < 4; face++)
+        for (std::size_t face = 0; face < 4; ++face)
             if (tet.links[face] != NO_LINK && tet.faces[face] == FREE_FACE)
                 tet.links[face] = make_link(random.below(count), random.below(4));
     return loaded;
@@ -119,7 +119,7 @@ bool may_find_no_exit(Method method)
     return method == Method::plane || method == Method::plucker || method == Method::stp;
 }
 
-class conformance : public testing::TestWithParam<std::string> {
+class Conformance : public testing::TestWithParam<std::string> {
 protected:
     /// Returns the text of the file to write where there is none.
     static std::string check_device(Backend& backend, std::size_t device)
@@ -139,12 +139,12 @@ protected:
 
 } // namespace
 
-TEST_P(conformance, of_each_device_is_what_is_expected_of_its_implementation)
+TEST_P(Conformance, of_each_device_is_what_is_expected_of_its_implementation)
 {
     Backend& backend = backend_named(GetParam());
     std::string missing;
     bool found = false;
-    for (std::size_t i = 0; i < backend.devices().size(); i++)
+    for (std::size_t i = 0; i < backend.devices().size(); ++i)
         if (backend.devices()[i].usable) {
             found = true;
             missing += check_device(backend, i);
@@ -154,13 +154,13 @@ TEST_P(conformance, of_each_device_is_what_is_expected_of_its_implementation)
         GTEST_SKIP() << "nothing is known of this implementation; where its answers are right, write " << missing;
 }
 
-TEST_P(conformance, of_lost_rays_is_that_of_all_others)
+TEST_P(Conformance, of_lost_rays_is_that_of_all_others)
 {
     Backend& backend = backend_named(GetParam());
     const Options options = small_run(backend.name(), "primary", "cdt");
     SceneWork scene(damaged_cubes(), options);
     std::size_t compared = 0;
-    for (std::size_t device = 0; device < backend.devices().size(); device++) {
+    for (std::size_t device = 0; device < backend.devices().size(); ++device) {
         if (!backend.devices()[device].usable) continue;
         for (const RowRun& row : verified_rows(rows_on(backend, device, options), scene, options)) {
             if (status_of(row) == Status::unsupported) continue;
@@ -170,13 +170,13 @@ TEST_P(conformance, of_lost_rays_is_that_of_all_others)
             if (may_find_no_exit(row.key.kernel.method)) {
                 EXPECT_GT(traced(row)->totals.lost, 100u) << row_name(row.key);
             }
-            compared++;
+            ++compared;
         }
     }
     if (compared == 0) GTEST_SKIP() << backend.devices().front().reason;
 }
 
-INSTANTIATE_TEST_SUITE_P(each, conformance, testing::ValuesIn(backend_names()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(each, Conformance, testing::ValuesIn(backend_names()), [](const auto& test) {
     std::string name = test.param;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;

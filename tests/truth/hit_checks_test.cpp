@@ -15,7 +15,7 @@ constexpr Hit right{0, 7, 1.0f, 0.25f, 0.5f, 3};
 
 } // namespace
 
-TEST(compare_hits, equal_hits_do_not_differ)
+TEST(CompareHits, equal_hits_do_not_differ)
 {
     const std::vector<Hit> hits = {right, {NO_HIT, 3, 0, 0, 0, 9}};
     const Differences found = compare_hits(hits, hits, {});
@@ -23,7 +23,7 @@ TEST(compare_hits, equal_hits_do_not_differ)
     EXPECT_EQ(found.inexact, 0u);
 }
 
-TEST(compare_hits, face_tet_and_steps_must_be_the_same_bits)
+TEST(CompareHits, face_tet_and_steps_must_be_the_same_bits)
 {
     for (std::uint32_t Hit::*member : {&Hit::face_id, &Hit::tet, &Hit::steps}) {
         std::vector<Hit> hits(5, right);
@@ -34,7 +34,7 @@ TEST(compare_hits, face_tet_and_steps_must_be_the_same_bits)
     }
 }
 
-TEST(compare_hits, parameters_may_differ_by_the_units_allowed_and_no_more)
+TEST(CompareHits, parameters_may_differ_by_the_units_allowed_and_no_more)
 {
     for (float Hit::*member : {&Hit::t, &Hit::u, &Hit::v}) {
         std::vector<Hit> hits(1, right);
@@ -49,7 +49,7 @@ TEST(compare_hits, parameters_may_differ_by_the_units_allowed_and_no_more)
     }
 }
 
-TEST(compare_hits, without_a_tolerance_the_sign_of_zero_counts)
+TEST(CompareHits, without_a_tolerance_the_sign_of_zero_counts)
 {
     const std::vector<Hit> plus(1, {NO_HIT, 3, 0.0f, 0, 0, 9}), minus(1, {NO_HIT, 3, -0.0f, 0, 0, 9});
     EXPECT_EQ(compare_hits(minus, plus, {}).count, 1u);
@@ -58,7 +58,7 @@ TEST(compare_hits, without_a_tolerance_the_sign_of_zero_counts)
     EXPECT_EQ(allowed.inexact, 1u);
 }
 
-TEST(compare_hits, either_triangle_will_do_where_any_hit_answers)
+TEST(CompareHits, either_triangle_will_do_where_any_hit_answers)
 {
     const std::vector<Hit> ours = {{7, NO_TET, 0.5f, 0, 0, 0}, {NO_HIT, NO_TET, 0, 0, 0, 0}, {LOST, 3, 0, 0, 0, 9}};
     const std::vector<Hit> theirs(3, {8, NO_TET, 0.75f, 0, 0, 0});
@@ -70,12 +70,12 @@ TEST(compare_hits, either_triangle_will_do_where_any_hit_answers)
     EXPECT_EQ(compare_hits(theirs, ours, {.ulps = 3, .any_triangle = true}).count, 2u);
 }
 
-TEST(compare_hits, images_of_different_sizes_are_an_error)
+TEST(CompareHits, images_of_different_sizes_are_an_error)
 {
     EXPECT_THROW(static_cast<void>(compare_hits(std::vector<Hit>(2), std::vector<Hit>(3), {})), Error);
 }
 
-TEST(ulps_between, counts_floats_between_and_knows_signs)
+TEST(UlpsBetween, counts_floats_between_and_knows_signs)
 {
     EXPECT_EQ(ulps_between(1.0f, 1.0f), 0u);
     EXPECT_EQ(ulps_between(0.0f, -0.0f), 0u);
@@ -85,7 +85,7 @@ TEST(ulps_between, counts_floats_between_and_knows_signs)
     EXPECT_GT(ulps_between(1.0f, std::numeric_limits<float>::quiet_NaN()), 1000u);
 }
 
-TEST(count_rays, tells_what_became_of_each)
+TEST(CountRays, tells_what_became_of_each)
 {
     const std::vector<Hit> hits = {
         right, right, {NO_HIT, 0, 0, 0, 0, 5}, {LOST, 0, 0, 0, 0, 100}, {POISON, 0, 0, 0, 0, 0}};

@@ -61,7 +61,7 @@ std::ostream& operator<<(std::ostream& out, const Mutant& mutant)
     return out << mutant.name;
 }
 
-class mutants : public testing::TestWithParam<Mutant> {};
+class Mutants : public testing::TestWithParam<Mutant> {};
 
 /// Whether each row of a backend's first device ended as expected.
 void expect_status(const nlohmann::json& rows, const std::string& backend, const std::string& layout,
@@ -76,7 +76,7 @@ void expect_status(const nlohmann::json& rows, const std::string& backend, const
 
 } // namespace
 
-TEST_P(mutants, are_found_and_named_where_the_right_kernel_passes)
+TEST_P(Mutants, are_found_and_named_where_the_right_kernel_passes)
 {
     const std::string backend = GetParam().backend;
     if (const std::string reason = why_not(backend); !reason.empty()) GTEST_SKIP() << reason;
@@ -93,7 +93,7 @@ TEST_P(mutants, are_found_and_named_where_the_right_kernel_passes)
     expect_status(rows, "openmp", GetParam().layout, "ok");
 }
 
-INSTANTIATE_TEST_SUITE_P(each, mutants,
+INSTANTIATE_TEST_SUITE_P(each, Mutants,
                          testing::Values(Mutant{"opencl", "opencl"}, Mutant{"vulkan", "vulkan"},
                                          Mutant{"cuda_host_reordered", "cuda-host"},
                                          Mutant{"cuda_host_fused", "cuda-host"},

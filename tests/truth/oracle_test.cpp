@@ -27,7 +27,7 @@ struct Traced {
     explicit Traced(Float3 camera_shift = {})
     {
         Camera camera = make_cameras(CameraSet::smoke, bounding_sphere(scene.mesh)).front();
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             camera.origin[axis] += camera_shift[axis];
         job.view = make_view(camera, size, size);
         place();
@@ -157,11 +157,11 @@ TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
     const auto shrink = [](std::uint32_t& bits) {
         bits = std::bit_cast<std::uint32_t>(std::bit_cast<float>(bits) * 0x1p-66f);
     };
-    for (std::size_t word = 0; word < 4 * tiny.packed.tets.size(); word++)
+    for (std::size_t word = 0; word < 4 * tiny.packed.tets.size(); ++word)
         if (word % 20 < 12) shrink(reinterpret_cast<std::uint32_t*>(tiny.packed.tets.data())[word]);
     for (auto& line : tiny.packed.lines)
         shrink(line);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         tiny.job.view.origin[axis] *= 0x1p-66f;
     tiny.trace(kernel, 1);
     const auto reference = tiny.hits;
@@ -173,7 +173,7 @@ TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
     const unsigned after = _mm_getcsr();
     _mm_setcsr(before);
     EXPECT_EQ(after & 0x8040, 0x8040u) << "the thread gets its own environment back";
-    for (std::size_t i = 0; i < reference.size(); i++)
+    for (std::size_t i = 0; i < reference.size(); ++i)
         ASSERT_EQ(tiny.hits[i].steps, reference[i].steps) << "ray " << i;
 }
 #endif
@@ -185,7 +185,7 @@ TEST(Walk, order_of_tets_changes_their_numbers_only)
     traced.packed = pack(traced.scene, Layout::tet80, TetOrder::input);
     traced.place();
     traced.trace({Structure::cdt, Method::maria, Layout::tet80, MathMode::exact});
-    for (std::size_t i = 0; i < reference.size(); i++) {
+    for (std::size_t i = 0; i < reference.size(); ++i) {
         ASSERT_EQ(traced.hits[i].face_id, reference[i].face_id);
         ASSERT_EQ(traced.hits[i].steps, reference[i].steps);
         ASSERT_EQ(traced.hits[i].t, reference[i].t);
@@ -210,7 +210,7 @@ TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
     ASSERT_EQ(path.size(), hit.steps);
     EXPECT_EQ(path.back(), hit.tet);
     const TetMesh mesh = unpack(traced.packed);
-    for (std::size_t i = 1; i < path.size(); i++) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
         bool neighbours = false;
         for (const auto link : mesh.tets[path[i - 1]].links)
             neighbours = neighbours || (link != NO_LINK && link_tet(link) == path[i]);

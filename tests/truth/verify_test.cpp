@@ -43,7 +43,7 @@ private:
     Damage damage_;
 };
 
-class verify : public testing::Test {
+class Verify : public testing::Test {
 protected:
     /// Verifies maria on tet80 through a damaged openmp that calls itself `backend`.
     RowRun verified(const std::string& backend, const Damage& damage, SelfTest self_test = {})
@@ -105,7 +105,7 @@ protected:
 
 } // namespace
 
-TEST_F(verify, right_answers_are_ok_and_counted)
+TEST_F(Verify, right_answers_are_ok_and_counted)
 {
     const RowRun row = verified("openmp", [](std::span<Hit>) {});
     ASSERT_NE(traced(row), nullptr) << reason_of(row);
@@ -117,14 +117,14 @@ TEST_F(verify, right_answers_are_ok_and_counted)
     EXPECT_GT(traced(row)->totals.misses, 0u);
 }
 
-TEST_F(verify, another_backend_with_openmps_answers_is_ok)
+TEST_F(Verify, another_backend_with_openmps_answers_is_ok)
 {
     const RowRun row = verified("other", [](std::span<Hit>) {});
     EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
     EXPECT_TRUE(traced(row)->compared);
 }
 
-TEST_F(verify, another_backend_with_one_other_step_count_is_wrong)
+TEST_F(Verify, another_backend_with_one_other_step_count_is_wrong)
 {
     const RowRun row = verified("other", [](std::span<Hit> hits) { hits[41].steps += 1; });
     EXPECT_EQ(status_of(row), Status::wrong);
@@ -135,7 +135,7 @@ TEST_F(verify, another_backend_with_one_other_step_count_is_wrong)
     EXPECT_EQ(traced(row)->first_different->y, 1u);
 }
 
-TEST_F(verify, a_method_with_a_wrong_face_is_flawed)
+TEST_F(Verify, a_method_with_a_wrong_face_is_flawed)
 {
     const RowRun row = verified("openmp", [](std::span<Hit> hits) {
         damage_first_hit(hits, [](Hit& hit) { hit.face_id = hit.face_id == 0 ? 200 : 0; });
@@ -145,7 +145,7 @@ TEST_F(verify, a_method_with_a_wrong_face_is_flawed)
     EXPECT_TRUE(traced(row)->verdicts.first_wrong.has_value());
 }
 
-TEST_F(verify, a_lost_ray_makes_a_row_flawed)
+TEST_F(Verify, a_lost_ray_makes_a_row_flawed)
 {
     const RowRun row = verified("openmp", [](std::span<Hit> hits) { hits[0].face_id = LOST; });
     EXPECT_EQ(status_of(row), Status::flawed);
@@ -153,7 +153,7 @@ TEST_F(verify, a_lost_ray_makes_a_row_flawed)
     EXPECT_EQ(traced(row)->verdicts.lost, 2u);
 }
 
-TEST_F(verify, a_wrong_parameter_makes_a_row_flawed)
+TEST_F(Verify, a_wrong_parameter_makes_a_row_flawed)
 {
     const RowRun row =
         verified("openmp", [](std::span<Hit> hits) { damage_first_hit(hits, [](Hit& hit) { hit.t *= 1.01f; }); });
@@ -161,7 +161,7 @@ TEST_F(verify, a_wrong_parameter_makes_a_row_flawed)
     EXPECT_GE(traced(row)->verdicts.wrong, 2u);
 }
 
-TEST_F(verify, a_ray_that_was_never_written_is_wrong_and_named)
+TEST_F(Verify, a_ray_that_was_never_written_is_wrong_and_named)
 {
     const RowRun row = verified("other", [](std::span<Hit> hits) { hits[5].face_id = POISON; });
     EXPECT_EQ(status_of(row), Status::wrong);
@@ -173,14 +173,14 @@ TEST_F(verify, a_ray_that_was_never_written_is_wrong_and_named)
     EXPECT_EQ(exit_code(rows, true), 1);
 }
 
-TEST_F(verify, a_kernel_that_never_ran_is_wrong)
+TEST_F(Verify, a_kernel_that_never_ran_is_wrong)
 {
     const RowRun row =
         verified("other", [](std::span<Hit> hits) { std::memset(hits.data(), 0xFD, hits.size_bytes()); });
     EXPECT_EQ(status_of(row), Status::wrong) << reason_of(row);
 }
 
-TEST_F(verify, a_device_that_answers_with_an_earlier_launchs_hits_is_wrong)
+TEST_F(Verify, a_device_that_answers_with_an_earlier_launchs_hits_is_wrong)
 {
     std::vector<Hit> first;
     const RowRun row = verified("other", [&](std::span<Hit> hits) {
@@ -191,7 +191,7 @@ TEST_F(verify, a_device_that_answers_with_an_earlier_launchs_hits_is_wrong)
     EXPECT_EQ(traced(row)->first_different->view, 2u);
 }
 
-TEST_F(verify, a_device_that_changes_its_answer_is_wrong)
+TEST_F(Verify, a_device_that_changes_its_answer_is_wrong)
 {
     int calls = 0;
     const RowRun row = verified("other", [&](std::span<Hit> hits) { hits[3].steps += ++calls > 2 ? 1u : 0u; });
@@ -199,7 +199,7 @@ TEST_F(verify, a_device_that_changes_its_answer_is_wrong)
     EXPECT_EQ(reason_of(row), "the hits of view 0 changed when it was traced again");
 }
 
-TEST_F(verify, a_device_that_writes_elsewhere_is_wrong)
+TEST_F(Verify, a_device_that_writes_elsewhere_is_wrong)
 {
     RowRun row = verified(
         "openmp", [](std::span<Hit>) { throw Error(ErrorKind::wrong_result, "the kernel wrote before its hits"); });
@@ -207,7 +207,7 @@ TEST_F(verify, a_device_that_writes_elsewhere_is_wrong)
     EXPECT_EQ(conformity_of(row), Conformity::wrong);
 }
 
-TEST_F(verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_further)
+TEST_F(Verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_further)
 {
     SelfTest inexact;
     inexact.division_ulps = 1;
@@ -216,7 +216,7 @@ TEST_F(verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_
             "other",
             [&](std::span<Hit> hits) {
                 damage_first_hit(hits, [&](Hit& hit) {
-                    for (int i = 0; i < ulps; i++)
+                    for (int i = 0; i < ulps; ++i)
                         hit.t = std::nextafter(hit.t, 100.0f);
                 });
             },
@@ -229,7 +229,7 @@ TEST_F(verify, a_device_that_divides_inexactly_may_be_within_its_promise_and_no_
     EXPECT_EQ(conformity_text(off_by(1, {})), "wrong: 2 rays") << "a device whose division is correctly rounded";
 }
 
-TEST_F(verify, a_device_that_contracts_may_not_claim_to_be_exact)
+TEST_F(Verify, a_device_that_contracts_may_not_claim_to_be_exact)
 {
     SelfTest contracting;
     contracting.contracts = true;
@@ -240,20 +240,20 @@ TEST_F(verify, a_device_that_contracts_may_not_claim_to_be_exact)
     EXPECT_EQ(conformity_text(row), "not exact: contracts");
 }
 
-TEST_F(verify, images_are_shown_with_openmps_hits_beside_them)
+TEST_F(Verify, images_are_shown_with_openmps_hits_beside_them)
 {
     RowRun row = open_row({"cubes", "openmp", {}}, scene_, options_);
     row.key.backend = "other";
     std::size_t seen = 0;
     verify_rows({&row}, scene_, options_, [&](const SeenImage& image) {
-        seen++;
+        ++seen;
         EXPECT_EQ(compare_hits(image.hits, image.reference, {}).inexact, 0u);
         const Pixmap picture = draw_differences(image.hits, image.reference, {}, scene_, image.view);
         std::vector<Hit> changed(image.hits.begin(), image.hits.end());
         changed[7].steps += 1;
         const Pixmap marked = draw_differences(changed, image.reference, {}, scene_, image.view);
         std::size_t different = 0;
-        for (std::size_t i = 0; i < marked.pixels.size(); i++)
+        for (std::size_t i = 0; i < marked.pixels.size(); ++i)
             different += marked.pixels[i] == picture.pixels[i] ? 0u : 1u;
         EXPECT_EQ(different, 1u);
         EXPECT_FALSE(marked.pixels[7] == picture.pixels[7]);
@@ -261,7 +261,7 @@ TEST_F(verify, images_are_shown_with_openmps_hits_beside_them)
     EXPECT_EQ(seen, 2u);
 }
 
-TEST_F(verify, what_a_device_throws_ends_as_the_rows_outcome)
+TEST_F(Verify, what_a_device_throws_ends_as_the_rows_outcome)
 {
     const RowRun unsupported =
         verified("openmp", [](std::span<Hit>) { throw Error(ErrorKind::unsupported, "buffer of 3 GB"); });
@@ -274,7 +274,7 @@ TEST_F(verify, what_a_device_throws_ends_as_the_rows_outcome)
         Error);
 }
 
-TEST_F(verify, given_rays_are_judged_and_compared_where_they_are_given)
+TEST_F(Verify, given_rays_are_judged_and_compared_where_they_are_given)
 {
     for (const RayKind kind : {RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random})
         for (const Layout layout : {Layout::tet80, Layout::bvh2}) {
@@ -287,7 +287,7 @@ TEST_F(verify, given_rays_are_judged_and_compared_where_they_are_given)
         }
 }
 
-TEST_F(verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
+TEST_F(Verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
 {
     const RowRun row =
         verified_given(RayKind::diffuse, Layout::tet80, [](std::span<Hit> hits) { hits[17].steps += 1; });
@@ -298,7 +298,7 @@ TEST_F(verify, a_given_ray_that_differs_is_named_by_the_pixel_it_was_made_for)
     EXPECT_EQ(traced(row)->first_different->y, pixel / 40);
 }
 
-TEST_F(verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
+TEST_F(Verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
 {
     const auto one_step_more = [](std::span<Hit> hits) { hits[17].steps += 1; };
     for (const Layout layout : {Layout::tet80, Layout::cwbvh}) {
@@ -317,7 +317,7 @@ TEST_F(verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
     EXPECT_NE(differences_text(primary).find("tets of openmp"), std::string::npos);
 }
 
-TEST_F(verify, a_given_ray_with_a_wrong_face_is_flawed)
+TEST_F(Verify, a_given_ray_with_a_wrong_face_is_flawed)
 {
     for (const RayKind kind : {RayKind::shadow, RayKind::diffuse}) {
         const RowRun row = verified_given(
@@ -331,7 +331,7 @@ TEST_F(verify, a_given_ray_with_a_wrong_face_is_flawed)
     }
 }
 
-TEST_F(verify, visits_are_counted_on_openmps_bvhs_alone)
+TEST_F(Verify, visits_are_counted_on_openmps_bvhs_alone)
 {
     const RowRun counted = verified_given(
         RayKind::diffuse, Layout::cwbvh, [](std::span<Hit>) {}, "openmp");
@@ -343,7 +343,7 @@ TEST_F(verify, visits_are_counted_on_openmps_bvhs_alone)
     EXPECT_EQ(traced(of_tets)->visits.rays, 0u);
 }
 
-TEST_F(verify, a_counting_build_that_answers_otherwise_is_an_error)
+TEST_F(Verify, a_counting_build_that_answers_otherwise_is_an_error)
 {
     const RowRun row = verified_given(
         RayKind::diffuse, Layout::bvh2,
@@ -352,7 +352,7 @@ TEST_F(verify, a_counting_build_that_answers_otherwise_is_an_error)
     EXPECT_NE(reason_of(row).find("visits"), std::string::npos) << reason_of(row);
 }
 
-TEST_F(verify, pictures_of_given_rays_show_them_at_their_pixels)
+TEST_F(Verify, pictures_of_given_rays_show_them_at_their_pixels)
 {
     const TemporaryFolder folder;
     DifferencePictures pictures(folder.path());

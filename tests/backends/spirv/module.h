@@ -165,7 +165,7 @@ private:
             return;
         }
         const auto& parts = types_.at(type);
-        for (std::uint32_t i = 0; i < parts.size(); i++)
+        for (std::uint32_t i = 0; i < parts.size(); ++i)
             flatten(parts[i], path + (path.empty() ? "" : ".") + member_names_.at({type, i}),
                     offset + member_decoration(type, i, spv::DecorationOffset).value(), members);
     }

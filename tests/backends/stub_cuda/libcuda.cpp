@@ -36,7 +36,7 @@ bool needs_context(std::string_view symbol)
 
 Result failure_of(std::string_view symbol)
 {
-    if (symbol == "cuDevicePrimaryCtxRetain") sessions++;
+    if (symbol == "cuDevicePrimaryCtxRetain") ++sessions;
     if (symbol == "cuDevicePrimaryCtxRelease_v2" && --sessions == 0) context_is_lost = false;
     if (context_is_lost && needs_context(symbol)) return error_launch_failed;
     if (symbol == "cuMemAlloc_v2" && asked_for("alloc")) return error_out_of_memory;
