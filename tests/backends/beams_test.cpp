@@ -12,6 +12,7 @@ namespace {
 
 #define LANES 4
 using tetrace::openmp::PacketJob;
+using tetrace::test::traced;
 
 #include "backends/openmp/packet/lanes.h"
 
@@ -144,7 +145,7 @@ TEST(Beams, without_doubts_are_sure_of_wrong_sides)
 
 TEST(Beams, take_the_ways_of_all_their_rays)
 {
-    const tetrace::DeviceRays scene(tetrace::make_cubes(4), tetrace::Layout::half32);
+    const tetrace::test::DeviceRays scene(tetrace::make_cubes(4), tetrace::Layout::half32);
     for (const auto& from : {scene.from_outside(image_size, image_size), scene.from_inside(image_size, image_size)}) {
         const PacketJob job = job_of(scene.packed(), from);
         tetrace::KernelId scalar{.method = tetrace::Method::project, .layout = tetrace::Layout::half32};

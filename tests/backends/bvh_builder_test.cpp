@@ -11,10 +11,10 @@
 #include <cfenv>
 #include <limits>
 
-namespace tetrace {
-namespace {
+using namespace tetrace;
+using namespace tetrace::test;
 
-using test::needles;
+namespace {
 
 std::uint32_t largest_leaf(const Bvh& bvh)
 {
@@ -32,6 +32,8 @@ double cost_of(const Bvh& bvh)
         cost += half_area(node.box) * (node.count > 0 ? node.count : 1);
     return cost / half_area(bvh.nodes.front().box);
 }
+
+} // namespace
 
 TEST(BvhBuilder, tree_of_a_surface_is_whole)
 {
@@ -62,7 +64,7 @@ TEST(BvhBuilder, each_point_of_a_split_triangle_is_in_one_of_its_leaves)
     for (const auto& node : bvh.nodes)
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
             leaves[bvh.references[i]].push_back(grown(node.box, 0x1p-22)); // the point below is rounded
-    test::Random random(4);
+    Random random(4);
     for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
         for (int i = 0; i < 20; ++i) {
             const auto& [a, b, c] = mesh.triangles[triangle];
@@ -94,7 +96,7 @@ TEST(BvhBuilder, tree_is_cheaper_than_one_halved_by_numbers)
 
 TEST(BvhBuilder, triangles_that_nothing_tells_apart_are_shared_out)
 {
-    const TriangleMesh mesh = test::identical_triangles(10'000);
+    const TriangleMesh mesh = identical_triangles(10'000);
     const Bvh bvh = build_bvh(mesh).bvh;
     EXPECT_EQ(find_defect(bvh, mesh), std::nullopt);
     EXPECT_LE(depth_of(bvh), 16u);
@@ -106,16 +108,15 @@ TEST(BvhBuilder, triangles_without_area_are_kept)
     TriangleMesh mesh;
     for (int i = 0; i < 500; ++i) {
         const float x = static_cast<float>(i) * 0x1p-10f;
-        test::add_triangle(mesh, {x, x, x}, {x + 0.5f, x + 0.5f, x + 0.5f},
-                           {x + 0.25f, x + 0.25f, x + 0.25f});     // a line
-        test::add_triangle(mesh, {x, 0, 0}, {x, 0, 0}, {x, 0, 0}); // a point
+        add_triangle(mesh, {x, x, x}, {x + 0.5f, x + 0.5f, x + 0.5f}, {x + 0.25f, x + 0.25f, x + 0.25f}); // a line
+        add_triangle(mesh, {x, 0, 0}, {x, 0, 0}, {x, 0, 0});                                              // a point
     }
     EXPECT_EQ(find_defect(build_bvh(mesh).bvh, mesh), std::nullopt);
 }
 
 TEST(BvhBuilder, one_triangle_is_one_leaf)
 {
-    const TriangleMesh mesh = test::identical_triangles(1);
+    const TriangleMesh mesh = identical_triangles(1);
     const BuiltBvh built = build_bvh(mesh);
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
     EXPECT_EQ(built.bvh.nodes.size(), 1u);
@@ -124,7 +125,7 @@ TEST(BvhBuilder, one_triangle_is_one_leaf)
 
 TEST(BvhBuilder, tree_that_would_be_too_deep_is_balanced_instead)
 {
-    const TriangleMesh mesh = test::nested_groups(2, 58, 5000);
+    const TriangleMesh mesh = nested_groups(2, 58, 5000);
     const BuiltBvh built = build_bvh(mesh);
     EXPECT_TRUE(built.balanced);
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
@@ -135,7 +136,7 @@ TEST(BvhBuilder, tree_that_would_be_too_deep_is_balanced_instead)
 TEST(BvhBuilder, deep_trees_fit_the_stack)
 {
     for (const int halvings : {1, 2, 3, 6}) {
-        const TriangleMesh mesh = test::nested_groups(halvings, 20, 1000);
+        const TriangleMesh mesh = nested_groups(halvings, 20, 1000);
         const BuiltBvh built = build_bvh(mesh);
         EXPECT_LE(depth_of(built.bvh), BVH2_STACK);
         EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
@@ -149,13 +150,15 @@ TEST(BvhBuilder, sizes_down_to_denormals_are_built)
         for (auto& vertex : mesh.vertices)
             for (int axis = 0; axis < 3; ++axis)
                 vertex[axis] = std::ldexp(vertex[axis], exponent);
-        test::add_triangle(mesh, {-64, -64, -64}, {64, 64, 64}, {64, -64, 64});
+        add_triangle(mesh, {-64, -64, -64}, {64, 64, 64}, {64, -64, 64});
         const Bvh bvh = build_bvh(mesh).bvh;
         EXPECT_EQ(find_defect(bvh, mesh), std::nullopt) << "2^" << exponent;
         mesh.triangles.pop_back();
         EXPECT_EQ(find_defect(build_bvh(mesh).bvh, mesh), std::nullopt) << "2^" << exponent;
     }
 }
+
+namespace {
 
 ErrorKind refusal_of(const TriangleMesh& mesh)
 {
@@ -167,9 +170,11 @@ ErrorKind refusal_of(const TriangleMesh& mesh)
     return ErrorKind::internal;
 }
 
+} // namespace
+
 TEST(BvhBuilder, meshes_that_cannot_be_built_are_refused)
 {
-    const TriangleMesh good = test::identical_triangles(2);
+    const TriangleMesh good = identical_triangles(2);
     EXPECT_EQ(refusal_of({}), ErrorKind::invalid_input);
     TriangleMesh beyond = good;
     beyond.triangles[1][2] = 3;
@@ -195,6 +200,3 @@ TEST(BvhBuilder, leaves_the_rounding_as_it_was)
     EXPECT_EQ(rounding, FE_UPWARD);
     EXPECT_GT(tiny / 2, 0.0f) << "denormals are flushed";
 }
-
-} // namespace
-} // namespace tetrace

@@ -13,7 +13,9 @@
 #include <regex>
 #include <set>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 /// The cuda backend on the library that poses as NVIDIA's driver.
@@ -318,5 +320,3 @@ TEST(CudaCode, is_exact_in_exact_mode_and_contracts_in_fast_mode)
         EXPECT_EQ(assembly.find("div.rn.f32") != std::string::npos, exact) << code.name;
     }
 }
-
-} // namespace tetrace

@@ -9,7 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 using Words = std::vector<std::uint32_t>;
@@ -119,5 +120,3 @@ TEST(Defects, a_kernels_wrong_items_are_counted)
     ++results[3];
     EXPECT_EQ(wrong_items(defect, results), 1u);
 }
-
-} // namespace tetrace

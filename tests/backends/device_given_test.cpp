@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <string>
 
-namespace tetrace {
-namespace {
+using namespace tetrace;
+using namespace tetrace::test;
 
-using test::GivenScene;
+namespace {
 
 Backend& backend_named(const std::string& name)
 {
@@ -61,7 +61,7 @@ TEST_P(GivenRays, of_kind_primary_are_those_that_kernels_make)
 
 TEST_P(GivenRays, of_walks_that_ask_for_their_path_have_the_bits_of_openmp)
 {
-    RaySet hard = test::hard_ray_set(cubes.scene, 0, 3600);
+    RaySet hard = hard_ray_set(cubes.scene, 0, 3600);
     for (std::size_t i = 1; i < hard.rays.size(); i += 2)
         hard.rays[i].end = 0.375F;
     for (const Layout layout : {Layout::tet80, Layout::half32}) {
@@ -98,7 +98,7 @@ TEST_P(GivenRays, are_those_that_were_given_last)
 TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
 {
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const PackedScene packed = test::make_bvh_scene(cubes.scene.mesh, layout);
+        const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
         const SceneData data{&cubes.scene.mesh, &packed};
         for (const RayKind kind : {RayKind::ao, RayKind::random}) {
             const RaySet set = make_rays(kind, cubes.source());
@@ -123,7 +123,7 @@ TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
 
 TEST_P(GivenRays, of_bvhs_that_exceed_a_buffer_are_refused_with_both_numbers)
 {
-    const PackedScene packed = test::make_bvh_scene(cubes.scene.mesh, Layout::bvh2);
+    const PackedScene packed = make_bvh_scene(cubes.scene.mesh, Layout::bvh2);
     const std::string bytes = std::to_string(packed.nodes.size() * sizeof(Quad));
     for (const std::size_t device : usable) {
         if (backend.name() == openmp_backend().name()) GTEST_SKIP() << "the host has no limit";
@@ -147,5 +147,3 @@ INSTANTIATE_TEST_SUITE_P(each, GivenRays, testing::Values("openmp", "opencl", "v
                              std::ranges::replace(name, '-', '_');
                              return name;
                          });
-
-} // namespace tetrace

@@ -15,7 +15,9 @@
 #include <ostream>
 #include <set>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 /// Before the instance is made: what Vulkan's validation layers, where they are installed, have to say fails a case.
@@ -422,5 +424,3 @@ TEST(DeviceRaysTolerances, fail_for_wrong_answers)
     EXPECT_EQ(different_rays(nearly, right, 3), 1u);
     EXPECT_EQ(different_rays(nearly, right, 4), 0u);
 }
-
-} // namespace tetrace

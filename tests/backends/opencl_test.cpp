@@ -6,8 +6,11 @@
 #include "tests/support/device_rays.h"
 #include "tests/support/temporary_folder.h"
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace fs = std::filesystem;
+
 namespace {
 
 class Opencl : public UsableDevices {
@@ -103,5 +106,3 @@ TEST(OpenclErrors, name_the_call_the_code_and_the_device)
     EXPECT_EQ(opencl::error_name(-1001), "CL_PLATFORM_NOT_FOUND_KHR");
     EXPECT_EQ(opencl::error_name(-9999), "OpenCL error -9999");
 }
-
-} // namespace tetrace

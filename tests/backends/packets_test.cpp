@@ -13,25 +13,24 @@
 #include <string>
 #include <vector>
 
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
-using tetrace::KernelId;
-using tetrace::TraceJob;
-using tetrace::openmp::packet_kernels;
-using tetrace::openmp::PacketKernel;
-using tetrace::test::even_lines;
-using tetrace::test::grid_of;
+using openmp::packet_kernels;
+using openmp::PacketKernel;
 
 constexpr KernelId scalar{.method = tetrace::Method::project, .layout = tetrace::Layout::half32};
 constexpr KernelId packets{
     .method = tetrace::Method::project, .layout = tetrace::Layout::half32, .schedule = tetrace::Schedule::packets};
 
-std::vector<tetrace::Hit> scalar_hits(const tetrace::DeviceRays& rays, const TraceJob& job)
+std::vector<tetrace::Hit> scalar_hits(const DeviceRays& rays, const TraceJob& job)
 {
     return traced(*tetrace::openmp_backend().open(0, scalar, rays.data(), {.threads = 2}), job);
 }
 
-std::vector<tetrace::Hit> packet_hits(PacketKernel kernel, const tetrace::DeviceRays& rays, const TraceJob& job)
+std::vector<tetrace::Hit> packet_hits(PacketKernel kernel, const DeviceRays& rays, const TraceJob& job)
 {
     tetrace::openmp::PacketSession session(kernel, tetrace::Task::trace, rays.packed(), 2);
     return traced(session, job);
@@ -42,7 +41,7 @@ std::ptrdiff_t count_of(const std::vector<tetrace::Hit>& hits, std::uint32_t fac
     return std::count_if(hits.begin(), hits.end(), [&](const tetrace::Hit& hit) { return hit.face_id == face_id; });
 }
 
-void expect_scalar_bits(const tetrace::DeviceRays& rays, const TraceJob& job, const std::string& what)
+void expect_scalar_bits(const DeviceRays& rays, const TraceJob& job, const std::string& what)
 {
     const auto expected = scalar_hits(rays, job);
     for (const PacketKernel& kernel : packet_kernels())
@@ -90,7 +89,7 @@ TraceJob along_lines(std::uint32_t width, std::uint32_t height, tetrace::Float3 
 
 TEST(Packets, have_the_scalar_kernels_bits_from_outside_and_inside_whatever_the_images_size)
 {
-    const tetrace::DeviceRays rays(tetrace::make_cubes(7), tetrace::Layout::half32);
+    const DeviceRays rays(tetrace::make_cubes(7), tetrace::Layout::half32);
     for (const TraceJob& job : jobs_of_all_kinds(rays))
         expect_scalar_bits(rays, job, job.start_tet == NO_TET ? "from outside" : "from inside");
 }
@@ -98,7 +97,7 @@ TEST(Packets, have_the_scalar_kernels_bits_from_outside_and_inside_whatever_the_
 TEST(Packets, have_the_scalar_kernels_bits_where_rays_pass_vertices_and_edges)
 {
     const auto lines = even_lines(8, 1);
-    const tetrace::DeviceRays rays(grid_of({lines, lines, lines}), tetrace::Layout::half32);
+    const DeviceRays rays(grid_of({lines, lines, lines}), tetrace::Layout::half32);
     expect_scalar_bits(rays, along_lines(17, 17, {0.25f, 0, 3}), "along lines");
     expect_scalar_bits(rays, along_lines(17, 17, {0, 0, 4}), "on an axis");
     expect_scalar_bits(rays, along_lines(50, 41, {0.1f, 0.2f, 3}), "beside lines");
@@ -108,7 +107,7 @@ TEST(Packets, have_the_scalar_kernels_bits_where_rays_pass_vertices_and_edges)
 TEST(Packets, of_views_along_each_axis_and_of_all_round_have_the_scalar_kernels_bits)
 {
     // All deepest axes, both ways, and packets in which they change.
-    const tetrace::DeviceRays rays(tetrace::make_cubes(5), tetrace::Layout::half32);
+    const DeviceRays rays(tetrace::make_cubes(5), tetrace::Layout::half32);
     for (int axis = 0; axis < 3; ++axis)
         for (const float sign : {-1.0f, 1.0f}) {
             tetrace::Float3 origin{}, corner{-1.5f, -1.5f, -1.5f}, step_x{}, step_y{};
@@ -128,7 +127,7 @@ TEST(Packets, of_given_rays_of_every_kind_have_the_scalar_kernels_bits)
 {
     using tetrace::RayKind;
     for (const bool inside : {false, true}) {
-        const tetrace::test::GivenScene cubes(96, inside);
+        const GivenScene cubes(96, inside);
         const auto packed = pack(cubes.scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
         for (const RayKind kind : {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random}) {
             const tetrace::RaySet set = make_rays(kind, cubes.source());
@@ -140,9 +139,9 @@ TEST(Packets, of_given_rays_of_every_kind_have_the_scalar_kernels_bits)
 
 TEST(Packets, of_given_rays_that_pass_vertices_and_edges_have_the_scalar_kernels_bits)
 {
-    for (const auto& [name, scene] : tetrace::test::make_hard_scenes()) {
+    for (const auto& [name, scene] : make_hard_scenes()) {
         const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
-        tetrace::RaySet set = tetrace::test::hard_ray_set(scene, 0, 9 * 2048);
+        tetrace::RaySet set = hard_ray_set(scene, 0, 9 * 2048);
         expect_scalar_bits_given(packed, set, name);
         for (std::size_t i = 1; i < set.rays.size(); i += 2)
             set.rays[i].end = 0.375f;
@@ -155,15 +154,14 @@ TEST(Packets, of_given_rays_have_the_scalar_kernels_bits_however_many_they_are)
     const tetrace::Scene scene = tetrace::make_cubes(5);
     const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
     for (const std::size_t count : {8u, 24u, 40u, 504u, 512u, 520u, 16'400u})
-        expect_scalar_bits_given(packed, tetrace::test::hard_ray_set(scene, 7, count),
-                                 "two threads that take 512 at once");
+        expect_scalar_bits_given(packed, hard_ray_set(scene, 7, count), "two threads that take 512 at once");
 }
 
 TEST(Packets, of_given_rays_lose_those_that_the_scalar_kernel_loses)
 {
     const tetrace::Scene scene = tetrace::make_cubes(7);
     const auto packed = pack(scene, tetrace::Layout::half32, tetrace::TetOrder::hilbert);
-    tetrace::RaySet set = tetrace::test::hard_ray_set(scene, 0, 4000);
+    tetrace::RaySet set = hard_ray_set(scene, 0, 4000);
     for (std::size_t i = 1; i < set.rays.size(); i += 2)
         set.rays[i].end = 0.5f;
     for (const std::uint32_t most : {1u, 2u, 9u})
@@ -172,7 +170,7 @@ TEST(Packets, of_given_rays_lose_those_that_the_scalar_kernel_loses)
 
 TEST(Packets, lose_the_rays_that_the_scalar_kernel_loses)
 {
-    const tetrace::DeviceRays rays(tetrace::make_cubes(7), tetrace::Layout::half32);
+    const DeviceRays rays(tetrace::make_cubes(7), tetrace::Layout::half32);
     for (const std::uint32_t most : {1u, 2u, 9u}) {
         for (TraceJob job : {rays.from_outside(40, 40), rays.from_inside(40, 24)}) {
             job.max_steps = most;

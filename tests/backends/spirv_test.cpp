@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
 
 using spirv::Array;
 using spirv::Member;
@@ -204,5 +204,3 @@ TEST(Spirv, damaged_modules_are_refused)
     EXPECT_THROW(Module{bytes.subspan(4)}, std::runtime_error);
     EXPECT_THROW(Module{bytes.first(24)}, std::runtime_error) << "in its first instruction";
 }
-
-} // namespace tetrace

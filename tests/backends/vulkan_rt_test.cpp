@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-namespace tetrace {
-namespace {
+using namespace tetrace;
+using namespace tetrace::test;
 
-using test::GivenScene;
+namespace {
 
 /// Before the instance is made: in all builds, not only in debug ones.
 [[maybe_unused]] const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
@@ -200,5 +200,3 @@ TEST_F(VulkanRt, more_triangles_than_a_structure_holds_are_refused_with_both_num
         EXPECT_TRUE(contains(refused, std::to_string(mesh.triangles.size())) && contains(refused, " 7")) << refused;
     }
 }
-
-} // namespace tetrace

@@ -9,7 +9,9 @@
 #include "tests/support/given_scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 /// Before the instance is made: in all builds, not only in debug ones.
@@ -119,9 +121,9 @@ TEST_F(Vulkan, hits_of_walks_are_openmps_whatever_kind_of_device_it_is)
 TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
-    const test::GivenScene cubes{40, false, 6};
+    const GivenScene cubes{40, false, 6};
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const PackedScene packed = test::make_bvh_scene(cubes.scene.mesh, layout);
+        const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
         const SceneData data{&cubes.scene.mesh, &packed};
         const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::trace), data, {.threads = 2});
         const auto given_on_host = openmp_backend().open(0, bvh_kernel(layout, Task::rays), data, {.threads = 2});
@@ -224,5 +226,3 @@ TEST(VulkanErrors, name_the_call_the_code_and_the_device)
     EXPECT_EQ(full.kind(), ErrorKind::unsupported);
     EXPECT_TRUE(contains(full.what(), "1234") && contains(full.what(), "999"));
 }
-
-} // namespace tetrace

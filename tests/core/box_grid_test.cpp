@@ -4,17 +4,19 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
-Box random_box(test::Random& random, float size)
+Box random_box(Random& random, float size)
 {
     const Float3 a = random.point(-size, size);
     const Float3 b = random.point(-size, size);
     return merged({a, a}, {b, b});
 }
 
-Float3 between(const Box& box, test::Random& random)
+Float3 between(const Box& box, Random& random)
 {
     Float3 point;
     for (int axis = 0; axis < 3; ++axis)
@@ -22,9 +24,11 @@ Float3 between(const Box& box, test::Random& random)
     return point;
 }
 
+} // namespace
+
 TEST(BoxGrid, boxes_on_the_grid_hold_those_they_came_from_and_are_less_than_a_cell_larger)
 {
-    test::Random random(3);
+    Random random(3);
     for (int i = 0; i < 5000; ++i) {
         const Box outer = random_box(random, i % 2 == 0 ? 1 : 0x1p-12f);
         const Float3 a = between(outer, random);
@@ -46,7 +50,7 @@ TEST(BoxGrid, boxes_on_the_grid_hold_those_they_came_from_and_are_less_than_a_ce
 
 TEST(BoxGrid, cells_are_the_smallest_power_of_two_that_covers_the_box)
 {
-    test::Random random(4);
+    Random random(4);
     for (int i = 0; i < 1000; ++i) {
         const Box box = random_box(random, 1);
         const BoxGrid grid = make_box_grid(box);
@@ -85,6 +89,3 @@ TEST(BoxGrid, far_from_the_origin_lines_still_enclose)
         EXPECT_GE(line_at(grid, axis, lines.high[static_cast<std::size_t>(axis)]), box.high[axis]);
     }
 }
-
-} // namespace
-} // namespace tetrace

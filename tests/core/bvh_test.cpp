@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
-namespace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 TEST(Box, grown_box_has_the_margin_whatever_the_rounding)
 {
     constexpr double margin = 0x1p-17;
-    test::Random random(1);
+    Random random(1);
     for (int i = 0; i < 1000; ++i) {
         const Float3 a = random.point(-60, 60);
         const Box box = grown({a, a}, margin);
@@ -40,6 +40,8 @@ TEST(Box, boxes_apart_have_nothing_in_common)
     EXPECT_EQ(half_area({{0, 0, 0}, {1, 2, 3}}), 11);
 }
 
+namespace {
+
 // Two leaves of two triangles each.
 struct SmallBvh {
     TriangleMesh mesh;
@@ -49,8 +51,8 @@ SmallBvh small_bvh()
 {
     SmallBvh small;
     for (int i = 0; i < 4; ++i)
-        test::add_triangle(small.mesh, {static_cast<float>(i), 0, 0}, {static_cast<float>(i), 1, 0},
-                           {static_cast<float>(i), 0, 1});
+        add_triangle(small.mesh, {static_cast<float>(i), 0, 0}, {static_cast<float>(i), 1, 0},
+                     {static_cast<float>(i), 0, 1});
     small.bvh.nodes = {
         {{{0, 0, 0}, {3, 1, 1}}, {1, 2}, 0, 0}, {{{0, 0, 0}, {1, 1, 1}}, {}, 0, 2}, {{{2, 0, 0}, {3, 1, 1}}, {}, 2, 2}};
     small.bvh.references = {0, 1, 2, 3};
@@ -61,6 +63,8 @@ std::string defect_of(const SmallBvh& small)
 {
     return find_defect(small.bvh, small.mesh).value_or("");
 }
+
+} // namespace
 
 TEST(Bvh, a_whole_one_has_no_defect)
 {
@@ -113,6 +117,3 @@ TEST(Bvh, each_defect_is_found)
         EXPECT_NE(defect_of(small).find(row.says), std::string::npos) << row.says << ": '" << defect_of(small) << "'";
     }
 }
-
-} // namespace
-} // namespace tetrace

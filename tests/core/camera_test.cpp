@@ -5,7 +5,8 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 const BoundingSphere sphere{{0.125, -0.25, 0.0625}, 0.75};
@@ -19,6 +20,8 @@ std::uint64_t hash_of_views(CameraSet set)
     }
     return hash;
 }
+
+} // namespace
 
 TEST(Camera, sets_have_their_number_of_views)
 {
@@ -77,6 +80,3 @@ TEST(Camera, pixels_span_60_degrees_through_their_centres)
     EXPECT_NEAR(dot(direction(1023.5, 255.5), camera.right), 0.57735026919, 1e-6);
     EXPECT_NEAR(dot(direction(511.5, -0.5), camera.up), 0.57735026919 / 2, 1e-6) << "row 0 is the top";
 }
-
-} // namespace
-} // namespace tetrace

@@ -9,10 +9,13 @@
 #include <map>
 #include <set>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 const TriangleMesh triangle{{{0.1f, 0.2f, 0.3f}, {0.5f, 0.25f, 0.3f}, {0.3f, 0.6f, 0.3f}}, {{0, 1, 2}}};
+
+} // namespace
 
 TEST(Domain, tight_is_the_box_grown_by_2_percent_of_its_largest_extent)
 {
@@ -112,6 +115,3 @@ TEST(EntryGrid, a_square_without_a_face_is_refused)
             if (link == NO_LINK) link = 0; // no boundary is left
     EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
 }
-
-} // namespace
-} // namespace tetrace

@@ -7,7 +7,9 @@
 
 #include <cmath>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -32,9 +34,11 @@ int rational_orientation(Float3 a, Float3 b, Float3 c, Float3 d)
     return determinant(m).sign();
 }
 
+} // namespace
+
 TEST(Exact, grid_keeps_floats_from_2_to_the_minus_16_up)
 {
-    test::Random random(1);
+    Random random(1);
     for (int i = 0; i < 10000; ++i) {
         const float x = std::ldexp(1 + random.unit(), -16 + static_cast<int>(random.below(20)));
         EXPECT_EQ(snap_to_grid(x), x);
@@ -52,7 +56,7 @@ TEST(Exact, grid_rounds_smaller_floats_to_its_nearest_point)
 
 TEST(Exact, orientation_agrees_with_rational_arithmetic_on_near_degenerate_points)
 {
-    test::Random random(2);
+    Random random(2);
     int flat = 0;
     for (int i = 0; i < 20000; ++i) {
         const Float3 a = random.point(-1, 1), b = random.point(-1, 1), c = random.point(-1, 1);
@@ -92,6 +96,3 @@ TEST(Exact, distances_compare_beyond_double)
     EXPECT_EQ(compare_distance(origin, down, far, near), std::strong_ordering::greater);
     EXPECT_EQ(compare_distance(origin, down, near, near), std::strong_ordering::equal);
 }
-
-} // namespace
-} // namespace tetrace

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 int side_of_face(const Scene& scene, std::uint32_t tet, std::size_t face, Float3 point)
@@ -40,9 +42,11 @@ const Scene& scene()
     return cubes;
 }
 
+} // namespace
+
 TEST(Locate, finds_the_tet_of_random_points)
 {
-    test::Random random(3);
+    Random random(3);
     const Float3 low = scene().domain.low(), high = scene().domain.high();
     for (int i = 0; i < 2000; ++i) {
         const Float3 point = snap_to_grid(
@@ -101,6 +105,3 @@ TEST(FindStart, a_camera_outside_has_no_tet)
     EXPECT_EQ(start.tet, NO_TET);
     EXPECT_EQ(start.origin, (Float3{0, 0, 3}));
 }
-
-} // namespace
-} // namespace tetrace

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <numeric>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
-std::vector<Double3> random_offsets(std::size_t count, test::Random& random)
+std::vector<Double3> random_offsets(std::size_t count, Random& random)
 {
     std::vector<Double3> offsets;
     for (std::size_t i = 0; i < count; ++i)
@@ -26,9 +28,11 @@ double cost_of(const std::vector<Double3>& offsets, const std::vector<std::uint8
     return cost;
 }
 
+} // namespace
+
 TEST(OctantSlots, no_assignment_costs_less)
 {
-    test::Random random(11);
+    Random random(11);
     for (const std::size_t count : {1u, 2u, 5u, 7u, 8u}) {
         const auto offsets = random_offsets(count, random);
         const double cost = cost_of(offsets, octant_slots(offsets));
@@ -44,7 +48,7 @@ TEST(OctantSlots, no_assignment_costs_less)
 
 TEST(OctantSlots, each_child_has_a_slot_of_its_own)
 {
-    test::Random random(12);
+    Random random(12);
     for (std::size_t count = 0; count <= 8; ++count) {
         auto slots = octant_slots(random_offsets(count, random));
         EXPECT_EQ(slots.size(), count);
@@ -65,6 +69,3 @@ TEST(OctantSlots, the_slot_of_a_rays_octant_has_the_child_that_it_meets_first)
     for (std::uint32_t i = 0; i < 8; ++i)
         EXPECT_EQ(slots[i], i) << "octant " << i << " has negative directions along the axes where the corner is high";
 }
-
-} // namespace
-} // namespace tetrace

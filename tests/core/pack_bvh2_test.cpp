@@ -13,7 +13,9 @@
 #include <functional>
 #include <numeric>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 float number(std::uint32_t bits)
@@ -102,10 +104,12 @@ std::vector<std::uint32_t> counted_up_to(std::size_t count)
     return numbers;
 }
 
+} // namespace
+
 TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
 {
     const TriangleMesh mesh = GetParam().make();
-    const PackedScene packed = test::make_bvh_scene(mesh, Layout::bvh2);
+    const PackedScene packed = make_bvh_scene(mesh, Layout::bvh2);
     EXPECT_EQ(packed.layout, Layout::bvh2);
     EXPECT_EQ(packed.tet_count, 0u);
     const Bvh2Reader read(packed, mesh);
@@ -118,15 +122,15 @@ TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
 
 INSTANTIATE_TEST_SUITE_P(each, PackBvh2Of,
                          testing::Values(MeshRow{"surface", [] { return make_cubes(6).mesh; }},
-                                         MeshRow{"needles", [] { return test::needles(300); }},
-                                         MeshRow{"one_triangle", [] { return test::identical_triangles(1); }},
-                                         MeshRow{"same_triangles", [] { return test::identical_triangles(500); }},
-                                         MeshRow{"deep", [] { return test::nested_groups(2, 30, 300); }}),
+                                         MeshRow{"needles", [] { return needles(300); }},
+                                         MeshRow{"one_triangle", [] { return identical_triangles(1); }},
+                                         MeshRow{"same_triangles", [] { return identical_triangles(500); }},
+                                         MeshRow{"deep", [] { return nested_groups(2, 30, 300); }}),
                          [](const auto& info) { return info.param.name; });
 
 TEST(PackBvh2, boxes_are_the_trees_and_the_margin)
 {
-    const TriangleMesh mesh = test::needles(50);
+    const TriangleMesh mesh = needles(50);
     const Bvh bvh = build_bvh(mesh).bvh;
     const Bvh2Node root = read_node(pack_bvh(mesh, bvh, Layout::bvh2), 0);
     for (const std::size_t i : {0u, 1u})
@@ -135,7 +139,7 @@ TEST(PackBvh2, boxes_are_the_trees_and_the_margin)
 
 TEST(PackBvh2, one_leaf_has_an_empty_sibling_of_the_same_box)
 {
-    const TriangleMesh mesh = test::identical_triangles(3);
+    const TriangleMesh mesh = identical_triangles(3);
     const PackedScene packed = pack_bvh(mesh, {{{triangle_box(mesh, 0), {}, 0, 3}}, {2, 0, 1}}, Layout::bvh2);
     const Bvh2Node root = read_node(packed, 0);
     EXPECT_EQ(packed.nodes.size(), BVH2_NODE_QUADS);
@@ -144,6 +148,8 @@ TEST(PackBvh2, one_leaf_has_an_empty_sibling_of_the_same_box)
     EXPECT_EQ(root.box[0], root.box[1]);
     EXPECT_EQ(packed.leaf_triangles[0].w, 2u);
 }
+
+namespace {
 
 std::string refusal(const TriangleMesh& mesh, const Bvh& bvh, Layout layout)
 {
@@ -156,21 +162,23 @@ std::string refusal(const TriangleMesh& mesh, const Bvh& bvh, Layout layout)
     return "";
 }
 
+} // namespace
+
 TEST(PackBvh, trees_deeper_than_the_stack_are_refused_with_both_numbers)
 {
-    const TriangleMesh mesh = test::identical_triangles(1);
+    const TriangleMesh mesh = identical_triangles(1);
     const Box box = triangle_box(mesh, 0);
-    EXPECT_EQ(refusal(mesh, test::chain(BVH2_STACK, box), Layout::bvh2), "");
-    const std::string text = refusal(mesh, test::chain(BVH2_STACK + 1, box), Layout::bvh2);
+    EXPECT_EQ(refusal(mesh, chain(BVH2_STACK, box), Layout::bvh2), "");
+    const std::string text = refusal(mesh, chain(BVH2_STACK + 1, box), Layout::bvh2);
     EXPECT_NE(text.find("33 "), std::string::npos) << text;
     EXPECT_NE(text.find("room for 32"), std::string::npos) << text;
-    EXPECT_EQ(refusal(mesh, test::chain(3 * CWBVH_STACK, box), Layout::cwbvh), "");
-    EXPECT_NE(refusal(mesh, test::chain(100'000, box), Layout::cwbvh).find("100000 "), std::string::npos);
+    EXPECT_EQ(refusal(mesh, chain(3 * CWBVH_STACK, box), Layout::cwbvh), "");
+    EXPECT_NE(refusal(mesh, chain(100'000, box), Layout::cwbvh).find("100000 "), std::string::npos);
 }
 
 TEST(PackBvh, leaves_of_more_than_15_triangles_are_refused)
 {
-    const TriangleMesh mesh = test::identical_triangles(16);
+    const TriangleMesh mesh = identical_triangles(16);
     for (const auto layout : {Layout::bvh2, Layout::cwbvh}) {
         Bvh bvh = {{{triangle_box(mesh, 0), {}, 0, 16}}, counted_up_to(16)};
         EXPECT_NE(refusal(mesh, bvh, layout).find("16 triangles in a leaf"), std::string::npos);
@@ -187,10 +195,7 @@ TEST(PackBvh, a_layout_numbers_no_more_references_than_its_words_hold)
 
 TEST(PackBvh, layouts_of_tets_are_refused)
 {
-    const TriangleMesh mesh = test::identical_triangles(1);
-    EXPECT_THROW((void)test::make_bvh_scene(mesh, Layout::tet80), Error);
-    EXPECT_THROW((void)test::make_bvh_scene(mesh, Layout::embree), Error);
+    const TriangleMesh mesh = identical_triangles(1);
+    EXPECT_THROW((void)make_bvh_scene(mesh, Layout::tet80), Error);
+    EXPECT_THROW((void)make_bvh_scene(mesh, Layout::embree), Error);
 }
-
-} // namespace
-} // namespace tetrace

@@ -10,7 +10,8 @@
 #include <map>
 #include <tuple>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 using Place = std::tuple<float, float, float>;
@@ -155,5 +156,3 @@ TEST(CompactLimits, are_what_32_bits_index_and_links_name)
     EXPECT_EQ(most_tets(Layout::tet20), 858'993'459u) << "5 words each";
     EXPECT_EQ(most_tets(Layout::tet16), MAX_TETS) << "a quad each";
 }
-
-} // namespace tetrace

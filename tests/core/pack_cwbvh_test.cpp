@@ -15,7 +15,9 @@
 #include <functional>
 #include <numeric>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 /// One node's words again.
@@ -146,10 +148,12 @@ struct MeshRow {
 };
 class PackCwbvhOf : public testing::TestWithParam<MeshRow> {};
 
+} // namespace
+
 TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
 {
     const TriangleMesh mesh = GetParam().make();
-    const PackedScene packed = test::make_bvh_scene(mesh, Layout::cwbvh);
+    const PackedScene packed = make_bvh_scene(mesh, Layout::cwbvh);
     EXPECT_EQ(packed.layout, Layout::cwbvh);
     EXPECT_EQ(packed.tet_count, 0u);
     const CwbvhReader read(packed, mesh);
@@ -164,15 +168,15 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
 
 INSTANTIATE_TEST_SUITE_P(each, PackCwbvhOf,
                          testing::Values(MeshRow{"surface", [] { return make_cubes(6).mesh; }},
-                                         MeshRow{"needles", [] { return test::needles(300); }},
-                                         MeshRow{"one_triangle", [] { return test::identical_triangles(1); }},
-                                         MeshRow{"same_triangles", [] { return test::identical_triangles(500); }},
-                                         MeshRow{"deep", [] { return test::nested_groups(2, 30, 300); }}),
+                                         MeshRow{"needles", [] { return needles(300); }},
+                                         MeshRow{"one_triangle", [] { return identical_triangles(1); }},
+                                         MeshRow{"same_triangles", [] { return identical_triangles(500); }},
+                                         MeshRow{"deep", [] { return nested_groups(2, 30, 300); }}),
                          [](const auto& info) { return info.param.name; });
 
 TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)
 {
-    const TriangleMesh mesh = test::nested_groups(2, 40, 20);
+    const TriangleMesh mesh = nested_groups(2, 40, 20);
     const Bvh bvh = build_bvh(mesh).bvh;
     ASSERT_GT(levels_of(make_wide(with_single_leaves(mesh, bvh), Collapse::cheapest)), CWBVH_STACK);
     const CwbvhReader read(pack_bvh(mesh, bvh, Layout::cwbvh), mesh);
@@ -182,14 +186,14 @@ TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)
 TEST(PackCwbvh, nodes_of_a_surface_are_nearly_full)
 {
     const TriangleMesh mesh = make_cubes(10).mesh;
-    const PackedScene packed = test::make_bvh_scene(mesh, Layout::cwbvh);
+    const PackedScene packed = make_bvh_scene(mesh, Layout::cwbvh);
     const CwbvhReader read(packed, mesh);
     EXPECT_GT(static_cast<double>(read.children) / static_cast<double>(read.node_seen.size()), 7.0);
 }
 
 TEST(PackCwbvh, one_triangle_is_one_child_of_the_root)
 {
-    const PackedScene packed = test::make_bvh_scene(test::identical_triangles(1), Layout::cwbvh);
+    const PackedScene packed = make_bvh_scene(identical_triangles(1), Layout::cwbvh);
     const CwbvhNode root(packed, 0);
     EXPECT_EQ(packed.nodes.size(), CWBVH_NODE_QUADS);
     int leaves = 0;
@@ -202,7 +206,7 @@ TEST(PackCwbvh, one_triangle_is_one_child_of_the_root)
 // Bit 2 of a slot: the child is high in x, which rays towards low x meet first; bit 1 y, bit 0 z.
 TEST(PackCwbvh, children_stand_in_the_slots_of_their_octants)
 {
-    const PackedScene packed = test::make_bvh_scene(test::cube_corners(), Layout::cwbvh);
+    const PackedScene packed = make_bvh_scene(cube_corners(), Layout::cwbvh);
     const CwbvhNode root(packed, 0);
     for (std::uint32_t slot = 0; slot < 8; ++slot) {
         ASSERT_NE(root.meta(slot), 0u);
@@ -214,13 +218,10 @@ TEST(PackCwbvh, children_stand_in_the_slots_of_their_octants)
 // Two parts of a triangle that come into one leaf are one triangle there.
 TEST(PackCwbvh, a_leaf_has_a_triangle_once)
 {
-    const TriangleMesh mesh = test::identical_triangles(1);
-    const PackedScene packed = pack_bvh(mesh, test::chain(40, triangle_box(mesh, 0)), Layout::cwbvh);
+    const TriangleMesh mesh = identical_triangles(1);
+    const PackedScene packed = pack_bvh(mesh, chain(40, triangle_box(mesh, 0)), Layout::cwbvh);
     const CwbvhReader read(packed, mesh);
     const std::size_t leaves = read.children - (read.node_seen.size() - 1);
     EXPECT_LT(leaves, 41u) << "some were merged";
     EXPECT_EQ(packed.leaf_triangles.size(), leaves * LEAF_TRIANGLE_QUADS);
 }
-
-} // namespace
-} // namespace tetrace

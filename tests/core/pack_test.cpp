@@ -11,7 +11,8 @@
 #include <cmath>
 #include <set>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 // The scene's tets in packed order, with vertices by position, as unpack() gives them.
@@ -35,6 +36,8 @@ void expect_same_tets(const Scene& scene, const PackedScene& packed)
 }
 
 class Packing : public testing::TestWithParam<std::tuple<Layout, TetOrder>> {};
+
+} // namespace
 
 TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
 {
@@ -181,6 +184,3 @@ TEST(Hilbert, neighbouring_cells_follow_each_other)
         EXPECT_EQ(apart, 1) << "at cell " << i;
     }
 }
-
-} // namespace
-} // namespace tetrace

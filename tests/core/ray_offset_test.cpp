@@ -10,12 +10,14 @@
 #include <bit>
 #include <cmath>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
-const test::GivenScene& given()
+const GivenScene& given()
 {
-    static const test::GivenScene made;
+    static const GivenScene made;
     return made;
 }
 
@@ -23,6 +25,8 @@ float as_float(std::uint32_t bits)
 {
     return std::bit_cast<float>(bits);
 }
+
+} // namespace
 
 TEST(RayOffset, a_coordinate_moves_by_256_units_in_the_last_place)
 {
@@ -41,7 +45,7 @@ TEST(RayOffset, near_zero_a_coordinate_moves_by_2_to_the_minus_16)
 
 TEST(RayOffset, stays_on_the_grid)
 {
-    test::Random random(21);
+    Random random(21);
     for (int i = 0; i < 10'000; ++i) {
         const Float3 point = random.point(-0.03F, 0.03F);
         const Float3 moved = offset_point(point, to_float(normalized(to_double(random.point(-1, 1)))));
@@ -115,6 +119,3 @@ TEST(GivenRows, of_a_bvh_start_offset)
         ASSERT_EQ(quads[i].w, NO_LINK);
     }
 }
-
-} // namespace
-} // namespace tetrace

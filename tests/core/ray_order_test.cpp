@@ -10,12 +10,14 @@
 #include <tuple>
 #include <vector>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 RaySet arranged(RayKind kind, RayOrder order)
 {
-    static const test::GivenScene given;
+    static const GivenScene given;
     RaySet set = make_rays(kind, given.source());
     arrange(set, order);
     return set;
@@ -37,6 +39,8 @@ double mean_jump(const RaySet& set)
                length(to_double(set.rays[i].direction) - to_double(set.rays[i - 1].direction));
     return sum / static_cast<double>(set.rays.size());
 }
+
+} // namespace
 
 TEST(RayOrder, keeps_every_ray)
 {
@@ -95,6 +99,3 @@ TEST(RayOrder, an_empty_set_stays_empty)
         EXPECT_TRUE(set.rays.empty());
     }
 }
-
-} // namespace
-} // namespace tetrace

@@ -18,11 +18,10 @@
 #include <set>
 #include <vector>
 
-namespace tetrace {
-namespace {
+using namespace tetrace;
+using namespace tetrace::test;
 
-using test::GivenScene;
-using test::Random;
+namespace {
 
 constexpr RayKind all_kinds[] = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random};
 constexpr RayKind secondary_kinds[] = {RayKind::shadow, RayKind::ao, RayKind::diffuse};
@@ -53,6 +52,8 @@ Double3 inward_normal(const Scene& scene, std::uint32_t link)
     const Double3 normal = normalized(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
     return dot(normal, to_double(apex) - to_double(a)) > 0 ? normal : normal * -1;
 }
+
+} // namespace
 
 TEST(RandomWords, are_those_of_philox_4x32_10)
 {
@@ -198,6 +199,8 @@ TEST(RaySet, the_light_is_in_the_domain_and_35_to_70_degrees_from_the_camera)
     }
 }
 
+namespace {
+
 // Means of the cosine between direction and normal, and of its square.
 struct CosineMeans {
     double first = 0, second = 0;
@@ -214,6 +217,8 @@ CosineMeans cosine_means(const RaySet& set, const DirectionOf& direction_of)
     }
     return means;
 }
+
+} // namespace
 
 TEST(RaySet, ao_and_diffuse_are_cosine_distributed)
 {
@@ -238,6 +243,8 @@ TEST(RaySet, ao_and_diffuse_are_cosine_distributed)
     }
 }
 
+namespace {
+
 // Length of a line in the domain.
 double chord(const Domain& domain, Double3 origin, Double3 direction)
 {
@@ -253,6 +260,8 @@ double chord(const Domain& domain, Double3 origin, Double3 direction)
     clip(origin.z, direction.z, low.z, high.z);
     return std::max(0.0, to - from) * length(direction);
 }
+
+} // namespace
 
 TEST(RaySet, random_rays_are_uniform_chords_of_the_domain)
 {
@@ -306,6 +315,8 @@ TEST(RaySet, walks_from_surfaces_are_never_lost_and_never_hit_where_they_start)
     }
 }
 
+namespace {
+
 // A ray as flat as rays may be, or somewhat steeper, from both sides of every triangle: from its corners, its edges and
 // next to them.
 RaySet flat_rays_from_edges(const Scene& scene)
@@ -330,6 +341,8 @@ RaySet flat_rays_from_edges(const Scene& scene)
     set.rays.resize(set.rays.size() / TILE_WIDTH * TILE_WIDTH);
     return set;
 }
+
+} // namespace
 
 TEST(RayStart, flat_rays_from_corners_and_edges_walk_into_their_tet)
 {
@@ -363,6 +376,3 @@ TEST(RayStart, a_point_at_an_edge_moves_inside_by_the_margin_and_no_other_moves)
     const Double3 point = vertex(a) * 0.5 + vertex(b) * 0.25 + vertex(c) * 0.25;
     EXPECT_LE(length(to_double(kept.origin) - point), 0x1p-24);
 }
-
-} // namespace
-} // namespace tetrace

@@ -11,7 +11,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
@@ -195,5 +196,3 @@ TEST(SearchSet, kernels_are_those_of_the_cdt_with_a_ray_an_item)
     EXPECT_EQ(kernels_of(Task::search).size(), 24u);
     EXPECT_EQ(name_of(kernels_of(Task::search).back()), "search/project/tet96");
 }
-
-} // namespace tetrace

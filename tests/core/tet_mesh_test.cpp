@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 using Kind = TetMeshDefect::Kind;
@@ -39,6 +40,8 @@ std::uint32_t inner_face_of(const Tet& tet)
         if (tet.links[face] != NO_LINK) return face;
     return 4;
 }
+
+} // namespace
 
 TEST(TetMesh, cubes_have_no_defect_and_no_gap)
 {
@@ -144,6 +147,3 @@ TEST(TetMesh, faces_are_counted_once)
     EXPECT_EQ(counts.occlusive_faces, scene.mesh.triangles.size());
     EXPECT_EQ(4 * counts.tets, 2 * (counts.occlusive_faces + counts.free_faces) + counts.boundary_faces);
 }
-
-} // namespace
-} // namespace tetrace

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 constexpr Box everywhere = {{-64, -64, -64}, {64, 64, 64}};
@@ -18,9 +20,11 @@ Float3 point_of(const Float3 (&corners)[3], float u, float v)
     return point;
 }
 
+} // namespace
+
 TEST(TriangleSplit, each_point_of_the_triangle_is_in_a_part)
 {
-    test::Random random(7);
+    Random random(7);
     for (int i = 0; i < 2000; ++i) {
         const Float3 corners[3] = {random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)};
         const int axis = static_cast<int>(random.below(3));
@@ -36,7 +40,7 @@ TEST(TriangleSplit, each_point_of_the_triangle_is_in_a_part)
 
 TEST(TriangleSplit, parts_stay_on_their_side_and_in_the_box)
 {
-    test::Random random(8);
+    Random random(8);
     for (int i = 0; i < 2000; ++i) {
         const Float3 corners[3] = {random.point(-1, 1), random.point(-1, 1), random.point(-1, 1)};
         const Box box = {{-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}};
@@ -75,6 +79,3 @@ TEST(TriangleSplit, what_lies_in_the_plane_is_in_both_parts)
     EXPECT_EQ(parts.below, (Box{{0, 0, 0.5f}, {1, 1, 0.5f}}));
     EXPECT_EQ(parts.below, parts.above);
 }
-
-} // namespace
-} // namespace tetrace

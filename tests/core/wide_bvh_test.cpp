@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <numeric>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 Bvh single_leaves_of(const TriangleMesh& mesh)
@@ -18,9 +20,11 @@ Bvh single_leaves_of(const TriangleMesh& mesh)
     return with_single_leaves(mesh, build_bvh(mesh).bvh);
 }
 
+} // namespace
+
 TEST(SingleLeaves, the_tree_stays_whole_and_its_leaves_have_one_triangle)
 {
-    const TriangleMesh mesh = test::needles(500);
+    const TriangleMesh mesh = needles(500);
     const Bvh before = build_bvh(mesh).bvh;
     const Bvh bvh = with_single_leaves(mesh, before);
     EXPECT_EQ(find_defect(bvh, mesh), std::nullopt);
@@ -37,7 +41,7 @@ TEST(SingleLeaves, a_leaf_is_split_where_it_costs_least)
 {
     TriangleMesh mesh;
     for (const float x : {0.0f, 1.0f, 0.01f, 1.01f})
-        test::add_triangle(mesh, {x, 0, 0}, {x, 0.1f, 0}, {x, 0, 0.1f});
+        add_triangle(mesh, {x, 0, 0}, {x, 0.1f, 0}, {x, 0, 0.1f});
     Bvh leaf;
     leaf.references = {0, 1, 2, 3};
     leaf.nodes.push_back({{{0, 0, 0}, {1.01f, 0.1f, 0.1f}}, {}, 0, 4});
@@ -45,6 +49,8 @@ TEST(SingleLeaves, a_leaf_is_split_where_it_costs_least)
     EXPECT_EQ(find_defect(bvh, mesh), std::nullopt);
     EXPECT_EQ(bvh.references, (std::vector<std::uint32_t>{0, 2, 1, 3}));
 }
+
+namespace {
 
 /// A binary BVH over `count` triangles, halved at random.
 class RandomTree {
@@ -74,7 +80,7 @@ private:
         bvh.nodes[node].box = merged(bvh.nodes[left].box, bvh.nodes[right].box);
         return node;
     }
-    test::Random random_;
+    Random random_;
 };
 
 double leaf_cost(const Box& box, std::uint32_t count)
@@ -140,6 +146,8 @@ private:
     const Bvh& bvh_;
 };
 
+} // namespace
+
 TEST(WideBvh, no_other_way_to_collapse_costs_less)
 {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -147,6 +155,8 @@ TEST(WideBvh, no_other_way_to_collapse_costs_less)
         EXPECT_NEAR(cost_of(make_wide(bvh, Collapse::cheapest)), EveryWay(bvh).below(0), 1e-9) << "seed " << seed;
     }
 }
+
+namespace {
 
 void expect_whole(const WideBvh& wide, const Bvh& bvh)
 {
@@ -171,10 +181,12 @@ void expect_whole(const WideBvh& wide, const Bvh& bvh)
     EXPECT_EQ(is_child, std::vector<int>(is_child.size(), 1));
 }
 
+} // namespace
+
 TEST(WideBvh, each_reference_is_in_one_leaf)
 {
     for (const auto collapse : {Collapse::cheapest, Collapse::shallow}) {
-        const Bvh bvh = single_leaves_of(test::needles(500));
+        const Bvh bvh = single_leaves_of(needles(500));
         expect_whole(make_wide(bvh, collapse), bvh);
         for (std::uint32_t count = 1; count < 30; ++count) {
             const Bvh random = RandomTree(count, count).bvh;
@@ -195,7 +207,7 @@ TEST(WideBvh, nodes_of_a_surface_are_nearly_full)
 
 TEST(WideBvh, the_shallow_one_makes_one_level_of_three)
 {
-    const Bvh bvh = single_leaves_of(test::nested_groups(1, 30, 20));
+    const Bvh bvh = single_leaves_of(nested_groups(1, 30, 20));
     const std::uint32_t levels = levels_of(make_wide(bvh, Collapse::shallow));
     EXPECT_LE(levels, (depth_of(bvh) + 2) / 3);
     EXPECT_LT(levels, levels_of(make_wide(bvh, Collapse::cheapest)));
@@ -203,11 +215,8 @@ TEST(WideBvh, the_shallow_one_makes_one_level_of_three)
 
 TEST(WideBvh, one_leaf_becomes_a_root_with_one_child)
 {
-    const WideBvh wide = make_wide(single_leaves_of(test::identical_triangles(1)), Collapse::cheapest);
+    const WideBvh wide = make_wide(single_leaves_of(identical_triangles(1)), Collapse::cheapest);
     ASSERT_EQ(wide.nodes.size(), 1u);
     EXPECT_EQ(wide.nodes[0].size(), 1u);
     EXPECT_EQ(levels_of(wide), 1u);
 }
-
-} // namespace
-} // namespace tetrace

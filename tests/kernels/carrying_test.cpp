@@ -12,7 +12,9 @@
 #include <map>
 #include <tuple>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 constexpr Layout carrying_layouts[] = {Layout::half32, Layout::tet20, Layout::tet16};
@@ -149,5 +151,3 @@ TEST(Carrying, has_the_same_bits_with_the_tets_in_parts)
             }
     }
 }
-
-} // namespace tetrace

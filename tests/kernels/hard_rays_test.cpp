@@ -32,6 +32,7 @@ namespace mutant {
 }
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 constexpr std::uint64_t rays_at_once = 1 << 16;
 
@@ -43,9 +44,9 @@ std::uint64_t rays_wanted(std::uint64_t otherwise)
 
 struct Judged {
     Verdicts verdicts;
-    std::uint64_t nearby = 0;                             ///< called wrong, and right for a ray nearby
-    std::array<std::uint64_t, test::hard_kinds> flawed{}; ///< by kind, without those
-    std::string first;                                    ///< of the flawed rays
+    std::uint64_t nearby = 0;                       ///< called wrong, and right for a ray nearby
+    std::array<std::uint64_t, hard_kinds> flawed{}; ///< by kind, without those
+    std::string first;                              ///< of the flawed rays
 };
 
 /// Whether Embree has that answer (NO_HIT: none) for one of many rays nearby, moved by the bound or less at the start
@@ -81,7 +82,7 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
     Judged all;
     for (std::uint64_t first = 0; first < count; first += rays_at_once) {
         const std::size_t size = std::min(rays_at_once, count - first) / TILE_WIDTH * TILE_WIDTH;
-        const RaySet set = test::hard_ray_set(scene, first, size);
+        const RaySet set = hard_ray_set(scene, first, size);
         const std::vector<Hit> hits = trace(set, given_quads(set, packed));
         const Verdicts verdicts = oracle.judge(set, hits, Origins::own);
         all.verdicts.add(verdicts);
@@ -90,7 +91,7 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
                 ++all.nearby;
                 continue;
             }
-            ++all.flawed[(first + ray) % test::hard_kinds];
+            ++all.flawed[(first + ray) % hard_kinds];
             if (all.first.empty()) all.first = fmt::format("ray {}", first + ray);
         }
     }
@@ -137,7 +138,7 @@ class HardRaysOf : public testing::TestWithParam<std::string> {};
 
 TEST(HardRays, of_hard_meshes_are_neither_wrong_nor_lost)
 {
-    for (const auto& [name, scene] : test::make_hard_scenes())
+    for (const auto& [name, scene] : make_hard_scenes())
         expect_none_wrong_or_lost(scene, name);
 }
 
@@ -153,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(each, HardRaysOf, testing::Values("bunny", "armadillo")
 
 TEST(HardRays, find_a_walk_without_the_rule_for_ties)
 {
-    const Scene scene = std::move(test::make_hard_scenes().front().scene);
+    const Scene scene = std::move(make_hard_scenes().front().scene);
     const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
     const mutant::SceneView view = mutant::view_of(packed);
     mutant::TraceParams params{};

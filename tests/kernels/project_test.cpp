@@ -25,6 +25,8 @@
 namespace {
 
 using tetrace::Float3;
+using tetrace::test::different_rays;
+using tetrace::test::traced;
 
 std::array<std::uint64_t, 3> decided{}; // signs by level: float products, what they lost, the order of the vertices
 #define COUNT_SIGN(level) (++decided[level])

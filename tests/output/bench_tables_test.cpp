@@ -7,6 +7,7 @@
 #include <sstream>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

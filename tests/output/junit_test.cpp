@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

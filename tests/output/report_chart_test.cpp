@@ -13,6 +13,7 @@
 #include <regex>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include <set>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
 
 namespace {
 
@@ -140,5 +140,3 @@ TEST(DrawSteps, a_tiny_picture_is_widened_for_its_title)
     const std::vector<Hit> hits(2 * 2, hit_after(1));
     EXPECT_GT(draw_steps(hits, 2, 2, "cubes").width, 200u);
 }
-
-} // namespace tetrace

@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-namespace tetrace {
+using namespace tetrace;
 
 namespace {
 
@@ -121,5 +121,3 @@ TEST_F(ImagesModule, an_empty_picture_is_refused)
 {
     EXPECT_NE(refusal(folder_ / "a.png", Pixmap{}).find("no pixels"), std::string::npos);
 }
-
-} // namespace tetrace

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-namespace tetrace {
+using namespace tetrace;
 
 namespace {
 
@@ -77,5 +77,3 @@ TEST_F(Images, openimageio_is_loaded_by_the_first_picture_and_not_before)
         GTEST_SKIP() << error.what();
     }
 }
-
-} // namespace tetrace

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace tetrace {
+using namespace tetrace;
 
 namespace {
 
@@ -60,5 +60,3 @@ TEST(DrawText, is_cut_off_at_the_edges)
     draw_text(pixmap, 100, 100, "tetrace", ink);
     EXPECT_EQ(pixmap.pixels.size(), 16u);
 }
-
-} // namespace tetrace

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
 
 namespace {
 
@@ -50,5 +50,3 @@ TEST(CheckPictureEnding, refuses_other_forms_and_names_the_accepted_ones)
         EXPECT_NE(std::string(error.what()).find(".png, .exr or .ppm"), std::string::npos);
     }
 }
-
-} // namespace tetrace

@@ -7,6 +7,7 @@
 #include <limits>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 TEST(Ppm, has_a_header_and_three_bytes_a_pixel_row_after_row)
 {

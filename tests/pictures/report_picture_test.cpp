@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

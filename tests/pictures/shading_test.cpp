@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
 
 namespace {
 
@@ -85,5 +85,3 @@ TEST(ShadeHits, draws_triangles_without_area)
     const std::vector<Hit> hits{hit_of(0), hit_of(0)};
     EXPECT_GT(brightness(shade_hits(hits, small_view(), 2, 1, needle).at(0, 0)), 0.1);
 }
-
-} // namespace tetrace

@@ -9,6 +9,7 @@
 #include <regex>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <sys/wait.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 struct Ended {
@@ -78,5 +80,3 @@ TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
         EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok")) << failure;
     }
 }
-
-} // namespace tetrace

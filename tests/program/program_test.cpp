@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <random>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

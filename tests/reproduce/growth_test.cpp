@@ -8,6 +8,7 @@
 #include <random>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

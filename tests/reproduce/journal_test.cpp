@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 using nlohmann::json;
 
 namespace {

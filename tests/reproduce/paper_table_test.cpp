@@ -3,6 +3,7 @@
 #include "tests/support/temporary_folder.h"
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -2,6 +2,7 @@
 #include "tests/support/reproduce_fixture.h"
 
 using namespace tetrace;
+using namespace tetrace::test;
 using nlohmann::json;
 
 namespace {

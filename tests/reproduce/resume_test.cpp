@@ -3,6 +3,7 @@
 #include <functional>
 
 using namespace tetrace;
+using namespace tetrace::test;
 using nlohmann::json;
 
 namespace {

@@ -8,6 +8,7 @@
 #include <functional>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

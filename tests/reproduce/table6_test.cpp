@@ -6,6 +6,7 @@
 #include <random>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 

@@ -6,7 +6,8 @@
 
 #include <cmath>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 TEST(CleanUp, counts_what_it_takes_away)
 {
@@ -99,5 +100,3 @@ TEST(SelfIntersection, lists_the_first_pairs_in_mesh_units)
     EXPECT_TRUE(contains(text, "triangle 1 (0.5, 0.5, -0.5) (0.5, 0.5, 0.5) (1, 0.5, 0.5)"));
     EXPECT_TRUE(contains(text, "does not repair"));
 }
-
-} // namespace tetrace

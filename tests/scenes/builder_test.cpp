@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <sys/wait.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -128,5 +130,3 @@ TEST_F(BuilderProgram, tells_exhausted_memory_with_code_13)
     EXPECT_TRUE(contains(ended.errors, "out of memory"));
     EXPECT_TRUE(contains(ended.errors, std::string(allow_more_memory)));
 }
-
-} // namespace tetrace

@@ -7,7 +7,9 @@
 #include "scenes/builder/steiner_rounding.h"
 #include "tests/support/builder_meshes.h"
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
 BuilderTalk silence()
@@ -236,5 +238,3 @@ TEST_F(AbsurdOutput, names_inverted_tets_and_who_made_them)
     output_.points.back() = {-apex.x, -apex.y, -apex.z};
     expect_absurd("0 were so in TetGen's double coordinates already");
 }
-
-} // namespace tetrace

@@ -13,7 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace fs = std::filesystem;
 
@@ -240,5 +241,3 @@ TEST_F(Cache, atomic_file_appears_whole_or_not_at_all)
     EXPECT_EQ(read_text(folder / "file"), after);
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
-
-} // namespace tetrace

@@ -9,7 +9,8 @@
 #include <set>
 #include <sstream>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace fs = std::filesystem;
 
@@ -173,5 +174,3 @@ TEST_F(Catalogue, finds_debian_s_meshes)
     EXPECT_EQ(hash_text(hash_of(bunny)), "78924a553c61dc43");
     EXPECT_EQ(hash_text(hash_of(armadillo)), "cfd9a20c2f3456b8");
 }
-
-} // namespace tetrace

@@ -12,7 +12,8 @@
 #include <thread>
 #include <unistd.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -268,5 +269,3 @@ TEST(ChildProcess, runs_from_several_threads_at_once)
         thread.join();
     EXPECT_EQ(right, 4);
 }
-
-} // namespace tetrace

@@ -15,7 +15,8 @@
 #include <thread>
 #include <unistd.h>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace fs = std::filesystem;
 
@@ -426,5 +427,3 @@ TEST_F(Load, builds_the_banana_from_its_file)
     EXPECT_TRUE(contains(error, "building scene banana from "));
     EXPECT_TRUE(read_text(folder / "seen.off").starts_with("OFF\n12502 25000 0\n"));
 }
-
-} // namespace tetrace

@@ -13,7 +13,8 @@
 #include <string>
 #include <unistd.h>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 const std::string tetrahedron_off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
@@ -117,6 +118,8 @@ const std::string ascii_stl =
     "0 0 1.5e0\n  ENDLOOP\n ENDFACET\nendsolid a name\n";
 
 const std::vector<std::string> ply_formats = {"ascii", "binary_little_endian", "binary_big_endian"};
+
+} // namespace
 
 TEST_F(MeshReader, reads_off_with_comments_and_colours)
 {
@@ -326,6 +329,8 @@ TEST_F(MeshReader, refuses_files_cut_short_and_files_too_long)
     }
 }
 
+namespace {
+
 void expect_valid_or_error(const std::string& name, const std::string& bytes)
 {
     try {
@@ -340,6 +345,8 @@ void expect_valid_or_error(const std::string& name, const std::string& bytes)
         ASSERT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();
     }
 }
+
+} // namespace
 
 TEST_F(MeshReader, survives_every_truncation_and_seeded_byte_flips)
 {
@@ -367,6 +374,3 @@ TEST_F(MeshReader, survives_every_truncation_and_seeded_byte_flips)
         }
     }
 }
-
-} // namespace
-} // namespace tetrace

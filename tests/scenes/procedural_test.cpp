@@ -9,7 +9,8 @@
 #include <cmath>
 #include <set>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -219,5 +220,3 @@ TEST(Banana, is_the_same_bits_everywhere)
 {
     EXPECT_EQ(hash_text(hash_of_mesh(make_banana())), "811b579e4b0cce82");
 }
-
-} // namespace tetrace

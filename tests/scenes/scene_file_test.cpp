@@ -11,7 +11,8 @@
 #include <random>
 #include <set>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -278,5 +279,3 @@ TEST_F(SceneFile, keeps_the_old_file_and_no_temporary_where_writing_fails)
         EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
     EXPECT_EQ(read_scene(path), sample_scene());
 }
-
-} // namespace tetrace

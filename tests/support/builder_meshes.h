@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// Of unit legs.
 [[nodiscard]] inline TriangleMesh tetrahedron()
@@ -116,4 +116,4 @@ inline void expect_sound(const Scene& scene)
         EXPECT_TRUE(is_boundary_corner(scene, vertex)) << "an input vertex moved";
 }
 
-} // namespace tetrace
+} // namespace tetrace::test

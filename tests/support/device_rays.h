@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// Runs a case's body on each usable device of a backend; visibly skipped where there is none.
 class UsableDevices : public ::testing::Test {
@@ -126,4 +126,4 @@ private:
     return count;
 }
 
-} // namespace tetrace
+} // namespace tetrace::test

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// A backend made of what a test says: one device, and what measuring it gives.
 class FakeBackend : public Backend {
@@ -36,4 +36,4 @@ private:
     std::vector<Device> devices_;
 };
 
-} // namespace tetrace
+} // namespace tetrace::test

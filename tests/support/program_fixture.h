@@ -7,7 +7,7 @@
 #include <string>
 #include <sys/wait.h>
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// How a run of the program ended.
 struct Ended {
@@ -39,4 +39,4 @@ protected:
     TemporaryFolder folder_;
 };
 
-} // namespace tetrace
+} // namespace tetrace::test

@@ -13,7 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// How a run of the program ended.
 struct Ended {
@@ -90,4 +90,4 @@ inline const nlohmann::json& of_id(const nlohmann::json& list, const std::string
     throw std::runtime_error("nothing of id " + id);
 }
 
-} // namespace tetrace
+} // namespace tetrace::test

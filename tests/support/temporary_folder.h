@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-namespace tetrace {
+namespace tetrace::test {
 
 /// A folder that lives as long as its test.
 class TemporaryFolder {
@@ -95,4 +95,4 @@ inline ::testing::AssertionResult contains(const std::string& text, const std::s
     return ::testing::AssertionFailure() << "`" << part << "` is not in `" << text << "`";
 }
 
-} // namespace tetrace
+} // namespace tetrace::test

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -39,7 +40,7 @@ LoadedScene damaged_cubes()
     LoadedScene loaded = small_cubes();
     auto& tets = loaded.scene.tets.tets;
     const auto count = static_cast<std::uint32_t>(tets.size());
-    test::Random random(30);
+    Random random(30);
     for (Tet& tet : tets)
         for (std::size_t face = 0; face < 4; ++face)
             if (tet.links[face] != NO_LINK && tet.faces[face] == FREE_FACE)

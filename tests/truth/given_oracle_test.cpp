@@ -12,10 +12,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tetrace {
+using namespace tetrace;
+using namespace tetrace::test;
+
 namespace {
 
-using test::GivenScene;
 using Kind = Settlement::Kind;
 
 constexpr RayKind all_kinds[] = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random};
@@ -37,6 +38,8 @@ void expect_clean(const GivenScene& given, RayKind kind, Method method)
     EXPECT_TRUE(verdicts.clean()) << name_of(kind) << ": " << verdicts.wrong << " wrong, " << verdicts.lost << " lost";
 }
 
+} // namespace
+
 TEST(GivenOracle, agrees_with_walks_on_every_kind_from_outside_and_inside)
 {
     const GivenScene from_outside(96);
@@ -46,6 +49,8 @@ TEST(GivenOracle, agrees_with_walks_on_every_kind_from_outside_and_inside)
             expect_clean(inside_camera(), kind, method);
         }
 }
+
+namespace {
 
 std::vector<Hit> bvh_answers(const TriangleMesh& mesh, const PackedScene& bvh, const RaySet& set)
 {
@@ -59,6 +64,8 @@ std::vector<Hit> bvh_answers(const TriangleMesh& mesh, const PackedScene& bvh, c
     session->read_back(answers);
     return answers;
 }
+
+} // namespace
 
 TEST(GivenOracle, agrees_with_bvhs_but_where_their_offset_explains_it)
 {
@@ -84,6 +91,8 @@ TEST(GivenOracle, answers_for_offset_origins_are_wrong_where_origins_are_the_set
     const RaySet set = make_rays(RayKind::diffuse, inside_camera().source());
     EXPECT_GT(GivenOracle(mesh, 2).judge(set, bvh_answers(mesh, packed, set), Origins::own).wrong, 0u);
 }
+
+namespace {
 
 struct Answered {
     RaySet set;
@@ -111,6 +120,8 @@ Verdicts verdicts_after(RayKind kind, const Spoil& spoil)
     spoil(all);
     return GivenOracle(inside_camera().scene.mesh, 2).judge(all.set, all.hits, Origins::own);
 }
+
+} // namespace
 
 TEST(GivenOracle, a_single_wrong_nearest_triangle_is_found_and_located)
 {
@@ -178,6 +189,8 @@ TEST(GivenOracle, an_empty_set_is_clean)
     EXPECT_EQ(GivenOracle(inside_camera().scene.mesh, 2).judge({}, {}, Origins::own).rays, 0u);
 }
 
+namespace {
+
 // Three parallel triangles that a ray from the first one meets straight on: at 0, at `gap` above it and at 1/2.
 TriangleMesh sheets(float gap)
 {
@@ -207,6 +220,8 @@ Verdicts judged(float gap, std::uint32_t face, float t, Origins origins, float e
     const Hit hit = face == NO_HIT ? Hit{NO_HIT, NO_TET, 0, 0, 0, 0} : Hit{face, NO_TET, t, 0.25F, 0.25F, 0};
     return GivenOracle(mesh, 1).judge(straight_up(end, any_hit), std::vector{hit}, origins);
 }
+
+} // namespace
 
 // The offset from z = 0 is 2^-16, the bound here 2^-19.6.
 TEST(GivenOracle, what_the_offset_alone_explains_is_neither_right_nor_wrong)
@@ -287,6 +302,3 @@ TEST(Settle, the_triangle_that_a_ray_starts_on_is_no_candidate)
     EXPECT_EQ(settler.settle(ray, {start_sheet, NO_END, false}, start_sheet, near_sheet, bound).kind, Kind::wrong);
     EXPECT_EQ(settler.settle(ray, near_sheet, start_sheet, bound).kind, Kind::wrong) << "a ray that starts on none";
 }
-
-} // namespace
-} // namespace tetrace

@@ -13,7 +13,8 @@
 #include <xmmintrin.h>
 #endif
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 constexpr std::uint32_t size = 128;
@@ -52,6 +53,8 @@ struct Traced {
     [[nodiscard]] std::size_t hit_pixel() const { return std::size_t{size} / 2 * size + size / 2; }
 };
 
+} // namespace
+
 TEST(Oracle, agrees_with_the_walk_on_cubes)
 {
     const Verdicts verdicts = Traced().judged();
@@ -59,6 +62,8 @@ TEST(Oracle, agrees_with_the_walk_on_cubes)
     EXPECT_EQ(verdicts.agreed + verdicts.ties + verdicts.settled, verdicts.rays);
     EXPECT_TRUE(verdicts.clean());
 }
+
+namespace {
 
 template <class Spoil>
 Verdicts verdicts_after(const Spoil& spoil)
@@ -69,6 +74,8 @@ Verdicts verdicts_after(const Spoil& spoil)
     spoil(traced.hits[traced.hit_pixel()]);
     return traced.judged();
 }
+
+} // namespace
 
 TEST(Oracle, a_single_wrong_answer_is_found_and_located)
 {
@@ -147,6 +154,8 @@ TEST(Walk, layouts_and_threads_do_not_change_a_bit)
     }
 }
 
+namespace {
+
 #if defined(__SSE2__)
 // A scene so small that every product is denormal: it tells whether the walk's thread flushes them, as Embree and TBB
 // leave their threads.
@@ -177,6 +186,8 @@ TEST(Walk, a_thread_that_flushes_denormals_is_set_back)
         ASSERT_EQ(tiny.hits[i].steps, reference[i].steps) << "ray " << i;
 }
 #endif
+
+} // namespace
 
 TEST(Walk, order_of_tets_changes_their_numbers_only)
 {
@@ -217,6 +228,3 @@ TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
         EXPECT_TRUE(neighbours) << "step " << i;
     }
 }
-
-} // namespace
-} // namespace tetrace

@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-namespace tetrace {
+using namespace tetrace;
+
 namespace {
 
 using Kind = Settlement::Kind;
@@ -20,6 +21,8 @@ Settlement settle(float x, float y, std::uint32_t ours, std::uint32_t reference)
 {
     return Settler(squares).settle({{x, y, 1}, {0, 0, -1}}, ours, reference, bound);
 }
+
+} // namespace
 
 TEST(Settle, the_exact_nearest_triangle_is_right_whatever_the_reference_says)
 {
@@ -73,6 +76,3 @@ TEST(Settle, a_fold_is_a_silhouette)
     EXPECT_EQ(settler.settle({{-0.25f, 0.25f, 1}, {0, 0, -1}}, 1, 0, bound).kind, Kind::wrong)
         << "it hides the lower one";
 }
-
-} // namespace
-} // namespace tetrace
