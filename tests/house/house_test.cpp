@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -12,15 +13,15 @@ namespace fs = std::filesystem;
 
 const fs::path root = TETRACE_ROOT;
 
-const test::House& house()
+const House& house()
 {
-    static const test::House house(root / "tests/house/arrows.txt");
+    static const House house(root / "tests/house/arrows.txt");
     return house;
 }
 
-const test::Sources& sources()
+const Sources& sources()
 {
-    static const test::Sources sources = test::read_sources(root);
+    static const Sources sources = read_sources(root);
     return sources;
 }
 
@@ -93,8 +94,8 @@ TEST(House, finds_what_does_not_belong)
     std::ofstream(folder.path() / "core/high/b.h") << "#include \"core/low/part/a.h\"\n#include \"other/c.h\"\n";
     std::ofstream(folder.path() / "arrows.txt") << "# comment\ncore/low ->\ncore/high -> core/low core/mid\n"
                                                 << "core/mid -> core/high\n";
-    const test::House twin(folder.path() / "arrows.txt");
-    const auto includes = test::read_sources(folder.path()).includes;
+    const House twin(folder.path() / "arrows.txt");
+    const auto includes = read_sources(folder.path()).includes;
     const std::string problems = joined(twin.forbidden(includes));
     EXPECT_NE(problems.find("core/low/part/a.h includes core/high/b.h: core/low -> core/high is no arrow"),
               std::string::npos);
