@@ -18,7 +18,7 @@ constexpr std::uint32_t rings = 125;  ///< between the two tips
 constexpr std::uint32_t sides = 100;  ///< vertices of a ring
 constexpr double arc_end = 0.55;      ///< t at a tip: tan of a quarter of the angle of the arc, 115 degrees
 constexpr double thickness = 0.26;    ///< the tube's radius in its middle; the arc's is 1
-constexpr double taper = 0.4;         ///< share of it that is gone where the caps begin
+constexpr double taper = 0.4;         ///< share of it that has tapered away where the caps begin
 constexpr double ridge_height = 0.04; ///< of the five soft ridges along the fruit, relative
 
 /// A point of the unit circle; * adds the angles.
@@ -44,7 +44,7 @@ double ridges_at(Turn side)
     return 1 + ridge_height * c * (16 * c2 * c2 - 20 * c2 + 5);
 }
 
-/// To a multiple of 2^-30: what ought to be 0 is, and no reader has to round it.
+/// Rounds to a multiple of 2^-30: exact zeros stay zero, and no reader has to round.
 double tidy(double coordinate)
 {
     return std::round(coordinate * 0x1p30) * 0x1p-30;

@@ -48,7 +48,7 @@ fs::path in_search_path()
 struct Report {
     std::string stage = "starting";
     std::vector<std::string> notes, errors;
-    std::string last_words; ///< the last line that is none of these, as a failed assertion leaves it
+    std::string last_words; ///< the last other line, for example of a failed assertion
 
     void take(const std::string& line)
     {
@@ -70,7 +70,7 @@ struct Report {
 /// One way in which the builder can end without a scene.
 struct Ending {
     ErrorKind kind;
-    std::string what; ///< it happened
+    std::string what; ///< whether it happened
     std::string remedy;
     bool builder_knows = false; ///< the builder's own words hold the remedy; ours is for when it said nothing
 };
@@ -164,7 +164,7 @@ fs::path find_builder()
 {
     if (const char* given = std::getenv("TETRACE_BUILDER"); given != nullptr && *given != '\0')
         return can_execute(given) ? fs::path(given) : fs::path();
-    std::error_code ignored; // without /proc we only do not look there
+    std::error_code ignored; // without /proc this place is skipped
     const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / builder_name;
     return can_execute(beside) ? beside : in_search_path();
 }

@@ -14,10 +14,10 @@ namespace tetrace {
 [[nodiscard]] std::filesystem::path find_builder();
 
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`.
-/// notes: the builder's remarks are appended. progress: told each stage about ten times a second.
-/// Throws Error whose text names the way in which the builder ended, the switches, its last stage and what to try:
-/// {missing} no builder, or it misses a file; {interrupted} after Ctrl-C; {internal} its own fault;
-/// {usage} switches or divisions that it does not accept; else {invalid_input}.
+/// notes: the builder's remarks are appended. progress: called with the stage about ten times a second.
+/// Throws Error; its text says how the builder ended, its switches, its last stage and what to try. Kinds: missing (no
+/// builder, or a file that it needs), interrupted (Ctrl-C), internal (a fault of the builder), usage (switches or
+/// divisions that it does not accept), else invalid_input.
 void build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
                  const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes);
 

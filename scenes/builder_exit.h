@@ -4,12 +4,12 @@
 
 namespace tetrace {
 
-/// The exit codes of tetrace-builder: its parent tells a bad mesh, a missing file and the ways of TetGen's failing
-/// apart by them. The text that belongs to one is on stderr, in lines that begin with "error: ".
+/// The exit codes of tetrace-builder. They tell its parent a bad mesh from a missing file and from TetGen's failures.
+/// The text of a failure is on stderr, in lines that begin with "error: ".
 enum BuilderExit : int {
     BUILDER_GOOD = 0,
-    BUILDER_USAGE = 2,              ///< an option or its value is not accepted: the text names it and what is
-    BUILDER_MISSING_FILE = 3,       ///< the mesh, or the folder of the output, is not there
+    BUILDER_USAGE = 2,              ///< an option or its value is not accepted; the text lists what is
+    BUILDER_MISSING_FILE = 3,       ///< the mesh, or the folder of the output, is missing
     BUILDER_INTERNAL = 4,           ///< our own fault
     BUILDER_BAD_MESH = 5,           ///< a mesh that cannot be used: the text names file, element and remedy
     BUILDER_SELF_INTERSECTION = 10, ///< triangles cross or overlap; the text lists the first pairs
@@ -18,7 +18,7 @@ enum BuilderExit : int {
     BUILDER_OUT_OF_MEMORY = 13, ///< an allocation failed
 };
 
-/// Remedies: what the builder says, and its parent where the builder could not say anything any more.
+/// Remedies: the builder prints them; its parent does where the builder was killed first.
 inline constexpr std::string_view try_other_switches = "try other --switches (pq5YMT1e-13, pq5, p)";
 inline constexpr std::string_view allow_more_memory = "allow more with tetrace's --memory-limit, or simplify the mesh";
 

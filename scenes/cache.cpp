@@ -74,7 +74,7 @@ std::vector<fs::path> children(const fs::path& folder)
 
 std::uint64_t bytes_of(const fs::path& path)
 {
-    std::error_code ignored; // it may vanish while we look
+    std::error_code ignored; // it may vanish meanwhile
     if (fs::is_directory(fs::symlink_status(path, ignored))) {
         std::uint64_t sum = 0;
         for (const fs::path& child : children(path))
@@ -85,7 +85,7 @@ std::uint64_t bytes_of(const fs::path& path)
     return ignored ? 0 : size;
 }
 
-/// What we put there, and so may remove: a scene, the lock or the work folder of its build.
+/// What tetrace put there, and may remove: a scene, or the lock or the work folder of its build.
 std::optional<OwnEntry> scene_entry(const fs::path& path)
 {
     const std::string name = path.filename().string();
@@ -219,7 +219,7 @@ std::uint64_t clear_cache()
     std::uint64_t freed = 0;
     for (const OwnEntry& entry : own_entries(cache))
         freed += remove_entry(entry);
-    std::error_code not_empty; // then somebody else put something there, and it stays
+    std::error_code not_empty; // not ours, so it stays
     for (const fs::path& folder : children(cache / "meshes"))
         if (is_key(folder.filename().string())) fs::remove(folder, not_empty);
     fs::remove(cache / "meshes", not_empty);

@@ -13,12 +13,12 @@ namespace tetrace {
 /// first written to. Throws Error{missing} where neither variable names a folder.
 [[nodiscard]] std::filesystem::path cache_directory();
 
-/// Where the scene built from a mesh with these options lies or will lie: `<label>-<16 digits>.tet`. The digits are a
-/// hash of the mesh's bytes (mesh_hash), of what of the options decides the tets, and of scene_file_version.
+/// The file of the scene that is built from a mesh with these options: `<label>-<16 digits>.tet`. The digits are a hash
+/// of the mesh's bytes (mesh_hash), of the options that decide the tets, and of scene_file_version.
 [[nodiscard]] std::filesystem::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash,
                                                       const BuildOptions& options);
 
-/// Where a mesh that tetrace made or unpacked lies or will lie: `meshes/<16 digits>/<name>`. Makes the folder.
+/// The file of a mesh that tetrace made or unpacked: `meshes/<16 digits>/<name>`. Makes the folder.
 [[nodiscard]] std::filesystem::path cached_mesh_path(const std::string& name, std::uint64_t key);
 
 /// Makes the cache's folder, or one in it. Throws Error{invalid_input} naming it and the system's reason.
@@ -31,8 +31,8 @@ struct CachedFile {
 /// Scenes, meshes, compiled programs and what killed processes left behind; sorted by path within each.
 [[nodiscard]] std::vector<CachedFile> list_cache();
 
-/// Removes what tetrace put there, and nothing else; returns how many bytes. Spares what another process builds just
-/// now.
+/// Removes what tetrace put there, and nothing else; returns how many bytes that freed. Keeps what another process is
+/// building.
 std::uint64_t clear_cache();
 
 } // namespace tetrace

@@ -28,24 +28,23 @@ struct CatalogueEntry {
 
 /// Triangles that the catalogue's `banana` can be made with.
 inline constexpr std::uint32_t least_banana = 500, most_banana = 4'000'000;
-/// The number in a name such as "banana@100000", the same shape in about so many triangles; empty for another name.
-/// Throws Error{usage} for what is no number in that range.
+/// N of a name "banana@N", the same shape in about N triangles; empty for another name. Throws Error{usage} where N is
+/// not a number in that range.
 [[nodiscard]] std::optional<std::uint32_t> banana_triangles(const std::string& name);
 
 /// How a scene's CDT is to be made. Part of the scene's key.
 struct BuildOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
-    std::string switches = "pq5Y"; ///< TetGen's, as its manual has them; chosen in results/switches.md
+    std::string switches = "pq5Y"; ///< TetGen's, as in its manual; results/switches.md says why these
     std::uint32_t resolution = 16; ///< of `cubes`: cubes along each axis
     double time_limit_s = 600;     ///< for the builder
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
 };
 
-/// A scene that somebody asked for: a name of the catalogue, `banana@N`, or the path of a mesh file or of a `.tet`
-/// file.
+/// A scene that the user asked for: a name of the catalogue, `banana@N`, or the path of a mesh file or a `.tet` file.
 struct SceneRequest {
-    std::string name; ///< as given; what rows call the scene is scene_label()
+    std::string name; ///< as given; rows show scene_label()
     BuildOptions build;
 };
 
@@ -55,10 +54,10 @@ struct SceneRequest {
 /// Short name for rows: the catalogue's name, or the file's stem.
 [[nodiscard]] std::string scene_label(const std::string& name);
 
-/// Whether the scene's mesh can be had here; empty, or the reason and what would bring it.
+/// Empty where the scene's mesh is available here, else the reason and what would bring it.
 [[nodiscard]] std::string why_not_available(const std::string& name);
 
-/// The scenes of the main job: bunny and armadillo where their meshes are, else the embedded ones.
+/// The scenes of `make bench`: bunny and armadillo where their meshes are installed, else the embedded ones.
 [[nodiscard]] std::vector<std::string> default_scenes();
 
 } // namespace tetrace

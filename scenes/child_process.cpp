@@ -111,7 +111,7 @@ private:
     static inline std::array<struct sigaction, 2> before{};
 };
 
-/// What the child does between fork and exec: only async-signal-safe calls, for other threads may hold any lock.
+/// What the child does between fork and exec. Only async-signal-safe calls: other threads may hold any lock.
 struct Launch {
     const char* program;
     char* const* arguments;
@@ -304,7 +304,7 @@ private:
     std::string line_;
 };
 
-/// Ends a child that has to go: asks first, then kills.
+/// Ends a child: asks it first, then kills it.
 class Terminator {
 public:
     using End = ChildOutcome::End;
@@ -345,7 +345,7 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
     double next_tick_s = 0;
     bool streams = true;
     while (child.running()) {
-        // Without streams nothing wakes us when the child ends, so look more often.
+        // Without streams, poll() does not wake when the child ends: look more often.
         streams = output.take(child, streams ? tick_ms : tick_ms / 20);
         const double elapsed_s = seconds_since(start);
         terminator.check(child, limits, elapsed_s);

@@ -23,7 +23,7 @@ struct ChildOutcome {
 };
 
 /// Runs a program and waits for it, killing it past its limits. SIGINT and SIGTERM sent to this process end the child
-/// too (End::interrupted), and the child dies with its parent whatever kills that one.
+/// too (End::interrupted), and the child dies with its parent, however the parent ends.
 /// on_error_line: each whole line of the child's standard error as it comes; on_tick: about ten times a second.
 /// Throws Error{missing} where the program cannot be started.
 [[nodiscard]] ChildOutcome run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,

@@ -33,7 +33,7 @@ FileLock::FileLock(FileLock&& other) noexcept : path_(std::move(other.path_)), f
 FileLock::~FileLock()
 {
     if (file_ < 0) return;
-    ::unlink(path_.c_str()); // first, so that nobody takes the lock of a file that is about to vanish unnoticed
+    ::unlink(path_.c_str()); // before the lock is released, so that no process locks a file that is about to vanish
     ::close(file_);
 }
 

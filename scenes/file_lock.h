@@ -5,11 +5,12 @@
 
 namespace tetrace {
 
-/// Exclusive among processes (and threads) as long as it lives; the system ends it with its process. The lock's file is
-/// removed with the lock.
+/// A lock that one process, and one of its threads, holds at a time. The system releases it when the process ends. The
+/// lock's file is removed with the lock.
 class FileLock {
 public:
-    /// Empty where somebody else has it. Throws Error{invalid_input} naming the path and the system's reason.
+    /// Empty where another process or thread has it. Throws Error{invalid_input} naming the path and the system's
+    /// reason.
     [[nodiscard]] static std::optional<FileLock> try_take(const std::filesystem::path& path);
 
     FileLock(FileLock&& other) noexcept;

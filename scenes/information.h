@@ -32,7 +32,7 @@ private:
     std::vector<char> bytes_;
 };
 
-/// Takes them back from bytes that outlive it; `good` turns false for good at the first value that is not there.
+/// Reads them back from bytes that outlive it. `good` becomes false at the first missing value, and stays so.
 class InformationReader {
 public:
     explicit InformationReader(std::span<const char> bytes) : rest_(bytes) {}

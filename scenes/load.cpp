@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that only this build uses, gone with it whatever happens.
+/// A folder that only this build uses; it is removed however the build ends.
 class WorkFolder {
 public:
     explicit WorkFolder(const fs::path& scene_file) : path_(temporary_name(scene_file)) { make_cache_folder(path_); }
@@ -42,7 +42,7 @@ private:
     fs::path path_;
 };
 
-/// Loads a scene that comes from a mesh: out of the cache, or built into it.
+/// Loads a scene of a mesh from the cache, or builds it into the cache first.
 class MeshSceneLoader {
 public:
     MeshSceneLoader(const SceneRequest& request, fs::path mesh, const Progress& progress)
@@ -191,7 +191,7 @@ struct Unused {
     {
         if (asked.resolution != standard.resolution) options.emplace_back("--resolution");
     }
-    /// why: what the scene is, that it does not heed them.
+    /// why: what kind of scene it is, that it ignores them.
     void tell(const std::string& name, const std::string& why, LoadedScene& loaded) const
     {
         if (options.empty()) return;

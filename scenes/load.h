@@ -12,14 +12,13 @@ struct LoadedScene {
     bool from_cache = false;
     std::filesystem::path file; ///< the `.tet` file; empty for `cubes`
     std::vector<std::string>
-        messages; ///< what a person should know: a damaged cache file rebuilt, triangles dropped, options not used
+        messages; ///< for the user: a damaged cache file rebuilt, triangles dropped, options not used
 };
 
 /// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` is made in place.
-/// Throws Error{usage} for a name that is neither of the catalogue nor a file (lists the accepted ones) and for
-/// switches that the builder does not accept,
-/// Error{missing} for a mesh that cannot be had here, Error{invalid_input} with the builder's finding,
-/// Error{interrupted} after Ctrl-C (the builder is ended too).
+/// Throws Error{usage} for a name that is neither in the catalogue nor a file (lists the accepted ones) and for
+/// switches that the builder does not accept, Error{missing} for a mesh that is not available here,
+/// Error{invalid_input} with the builder's finding, Error{interrupted} after Ctrl-C (the builder is ended too).
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
 
 } // namespace tetrace

@@ -6,15 +6,16 @@ namespace tetrace {
 
 /// The mesh file of a catalogue row whose source is `file`, or why there is none.
 struct MeshLocation {
-    std::filesystem::path file;    ///< as a plain file; empty where it has to be unpacked, or is not here
+    std::filesystem::path file;    ///< as a plain file; empty where it has to be unpacked, or is missing
     std::filesystem::path archive; ///< holds the row's archive_member
-    std::string reason;            ///< why neither is there, and what would bring it
+    std::string reason;            ///< why both are missing, and what would bring them
 };
 
 /// Looks in the folder that TETRACE_MESHES names, then where Debian's libcgal-demo puts its data.
 [[nodiscard]] MeshLocation locate_mesh(const CatalogueEntry& entry);
 
-/// The mesh of `banana` with about so many triangles, made in the cache. Throws as make_banana() and mesh_file() do.
+/// The mesh of `banana` with about `triangles` triangles, made in the cache. Throws as make_banana() and mesh_file()
+/// do.
 [[nodiscard]] std::filesystem::path banana_file(std::uint32_t triangles);
 
 /// The mesh of a catalogue row as a plain file: found, unpacked into the cache, or made there (`banana`).

@@ -17,8 +17,8 @@ namespace tetrace {
 /// banana).
 [[nodiscard]] TriangleMesh make_banana();
 
-/// The same tube in about so many triangles of about one size: needles at the tips, as rings of equal numbers of
-/// vertices have them, would be too thin for floats in fine meshes.
+/// The same tube in about `triangles` triangles of similar size. Rings of equal numbers of vertices would have needles
+/// at the tips, too thin for floats in fine meshes.
 /// triangles: least_banana to most_banana (scenes/catalogue.h), else throws Error{usage}.
 [[nodiscard]] TriangleMesh make_banana(std::uint32_t triangles);
 

@@ -21,7 +21,7 @@ struct BuilderOptions {
     std::string switches = "pq5Y";
 };
 
-/// Told the stage that begins, and what a person should know, one line each.
+/// Called with the stage that begins, and with notes for the user, one line each.
 struct BuilderTalk {
     std::function<void(const std::string&)> stage, note;
 };

@@ -19,7 +19,7 @@ struct Rounding {
 /// orientation of core/mesh/tet_mesh.h. Steiner points are rounded to float and grid; those on a side of the domain
 /// stay in its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of
 /// the input never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT}
-/// where an index, a neighbour or a surface face makes no sense.
+/// where an index, a neighbour or a surface face is impossible.
 [[nodiscard]] TetMesh convert_tets(const TetgenOutput& output, const TriangleMesh& triangles, const Domain& domain,
                                    Rounding& rounding);
 

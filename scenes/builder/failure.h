@@ -7,7 +7,7 @@
 
 namespace tetrace {
 
-/// A failure with an exit code of its own; the text says what to do.
+/// A failure with its own exit code; the text says what to do.
 class BuilderFailure : public std::runtime_error {
 public:
     BuilderFailure(BuilderExit code, const std::string& what) : std::runtime_error(what), code_(code) {}

@@ -38,7 +38,7 @@ static_assert(exit_code(ErrorKind::usage) == BUILDER_USAGE && exit_code(ErrorKin
                   exit_code(ErrorKind::internal) == BUILDER_INTERNAL,
               "the program's codes are the builder's, but for a bad mesh");
 
-// Runs one part of the work and says why it failed, where it did.
+// Runs one part of the work; reports why it failed.
 template <class Work>
 int guarded(const Work& work)
 {

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// Triangles as a file has them: nothing merged, nothing removed but what has no area by its very form.
+/// Triangles as a file has them: nothing is merged, and only faces of fewer than three corners are removed.
 struct MeshSoup {
     TriangleMesh mesh;
     std::uint64_t skipped_faces = 0; ///< faces of fewer than three corners

@@ -14,8 +14,8 @@ namespace tetrace {
 
 /// A mesh file's bytes, and the soup that a format's reader fills from them.
 ///
-/// Why no library reads them: results/readers.md. Each takes some damaged files for good (cut short, a NaN, an index of
-/// no vertex), and what they say seldom names the place.
+/// Why no library reads them: results/readers.md. Each library accepts some damaged files (cut short, a NaN, an index
+/// of no vertex), and their messages seldom name the place.
 class MeshSource {
 public:
     MeshSource(std::string name, std::string_view bytes) : name_(std::move(name)), bytes_(bytes) {}
@@ -41,7 +41,7 @@ private:
     MeshSoup soup_;
 };
 
-/// Takes text apart into lines, and lines into words, counting lines for messages.
+/// Splits text into lines and lines into words, and counts lines for messages.
 class LineReader {
 public:
     explicit LineReader(std::string_view text) : text_(text) {}

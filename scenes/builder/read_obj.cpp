@@ -10,7 +10,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-// What OBJ knows beside vertices and faces: it carries no triangle.
+// Statements of OBJ that carry no triangle.
 constexpr std::array<std::string_view, 40> ignored_keywords = {
     "vt",     "vn",     "vp",     "g",     "s",     "o",        "mg",       "l",          "p",         "usemtl",
     "mtllib", "usemap", "maplib", "lod",   "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "deg",

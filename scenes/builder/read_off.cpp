@@ -31,7 +31,7 @@ std::int64_t read_count(const MeshSource& source, const LineReader& lines, const
     return *count;
 }
 
-// A face's corners may go on over several lines; colours behind them are ignored.
+// A face's corners may span several lines; colours after them are ignored.
 std::vector<std::int64_t> read_corners(MeshSource& source, LineReader& lines, Words& words, const std::string& face)
 {
     const auto size = parse_integer(words.front());

@@ -49,7 +49,7 @@ void read_binary(MeshSource& source)
     }
 }
 
-// What must come next in a facet; a normal is read over, whatever it is: the vertices decide.
+// What must come next in a facet. Normals are ignored: the vertices decide.
 void expect_line(const MeshSource& source, LineReader& lines, std::vector<std::string_view>& words,
                  std::string_view first, const std::string& facet)
 {

@@ -29,7 +29,7 @@ void add_points(tetgenio& input, const std::vector<Float3>& vertices, int& next)
             input.pointlist[next++] = static_cast<double>(vertex[axis]);
 }
 
-// TetGen's destructor frees with delete[]: plain new it is.
+// TetGen's destructor frees with delete[], so these are made with new[].
 void add_facet(tetgenio& input, int index, const std::array<std::uint32_t, 3>& triangle, std::size_t first_vertex,
                int marker)
 {

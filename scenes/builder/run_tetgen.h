@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// What TetGen returned, in its own terms: corner and neighbour i of a tet are opposite each other.
+/// TetGen's output in its own terms: corner i and neighbour i of a tet are opposite each other.
 struct TetgenOutput {
     /// A face of the input that TetGen kept: an input triangle's, by its index, or the domain's (marker -1).
     struct SurfaceFace {
@@ -25,13 +25,13 @@ struct TetgenOutput {
     std::uint64_t flat_tets = 0; ///< no volume, or a negative one, already in TetGen's double coordinates
 };
 
-/// Throws Error{usage} unless the switches begin with p and hold nothing but what changes the mesh: p q a A Y M T O S D
-/// C V X.
+/// Throws Error{usage} unless the switches begin with p and all of them are among those that change the mesh: p q a A Y
+/// M T O S D C V X.
 void require_switches(const std::string& switches);
 
 /// Tetrahedralizes the inside of `surface` (the domain's) with every triangle of `mesh` as a constraint.
-/// TetGen throws int where it fails, and libtet cannot be unwound: nothing on the way up may catch it or run clean-up,
-/// so call it from main with std::set_terminate(explain_tetgen_failure), or where failure is not expected.
+/// TetGen throws an int where it fails, and libtet cannot be unwound: no caller may catch it or run clean-up. So call
+/// it from main with std::set_terminate(explain_tetgen_failure), or where failure is not expected.
 [[nodiscard]] TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface,
                                       const std::string& switches);
 

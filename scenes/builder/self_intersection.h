@@ -9,11 +9,11 @@
 
 namespace tetrace {
 
-/// Pairs of triangles that meet elsewhere than in the vertex or edge that they share, overlap in a plane included.
+/// Pairs of triangles that meet outside the vertex or edge that they share; overlap in a plane counts.
 struct SelfIntersections {
     std::uint64_t count = 0;
     std::vector<std::pair<std::uint32_t, std::uint32_t>>
-        first; ///< the least pairs in lexicographic order, lower index first
+        first; ///< the first pairs in lexicographic order, lower index first
 };
 
 /// Exact. The mesh has no degenerate and no duplicate triangles (clean_up). At most `listed` pairs are named.

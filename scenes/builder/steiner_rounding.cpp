@@ -8,7 +8,7 @@
 namespace tetrace {
 namespace {
 
-constexpr std::uint64_t most_tests = 20'000'000; // a second or two; a mesh that needs more is beyond mending
+constexpr std::uint64_t most_tests = 20'000'000; // a second or two; a mesh that needs more cannot be mended
 constexpr float step_size = 0x1p-24f;            // the spacing of floats in [1/2, 1)
 
 bool is_bad(const TetMesh& mesh, const Tet& tet)
@@ -32,7 +32,7 @@ public:
             for (const std::uint32_t vertex : mesh.tets[i].vertices)
                 tets_[next[vertex]++] = i;
     }
-    // Counts up to `limit`; what is spent comes off the budget.
+    // Counts up to `limit`, and takes what it spent from the budget.
     [[nodiscard]] std::size_t count_bad(const TetMesh& mesh, std::uint32_t vertex, std::size_t limit)
     {
         std::size_t bad = 0;
