@@ -17,9 +17,9 @@ namespace tetrace {
 /// Round numbers from 0 to at most `top`, in steps of 1, 2 or 5 times a power of ten; at most seven. top >= 1.
 [[nodiscard]] std::vector<std::uint32_t> scale_ticks(std::uint32_t top);
 
-/// Steps per ray as they are told below a picture.
+/// Steps per ray, as written below a picture.
 struct StepSummary {
-    double mean = 0;        ///< over all rays, those that never met the domain included
+    double mean = 0;        ///< over all rays, also those that never met the domain
     std::uint32_t most = 0; ///< of any ray
     std::uint32_t top = 1;  ///< where the scale ends: all rays but one in a thousand are at or below it
     std::uint64_t lost = 0;
@@ -27,7 +27,7 @@ struct StepSummary {
 [[nodiscard]] StepSummary summarize_steps(std::span<const Hit> hits);
 
 /// The picture of a view in false colour, a pixel per ray, with a title and a scale bar below it. Rays without a step
-/// are black, lost rays magenta, rays beyond the scale's end have the colour of its end.
+/// are black, lost rays magenta; rays beyond the end of the scale have its colour.
 /// subject: the scene and view, for the title. hits: width * height, row after row. The picture is `width` wide, or
 /// wider where the title needs it.
 [[nodiscard]] Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height,

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-// The images module's one function, as C: it lives in a shared object of its own, because OpenImageIO brings some 260
-// libraries, which must not be in the process that measures.
+// The one function of the images module, with C linkage. The module is a shared object of its own: OpenImageIO brings
+// some 260 libraries, which must not be in the process that measures.
 extern "C" {
 /// Writes width * height * 3 floats of linear light to a file: `.png` as 8 bits of sRGB, `.exr` as linear halves.
 /// Returns 0, or another number with a text in error (error_size bytes, always terminated).
@@ -15,14 +15,14 @@ int tetrace_write_image(const char* path, unsigned width, unsigned height, const
 
 namespace tetrace {
 
-/// Whether the images module lies beside the running program; it may fail to load all the same.
+/// Whether the images module is in the folder of the running program. It may still fail to load.
 [[nodiscard]] bool has_images_module();
 
 /// Writes pictures through the images module, which it loads when it is made.
 class ImageWriter {
 public:
-    /// Loads the module that lies beside the running program.
-    /// Throws Error{missing} naming the package to install where there is none.
+    /// Loads the module from the folder of the running program.
+    /// Throws Error{missing} naming the package to install where it is missing.
     ImageWriter();
     explicit ImageWriter(const std::filesystem::path& module);
 

@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// What a picture shows; tells it from the others of a run.
+/// What a picture shows; differs for each picture of a run.
 struct PictureKey {
     std::string scene;
     std::uint32_t view = 0;
@@ -24,7 +24,7 @@ struct PictureKey {
 /// The ending of all pictures of a run: that of the file `out`; else .png, or .ppm where nothing can write PNG.
 [[nodiscard]] std::string picture_ending(const std::optional<std::filesystem::path>& out, bool can_write_png);
 
-/// Throws Error{usage} where `out` is neither a folder nor ends in one of the accepted ways.
+/// Throws Error{usage} where `out` is neither a folder nor has an accepted ending.
 void check_picture_ending(const std::optional<std::filesystem::path>& out);
 
 } // namespace tetrace

@@ -6,11 +6,11 @@
 
 namespace tetrace {
 
-/// Writes pictures of one ending, which it is made for: it loads what that needs.
+/// Writes pictures of one file format; loads what that needs.
 class PictureWriter {
 public:
     /// ending: .ppm, which needs nothing; .png or .exr, which load the images module.
-    /// Throws Error{missing} where it is needed and is not there.
+    /// Throws Error{missing} where the module is needed and missing.
     explicit PictureWriter(const std::string& ending);
 
     /// Throws Error{invalid_input} naming the file and the reason.

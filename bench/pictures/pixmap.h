@@ -41,10 +41,10 @@ struct Pixmap {
 /// A colour given as sRGB bytes, as colour pickers show it: 0xRRGGBB.
 [[nodiscard]] Colour from_srgb(std::uint32_t bytes);
 
-/// A channel of linear light as a byte of sRGB; what lies outside 0 to 1 is clamped, NaN is 0.
+/// A channel of linear light as a byte of sRGB; values outside 0 to 1 are clamped, NaN becomes 0.
 [[nodiscard]] std::uint8_t to_srgb(float linear);
 
-/// What lost rays look like in every picture: pure magenta, which nothing else contains.
+/// The colour of lost rays in every picture: pure magenta, which nothing else has.
 [[nodiscard]] Colour lost_colour();
 
 } // namespace tetrace

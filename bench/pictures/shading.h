@@ -9,8 +9,9 @@
 
 namespace tetrace {
 
-/// What a surface looks like: a light above the camera, a soft sky above and ground below, by the normal of the input
-/// triangle, turned towards the viewer. normal and to_viewer: unit length, in scene units; right, up: of the camera.
+/// The colour of a surface under a light above the camera, a soft sky above and ground below, by the normal of the
+/// input triangle, turned towards the viewer. normal and to_viewer: unit length, in scene units; right, up: of the
+/// camera.
 [[nodiscard]] Colour shade(Double3 normal, Double3 to_viewer, Double3 right, Double3 up);
 
 /// The picture of a view: hits shaded by their triangles' normals, misses as a light background, lost rays in magenta.

@@ -9,11 +9,11 @@
 
 namespace tetrace {
 
-/// What can be said of a row that stands in one of two results, or in both.
+/// How a row of one or both results compares.
 enum class RowOutcome {
     compared, ///< timed in both
     failed,   ///< timed before; wrong or in error after
-    missing,  ///< timed before; after it is not there, skipped, unsupported or without samples
+    missing,  ///< timed before; missing, skipped, unsupported or without samples after
     added,    ///< timed after alone
     untimed,  ///< timed in neither
 };
@@ -49,8 +49,8 @@ struct ResultComparison {
     /// The chance, at most, that any compared row is called faster or slower where nothing changed: comparison_error,
     /// or more where rows have few samples.
     [[nodiscard]] double error() const;
-    /// What speaks against `after`: compared rows that are slower by more than the tolerance, failed ones, and, unless
-    /// they may be, missing ones.
+    /// The regressions of `after`: compared rows that are slower by more than the tolerance, failed rows, and missing
+    /// ones unless those are allowed.
     [[nodiscard]] std::vector<const ComparedRow*> regressions(bool allow_missing) const;
 };
 

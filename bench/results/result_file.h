@@ -10,7 +10,7 @@
 
 namespace tetrace {
 
-/// Of the results that this program writes; raised when a key changes its meaning or goes.
+/// The schema version of the results that this program writes; raised when a key changes its meaning or is removed.
 inline constexpr int schema_version = 2;
 
 /// What made a result, on what, when.
@@ -39,8 +39,8 @@ struct ResultRow {
     std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 };
 
-/// A result file that has been read and checked as far as these members go; the rest is reached by section(), whose
-/// values check themselves as they are asked for.
+/// A result file, checked as far as these members go. The rest is reached by section(), whose values are checked when
+/// they are read.
 struct ResultFile {
     std::filesystem::path path;
     nlohmann::json json;
@@ -50,14 +50,14 @@ struct ResultFile {
 
     /// The section `tetrace`. Refers to this object, which has to outlive it.
     [[nodiscard]] ResultValue section() const;
-    /// Null where there is none of that name.
+    /// Null where no scene (row) has that name.
     [[nodiscard]] const ResultScene* find_scene(const std::string& name) const;
     [[nodiscard]] const ResultRow* find_row(const std::string& name) const;
 };
 
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
 /// ResultFile's members hold.
-/// Throws Error{missing} for a file that is not there; Error{invalid_input} naming file and key for one that cannot be
+/// Throws Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
 /// read, exceeds 256 MiB, is no JSON, no result, of another schema version, lacks a key or has one of another type.
 [[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
 

@@ -10,8 +10,8 @@
 
 namespace tetrace {
 
-/// A value of a result file that knows where it stands: whatever is asked of it and is not so throws
-/// Error{invalid_input} naming the file and the key, as in "a.json: tetrace.rows[3].times.samples_s: ...".
+/// A value of a result file that knows its place in it. A request that the value does not meet throws
+/// Error{invalid_input} naming the file and the key, for example "a.json: tetrace.rows[3].times.samples_s: ...".
 /// Refers to the JSON that it was made of, which has to outlive it.
 class ResultValue {
 public:

@@ -13,16 +13,14 @@ struct FactorInterval {
     [[nodiscard]] bool contains(double factor) const { return low <= factor && factor <= high; }
 };
 
-/// The factors c that `numerator` = c * `denominator` cannot be denied for: the interval that the Mann-Whitney test
-/// leaves when it is inverted. Its ends are order statistics of all quotients of a sample of the one and a sample of
-/// the other. Where the two sets of samples come from distributions that differ in nothing but the factor, whatever
-/// their shape, the interval misses it in at most `error` of all cases; that holds for few samples as for many, and
-/// for ties, since the ends belong to the interval. A few outliers do not move it.
-/// Empty where so few samples cannot keep to `error` (see smallest_error(): 0.0079 for 5 and 5). Above 50 samples the
-/// normal approximation serves.
-/// Samples are independent, positive and finite, as are their quotients.
-/// Source: Mann and Whitney, "On a Test of Whether one of Two Random Variables is Stochastically Larger than the
-/// Other" (1947); Lehmann, "Nonparametrics: Statistical Methods Based on Ranks" (1975), sections 1.2 and 2.6.
+/// The factors c for which `numerator` = c * `denominator` cannot be rejected: the interval of the inverted
+/// Mann-Whitney test. Its ends are order statistics of all quotients of a sample of the one and a sample of the other.
+/// If the two distributions differ only in the factor, whatever their shape, the interval misses it in at most `error`
+/// of all cases. That holds for any number of samples, and for ties, since the ends belong to the interval. A few
+/// outliers do not move it. Empty for too few samples to keep to `error` (see smallest_error(): 0.0079 for 5 and 5).
+/// Above 50 samples the normal approximation serves. Samples are independent, positive and finite, as are their
+/// quotients. Source: Mann and Whitney, "On a Test of Whether one of Two Random Variables is Stochastically Larger than
+/// the Other" (1947); Lehmann, "Nonparametrics: Statistical Methods Based on Ranks" (1975), sections 1.2 and 2.6.
 [[nodiscard]] std::optional<FactorInterval> rank_interval(std::vector<double> numerator,
                                                           std::vector<double> denominator, double error);
 

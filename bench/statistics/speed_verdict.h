@@ -9,9 +9,9 @@
 
 namespace tetrace {
 
-/// What the samples of one row in two results, before and after, say of its speed.
+/// What the samples of one row in two results, before and after, say about its speed.
 enum class SpeedVerdict {
-    same,   ///< the whole interval of the ratio lies within the tolerance: if there is a difference, it is too small
+    same,   ///< the whole interval of the ratio lies within the tolerance: a difference, if any, is too small
             ///< to matter
     faster, ///< else, the interval lies above 1
     slower, ///< else, the interval lies below 1
@@ -58,14 +58,14 @@ struct SpeedChange {
 /// The bootstrap breaks the promise for 5 samples and cannot keep to the small errors that many rows ask for; ranks
 /// keep both, and find more behind two humps. For one of 20 rows, with error 0.0005, ranks find the 5 % behind A in
 /// 80 % for 10 samples, in all for 20. What they need is independent samples: with a correlation of 0.5 between
-/// successive ones, 7 to 13 % are false alarms. So rows are interleaved at random as they are measured. Nothing is
-/// known of what differs between runs, as memory that was laid out otherwise, or another temperature: that is what the
-/// tolerance is for.
+/// successive ones, 7 to 13 % are false alarms. So rows are interleaved at random as they are measured. What
+/// differs between runs, such as the layout of memory or the temperature, is in no sample: the tolerance is for that.
 /// Throws Error{internal} for no samples, or one that is not positive and finite.
 [[nodiscard]] SpeedChange compare_speed(const std::vector<double>& before_s, const std::vector<double>& after_s,
                                         std::size_t rows, double tolerance);
 
-/// Samples a row, in both results, from which on the intervals of so many rows have error comparison_error / rows.
+/// The least samples per row, in both results, with which the intervals of `rows` rows have error
+/// comparison_error / rows.
 [[nodiscard]] std::size_t samples_needed(std::size_t rows);
 
 } // namespace tetrace

@@ -7,7 +7,7 @@ namespace tetrace {
 /// Samples above this spread make a row noisy.
 inline constexpr double noisy_spread = 0.05;
 
-/// What a row's samples come to.
+/// Median and quartiles of a row's samples.
 struct Statistics {
     double median = 0;
     double lower_quartile = 0;

@@ -6,9 +6,9 @@
 
 namespace tetrace {
 
-/// A file that appears whole or not at all: written under a temporary name beside its own, synced, then renamed.
-/// Without commit() the temporary is removed again. Every call throws Error{invalid_input} naming the path and the
-/// system's reason.
+/// A file that appears whole or not at all: it is written under a temporary name in the same folder, synced, then
+/// renamed. Without commit() the temporary file is removed. Every call throws Error{invalid_input} naming the path and
+/// the system's reason.
 class AtomicFile {
 public:
     explicit AtomicFile(std::filesystem::path path);
@@ -26,7 +26,7 @@ private:
     int file_ = -1;
 };
 
-/// A name beside `path` that no other process or thread uses at this time: `<name>.<pid>-<number>.tmp`.
+/// A name in the folder of `path` that no other process or thread uses now: `<name>.<pid>-<number>.tmp`.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& path);
 
 } // namespace tetrace

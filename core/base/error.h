@@ -5,18 +5,18 @@
 
 namespace tetrace {
 
-/// What went wrong, as far as the caller's reaction and the exit code depend on it.
+/// What went wrong, as far as callers and the exit code distinguish it.
 enum class ErrorKind {
     usage,         ///< an option or a value that is not accepted
     invalid_input, ///< a file or a mesh that cannot be used
-    missing,       ///< a file, a program or a device that is required and not there
-    unsupported,   ///< possible elsewhere, not here (limits of a device, of a build)
+    missing,       ///< a required file, program or device is missing
+    unsupported,   ///< not possible here: a limit of the device or of the build
     internal,      ///< our own fault
-    wrong_result,  ///< a device left what its kernel cannot have meant
-    interrupted,   ///< the user said stop
+    wrong_result,  ///< a device returned what its kernel cannot have written
+    interrupted,   ///< by the user
 };
 
-/// Set-up's one exception: the text says what was being done, to what, and what to do.
+/// The one exception of tetrace: its text says what was being done, to what, and what the user can do.
 class Error : public std::runtime_error {
 public:
     Error(ErrorKind kind, const std::string& what) : std::runtime_error(what), kind_(kind) {}

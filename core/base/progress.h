@@ -5,8 +5,8 @@
 
 namespace tetrace {
 
-/// Told what long work is doing: a stage in a few words, and how much of it is done in [0, 1], or a negative number
-/// where that cannot be known (TetGen). Called often; the receiver decides what a person sees of it.
+/// Called by long work with its stage in a few words, and the part of it that is done in [0, 1], or a negative number
+/// where that is unknown (TetGen). Called often; the receiver decides what to show.
 using Progress = std::function<void(const std::string& stage, double fraction)>;
 
 } // namespace tetrace

@@ -4,7 +4,7 @@
 
 namespace tetrace {
 
-/// Units in the last place between two floats; huge where a sign differs or one is not finite.
+/// Units in the last place between two floats; huge where their signs differ or one is not finite.
 [[nodiscard]] std::uint64_t ulps_between(float a, float b);
 
 } // namespace tetrace

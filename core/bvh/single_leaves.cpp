@@ -27,7 +27,7 @@ void sort_by_centre(std::span<TrianglePart> parts, int axis)
     });
 }
 
-/// Sorts the parts so that the best split is after the returned number of them.
+/// Sorts the parts, and returns after how many of them the best split is.
 std::size_t best_split(std::span<TrianglePart> parts)
 {
     double least = std::numeric_limits<double>::infinity();

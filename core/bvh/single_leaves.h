@@ -4,9 +4,9 @@
 
 namespace tetrace {
 
-/// The same BVH with each leaf split until its leaves have one triangle, at the least surface area; references stand in
-/// the order of the leaves, so those below any node stand together.
-/// bvh: of this mesh, valid (see find_defect).
+/// The same BVH with each leaf split, at the least surface area, until leaves have one triangle. References are in the
+/// order of the leaves, so the references below a node are contiguous.
+/// bvh: valid for this mesh (see find_defect).
 [[nodiscard]] Bvh with_single_leaves(const TriangleMesh& mesh, const Bvh& bvh);
 
 } // namespace tetrace

@@ -3,7 +3,7 @@
 namespace tetrace {
 namespace {
 
-/// Where an edge passes the plane, as a box: its coordinates are rounded down in one corner and up in the other.
+/// The point where an edge crosses the plane, as a box: one corner is rounded down, the other up.
 Box crossing(Double3 from, Double3 to, int axis, double position)
 {
     const double coordinates[2][3] = {{from.x, from.y, from.z}, {to.x, to.y, to.z}};

@@ -9,8 +9,8 @@ struct TriangleParts {
     Box below, above;
 };
 
-/// Cuts a triangle at a plane across an axis: boxes of what lies on either side and in `box`, rounded outwards; empty
-/// where nothing does. What lies in the plane is in both.
+/// Cuts a triangle at a plane across an axis. Returns the boxes of the parts on either side that lie in `box`, rounded
+/// outwards; empty where there is no such part. What lies in the plane is in both.
 [[nodiscard]] TriangleParts split_triangle(const Float3 (&corners)[3], int axis, float position, const Box& box);
 
 } // namespace tetrace

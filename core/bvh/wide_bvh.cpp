@@ -3,7 +3,7 @@
 namespace tetrace {
 namespace {
 
-/// The best ways to have a subtree as at most 1, 2, ... 7 children of a wide node, and as a node of its own.
+/// The least costs of a subtree as at most 1, 2, ... 7 children of a wide node, and as a node of its own.
 struct SubtreePlan {
     std::array<double, wide_children> cost = {}; ///< as at most i children; [0] is not used
     std::array<std::uint8_t, wide_children + 1> share =

@@ -6,12 +6,11 @@ namespace tetrace {
 
 inline constexpr std::uint32_t wide_children = 8;
 inline constexpr std::uint32_t wide_leaf_triangles = 3;
-/// What the surface area heuristic takes a node's eight boxes and a leaf's triangle to cost, beside each other: a
-/// choice.
+/// The costs that the surface area heuristic assumes for a node's eight boxes and for a leaf's triangle: a choice.
 inline constexpr double wide_node_cost = 1.0;
 inline constexpr double wide_triangle_cost = 0.3;
 
-/// A child of a wide node: a leaf where it has references, else a node.
+/// A child of a wide node: a leaf if it has references, else a node.
 struct WideChild {
     Box box;
     std::uint32_t node = 0;
@@ -32,7 +31,7 @@ struct WideBvh {
 /// How a binary BVH becomes a wide one.
 enum class Collapse {
     cheapest, ///< of the least cost by the surface area heuristic
-    shallow,  ///< three levels become one wherever there are three: for trees that would be too deep otherwise
+    shallow,  ///< three levels become one: for trees that would be too deep otherwise
 };
 
 /// The wide BVH whose nodes and leaves are subtrees of this one.
@@ -41,7 +40,7 @@ enum class Collapse {
 /// section 3 (the dynamic programme).
 [[nodiscard]] WideBvh make_wide(const Bvh& bvh, Collapse collapse);
 
-/// Nodes on the longest way from the root to a leaf.
+/// Nodes on the longest path from the root to a leaf.
 [[nodiscard]] std::uint32_t levels_of(const WideBvh& bvh);
 
 } // namespace tetrace

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// A box with faces along the axes, closed; as made, the empty one.
+/// A closed box with faces along the axes; empty by default.
 struct Box {
     Float3 low = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
                   std::numeric_limits<float>::infinity()};
@@ -41,14 +41,14 @@ struct Box {
     return true;
 }
 
-/// The smallest box round both.
+/// The smallest box that holds both.
 [[nodiscard]] inline Box merged(const Box& a, const Box& b)
 {
     return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
             {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
-/// What both have; the empty box where that is nothing.
+/// The intersection; the empty box where they do not meet.
 [[nodiscard]] inline Box common(const Box& a, const Box& b)
 {
     const Box box = {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y), std::max(a.low.z, b.low.z)},
@@ -63,7 +63,7 @@ struct Box {
             {float_above(box.high.x + margin), float_above(box.high.y + margin), float_above(box.high.z + margin)}};
 }
 
-/// Half the surface: what the surface area heuristic weighs by. 0 of the empty box.
+/// Half the surface area, the weight of the surface area heuristic; 0 for the empty box.
 [[nodiscard]] inline double half_area(const Box& box)
 {
     if (is_empty(box)) return 0;
@@ -76,7 +76,7 @@ struct Box {
     return (to_double(box.low) + to_double(box.high)) * 0.5;
 }
 
-/// Of one triangle of the mesh.
+/// The box of one triangle of the mesh.
 [[nodiscard]] inline Box triangle_box(const TriangleMesh& mesh, std::size_t triangle)
 {
     Box box;

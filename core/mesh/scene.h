@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// How a scene came to be; recorded with every result.
+/// How a scene was made; recorded with every result.
 struct BuildInfo {
     std::string source;            ///< the mesh file's name, or the generator
     std::uint64_t source_hash = 0; ///< XXH3 of the mesh file's bytes
@@ -36,7 +36,7 @@ struct Scene {
     friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-/// 64-bit hash of all that decides a ray's answer: mesh, tets, domain. Not of the name, nor of how long it took.
+/// 64-bit hash of all that decides a ray's answer: mesh, tets, domain. Neither name nor build time is part of it.
 [[nodiscard]] std::uint64_t scene_hash(const Scene& scene);
 
 } // namespace tetrace

@@ -44,14 +44,14 @@ struct TetMesh {
     friend bool operator==(const TetMesh&, const TetMesh&) = default;
 };
 
-/// The first thing wrong with a tet mesh, and how many of its kind there are.
+/// The first defect of a tet mesh, and how many of its kind there are.
 struct TetMeshDefect {
     enum class Kind {
         bad_index,          ///< a vertex, link or input triangle that does not exist
         asymmetric_link,    ///< a neighbour that does not name the tet back, or shares other vertices
         inverted,           ///< det > 0 in exact arithmetic on the stored floats
         flat,               ///< det = 0 in exact arithmetic on the stored floats
-        asymmetric_face,    ///< the two sides of a face disagree about the input triangle
+        asymmetric_face,    ///< the two sides of a face name different input triangles
         uncovered_triangle, ///< an input triangle whose occlusive faces do not add up to its area
         open_boundary,      ///< the volumes of the tets do not sum to the domain's
     };
@@ -71,7 +71,7 @@ struct TetMeshDefect {
 [[nodiscard]] std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& triangles,
                                                     Double3 box_size);
 
-/// Faces are counted once, not once a side; the domain's boundary is not counted as free.
+/// Counts each face once, not once per side; the domain's boundary is not free.
 struct TetMeshCounts {
     std::uint64_t tets = 0;
     std::uint64_t occlusive_faces = 0;

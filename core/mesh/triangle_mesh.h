@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// A triangle soup with shared vertices; what a mesh reader returns, and, placed in the domain, what rays hit.
+/// Triangles with shared vertices: what a mesh reader returns and, placed in the domain, what rays hit.
 struct TriangleMesh {
     std::vector<Float3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -16,8 +16,8 @@ struct TriangleMesh {
     friend bool operator==(const TriangleMesh&, const TriangleMesh&) = default;
 };
 
-/// The sphere round the mesh's bounding box: its centre and half its diagonal. What camera distances and wide domains
-/// count in.
+/// The sphere round the mesh's bounding box: its centre and half its diagonal. Camera distances and wide domains are
+/// measured in its radius.
 struct BoundingSphere {
     Double3 centre;
     double radius = 0;
