@@ -34,7 +34,8 @@ STRUCT(Hit)
     uint steps;
 };
 
-// Components below 2^-20 of the optical axis become zero: no product on the way is then denormal (SPEC.md, Numbers).
+// Components below 2^-20 of the optical axis become zero: no product on the way is then denormal
+// (docs/spec/numbers.md, N1).
 KERNEL_FN real without_dust(real a)
 {
     return magnitude(a) < real(9.5367431640625e-7f) ? real(0.0f) : a;

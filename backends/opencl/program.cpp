@@ -14,8 +14,8 @@ std::string options_for(const FoundDevice& device, const ProgramId& id)
     // functions bring that return structs.
     if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
     if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
-    // No decision has denormals (kernels/SPEC.md, Numbers), but the lanes of a processor's vectors that nobody asked
-    // for do, where compilers compute with all words of a quad; some processors multiply those a hundred times slower.
+    // No decision has denormals (docs/spec/numbers.md, N1), but unused lanes of a processor's vectors have, where
+    // compilers compute with all words of a quad; some processors multiply those a hundred times slower.
     if (device.facts.type != "gpu") options += " -cl-denorms-are-zero";
     return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
 }

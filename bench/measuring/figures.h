@@ -21,9 +21,9 @@ struct Figures {
 /// Empty unless the row is ok or flawed and has samples.
 [[nodiscard]] std::optional<Figures> figures_of(const RowRun& row);
 
-/// Bytes that a step of the walk loads from the record of its tet, on average (kernels/SPEC.md): three or four vertices
-/// and a face. An estimate of what moves: memory moves whole lines, and caches keep some. 0 for Embree's layout, which
-/// has no steps.
+/// Bytes that a step of the walk loads from the record of its tet, on average (docs/spec/devices.md, W7): three or four
+/// vertices and a face. An estimate of what moves: memory moves whole lines, and caches keep some. 0 for Embree's
+/// layout, which has no steps.
 [[nodiscard]] double bytes_per_step(const KernelId& kernel);
 
 /// Steps a ray; empty where there is no such ray, or the structure has no steps.

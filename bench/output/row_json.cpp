@@ -122,7 +122,8 @@ json rates_json(const RowRun& row, const Figures& figures)
     if (!figures.gb_per_s) return rates;
     rates["estimated_gb_per_s"] = *figures.gb_per_s;
     rates["bytes_per_step"] = bytes_per_step(row.key.kernel);
-    rates["bytes_per_step_is"] = "an estimate: what a step loads of its tet's record on average (kernels/SPEC.md)";
+    rates["bytes_per_step_is"] =
+        "an estimate: what a step loads of its tet's record on average (docs/spec/devices.md, W7)";
     return rates;
 }
 

@@ -8,7 +8,7 @@
 namespace tetrace {
 
 /// How much farther than a decision's bound the t, u and v of a hit may be off: 1 + 2 |e1| |e2| |u| / |determinant|,
-/// for all three are quotients by the same determinant (kernels/SPEC.md, Numbers).
+/// for all three are quotients by the same determinant (docs/spec/numbers.md, N3).
 [[nodiscard]] double hit_condition(const TriangleMesh& mesh, const ExactRay& ray, std::uint32_t triangle);
 
 /// Whether a hit's t, u and v name one point: origin + t direction, and the barycentric point of its triangle.

@@ -7,7 +7,7 @@
 namespace tetrace {
 
 /// Every coordinate that a ray can meet is a multiple of this, and at most 2^6 in magnitude: decisions of the walk then
-/// never produce a denormal (kernels/SPEC.md), and exact arithmetic fits fixed-width integers.
+/// never produce a denormal (docs/spec/numbers.md, N1), and exact arithmetic fits fixed-width integers.
 inline constexpr double coordinate_grid = 0x1p-40;
 
 /// Rounds to the grid; the identity for every float of magnitude 2^-16 or more.
@@ -32,7 +32,7 @@ struct ExactCrossing {
                                                     const Float3 (&b)[3]);
 
 /// Largest distance between a ray and an edge at which float32 may decide the edge either way:
-/// 10 ulp(1/2) (|origin| + sqrt 3), derived for the side products of `maria` in kernels/SPEC.md. Domain units.
+/// 10 ulp(1/2) (|origin| + sqrt 3), derived for the side products of `maria` in docs/spec/numbers.md, N2. Domain units.
 [[nodiscard]] double tie_bound(Float3 origin);
 
 } // namespace tetrace

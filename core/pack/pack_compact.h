@@ -11,7 +11,7 @@ namespace tetrace {
 /// Throws Error{unsupported} where a walk could not know the vertices of a tet by those of the one it comes from: its
 /// neighbours do not name it back; or where a face of the boundary is occlusive, or there are too many that are.
 /// Source: Aman, Demirci, Guedukbay, "Compact Tetrahedralization-Based Acceleration Structures for Ray Tracing",
-/// Journal of Visualization 25, 2022; kernels/SPEC.md, Compact layouts.
+/// Journal of Visualization 25, 2022; docs/spec/layouts.md, L8.
 void pack_compact(PackedScene& packed, const TetMesh& mesh);
 
 /// The tets that were packed: with the same vertices, in whichever order gives them their orientation.

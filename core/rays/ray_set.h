@@ -56,7 +56,7 @@ struct RaySource {
 [[nodiscard]] std::vector<std::uint32_t> inverse_of(std::span<const std::uint32_t> packed_of_mesh);
 
 /// Makes the rays of a kind, in the order of the tiles of 8 x 8 pixels that they are made for, row after row
-/// (kernels/SPEC.md, Rays that are given):
+/// (docs/spec/given-rays.md, G1):
 /// - primary: the view's own, one a pixel;
 /// - shadow: one a hit, to light_of() at parameter 1, where that is on the viewer's side of the surface;
 /// - ao: one a hit, cosine-distributed on the viewer's side, which ends at ao_reach();

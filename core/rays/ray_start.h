@@ -18,7 +18,7 @@ struct RayStart {
 };
 
 /// Points of a face nearer to an edge than this are moved towards the centre of its inscribed circle until they are
-/// not, or are that centre (kernels/SPEC.md, Rays that are given). Domain units.
+/// not, or are that centre (docs/spec/given-rays.md, G2). Domain units.
 inline constexpr double edge_margin = 0x1p-17;
 
 /// Rays leave a face no flatter than this: the least sine of the angle between direction and face.

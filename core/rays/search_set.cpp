@@ -106,7 +106,7 @@ std::int64_t side(const IntRay& ray, Int3 from, Int3 to)
 }
 
 /// The faces that the ray leaves by, a bit each; none where it does not enter through the inside of the entry face.
-/// The table of kernels/SPEC.md, The methods.
+/// The table of docs/spec/methods.md, M1.
 std::uint8_t exits_of(const Corners& corners, std::uint32_t entry, const IntRay& ray)
 {
     const auto& face = face_corners[entry];

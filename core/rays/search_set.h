@@ -34,7 +34,7 @@ struct SearchRays {
 /// How the face that was found for ray `number` compares with exact arithmetic.
 enum class SearchVerdict {
     right,
-    tie,   ///< another face, and the ray passes all edges that exclude it within the rounding bound (kernels/SPEC.md)
+    tie,   ///< another face, and the ray passes all edges that exclude it within tie_bound (docs/spec/numbers.md, N2)
     wrong, ///< another face
     lost   ///< NO_EXIT
 };

@@ -1,4 +1,4 @@
-// What the BVHs share: a ray as their tests take it, boxes, and the triangle test (SPEC.md, BVHs).
+// What the BVHs share: a ray as their tests take it, boxes, and the triangle test (docs/spec/bvhs.md, B4).
 #include "kernels/shear.h"
 
 // For a build that counts what a ray fetches; it is never a timed one.

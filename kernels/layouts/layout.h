@@ -83,7 +83,7 @@
 // leaf triangles of a BVH: {v0, input triangle}, {v1, 0}, {v2, 0}, as the mesh has them.
 #define LEAF_TRIANGLE_QUADS 3u
 // Boxes of BVHs are that much larger on every side than what is in them: the triangle test decides on rounded
-// projections (SPEC.md, BVHs).
+// projections (docs/spec/bvhs.md, B7).
 #define BOX_MARGIN 7.62939453125e-6f // 2^-17
 // bvh2: both children's boxes and the children.
 //   {a.low.x, a.high.x, a.low.y, a.high.y} {b.low.x, b.high.x, b.low.y, b.high.y}

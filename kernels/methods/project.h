@@ -1,6 +1,6 @@
 // Method project: exit face by the signs of two 2D cross products of projected vertices. A vertex has one position
 // across the ray, whichever tet asks, and a sign is never wrong and never zero, so that no two tets disagree and no
-// walk gets lost (SPEC.md, Method project). Sources: the walk, Aman, Demirci, Guedukbay, "Compact
+// walk gets lost (docs/spec/project.md, P6). Sources: the walk, Aman, Demirci, Guedukbay, "Compact
 // Tetrahedralization-Based Acceleration Structures for Ray Tracing", Journal of Visualization 25, 2022; the projection,
 // see shear.h; ties, Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9(1), 1990. 46
 // operations a step: 3 for the shear, 13 a vertex (3 + 5 + 5), 2 a sign; a sign at a tie 32 more.

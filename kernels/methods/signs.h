@@ -1,6 +1,6 @@
-// The signs of method project (SPEC.md, there): vertices projected across the ray, and on which side of the ray an edge
-// between two of them passes, which is never wrong and never undecided. For walks that ask tets for their corners
-// (project.h) and for those that carry them.
+// The signs of method project: vertices projected across the ray, and the side of the ray at an edge between two of
+// them, which is never wrong and never undecided (docs/spec/project.md, P2 and P3). For walks that ask tets for their
+// corners (project.h) and for those that carry them.
 
 // Paths begin at a boundary face that holds the ray, or there is none (entry.h).
 #define WALKS_PATHS

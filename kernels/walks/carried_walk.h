@@ -1,6 +1,6 @@
 // The walk of project through records (half32.h): the three vertices of the face that the ray has entered by are
 // carried as the ray sees them, and a step projects one new vertex. Decisions, and so the bits of its hits, are those
-// of walk.h on tets that hold their vertices: SPEC.md, Carried vertices.
+// of walk.h on tets that hold their vertices (docs/spec/layouts.md, L4).
 
 // A vertex of the entry face: a number for the order that decides ties is all that is left of its place.
 STRUCT(Carried)
@@ -116,8 +116,8 @@ KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint
 
 // From a face of a tet to the ray's hit: that by which the ray leaves it, or enters it where start is FROM_OUTSIDE.
 // start, end, and where a walk begins by exit_ahead(): as in walk.h. Loops ask at their end, and ties are decided
-// behind the inner one: some devices execute what is behind a condition whether a lane meets it or not (SPEC.md,
-// Loops).
+// behind the inner one: some devices execute what is behind a condition whether a lane meets it or not
+// (docs/spec/devices.md, W1).
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint face, uint start, real end)
 {
     bool is_endless = end >= real(NO_END);

@@ -1,4 +1,4 @@
-// The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; SPEC.md, Compact layouts). The
+// The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; docs/spec/layouts.md, L8). The
 // three vertices of the face that the ray is at are carried as the ray sees them: the tet's fourth is what is left of
 // the xor, a step projects that one alone, and its two signs say which of the three it replaces. Decisions, and so the
 // bits of the hits, are those of walk.h. A layout brings CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank,

@@ -1,5 +1,5 @@
 // Where a path begins that does not begin at the domain's boundary: for methods that define WALKS_PATHS, whose signs
-// make the faces that a ray crosses one path from boundary to boundary (SPEC.md, Method project). Such a method brings
+// make the faces that a ray crosses one path from boundary to boundary (docs/spec/project.md, P5). Such a method brings
 // is_ahead(scene, tet, face, ray).
 #ifdef WALKS_PATHS
 

@@ -1,6 +1,6 @@
 // Beams: what the rays of a packet do alike is done once, by the beam of all directions that its pixels span, a lane a
-// packet. A beam goes on as long as one answer is that of all its rays, whatever rounding does to them (SPEC.md,
-// Packets on a CPU).
+// packet. A beam goes on as long as one answer is that of all its rays, whatever rounding does to them
+// (docs/spec/packets.md, K7).
 constexpr uint most_packets = tetrace::openmp::packet_block_size * tetrace::openmp::packet_block_size / LANES;
 constexpr uint batches_in_turns = 4;
 constexpr float reach_x = 0.5f * (packet_width - 1); // from the middle of a beam to its outermost rays, in pixels

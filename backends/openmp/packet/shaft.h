@@ -48,8 +48,8 @@ LANE_FN Square square_at(const PacketJob& job, uint x, uint y, uint size)
     return square;
 }
 
-// Far more than what rounding moves a ray, or the place where it meets a side of the domain (SPEC.md, Packets on a
-// CPU).
+// Far more than what rounding moves a ray, or the place where it meets a side of the domain (docs/spec/packets.md,
+// K11).
 constexpr double doubt = 0x1p-14;
 
 // The side of all rays of the square at the line from p to q, both seen from the origin: 1, -1, or 0 where in doubt.

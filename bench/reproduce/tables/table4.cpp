@@ -209,7 +209,8 @@ std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
         fmt::format("The paper: {} to {} rays an image for the older methods, {} for theirs. {}",
                     paper::least_wrong_of_older, paper::most_wrong_of_older, paper::wrong_of_maria,
                     paper::rest_is_there),
-        "project is not the paper's: that it has no such ray is this program's own claim, argued in kernels/SPEC.md."};
+        "project is not the paper's: that it has no such ray is this program's own claim, proved in "
+        "docs/spec/project.md, P6."};
     const auto loaded = std::find_if(runs.begin(), runs.end(), [](const auto* run) { return run->scene != nullptr; });
     if (loaded != runs.end())
         notes.push_back(sampling_note((*loaded)->sampling, population)); // all have the same views
