@@ -1,11 +1,11 @@
 #include "tests/house/citations.h"
-
 #include "tests/support/temporary_folder.h"
 
 #include <fstream>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -13,9 +13,9 @@ namespace fs = std::filesystem;
 
 const fs::path root = TETRACE_ROOT;
 
-const std::vector<test::Text>& texts()
+const std::vector<Text>& texts()
 {
-    static const std::vector<test::Text> texts = test::read_texts(root);
+    static const std::vector<Text> texts = read_texts(root);
     return texts;
 }
 
@@ -31,7 +31,7 @@ std::string joined(const std::vector<std::string>& lines)
 const std::string cited = std::string("docs/") + "spec/";
 
 /// A specification of one page with the claims P1 and P2, and a text that cites it.
-std::vector<test::Text> with_text(const std::string& file, const std::string& text)
+std::vector<Text> with_text(const std::string& file, const std::string& text)
 {
     return {{cited + "page.md", "# Page\n\n### P1. One.\n\n### P2. Two.\n"}, {file, text}};
 }
@@ -40,31 +40,29 @@ std::vector<test::Text> with_text(const std::string& file, const std::string& te
 
 TEST(Citations, name_pages_and_claims_that_exist)
 {
-    EXPECT_EQ(joined(test::broken_citations(texts())), "");
+    EXPECT_EQ(joined(broken_citations(texts())), "");
 }
 
 TEST(Citations, have_one_claim_for_each_number)
 {
-    EXPECT_EQ(joined(test::repeated_claims(texts())), "");
-    EXPECT_GE(test::claims_of(texts()).size(), 9u) << "the pages were read";
-    EXPECT_GE(test::claims_of(texts()).at("project.md").size(), 10u) << "the claims were read";
+    EXPECT_EQ(joined(repeated_claims(texts())), "");
+    EXPECT_GE(claims_of(texts()).size(), 9u) << "the pages were read";
+    EXPECT_GE(claims_of(texts()).at("project.md").size(), 10u) << "the claims were read";
 }
 
 TEST(Citations, name_tests_that_exist)
 {
-    EXPECT_EQ(joined(test::missing_tests(texts())), "");
+    EXPECT_EQ(joined(missing_tests(texts())), "");
 }
 
 TEST(Citations, lead_from_pages_to_files_that_exist)
 {
-    EXPECT_EQ(joined(test::broken_links(root, texts())), "");
+    EXPECT_EQ(joined(broken_links(root, texts())), "");
 }
 
 TEST(Citations, of_missing_pages_and_claims_are_found)
 {
-    const auto problems = [](const std::string& text) {
-        return joined(test::broken_citations(with_text("core/a.h", text)));
-    };
+    const auto problems = [](const std::string& text) { return joined(broken_citations(with_text("core/a.h", text))); };
     EXPECT_EQ(problems("// " + cited + "page.md, P1 and P2; " + cited + "page.md"), "");
     EXPECT_EQ(problems("// " + cited + "other.md"), "core/a.h: there is no page " + cited + "other.md\n");
     EXPECT_EQ(problems("// " + cited + "page.md, P3"), "core/a.h: page.md has no claim P3\n");
@@ -75,7 +73,7 @@ TEST(Citations, of_missing_pages_and_claims_are_found)
 TEST(Citations, within_the_specification_are_held_to_its_claims_too)
 {
     const auto problems = [](const std::string& text) {
-        return joined(test::broken_citations(with_text(cited + "more.md", text)));
+        return joined(broken_citations(with_text(cited + "more.md", text)));
     };
     EXPECT_EQ(problems("By P2, and by page.md, P1, on an H200: [texels.md](../texels.md)."), "");
     EXPECT_EQ(problems("By P7."), cited + "more.md: no page has a claim P7\n");
@@ -84,13 +82,13 @@ TEST(Citations, within_the_specification_are_held_to_its_claims_too)
 
 TEST(Citations, of_repeated_numbers_and_missing_tests_are_found)
 {
-    EXPECT_EQ(joined(test::repeated_claims(with_text(cited + "more.md", "# More\n\n### P2. Again.\n"))),
+    EXPECT_EQ(joined(repeated_claims(with_text(cited + "more.md", "# More\n\n### P2. Again.\n"))),
               "P2 is a claim of page.md and of more.md\n");
     auto spec =
         with_text(cited + "more.md", "As `is_left` says.\n\n*Tests*: `tests/a_test.cpp` (`nobody_tests_this`).");
-    EXPECT_EQ(joined(test::missing_tests(spec)), cited + "more.md: no test is called nobody_tests_this\n");
+    EXPECT_EQ(joined(missing_tests(spec)), cited + "more.md: no test is called nobody_tests_this\n");
     spec.push_back({"tests/core/a_test.cpp", "TEST(A, nobody_tests_this)"});
-    EXPECT_EQ(joined(test::missing_tests(spec)), "");
+    EXPECT_EQ(joined(missing_tests(spec)), "");
 }
 
 TEST(Citations, that_lead_nowhere_are_found)
@@ -99,7 +97,7 @@ TEST(Citations, that_lead_nowhere_are_found)
     fs::create_directories(folder.path() / "docs");
     std::ofstream(folder.path() / "docs/here.md") << "\n";
     const auto problems = [&](const std::string& text) {
-        return joined(test::broken_links(folder.path(), {{"docs/a.md", text}}));
+        return joined(broken_links(folder.path(), {{"docs/a.md", text}}));
     };
     EXPECT_EQ(problems("[a](here.md), [b](here.md#part), [c](../docs/here.md), [d](https://x.org/y), `docs/here.md`"),
               "");
