@@ -1,43 +1,47 @@
 # Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
 
-# The kernels that every backend compiles in both math modes, as structure/method/layout: structure_<family>.h with
-# <method>.h and <layout>.h. Structure bvh has no methods of its own, nor have compact layouts.
+# TETRACE_LAYOUTS and TETRACE_KERNELS, as structure/method/layout, are those of ours in kernels/kernel_list.inc, in its
+# order; every backend compiles them in both math modes. Beside them: TETRACE_FAMILY_<layout>, and TETRACE_TASKS_<method>_<layout>.
+set(tetrace_kernel_list ${PROJECT_SOURCE_DIR}/kernels/kernel_list.inc)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tetrace_kernel_list})
+set(TETRACE_LAYOUTS "")
 set(TETRACE_KERNELS "")
-foreach(method plane plucker stp ms06 maria project)
-  foreach(layout tet80 tet96)
-    list(APPEND TETRACE_KERNELS cdt/${method}/${layout})
-  endforeach()
+file(STRINGS ${tetrace_kernel_list} rows REGEX "^LAYOUT")
+foreach(row IN LISTS rows)
+  string(REGEX MATCH "^LAYOUT.([a-z0-9]+), ([a-z]+)," ignored ${row})
+  list(APPEND TETRACE_LAYOUTS ${CMAKE_MATCH_1})
+  set(TETRACE_FAMILY_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
 endforeach()
-list(APPEND TETRACE_KERNELS cdt/project/half32 cdt/project/tet20 cdt/project/tet16 bvh/single/bvh2 bvh/single/cwbvh)
-set(TETRACE_COMPACT_LAYOUTS tet20 tet16)
+file(STRINGS ${tetrace_kernel_list} rows REGEX "^KERNEL")
+foreach(row IN LISTS rows)
+  string(REGEX MATCH "^KERNEL.([a-z0-9]+), ([a-z0-9]+), ([a-z |]+)," ignored ${row})
+  set(method ${CMAKE_MATCH_1})
+  set(layout ${CMAKE_MATCH_2})
+  if(layout IN_LIST TETRACE_LAYOUTS)
+    string(REPLACE " | " ";" TETRACE_TASKS_${method}_${layout} "${CMAKE_MATCH_3}")
+    string(REPLACE compact cdt structure ${TETRACE_FAMILY_${layout}}) # compact layouts are the CDT's too
+    list(APPEND TETRACE_KERNELS ${structure}/${method}/${layout})
+  endif()
+endforeach()
 
-# tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, which is cdt, bvh, or compact of tets that share
-# their vertices, name, as embedded_name() has it without its math mode, tasks, those of core/pack/kernel_id.h that the
-# kernel's text has, headers, the parts of the text, and definitions, which name them to C++.
+# tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, name, as embedded_name() has it without its math
+# mode, tasks, headers, the parts of the text, and definitions, which name them to C++.
 macro(tetrace_kernel_parts kernel)
   string(REPLACE "/" ";" parts ${kernel})
   list(GET parts 0 structure)
   list(GET parts 1 method)
   list(GET parts 2 layout)
   set(name ${method}_${layout})
-  set(family ${structure})
-  if(layout IN_LIST TETRACE_COMPACT_LAYOUTS)
-    set(family compact)
-  endif()
-  set(tasks trace)
-  if(family STREQUAL cdt AND NOT layout STREQUAL half32)
-    list(APPEND tasks search)
-  endif()
-  if(method MATCHES "^(maria|project|single)$" AND NOT family STREQUAL compact)
-    list(APPEND tasks rays)
-  endif()
-  set(headers METHOD=kernels/methods/${method}.h)
+  set(family ${TETRACE_FAMILY_${layout}})
+  set(tasks ${TETRACE_TASKS_${name}})
+  set(walks kernels/walks)
+  set(layouts kernels/layouts)
   if(structure STREQUAL bvh)
-    list(APPEND headers STRUCTURE=kernels/bvh/structure_bvh.h ARRAYS=kernels/bvh/bvh_arrays.h LAYOUT=kernels/bvh/${layout}.h)
-  else()
-    list(APPEND headers STRUCTURE=kernels/walks/structure_${family}.h ARRAYS=kernels/layouts/${family}_arrays.h
-      LAYOUT=kernels/layouts/${layout}.h)
+    set(walks kernels/bvh)
+    set(layouts kernels/bvh)
   endif()
+  set(headers METHOD=kernels/methods/${method}.h STRUCTURE=${walks}/structure_${family}.h
+    ARRAYS=${layouts}/${family}_arrays.h LAYOUT=${layouts}/${layout}.h)
   list(TRANSFORM headers REPLACE "(.*)=(.*)" "KERNEL_\\1_HEADER=\"\\2\"" OUTPUT_VARIABLE definitions)
 endmacro()
 

@@ -1,6 +1,7 @@
 #include "bench/measuring/figures.h"
 
 #include "bench/rows/physical_device.h"
+#include "core/pack/traits.h"
 
 namespace tetrace {
 
@@ -10,22 +11,6 @@ std::optional<double> quotient(std::uint64_t steps, std::uint64_t rays)
 {
     if (steps == 0 || rays == 0) return std::nullopt;
     return static_cast<double>(steps) / static_cast<double>(rays);
-}
-
-/// On average; those that ask for one face after the other load the fourth where the first, one of three, is not it.
-double vertices_per_step(Method method)
-{
-    switch (method) {
-    case Method::plane: return 4;
-    case Method::plucker:
-    case Method::stp:
-    case Method::ms06: return 3 + 2.0 / 3;
-    case Method::maria:
-    case Method::project: return 3;
-    case Method::single:
-    case Method::packet16: return 0;
-    }
-    throw Error(ErrorKind::internal, "vertices_per_step: no such method");
 }
 
 /// Nothing where the wall clock was not read for every sample.
@@ -43,19 +28,8 @@ void add_wall(Figures& figures, const RowRun& row)
 
 double bytes_per_step(const KernelId& kernel)
 {
-    const double vertices = vertices_per_step(kernel.method);
-    switch (kernel.layout) {
-    case Layout::tet80: return vertices * 12 + 8;
-    case Layout::tet96: return vertices * 16 + 16;
-    case Layout::half32: return 16 * HALF32_QUADS;
-    case Layout::tet20: return 16 + 8;
-    case Layout::tet16: return 16 + 16;
-    case Layout::bvh2:
-    case Layout::cwbvh:
-    case Layout::embree:
-    case Layout::rt: return 0;
-    }
-    throw Error(ErrorKind::internal, "bytes_per_step: no such layout");
+    const LayoutTraits& layout = traits_of(kernel.layout);
+    return traits_of(kernel.method).vertices * layout.vertex_bytes + layout.step_bytes;
 }
 
 MeanSteps mean_steps(const RayTotals& totals)

@@ -32,6 +32,18 @@ std::vector<T> kernels_have(T KernelId::*member)
     return values;
 }
 
+/// "plane, plucker or stp": of the structure's kernels alone.
+template <class T>
+std::string names_of(Structure structure, T KernelId::*member)
+{
+    std::vector<std::string> names;
+    for (const KernelId& kernel : all_kernels())
+        if (const std::string name(name_of(kernel.*member));
+            kernel.structure == structure && std::find(names.begin(), names.end(), name) == names.end())
+            names.push_back(name);
+    return join_alternatives(names);
+}
+
 template <class T>
 std::function<void(Options&, const std::string&)> append(std::string option, std::vector<T> Options::*list,
                                                          std::vector<T> accepted)
@@ -194,10 +206,10 @@ std::vector<OptionRow> row_options()
          "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
-         "Keep the rows of this method: plane, plucker, stp, ms06, maria or project (exit-face searches of the cdt), "
-         "single or "
-         "packet16 (how many rays at once a BVH is asked), or 'all'. Default: maria, project on half32, and those "
-         "of the BVHs where these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
+         "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
+             " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
+             " (how many rays at once a BVH is asked), or 'all'. Default: maria, project on half32, and those "
+             "of the BVHs where these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
          reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 of the cdt, of project also half32, tet20 or tet16; bvh2 "

@@ -1,6 +1,7 @@
 #include "bench/reproduce/speed.h"
 
 #include "bench/measuring/figures.h"
+#include "core/pack/traits.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -145,7 +146,7 @@ const std::vector<Method>& older_methods()
     static const std::vector<Method> methods = [] {
         std::vector<Method> found;
         for (const KernelId& kernel : all_kernels())
-            if (kernel.structure == Structure::cdt && kernel.method < Method::maria &&
+            if (kernel.structure == Structure::cdt && traits_of(kernel.method).year < traits_of(Method::maria).year &&
                 std::find(found.begin(), found.end(), kernel.method) == found.end())
                 found.push_back(kernel.method);
         return found;

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// The paper's methods but maria, in the order of all_kernels(): those older than the paper.
+/// The CDT's methods that are older than maria, the paper's, in the order of all_kernels().
 [[nodiscard]] const std::vector<Method>& older_methods();
 
 /// Device seconds of each view or batch: the medians of its samples. Empty for a row without a rate.

@@ -18,12 +18,11 @@ bool wanted(const std::vector<T>& list, const T& value)
     return list.empty() || std::find(list.begin(), list.end(), value) != list.end();
 }
 
-/// Where no method is named, two stand for the cdt: the paper's, and the fastest on the layout made for it. Many more
-/// rows are for those who compare methods.
+/// Where no method is named, the kernel list says which stand for all: two of the cdt, the paper's and the fastest.
+/// Many more rows are for those who compare methods.
 bool wanted_method(const Options& options, const KernelId& kernel)
 {
-    if (kernel.structure != Structure::cdt || !options.methods.empty()) return wanted(options.methods, kernel.method);
-    return kernel.method == Method::maria || kernel.layout == Layout::half32;
+    return options.methods.empty() ? is_default(kernel) : wanted(options.methods, kernel.method);
 }
 
 bool wanted_math(const Options& options, const KernelId& kernel)

@@ -159,7 +159,9 @@ Options with_default_layouts(Options options)
     const bool asked = !options.structures.empty() || !options.methods.empty() || !options.layouts.empty() ||
                        !options.backends.empty() || !options.filter.empty() ||
                        std::find(required.begin(), required.end(), "embree") != required.end();
-    if (!asked) options.layouts = {Layout::tet80, Layout::tet96, Layout::half32, Layout::bvh2, Layout::cwbvh};
+    if (asked) return options;
+    for (const KernelId& kernel : all_kernels())
+        if (is_portable(kernel)) options.layouts.push_back(kernel.layout);
     return options;
 }
 

@@ -1,6 +1,7 @@
 #include "core/device/scene_buffers.h"
 
 #include "core/base/error.h"
+#include "core/pack/traits.h"
 
 #include <algorithm>
 #include <bit>
@@ -38,8 +39,13 @@ std::span<const SceneArray> scene_arrays(Layout layout)
 #include "kernels/bvh/bvh_arrays.h"
     };
 #undef SCENE_ARRAY
-    if (is_compact(layout)) return compact;
-    return structure_of(layout) == Structure::cdt ? std::span(cdt) : std::span<const SceneArray>(bvh);
+    switch (traits_of(layout).family) {
+    case Family::cdt: return cdt;
+    case Family::compact: return compact;
+    case Family::bvh: return bvh;
+    case Family::foreign: break;
+    }
+    return {};
 }
 
 std::vector<SceneBuffer> scene_buffers(const PackedScene& scene)
@@ -48,12 +54,17 @@ std::vector<SceneBuffer> scene_buffers(const PackedScene& scene)
 #define SCENE_ARRAY(element, name, member, binding)                                                                    \
     buffers.resize(std::max<std::size_t>(buffers.size(), binding + 1));                                                \
     buffers[binding] = buffer_of(#member, scene.member);
-    if (is_compact(scene.layout)) {
-#include "kernels/layouts/compact_arrays.h"
-    } else if (structure_of(scene.layout) == Structure::cdt) {
+    switch (traits_of(scene.layout).family) {
+    case Family::cdt:
 #include "kernels/layouts/cdt_arrays.h"
-    } else {
+        break;
+    case Family::compact:
+#include "kernels/layouts/compact_arrays.h"
+        break;
+    case Family::bvh:
 #include "kernels/bvh/bvh_arrays.h"
+        break;
+    case Family::foreign: break;
     }
 #undef SCENE_ARRAY
     return buffers;

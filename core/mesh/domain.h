@@ -9,10 +9,10 @@
 
 namespace tetrace {
 
-/// How far the box that the CDT fills reaches.
+/// How far the box that the CDT fills reaches. Scene files and hashes hold the values.
 enum class DomainKind {
-    tight, ///< the mesh's bounding box grown by 2 % of its largest extent; rays mostly enter from outside
-    wide,  ///< a cube of half-size 3 bounding-sphere radii; cameras are inside, as in the paper
+    tight = 0, ///< the mesh's bounding box grown by 2 % of its largest extent; rays mostly enter from outside
+    wide = 1,  ///< a cube of half-size 3 bounding-sphere radii; cameras are inside, as in the paper
 };
 
 [[nodiscard]] std::string_view name_of(DomainKind kind);

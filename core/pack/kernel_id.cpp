@@ -1,33 +1,76 @@
 #include "core/pack/kernel_id.h"
 
+#include "core/pack/traits.h"
+
+#include <algorithm>
+
 namespace tetrace {
 
 namespace {
 
-/// Whether only a walk that carries vertices goes through the layout.
-bool needs_project(Layout layout)
+/// A row of kernels/kernel_list.inc; its words are the constants below.
+struct KernelRow {
+    Method method;
+    Layout layout;
+    unsigned tasks, schedules; ///< bits
+    bool is_robust, is_default;
+};
+
+template <class T>
+constexpr unsigned bit(T value)
 {
-    return layout == Layout::half32 || is_compact(layout);
+    return 1u << static_cast<unsigned>(value);
+}
+
+const std::vector<KernelRow>& kernel_rows()
+{
+    constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search);
+    constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
+                       packets = bit(Schedule::packets);
+    constexpr bool robust = true, fallible = false, by_default = true, on_request = false;
+    static const std::vector<KernelRow> rows = {
+#define KERNEL(method, layout, ...) {Method::method, Layout::layout, __VA_ARGS__},
+#include "kernels/kernel_list.inc"
+    };
+    return rows;
+}
+
+/// Null where the list has no such kernel.
+const KernelRow* row_of(const KernelId& kernel)
+{
+    const auto& rows = kernel_rows();
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const KernelRow& candidate) {
+        return candidate.method == kernel.method && candidate.layout == kernel.layout &&
+               structure_of(candidate.layout) == kernel.structure;
+    });
+    return row == rows.end() ? nullptr : &*row;
+}
+
+/// Foreign kernels compute as they like, packets as exactly as what they are compared with.
+bool has_math(const KernelId& kernel)
+{
+    if (!is_portable(kernel)) return kernel.math == MathMode::fast;
+    return kernel.math == MathMode::exact || kernel.schedule != Schedule::packets;
+}
+
+void add_kernels(std::vector<KernelId>& kernels, Structure structure, bool portable)
+{
+    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent, Schedule::packets})
+        for (const MathMode math : {MathMode::exact, MathMode::fast})
+            for (const KernelRow& row : kernel_rows()) {
+                const KernelId kernel{structure_of(row.layout), row.method, row.layout, math, schedule};
+                if (kernel.structure == structure && is_portable(kernel) == portable &&
+                    (row.schedules & bit(schedule)) != 0 && has_math(kernel))
+                    kernels.push_back(kernel);
+            }
 }
 
 std::vector<KernelId> make_kernels()
 {
     std::vector<KernelId> kernels;
-    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
-        for (const MathMode math : {MathMode::exact, MathMode::fast})
-            for (const Method method :
-                 {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria, Method::project})
-                for (const Layout layout : {Layout::tet80, Layout::tet96, Layout::half32, Layout::tet20, Layout::tet16})
-                    if (!needs_project(layout) || method == Method::project)
-                        kernels.push_back({Structure::cdt, method, layout, math, schedule});
-    kernels.push_back({Structure::cdt, Method::project, Layout::half32, MathMode::exact, Schedule::packets});
-    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent})
-        for (const MathMode math : {MathMode::exact, MathMode::fast})
-            for (const Layout layout : {Layout::bvh2, Layout::cwbvh})
-                kernels.push_back({Structure::bvh, Method::single, layout, math, schedule});
-    for (const Method method : {Method::single, Method::packet16})
-        kernels.push_back({Structure::bvh, method, Layout::embree, MathMode::fast});
-    kernels.push_back({Structure::bvh, Method::single, Layout::rt, MathMode::fast});
+    for (const bool portable : {true, false})
+        for (const Structure structure : {Structure::cdt, Structure::bvh})
+            add_kernels(kernels, structure, portable);
     return kernels;
 }
 
@@ -52,41 +95,42 @@ std::vector<KernelId> kernels_of(Task task)
 
 bool has_packets(const KernelId& kernel)
 {
-    return kernel.method == Method::project && kernel.layout == Layout::half32 && kernel.math == MathMode::exact;
+    const KernelRow* const row = row_of(kernel);
+    return row != nullptr && (row->schedules & bit(Schedule::packets)) != 0 && kernel.math == MathMode::exact;
 }
 
 bool has_task(const KernelId& kernel)
 {
-    switch (kernel.task) {
-    case Task::trace: return true;
-    case Task::rays:
-        return kernel.structure == Structure::bvh || kernel.method == Method::maria ||
-               (kernel.method == Method::project && !is_compact(kernel.layout));
-    case Task::search: return kernel.structure == Structure::cdt && !needs_project(kernel.layout);
-    }
-    return false;
+    const KernelRow* const row = row_of(kernel);
+    return row != nullptr && (row->tasks & bit(kernel.task)) != 0;
 }
 
 Structure structure_of(Layout layout)
 {
-    const bool holds_corners = layout == Layout::tet80 || layout == Layout::tet96;
-    return holds_corners || needs_project(layout) ? Structure::cdt : Structure::bvh;
+    const Family family = traits_of(layout).family;
+    return family == Family::cdt || family == Family::compact ? Structure::cdt : Structure::bvh;
 }
 
 bool is_compact(Layout layout)
 {
-    return layout == Layout::tet20 || layout == Layout::tet16;
+    return traits_of(layout).family == Family::compact;
 }
 
 bool is_portable(const KernelId& kernel)
 {
-    return kernel.layout != Layout::embree && kernel.layout != Layout::rt;
+    return traits_of(kernel.layout).family != Family::foreign;
 }
 
 bool claims_robustness(const KernelId& kernel)
 {
-    return kernel.method == Method::maria || kernel.method == Method::project ||
-           (kernel.structure == Structure::bvh && is_portable(kernel));
+    const KernelRow* const row = row_of(kernel);
+    return row != nullptr && row->is_robust;
+}
+
+bool is_default(const KernelId& kernel)
+{
+    const KernelRow* const row = row_of(kernel);
+    return row != nullptr && row->is_default;
 }
 
 std::string_view name_of(Structure value)
@@ -96,33 +140,12 @@ std::string_view name_of(Structure value)
 
 std::string_view name_of(Method value)
 {
-    switch (value) {
-    case Method::plane: return "plane";
-    case Method::plucker: return "plucker";
-    case Method::stp: return "stp";
-    case Method::ms06: return "ms06";
-    case Method::maria: return "maria";
-    case Method::project: return "project";
-    case Method::single: return "single";
-    case Method::packet16: return "packet16";
-    }
-    return "?";
+    return traits_of(value).name;
 }
 
 std::string_view name_of(Layout value)
 {
-    switch (value) {
-    case Layout::tet80: return "tet80";
-    case Layout::tet96: return "tet96";
-    case Layout::half32: return "half32";
-    case Layout::tet20: return "tet20";
-    case Layout::tet16: return "tet16";
-    case Layout::bvh2: return "bvh2";
-    case Layout::cwbvh: return "cwbvh";
-    case Layout::embree: return "embree";
-    case Layout::rt: return "rt";
-    }
-    return "?";
+    return traits_of(value).name;
 }
 
 std::string_view name_of(MathMode value)

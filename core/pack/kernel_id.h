@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,15 +8,23 @@
 namespace tetrace {
 
 enum class Structure { cdt, bvh };
-/// How a structure is traversed: an exit-face search of the CDT (kernels/<name>.h), or by how
-/// many rays at once a BVH is asked.
-enum class Method { plane, plucker, stp, ms06, maria, project, single, packet16 };
+/// How a structure is traversed: an exit-face search of the CDT (kernels/methods/<name>.h), or how many rays at once
+/// are traced through a BVH.
+enum class Method {
+#define METHOD(name, ...) name,
+#include "kernels/kernel_list.inc"
+};
 /// A packed form of the mesh: tets (half32: a record for each way into one; tet20 and tet16: tets that share their
 /// vertices), a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
-enum class Layout { tet80, tet96, half32, tet20, tet16, bvh2, cwbvh, embree, rt };
+enum class Layout {
+#define LAYOUT(name, ...) name,
+#define FOREIGN_LAYOUT(name) name,
+#include "kernels/kernel_list.inc"
+};
 enum class MathMode { exact, fast };
-/// What rays are for (core/rays/ray_set.h); all but primary ones are given to a session.
-enum class RayKind { primary, shadow, ao, diffuse, random };
+/// What rays are for (core/rays/ray_set.h); all but primary ones are given to a session. The values choose streams of
+/// random numbers.
+enum class RayKind { primary = 0, shadow = 1, ao = 2, diffuse = 3, random = 4 };
 /// The order of rays that are given: as their pixels lie in tiles, along a space-filling curve, at random.
 enum class RayOrder { tiles, morton, shuffled };
 /// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
@@ -42,14 +49,11 @@ struct KernelId {
     friend bool operator==(const KernelId&, const KernelId&) = default;
 };
 
-/// Every kernel of task trace that some backend can run, schedule tiles and exact mode first, the methods in the order
-/// of the enum; the one list that options and rows come from.
+/// Every kernel of task trace that some backend can run, from kernels/kernel_list.inc and in its order: of the CDT, of
+/// our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the kernel's text does its task: exits are searched in a CDT alone, where its tets hold their corners: walks
-/// through other layouts carry what a search alone would have to make anew; and rays are given to BVHs, to maria, the
-/// paper's own method, and to project where a link says what its corners are, not to methods that they are compared
-/// with.
+/// Whether the list has the kernel, whatever its math mode and schedule, with that task.
 [[nodiscard]] bool has_task(const KernelId& kernel);
 
 /// Whether the kernel, of whatever schedule, has packets: one walk is written for them, in exact mode.
@@ -66,10 +70,12 @@ struct KernelId {
 /// those of drivers are not.
 [[nodiscard]] bool is_portable(const KernelId& kernel);
 
-/// Whether the kernel is one that should lose and mistake no ray: maria as published, project by its proof, and our
-/// BVHs by their watertight triangle test. Wrong and lost rays then fail a run. Those of the others are their nature:
-/// counted, told beside the rate, and no failure.
+/// Whether the kernel should lose no ray and mistake none (kernels/kernel_list.inc). Wrong and lost rays then fail a
+/// run. Those of other kernels are counted and shown with the rate, and fail nothing.
 [[nodiscard]] bool claims_robustness(const KernelId& kernel);
+
+/// Whether the kernel has rows where no method is named.
+[[nodiscard]] bool is_default(const KernelId& kernel);
 
 [[nodiscard]] std::string_view name_of(Structure value);
 [[nodiscard]] std::string_view name_of(Method value);

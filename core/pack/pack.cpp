@@ -1,42 +1,14 @@
 #include "core/base/error.h"
 #include "core/pack/hilbert.h"
-#include "core/pack/pack_compact.h"
-#include "core/pack/pack_half32.h"
 #include "core/pack/packed_scene.h"
+#include "core/pack/traits.h"
 
 #include <algorithm>
 #include <bit>
-#include <map>
 #include <numeric>
-#include <tuple>
 
 namespace tetrace {
 namespace {
-
-std::uint32_t quads_of(Layout layout)
-{
-    return layout == Layout::tet80 ? TET80_QUADS : TET96_QUADS;
-}
-
-// Words of a tet in either layout: where vertex coordinates and faces stand.
-struct WordMap {
-    std::uint32_t vertex_stride, first_face;
-};
-WordMap words_of(Layout layout)
-{
-    return layout == Layout::tet80 ? WordMap{3, 12} : WordMap{4, 16};
-}
-
-std::uint32_t& word(std::vector<Quad>& quads, std::size_t index)
-{
-    static_assert(sizeof(Quad) == 4 * sizeof(std::uint32_t));
-    Quad& quad = quads[index / 4];
-    return index % 4 == 0 ? quad.x : index % 4 == 1 ? quad.y : index % 4 == 2 ? quad.z : quad.w;
-}
-std::uint32_t word(const std::vector<Quad>& quads, std::size_t index)
-{
-    return word(const_cast<std::vector<Quad>&>(quads), index);
-}
 
 Double3 unit_centroid(const Scene& scene, const Tet& tet)
 {
@@ -58,12 +30,12 @@ std::vector<bool> reached_tets(const TetMesh& mesh)
         if (!reached[tet]) pending.push_back(tet);
         reached[tet] = true;
     };
-    for (std::uint32_t tet = 0; tet < mesh.tets.size(); tet++)
+    for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
         if (std::ranges::count(mesh.tets[tet].links, NO_LINK) > 0) reach(tet);
     while (!pending.empty()) {
         const Tet& tet = mesh.tets[pending.back()];
         pending.pop_back();
-        for (std::size_t face = 0; face < 4; face++)
+        for (std::size_t face = 0; face < 4; ++face)
             if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
     }
     return reached;
@@ -106,21 +78,6 @@ TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& t
     return result;
 }
 
-void pack_tet(PackedScene& packed, std::size_t position, const TetMesh& mesh)
-{
-    const WordMap map = words_of(packed.layout);
-    const std::size_t first = position * quads_of(packed.layout) * 4;
-    const Tet& tet = mesh.tets[position];
-    for (std::size_t i = 0; i < 4; i++) {
-        const Float3 vertex = mesh.vertices[tet.vertices[i]];
-        for (int axis = 0; axis < 3; axis++)
-            word(packed.tets, first + map.vertex_stride * i + static_cast<std::size_t>(axis)) =
-                std::bit_cast<std::uint32_t>(vertex[axis]);
-        word(packed.tets, first + map.first_face + 2 * i) = tet.links[i];
-        word(packed.tets, first + map.first_face + 2 * i + 1) = tet.faces[i];
-    }
-}
-
 Quad quad_of(Float3 a)
 {
     return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z), 0};
@@ -129,21 +86,6 @@ Quad quad_of(Float3 a)
 Float3 difference(Float3 a, Float3 b)
 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-void pack_tets(PackedScene& packed, const TetMesh& mesh)
-{
-    if (packed.layout == Layout::half32) {
-        packed.tets = half32_records(mesh);
-        return;
-    }
-    if (is_compact(packed.layout)) {
-        pack_compact(packed, mesh);
-        return;
-    }
-    packed.tets.assign(mesh.tets.size() * quads_of(packed.layout), Quad{});
-    for (std::size_t position = 0; position < mesh.tets.size(); position++)
-        pack_tet(packed, position, mesh);
 }
 
 void pack_triangles(PackedScene& packed, const TriangleMesh& mesh)
@@ -177,26 +119,16 @@ std::size_t PackedScene::bytes() const
            (lines.size() + entry_ranges.size() + entry_links.size() + occlusive_faces.size()) * sizeof(std::uint32_t);
 }
 
-std::uint32_t most_tets(Layout layout)
-{
-    constexpr std::uint64_t indices = std::uint64_t{1} << 32;
-    if (layout == Layout::half32) return HALF32_MAX_TETS;
-    if (is_compact(layout)) return layout == Layout::tet20 ? indices / TET20_WORDS : MAX_TETS;
-    const std::uint64_t elements = layout == Layout::tet80 ? 4 * TET80_QUADS : quads_of(layout);
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(MAX_TETS, indices / elements));
-}
-
 PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
 {
-    if (scene.tets.tets.size() > most_tets(layout))
-        throw Error(ErrorKind::unsupported, "packing " + scene.name + " as " + std::string(name_of(layout)) + ": " +
+    const LayoutTraits& traits = traits_of(layout);
+    const auto* const pack_tets = std::get_if<PackTets*>(&traits.pack);
+    if (pack_tets == nullptr)
+        throw Error(ErrorKind::internal, "packing tets as " + std::string(traits.name) + ": no layout of tets");
+    if (scene.tets.tets.size() > traits.most)
+        throw Error(ErrorKind::unsupported, "packing " + scene.name + " as " + std::string(traits.name) + ": " +
                                                 std::to_string(scene.tets.tets.size()) +
-                                                " tets, its kernels reach at most " +
-                                                std::to_string(most_tets(layout)));
-    if (layout == Layout::half32 && scene.mesh.triangles.size() > HALF32_MAX_TRIANGLES)
-        throw Error(ErrorKind::unsupported,
-                    "packing " + scene.name + " as half32: " + std::to_string(scene.mesh.triangles.size()) +
-                        " triangles, its records name at most " + std::to_string(HALF32_MAX_TRIANGLES));
+                                                " tets, its kernels reach at most " + std::to_string(traits.most));
     PackedScene packed;
     packed.layout = layout;
     packed.order = order;
@@ -204,37 +136,12 @@ PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
 
     const auto tets = packing_order(scene, order);
     packed.packed_of_mesh.resize(tets.size());
-    for (std::uint32_t position = 0; position < tets.size(); position++)
+    for (std::uint32_t position = 0; position < tets.size(); ++position)
         packed.packed_of_mesh[tets[position]] = position;
     pack_triangles(packed, scene.mesh);
     pack_domain(packed, scene);
-    pack_tets(packed, in_packed_order(scene.tets, tets, packed.packed_of_mesh));
+    (*pack_tets)(packed, in_packed_order(scene.tets, tets, packed.packed_of_mesh));
     return packed;
-}
-
-TetMesh unpack(const PackedScene& packed)
-{
-    if (packed.layout == Layout::half32) return half32_tets(packed.tets);
-    if (is_compact(packed.layout)) return unpack_compact(packed);
-    const WordMap map = words_of(packed.layout);
-    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
-    TetMesh mesh;
-    mesh.tets.resize(packed.tet_count);
-    for (std::size_t position = 0; position < packed.tet_count; position++) {
-        const std::size_t first = position * quads_of(packed.layout) * 4;
-        for (std::size_t i = 0; i < 4; i++) {
-            const std::size_t at = first + map.vertex_stride * i;
-            const std::tuple key(word(packed.tets, at), word(packed.tets, at + 1), word(packed.tets, at + 2));
-            const auto [entry, is_new] = index.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
-            if (is_new)
-                mesh.vertices.push_back({std::bit_cast<float>(std::get<0>(key)), std::bit_cast<float>(std::get<1>(key)),
-                                         std::bit_cast<float>(std::get<2>(key))});
-            mesh.tets[position].vertices[i] = entry->second;
-            mesh.tets[position].links[i] = word(packed.tets, first + map.first_face + 2 * i);
-            mesh.tets[position].faces[i] = word(packed.tets, first + map.first_face + 2 * i + 1);
-        }
-    }
-    return mesh;
 }
 
 } // namespace tetrace

@@ -7,12 +7,6 @@
 
 namespace tetrace {
 
-std::uint32_t most_references(Layout layout)
-{
-    if (layout == Layout::bvh2) return BVH2_LEAF >> 4;
-    return 0xFFFFFFFFu / LEAF_TRIANGLE_QUADS; // kernels number quads with 32 bits
-}
-
 std::uint32_t add_leaf_triangles(PackedScene& packed, const TriangleMesh& mesh,
                                  std::span<const std::uint32_t> triangles)
 {
@@ -38,14 +32,16 @@ void refuse_to_pack(Layout layout, std::uint64_t found, const char* what, std::u
 
 PackedScene pack_bvh(const TriangleMesh& mesh, const Bvh& bvh, Layout layout)
 {
-    if (layout != Layout::bvh2 && layout != Layout::cwbvh)
-        throw Error(ErrorKind::internal, "packing a BVH as " + std::string(name_of(layout)) + ": no layout of BVHs");
-    if (bvh.references.size() > most_references(layout))
-        refuse_to_pack(layout, bvh.references.size(), "references of leaves to triangles", most_references(layout));
+    const LayoutTraits& traits = traits_of(layout);
+    const auto* const pack_nodes = std::get_if<PackBvh*>(&traits.pack);
+    if (pack_nodes == nullptr)
+        throw Error(ErrorKind::internal, "packing a BVH as " + std::string(traits.name) + ": no layout of BVHs");
+    if (bvh.references.size() > traits.most)
+        refuse_to_pack(layout, bvh.references.size(), "references of leaves to triangles", traits.most);
     for (const auto& node : bvh.nodes)
         if (node.count > most_leaf_references)
             refuse_to_pack(layout, node.count, "triangles in a leaf", most_leaf_references);
-    PackedScene packed = layout == Layout::bvh2 ? pack_bvh2(mesh, bvh) : pack_cwbvh(mesh, bvh);
+    PackedScene packed = (*pack_nodes)(mesh, bvh);
     packed.layout = layout;
     return packed;
 }

@@ -2,6 +2,7 @@
 
 #include "core/bvh/bvh.h"
 #include "core/pack/packed_scene.h"
+#include "core/pack/traits.h"
 
 #include <span>
 
@@ -10,18 +11,11 @@ namespace tetrace {
 /// Of one leaf of a binary BVH that is packed: bvh2 has four bits for them.
 inline constexpr std::uint32_t most_leaf_references = 15;
 
-/// The most references of leaves to triangles that a layout's words can number.
-[[nodiscard]] std::uint32_t most_references(Layout layout);
-
-/// Packs a BVH in layout bvh2 or cwbvh (kernels/layouts/layout.h); its boxes grow by BOX_MARGIN.
+/// Packs a BVH in a layout of BVHs (kernels/layouts/layout.h); its boxes grow by BOX_MARGIN.
 /// bvh: of this mesh, valid (see find_defect). Nodes stand depth first, and leaf triangles in the order of their
 /// leaves. Throws Error{unsupported} with both numbers where the layout cannot number the references, a leaf has too
 /// many, or more would wait on a ray's stack than the kernels have room for.
 [[nodiscard]] PackedScene pack_bvh(const TriangleMesh& mesh, const Bvh& bvh, Layout layout);
-
-/// One of the two, as pack_bvh() has checked: pack_bvh2.cpp, pack_cwbvh.cpp.
-[[nodiscard]] PackedScene pack_bvh2(const TriangleMesh& mesh, const Bvh& bvh);
-[[nodiscard]] PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh);
 
 /// Appends a leaf's triangles; returns the number of the first, counted in triangles.
 std::uint32_t add_leaf_triangles(PackedScene& packed, const TriangleMesh& mesh,

@@ -53,18 +53,9 @@ struct PackedScene {
     [[nodiscard]] std::size_t bytes() const; ///< of all arrays that cross
 };
 
-/// The most tets that a layout's links of 30 bits can name and its kernels reach: they index the array of tets, by word
-/// (tet80) or by quad (tet96), with 32 bits; half32's exits have 28 bits for it.
-[[nodiscard]] std::uint32_t most_tets(Layout layout);
-
 /// Packs a scene's tets.
-/// scene: valid (see find_defect), at most most_tets(layout). layout: of tets.
+/// scene: valid (see find_defect), at most as many tets as the layout's traits say (traits.h). layout: of tets.
 /// Throws Error{unsupported} naming both numbers where the scene has more.
 [[nodiscard]] PackedScene pack(const Scene& scene, Layout layout, TetOrder order);
-
-/// The tets of a packed scene again, with one vertex per corner merged by exact position; in packed order.
-/// For tests and for checking what a device was given. Links, faces and coordinates come back bit for bit.
-/// Throws Error{internal} where what half32 says more than once is not said alike.
-[[nodiscard]] TetMesh unpack(const PackedScene& packed);
 
 } // namespace tetrace

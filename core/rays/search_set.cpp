@@ -5,6 +5,7 @@
 #include "core/base/random_words.h"
 #include "core/mesh/face_corners.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/pack/traits.h"
 
 #include <array>
 #include <bit>
@@ -174,24 +175,22 @@ double distance_of_lines(const IntRay& ray, Int3 from, Int3 to)
 
 PackedScene search_tets(std::uint32_t count, Layout layout)
 {
-    const bool is_80 = layout == Layout::tet80;
+    TetMesh mesh;
+    mesh.vertices.reserve(4 * std::size_t{count});
+    mesh.tets.reserve(count);
+    for (std::uint32_t tet = 0; tet < count; ++tet) {
+        for (const Int3& corner : tet_of(tet))
+            mesh.vertices.push_back(to_float(corner));
+        const std::uint32_t first = 4 * tet;
+        mesh.tets.push_back({{first, first + 1, first + 2, first + 3},
+                             {NO_LINK, NO_LINK, NO_LINK, NO_LINK},
+                             {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
+    }
     PackedScene packed;
     packed.layout = layout;
     packed.order = TetOrder::input;
     packed.tet_count = count;
-    std::vector<std::uint32_t> words;
-    for (std::uint32_t tet = 0; tet < count; tet++) {
-        for (const Int3& corner : tet_of(tet)) {
-            const Float3 vertex = to_float(corner);
-            for (int axis = 0; axis < 3; axis++)
-                words.push_back(std::bit_cast<std::uint32_t>(vertex[axis]));
-            if (!is_80) words.push_back(0);
-        }
-        for (int face = 0; face < 4; face++)
-            words.insert(words.end(), {NO_LINK, FREE_FACE});
-    }
-    for (std::size_t i = 0; i < words.size(); i += 4)
-        packed.tets.push_back({words[i], words[i + 1], words[i + 2], words[i + 3]});
+    std::get<PackTets*>(traits_of(layout).pack)(packed, mesh);
     return packed;
 }
 

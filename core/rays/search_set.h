@@ -13,7 +13,7 @@ namespace tetrace {
 // decide exactly by which face a ray leaves.
 
 /// Random tets, corners uniform in the cube [-1, 1)^3, flatter ones than 2^-20 of its unit cube left out; linked to
-/// none.
+/// none. layout: of tets that hold their corners, as the kernels of task search want them.
 [[nodiscard]] PackedScene search_tets(std::uint32_t count, Layout layout);
 
 /// Rays that each enter a tet through the inside of a known face.

@@ -189,8 +189,8 @@ TEST(PackBvh, leaves_of_more_than_15_triangles_are_refused)
 
 TEST(PackBvh, a_layout_numbers_no_more_references_than_its_words_hold)
 {
-    EXPECT_EQ(most_references(Layout::bvh2), 1u << 27) << "31 bits, four of them for the count";
-    EXPECT_EQ(most_references(Layout::cwbvh), 1'431'655'765u) << "three quads each, quads numbered with 32 bits";
+    EXPECT_EQ(traits_of(Layout::bvh2).most, 1u << 27) << "31 bits, four of them for the count";
+    EXPECT_EQ(traits_of(Layout::cwbvh).most, 1'431'655'765u) << "three quads each, quads numbered with 32 bits";
 }
 
 TEST(PackBvh, layouts_of_tets_are_refused)

@@ -1,7 +1,9 @@
 // Tets that share their vertices: what is packed comes back, word for word, and what cannot be walked is refused.
 #include "core/base/error.h"
 #include "core/pack/pack_compact.h"
+#include "core/pack/traits.h"
 #include "scenes/procedural.h"
+#include "tests/support/unpack.h"
 
 #include <gtest/gtest.h>
 
@@ -51,7 +53,7 @@ TEST_P(CompactPacking, unpacking_gives_the_tets_back)
     const Scene scene = make_cubes(6);
     for (const TetOrder order : {TetOrder::hilbert, TetOrder::input}) {
         const PackedScene packed = pack(scene, GetParam(), order);
-        const TetMesh back = unpack(packed);
+        const TetMesh back = test::unpack(packed);
         ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
         std::vector<std::uint32_t> same(back.tets.size());
         for (std::uint32_t i = 0; i < same.size(); ++i)
@@ -119,7 +121,7 @@ TEST_P(CompactPacking, every_bit_of_a_tet_matters)
 {
     const Scene scene = make_cubes(2);
     const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
-    const TetMesh whole = unpack(packed);
+    const TetMesh whole = test::unpack(packed);
     for (std::size_t word = 0; word < 20; ++word)
         for (const std::uint32_t bit : {0u, 3u, 17u, 31u}) {
             PackedScene spoilt = packed;
@@ -127,7 +129,7 @@ TEST_P(CompactPacking, every_bit_of_a_tet_matters)
             std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= 1u << bit;
             try {
-                EXPECT_FALSE(unpack(spoilt) == whole) << "word " << word << " bit " << bit;
+                EXPECT_FALSE(test::unpack(spoilt) == whole) << "word " << word << " bit " << bit;
             } catch (const Error& error) {
                 EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
             }
@@ -153,6 +155,6 @@ INSTANTIATE_TEST_SUITE_P(each, CompactPacking, testing::Values(Layout::tet20, La
 
 TEST(CompactLimits, are_what_32_bits_index_and_links_name)
 {
-    EXPECT_EQ(most_tets(Layout::tet20), 858'993'459u) << "5 words each";
-    EXPECT_EQ(most_tets(Layout::tet16), MAX_TETS) << "a quad each";
+    EXPECT_EQ(traits_of(Layout::tet20).most, 858'993'459u) << "5 words each";
+    EXPECT_EQ(traits_of(Layout::tet16).most, MAX_TETS) << "a quad each";
 }

@@ -4,6 +4,7 @@
 #include "bench/truth/walk_path.h"
 #include "core/mesh/locate.h"
 #include "scenes/procedural.h"
+#include "tests/support/unpack.h"
 
 #include <gtest/gtest.h>
 
@@ -220,7 +221,7 @@ TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
                                 traced.job, size / 2, size / 2);
     ASSERT_EQ(path.size(), hit.steps);
     EXPECT_EQ(path.back(), hit.tet);
-    const TetMesh mesh = unpack(traced.packed);
+    const TetMesh mesh = test::unpack(traced.packed);
     for (std::size_t i = 1; i < path.size(); ++i) {
         bool neighbours = false;
         for (const auto link : mesh.tets[path[i - 1]].links)

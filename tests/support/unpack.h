@@ -1,0 +1,270 @@
+#pragma once
+
+#include "core/base/error.h"
+#include "core/mesh/face_corners.h"
+#include "core/pack/pack_compact.h"
+#include "core/pack/packed_scene.h"
+#include "core/pack/traits.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <string>
+#include <tuple>
+
+namespace tetrace::test {
+
+namespace unpacking {
+
+// Words of a tet that holds its corners: where vertex coordinates and faces stand.
+struct WordMap {
+    std::uint32_t vertex_stride, first_face;
+};
+inline WordMap words_of(Layout layout)
+{
+    return layout == Layout::tet80 ? WordMap{3, 12} : WordMap{4, 16};
+}
+
+inline std::uint32_t word(const std::vector<Quad>& quads, std::size_t index)
+{
+    const Quad& quad = quads.at(index / 4);
+    return index % 4 == 0 ? quad.x : index % 4 == 1 ? quad.y : index % 4 == 2 ? quad.z : quad.w;
+}
+
+inline TetMesh unpack_corners(const PackedScene& packed)
+{
+    const WordMap map = words_of(packed.layout);
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
+    TetMesh mesh;
+    mesh.tets.resize(packed.tet_count);
+    for (std::size_t position = 0; position < packed.tet_count; ++position) {
+        const std::size_t first = position * (map.first_face + 8);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const std::size_t at = first + map.vertex_stride * i;
+            const std::tuple key(word(packed.tets, at), word(packed.tets, at + 1), word(packed.tets, at + 2));
+            const auto [entry, is_new] = index.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
+            if (is_new)
+                mesh.vertices.push_back({std::bit_cast<float>(std::get<0>(key)), std::bit_cast<float>(std::get<1>(key)),
+                                         std::bit_cast<float>(std::get<2>(key))});
+            mesh.tets[position].vertices[i] = entry->second;
+            mesh.tets[position].links[i] = word(packed.tets, first + map.first_face + 2 * i);
+            mesh.tets[position].faces[i] = word(packed.tets, first + map.first_face + 2 * i + 1);
+        }
+    }
+    return mesh;
+}
+
+// The triangle that an exit ends at; FREE_FACE where it does not, and at the domain's boundary.
+inline std::uint32_t triangle_at(std::uint32_t exit)
+{
+    return (exit & 3u) == HALF32_END && exit != NO_LINK ? exit >> 2 : FREE_FACE;
+}
+
+// Whether the neighbour behind a face has that face as its own; the domain's boundary always has.
+inline bool is_linked_back(const TetMesh& mesh, std::uint32_t face)
+{
+    const std::uint32_t link = mesh.tets[link_tet(face)].links[link_face(face)];
+    return link == NO_LINK ||
+           (link_tet(link) < mesh.tets.size() && mesh.tets[link_tet(link)].links[link_face(link)] == face);
+}
+
+[[noreturn]] inline void reject(std::size_t record, const char* why)
+{
+    throw Error(ErrorKind::internal, "half32: record " + std::to_string(record) + ": " + why);
+}
+
+inline TetMesh unpack_half32(const std::vector<Quad>& records)
+{
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
+    TetMesh mesh;
+    mesh.tets.resize(records.size() / (4 * HALF32_QUADS));
+    for (std::size_t record = 0; record < 4 * mesh.tets.size(); ++record) {
+        Tet& tet = mesh.tets[record / 4];
+        const std::size_t entry = record % 4;
+        const Quad &apex = records[HALF32_QUADS * record], &exits = records[HALF32_QUADS * record + 1];
+        const auto [place, is_new] =
+            index.try_emplace({apex.x, apex.y, apex.z}, static_cast<std::uint32_t>(mesh.vertices.size()));
+        if (is_new)
+            mesh.vertices.push_back(
+                {std::bit_cast<float>(apex.x), std::bit_cast<float>(apex.y), std::bit_cast<float>(apex.z)});
+        tet.vertices[entry] = place->second;
+        tet.links[entry] = exits.w;
+        const auto& faces = face_corners[entry];
+        tet.faces[faces[0]] = triangle_at(exits.x);
+        tet.faces[faces[1]] = triangle_at(exits.y);
+        tet.faces[faces[2]] = triangle_at(exits.z);
+    }
+    for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
+        if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
+    PackedScene packed;
+    pack_half32(packed, mesh);
+    const std::vector<Quad>& again = packed.tets;
+    const auto differing = std::mismatch(records.begin(), records.end(), again.begin()).first;
+    if (differing != records.end())
+        reject(static_cast<std::size_t>(differing - records.begin()) / HALF32_QUADS,
+               "it contradicts the others of its tet, or those of its neighbours");
+    return mesh;
+}
+
+/// What is read back of a packed tet.
+struct Decoded {
+    FourWords vertices{}; ///< in the orientation of tet_mesh.h
+    FourWords behind{};   ///< the face opposite each
+    bool is_known = false;
+};
+
+/// A tet that is known by a face of it.
+struct Seen {
+    std::uint32_t tet;
+    std::array<std::uint32_t, 3> face; ///< its vertices in the order of face_corners, for this tet
+    std::uint32_t behind;              ///< what the tet names behind it
+};
+
+/// Goes from the boundary through all tets, as a walk does.
+class Decoder {
+public:
+    explicit Decoder(const PackedScene& packed) : packed_(packed), tets_(packed.tet_count) {}
+
+    std::vector<Decoded> decode()
+    {
+        for (const Quad& face : packed_.entry_faces)
+            see({face.w, {face.x, face.y, face.z}, NO_LINK});
+        while (!waiting_.empty()) {
+            const Seen seen = waiting_.back();
+            waiting_.pop_back();
+            if (!tets_[seen.tet].is_known) enter(seen);
+        }
+        for (const Decoded& tet : tets_)
+            require(tet.is_known);
+        return std::move(tets_);
+    }
+
+private:
+    static void require(bool holds)
+    {
+        if (!holds) throw Error(ErrorKind::invalid_input, "unpacking compact tets: their words contradict each other");
+    }
+    [[nodiscard]] std::uint32_t word(std::size_t index) const
+    {
+        const Quad& quad = packed_.tets.at(index / 4);
+        return FourWords{quad.x, quad.y, quad.z, quad.w}[index % 4];
+    }
+    void see(const Seen& seen)
+    {
+        require(seen.tet < tets_.size());
+        waiting_.push_back(seen);
+    }
+    /// What is behind each of the tet's faces, where `known` is behind that of `known_rank`.
+    [[nodiscard]] FourWords behind_ranks(std::uint32_t tet, std::size_t known_rank, std::uint32_t known) const
+    {
+        const std::size_t first = std::size_t{tet} * (packed_.layout == Layout::tet20 ? TET20_WORDS : 4);
+        FourWords behind{word(first + 1), word(first + 2), word(first + 3), 0};
+        if (packed_.layout == Layout::tet20)
+            behind[3] = word(first + 4);
+        else
+            for (std::uint32_t& one : behind)
+                one ^= FourWords{word(first + 1), word(first + 2), word(first + 3), 0}[known_rank] ^ known;
+        require(behind[known_rank] == known);
+        return behind;
+    }
+    void enter(const Seen& seen);
+    void look_behind(std::uint32_t tet, std::uint32_t face);
+
+    const PackedScene& packed_;
+    std::vector<Decoded> tets_;
+    std::vector<Seen> waiting_;
+};
+
+inline void Decoder::enter(const Seen& seen)
+{
+    const auto& [a, b, c] = seen.face;
+    const std::size_t first = std::size_t{seen.tet} * (packed_.layout == Layout::tet20 ? TET20_WORDS : 4);
+    const std::uint32_t apex = word(first) ^ a ^ b ^ c;
+    require(apex < packed_.vertices.size() && apex != a && apex != b && apex != c);
+    Decoded& tet = tets_[seen.tet];
+    tet.vertices = {apex, a, b, c}; // face 0 has corners 1, 2, 3
+    FourWords sorted = tet.vertices;
+    std::sort(sorted.begin(), sorted.end());
+    const auto rank = [&](std::uint32_t v) {
+        return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), v) - sorted.begin());
+    };
+    const FourWords behind = behind_ranks(seen.tet, rank(apex), seen.behind);
+    for (std::size_t i = 0; i < 4; ++i)
+        tet.behind[i] = behind[rank(tet.vertices[i])];
+    tet.is_known = true;
+    for (std::uint32_t face = 1; face < 4; ++face)
+        look_behind(seen.tet, face);
+}
+
+inline void Decoder::look_behind(std::uint32_t tet, std::uint32_t face)
+{
+    const std::uint32_t behind = tets_[tet].behind[face];
+    if (behind == NO_LINK) return;
+    const auto vertex = [&](std::size_t i) { return tets_[tet].vertices[face_corners[face][i]]; };
+    Seen seen{behind, {vertex(0), vertex(2), vertex(1)}, tet};
+    if (behind >= OCCLUSIVE) {
+        const std::uint32_t other_side = (behind ^ OCCLUSIVE) ^ 1u;
+        const std::size_t index = std::size_t{OCCLUSIVE_WORDS} * (other_side / 2) + 1 + other_side % 2;
+        require(index < packed_.occlusive_faces.size());
+        seen.tet = packed_.occlusive_faces[index];
+        seen.behind = OCCLUSIVE | other_side;
+    }
+    see(seen);
+}
+
+/// The face of the tet that has none but these vertices.
+inline std::uint32_t face_with(const Decoded& tet, const Decoded& other, std::uint32_t other_face)
+{
+    for (std::uint32_t face = 0; face < 4; ++face) {
+        const auto is_shared = [&](std::uint32_t i) {
+            const auto end = other.vertices.end();
+            return i == face || (tet.vertices[i] != other.vertices[other_face] &&
+                                 std::find(other.vertices.begin(), end, tet.vertices[i]) != end);
+        };
+        if (is_shared(0) && is_shared(1) && is_shared(2) && is_shared(3)) return face;
+    }
+    throw Error(ErrorKind::invalid_input, "unpacking compact tets: neighbours that share no face");
+}
+
+inline Tet linked(const PackedScene& packed, const std::vector<Decoded>& tets, const Decoded& tet)
+{
+    Tet result{tet.vertices, {}, {}};
+    for (std::uint32_t face = 0; face < 4; ++face) {
+        std::uint32_t behind = tet.behind[face];
+        result.links[face] = NO_LINK;
+        result.faces[face] = FREE_FACE;
+        if (behind == NO_LINK) continue;
+        if (behind >= OCCLUSIVE) {
+            const std::size_t first = std::size_t{OCCLUSIVE_WORDS} * ((behind ^ OCCLUSIVE) / 2);
+            result.faces[face] = packed.occlusive_faces[first];
+            behind = packed.occlusive_faces[first + 1 + ((behind & 1u) ^ 1u)];
+        }
+        result.links[face] = make_link(behind, face_with(tets[behind], tet, face));
+    }
+    return result;
+}
+
+inline TetMesh unpack_compact(const PackedScene& packed)
+{
+    TetMesh mesh;
+    for (const Quad& vertex : packed.vertices)
+        mesh.vertices.push_back(
+            {std::bit_cast<float>(vertex.x), std::bit_cast<float>(vertex.y), std::bit_cast<float>(vertex.z)});
+    const std::vector<Decoded> tets = Decoder(packed).decode();
+    for (const Decoded& tet : tets)
+        mesh.tets.push_back(linked(packed, tets, tet));
+    return mesh;
+}
+
+} // namespace unpacking
+
+/// The tets of a packed scene again, in packed order: links, faces and coordinates as they were, bit for bit, and one
+/// vertex per position; of tet20 and tet16 with the same vertices, in whichever order gives them their orientation.
+/// Throws Error where the words of half32, tet20 or tet16 contradict each other.
+[[nodiscard]] inline TetMesh unpack(const PackedScene& packed)
+{
+    if (packed.layout == Layout::half32) return unpacking::unpack_half32(packed.tets);
+    return is_compact(packed.layout) ? unpacking::unpack_compact(packed) : unpacking::unpack_corners(packed);
+}
+
+} // namespace tetrace::test
