@@ -87,20 +87,6 @@ std::string closing_lines(const BenchResult& result, const Options& options)
     return text;
 }
 
-nlohmann::json ratios_json(const BenchResult& result)
-{
-    nlohmann::json ratios = nlohmann::json::array();
-    for (std::size_t i = 0; i < result.run.rows.size(); ++i)
-        if (const auto& comparison = result.comparisons.at(i))
-            ratios.push_back({{"row", row_name(result.run.rows[i].key)},
-                              {"reference", row_name(comparison->reference->key)},
-                              {"ratio", comparison->rate.value},
-                              {"low", comparison->rate.low},
-                              {"high", comparison->rate.high},
-                              {"confidence", ratio_confidence}});
-    return ratios;
-}
-
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -114,15 +100,11 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     section["devices"] = nlohmann::json::array();
     for (const RowDevice& device : result.devices)
         section["devices"].push_back(row_device_json(device));
-    section["rows"] = nlohmann::json::array();
-    for (const RowRun& row : result.run.rows) {
-        section["rows"].push_back(row_json(row));
-        if (const auto share = share_of_copy(row, result.devices))
-            section["rows"].back()["rates"]["share_of_copy_bandwidth"] = *share;
-        if (const auto ratio = ratio_to_single(row, result.run.rows))
-            section["rows"].back()["rates"]["ratio_to_single"] = *ratio;
+    section["rows"] = section["ratios"] = nlohmann::json::array();
+    for (const RowFacts& facts : facts_of(result)) {
+        section["rows"].push_back(row_json(facts));
+        if (facts.comparison) section["ratios"].push_back(ratio_json(facts));
     }
-    section["ratios"] = ratios_json(result);
     nlohmann::json json = result.measurement.google_benchmark;
     if (json.is_null()) json = nlohmann::json::object();
     json["tetrace"] = std::move(section);

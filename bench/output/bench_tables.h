@@ -1,11 +1,14 @@
 #pragma once
 
 #include "bench/output/bench_report.h"
-#include "bench/terminal/table.h"
+#include "bench/output/row_fields.h"
 
 #include <string>
 
 namespace tetrace {
+
+/// What the fields of each row are read from.
+[[nodiscard]] std::vector<RowFacts> facts_of(const BenchResult& result);
 
 /// What the rows of a scene come to, by device, headed by what they run on.
 [[nodiscard]] Table rate_table(const std::string& scene, const BenchResult& result);

@@ -82,13 +82,6 @@ std::string device_text(const ResultRow& row)
     return row.driver.empty() ? row.device : row.device + ", " + row.driver;
 }
 
-/// The API and the device's number in it, as the row's name ends.
-std::string device_label(const ResultRow& row)
-{
-    const std::size_t place = row.name.rfind("/api:");
-    return place == std::string::npos ? row.backend : row.name.substr(place + 5);
-}
-
 /// A sentence for each device that compared rows ran on, in their order.
 std::vector<std::string> device_sentences(const ResultComparison& comparison)
 {
@@ -97,7 +90,7 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
         if (row.outcome != RowOutcome::compared) continue;
         const std::string a = device_text(*row.before), b = device_text(*row.after);
         const std::string devices = a == b ? a + " in both" : fmt::format("{} in A; {} in B", a, b);
-        std::string sentence = fmt::format("{}: {}.", device_label(*row.before), devices);
+        std::string sentence = fmt::format("{}: {}.", row.before->api(), devices);
         if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end())
             sentences.push_back(std::move(sentence));
     }

@@ -1,18 +1,16 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
-
-#include <nlohmann/json.hpp>
+#include "bench/output/row_fields.h"
 
 namespace tetrace {
 
 /// A scene as results record it: identity, build, counts, views.
 [[nodiscard]] nlohmann::json scene_json(const SceneWork& scene, const Options& options);
 
-/// A row as results record it: key, device, status, verification, counts, and, where it was timed, times and rates.
-[[nodiscard]] nlohmann::json row_json(const RowRun& row);
+/// A row as results record it: the fields of row_fields() that it has a value for.
+[[nodiscard]] nlohmann::json row_json(const RowFacts& facts);
 
-/// A ray's answer.
-[[nodiscard]] nlohmann::json hit_json(const Hit& hit);
+/// How fast a row is compared with its reference. Precondition: facts.comparison.
+[[nodiscard]] nlohmann::json ratio_json(const RowFacts& facts);
 
 } // namespace tetrace

@@ -58,36 +58,23 @@ std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>
     return rate;
 }
 
-/// The parts of a row's name behind its scene that say more than its own keys do, such as "schedule:persistent".
-std::string unusual_parts(const std::string& name)
+/// A blank and the value where it is not the usual one. A result of any age may lack the key.
+std::string unless_usual(const std::string& value, std::string_view usual)
 {
-    std::string parts;
-    for (std::size_t begin = 0; begin <= name.size();) {
-        const std::size_t end = std::min(name.find('/', begin), name.size());
-        const std::string part = name.substr(begin, end - begin);
-        for (const char* const key : {"order:", "schedule:", "rays:"})
-            if (part.starts_with(key)) parts.append(" ").append(part, part.find(':') + 1);
-        begin = end + 1;
-    }
-    return parts;
+    return value.empty() || value == usual ? "" : " " + value;
 }
 
-std::string kernel_of(const ResultValue& row)
+std::string kernel_of(const ResultValue& value, const ResultRow& row)
 {
-    const std::string structure = row.at("structure").line(), method = row.at("method").line();
-    const std::string layout = row.at("layout").line();
+    const std::string structure = value.at("structure").line(), method = value.at("method").line();
+    const std::string layout = value.at("layout").line();
     if (layout == "embree") return structure + " " + method;
     if (layout == "rt") return structure + " " + layout;
-    const std::string math = row.at("math").line();
-    return fmt::format("{} {}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,
-                       math == "exact" ? "" : " " + math, unusual_parts(row.at("name").line()));
-}
-
-std::string api_of(const ResultValue& row)
-{
-    const auto index = row.find("device_index");
-    const std::string backend = row.at("backend").line();
-    return index && index->count() > 0 ? fmt::format("{}:{}", backend, index->count()) : backend;
+    const auto ray_order = value.find("ray_order");
+    return fmt::format("{} {}{}{}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,
+                       unless_usual(value.at("math").line(), "exact"),
+                       unless_usual(value.at("order").line(), "hilbert"), unless_usual(row.schedule, "tiles"),
+                       ray_order ? unless_usual(ray_order->line(), "tiles") : "");
 }
 
 bool same_rays(const ResultScene& a, const ResultScene& b)
@@ -134,8 +121,8 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         ReportRow row;
         row.file = file;
         row.row = &result.rows[i];
-        row.kernel = kernel_of(items[i]);
-        row.api = api_of(items[i]);
+        row.kernel = kernel_of(items[i], result.rows[i]);
+        row.api = result.rows[i].api();
         row.rays = items[i].at("rays").line();
         row.device_class = class_of(result.rows[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);

@@ -1,7 +1,5 @@
+#include "bench/output/row_fields.h"
 #include "bench/report/sections.h"
-
-#include <algorithm>
-#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -9,52 +7,44 @@ namespace {
 
 const char* const how_to_read =
     "Milliseconds for all views. Compiling and uploading are paid once; first: the first pass, in which devices "
-    "compile "
-    "what they left until then; kernel: device time; launch: launching and waiting, what wall holds beyond the kernel; "
+    "compile what they left until then; kernel: device time; launch: launching and waiting, what wall holds beyond the "
+    "kernel; "
     "download: the hits to the host. Medians of the samples, the one-time figures and the download apart.";
 
-Html milliseconds(const ResultValue& times, const char* key, int decimals = 1)
+/// Empty where the row has no such value.
+Cell cell_of_field(const RowField& field, const ResultValue& row)
 {
-    const auto seconds = times.find(key);
-    return seconds ? text(fmt::format("{:.{}f}", 1e3 * seconds->number(), decimals)) : Html();
+    const auto group = *field.group == '\0' ? row : row.find(field.group);
+    const auto value = group ? group->find(field.key) : std::nullopt;
+    if (!value) return {};
+    try {
+        return field.report.cell(value->json());
+    } catch (const nlohmann::json::type_error&) {
+        value->reject("is of another type than this field");
+    }
 }
 
-Html size_of(const ResultValue& row)
+std::vector<Column> all_columns()
 {
-    const auto bytes = row.find("bytes");
-    return bytes ? text(fmt::format("{:.1f}", 1e-6 * bytes->number())) : Html();
+    std::vector<Column> columns = {{"result", "result"}, {"scene", "scene"}, {"row", "row"}, {"api", "API"}};
+    for (Column& column : columns_of(&RowField::report))
+        columns.push_back(std::move(column));
+    return columns;
 }
 
-HtmlTable empty_table()
+void add_row(Table& table, const ReportRow& row, const ResultValue& value, const std::string& letter)
 {
-    return HtmlTable({{"result"},
-                      {"scene"},
-                      {"row"},
-                      {"API"},
-                      {"compile", {}, true},
-                      {"upload", {}, true},
-                      {"first", {}, true},
-                      {"kernel", {}, true},
-                      {"launch", {}, true},
-                      {"download", {}, true},
-                      {"wall", {}, true},
-                      {"size", "MB", true}});
-}
-
-void add_row(HtmlTable& table, const ReportRow& row, const ResultValue& value, const std::string& letter)
-{
-    const ResultValue times = value.at("times");
-    table.add({text(letter), text(row.row->scene), text(row.kernel_and_rays()), text(row.api),
-               milliseconds(times, "compile_s"), milliseconds(times, "upload_s"), milliseconds(times, "first_wall_s"),
-               milliseconds(times, "median_s"), milliseconds(times, "overhead_s", 2), milliseconds(times, "download_s"),
-               milliseconds(times, "wall_s"), size_of(value)});
+    std::vector<Cell> cells = {letter, row.row->scene, row.kernel_and_rays(), row.api};
+    for (const RowField& field : row_fields())
+        if (field.report.title != nullptr) cells.push_back(cell_of_field(field, value));
+    table.add(std::move(cells));
 }
 
 } // namespace
 
 Section time_section(const ReportInput& input)
 {
-    HtmlTable table = empty_table();
+    Table table(all_columns());
     std::size_t first = 0; // of the file's rows
     for (std::size_t file = 0; file < input.files.size(); first += input.files[file++].rows.size()) {
         if (input.files[file].rows.empty()) continue;
@@ -64,8 +54,8 @@ Section time_section(const ReportInput& input)
                 add_row(table, row, values[i], file_letter(file, input.files.size()));
     }
     Section section{"times", "Where the time goes", {}};
-    section.content =
-        table.empty() ? paragraph("No row of these results was timed.") : note(how_to_read) + table.html();
+    section.content = table.rows().empty() ? paragraph("No row of these results was timed.")
+                                           : note(how_to_read) + html_table(table).html();
     return section;
 }
 

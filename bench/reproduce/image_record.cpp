@@ -1,6 +1,6 @@
 #include "bench/reproduce/image_record.h"
 
-#include "bench/output/row_json.h"
+#include "bench/output/ray_json.h"
 #include "core/base/hash.h"
 
 #include <stdexcept>
@@ -16,11 +16,6 @@ std::uint64_t hash_from(const json& text)
     return std::stoull(text.get<std::string>(), nullptr, 16);
 }
 
-Hit hit_from(const json& object)
-{
-    return {object.at("face_id"), object.at("tet"), object.at("t"), object.at("u"), object.at("v"), object.at("steps")};
-}
-
 json totals_json(const RayTotals& t)
 {
     return {t.rays, t.hits, t.misses, t.lost, t.unwritten, t.hit_steps, t.miss_steps, t.lost_steps};
@@ -29,23 +24,6 @@ json totals_json(const RayTotals& t)
 RayTotals totals_from(const json& t)
 {
     return {t.at(0), t.at(1), t.at(2), t.at(3), t.at(4), t.at(5), t.at(6), t.at(7)};
-}
-
-json wrong_ray_json(const WrongRay& ray)
-{
-    return {{"view", ray.view},
-            {"x", ray.x},
-            {"y", ray.y},
-            {"ours", hit_json(ray.ours)},
-            {"reference_face", ray.reference_face},
-            {"reference_t", ray.reference_t},
-            {"reason", ray.reason}};
-}
-
-WrongRay wrong_ray_from(const json& object)
-{
-    return {object.at("view"),           object.at("x"),           object.at("y"),     hit_from(object.at("ours")),
-            object.at("reference_face"), object.at("reference_t"), object.at("reason")};
 }
 
 json verdicts_json(const Verdicts& v)
@@ -70,12 +48,6 @@ Verdicts verdicts_from(const json& object)
     verdicts.largest_tie_distance = object.at("largest_tie_distance");
     if (object.contains("first_wrong")) verdicts.first_wrong = wrong_ray_from(object["first_wrong"]);
     return verdicts;
-}
-
-json differing_ray_json(const DifferingRay& ray)
-{
-    return {
-        {"view", ray.view}, {"x", ray.x}, {"y", ray.y}, {"ours", hit_json(ray.ours)}, {"openmp", hit_json(ray.openmp)}};
 }
 
 json verdict_json(const ImageVerdict& verdict)
@@ -108,11 +80,7 @@ ImageVerdict verdict_from(const json& object)
         const json& compared = object["compared"];
         verdict.different = compared.at(0), verdict.inexact = compared.at(1), verdict.largest_ulps = compared.at(2);
     }
-    if (object.contains("first_different")) {
-        const json& ray = object["first_different"];
-        verdict.first_different = {ray.at("view"), ray.at("x"), ray.at("y"), hit_from(ray.at("ours")),
-                                   hit_from(ray.at("openmp"))};
-    }
+    if (object.contains("first_different")) verdict.first_different = differing_ray_from(object["first_different"]);
     return verdict;
 }
 

@@ -109,7 +109,7 @@ void SceneRun::close()
 {
     row_records = json::array();
     for (RowRun& row : rows) {
-        row_records.push_back(row_json(row));
+        row_records.push_back(row_json(RowFacts(row)));
         row.session.reset();
     }
     verifier.reset();

@@ -128,6 +128,18 @@ std::string printable(std::string text)
     return text;
 }
 
+/// Results from before the key have it in the row's name alone, where it is not tiles: "/schedule:packets/".
+std::string read_schedule(const ResultValue& row)
+{
+    if (const auto schedule = row.find("schedule")) return schedule->line();
+    const std::string name = row.at("name").line();
+    constexpr std::string_view part = "/schedule:";
+    const std::size_t place = name.find(part);
+    if (place == std::string::npos) return "tiles";
+    const std::size_t begin = place + part.size();
+    return name.substr(begin, name.find('/', begin) - begin);
+}
+
 ResultRow read_row(const ResultValue& value)
 {
     ResultRow row;
@@ -135,12 +147,14 @@ ResultRow read_row(const ResultValue& value)
     if (row.name.size() > longest_name) value.at("name").reject("is longer than 1,000 bytes, which no row's name is");
     row.scene = value.at("scene").line();
     row.backend = value.at("backend").line();
+    row.schedule = read_schedule(value);
     row.status = read_status(value.at("status"));
     if (const auto reason = value.find("reason")) row.reason = printable(reason->text());
     if (const auto device = value.find("device")) {
         row.device = device->at("name").line();
         row.device_type = device->at("type").line();
         row.driver = line_or_nothing(*device, "driver");
+        if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
     if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
     row.samples_s = read_samples(value);
@@ -173,6 +187,11 @@ const T* find_named(const std::vector<T>& items, const std::string& name)
 }
 
 } // namespace
+
+std::string ResultRow::api() const
+{
+    return device_index > 0 ? fmt::format("{}:{}", backend, device_index) : backend;
+}
 
 ResultValue ResultFile::section() const
 {

@@ -32,11 +32,16 @@ struct ResultScene {
 struct ResultRow {
     std::string name;
     std::string scene, backend, status;
-    std::string reason; ///< several lines perhaps; no other control characters
+    std::string reason;   ///< several lines perhaps; no other control characters
+    std::string schedule; ///< how rays come to work items, "tiles" for example
     std::string device, device_type, driver;
+    std::uint64_t device_index = 0;    ///< in its backend
     std::string hit_hash;              ///< empty where no rays were traced
     std::optional<double> mrays_per_s; ///< of the median sample
     std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
+
+    /// The API and the device's number in it: "opencl", "opencl:1".
+    [[nodiscard]] std::string api() const;
 };
 
 /// A result file, checked as far as these members go. The rest is reached by section(), whose values are checked when

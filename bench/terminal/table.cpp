@@ -18,11 +18,6 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-bool is_empty(const Cell& cell)
-{
-    return std::holds_alternative<std::monostate>(cell);
-}
-
 std::string padded(const std::string& text, std::size_t width, bool right)
 {
     const std::string blanks(width - std::min(width, display_width(text)), ' ');

@@ -13,6 +13,11 @@ namespace tetrace {
 /// A cell: nothing (printed as a dash), text, a whole number or a real one.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
+[[nodiscard]] inline bool is_empty(const Cell& cell)
+{
+    return std::holds_alternative<std::monostate>(cell);
+}
+
 /// A cell that is empty where there is no value.
 template <class T>
 [[nodiscard]] Cell cell_of(const std::optional<T>& value)
@@ -49,9 +54,11 @@ public:
     /// A GitHub table; units stand in the header behind the title.
     [[nodiscard]] std::string markdown() const;
 
+    /// Whether no cell of the column is a text.
+    [[nodiscard]] bool is_number(std::size_t column) const;
+
 private:
     [[nodiscard]] bool has_cells(std::size_t column) const;
-    [[nodiscard]] bool is_number(std::size_t column) const;
 
     std::vector<Column> columns_;
     std::vector<std::vector<Cell>> rows_;

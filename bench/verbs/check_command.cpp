@@ -8,7 +8,6 @@
 #include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
-#include "core/base/hash.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -18,37 +17,18 @@ namespace tetrace {
 
 namespace {
 
+RowFacts check_facts(const RowRun& row)
+{
+    RowFacts facts(row);
+    facts.conformity = conformity_text(row);
+    return facts;
+}
+
 Table check_table(const std::vector<RowRun>& rows)
 {
-    Table table({{"name", "row"},
-                 {"rays", "rays"},
-                 {"agreed", "agreed"},
-                 {"ties", "ties"},
-                 {"largest_tie_distance", "largest", {}, 12},
-                 {"settled", "settled"},
-                 {"offset", "offset"},
-                 {"wrong", "wrong"},
-                 {"lost", "lost"},
-                 {"conformity", "conformity"},
-                 {"different_from_openmp", "differ"},
-                 {"largest_ulps", "ulps"},
-                 {"hit_hash", "hits"},
-                 {"status", "status"},
-                 {"reason", "reason"}});
-    for (const RowRun& row : rows) {
-        const Traced* result = traced(row);
-        const auto count = [&](std::uint64_t Verdicts::*member) {
-            return result ? Cell(result->verdicts.*member) : Cell();
-        };
-        const std::string reason = reason_of(row);
-        table.add({row_name(row.key), count(&Verdicts::rays), count(&Verdicts::agreed), count(&Verdicts::ties),
-                   result && result->verdicts.ties > 0 ? Cell(result->verdicts.largest_tie_distance) : Cell(),
-                   count(&Verdicts::settled), count(&Verdicts::offset), count(&Verdicts::wrong), count(&Verdicts::lost),
-                   conformity_text(row), result && result->compared ? Cell(result->different) : Cell(),
-                   result && result->compared ? Cell(result->largest_ulps) : Cell(),
-                   result ? Cell(hash_text(result->hit_hash)) : Cell(), std::string(name_of(status_of(row))),
-                   reason.empty() ? Cell() : Cell(reason)});
-    }
+    Table table(columns_of(&RowField::check));
+    for (const RowRun& row : rows)
+        table.add(cells_of(&RowField::check, check_facts(row)));
     return table;
 }
 
@@ -67,8 +47,7 @@ struct Checked {
 
 nlohmann::json check_row_json(const RowRun& row)
 {
-    nlohmann::json object = row_json(row);
-    object["conformity"] = conformity_text(row);
+    nlohmann::json object = row_json(check_facts(row));
     add_paths(object, row);
     return object;
 }

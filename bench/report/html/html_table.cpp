@@ -78,6 +78,21 @@ Html HtmlTable::html() const
     return element("div", {{"class", "scroll"}}, table);
 }
 
+HtmlTable html_table(const Table& table)
+{
+    std::vector<HtmlColumn> columns;
+    for (std::size_t c = 0; c < table.columns().size(); ++c)
+        columns.push_back({table.columns()[c].title, table.columns()[c].unit, table.is_number(c)});
+    HtmlTable result(std::move(columns));
+    for (const auto& row : table.rows()) {
+        std::vector<Html> cells;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            cells.push_back(is_empty(row[c]) ? Html() : text(cell_text(row[c], table.columns()[c])));
+        result.add(std::move(cells));
+    }
+    return result;
+}
+
 Html paragraph(std::string_view plain)
 {
     return text_element("p", "", plain);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/report/html/html.h"
+#include "bench/terminal/table.h"
 
 #include <vector>
 
@@ -30,6 +31,9 @@ private:
     std::vector<HtmlColumn> columns_;
     std::vector<std::vector<Html>> rows_;
 };
+
+/// The same table on the page.
+[[nodiscard]] HtmlTable html_table(const Table& table);
 
 /// A part of the page: anchor, heading, content.
 struct Section {

@@ -34,18 +34,21 @@ json search_verification(const Traced& result)
     return object;
 }
 
-/// As of a row of a scene, but for what it says of rays that walk.
+/// What a row of searches shares with a row of a scene; it has no rays that walk.
+constexpr const char* shared_keys[] = {"name",   "method", "layout",       "backend",   "math",  "status",
+                                       "reason", "device", "device_index", "self_test", "bytes", "times"};
+
 json search_row_json(const SearchRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
-    json object = row_json(row);
-    for (const char* key : {"scene", "structure", "rays", "ray_order", "order", "counts", "rates"})
-        object.erase(key);
+    const json all = row_json(RowFacts(row));
+    json object;
+    for (const char* key : shared_keys)
+        if (all.contains(key)) object[key] = all[key];
     object["host_threads"] = row.key.threads == 0 ? run.threads : row.key.threads;
     const Traced* result = traced(row);
     if (result == nullptr) return object;
-    object["face_hash"] = object["hit_hash"];
-    object.erase("hit_hash");
+    object["face_hash"] = all["hit_hash"];
     object["verification"] = search_verification(*result);
     if (const auto seconds = view_seconds(run, i); !seconds.empty()) object["batch_medians_s"] = seconds;
     if (const auto figures = figures_of(row)) object["msearches_per_s"] = figures->mrays_per_s;
