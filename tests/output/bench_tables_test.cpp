@@ -1,9 +1,11 @@
 #include "bench/output/bench_tables.h"
 
+#include "bench/output/row_json.h"
 #include "bench/terminal/text.h"
 #include "tests/support/fake_backend.h"
 
 #include <gtest/gtest.h>
+#include <set>
 #include <sstream>
 
 using namespace tetrace;
@@ -108,4 +110,48 @@ TEST_F(BenchTables, a_row_that_did_not_run_comes_last)
     result_.run.rows[0].backend = nullptr;
     const std::string text = rate_table("bunny", result_).text();
     EXPECT_GT(text.find("not run"), text.find("H200 (gpu)")) << text;
+}
+
+TEST_F(bench_tables, no_two_columns_of_csv_have_one_key)
+{
+    for (const Place place : {&RowField::csv, &RowField::check}) {
+        std::set<std::string> keys;
+        for (const Column& column : columns_of(place))
+            EXPECT_TRUE(keys.insert(column.key).second) << column.key;
+    }
+}
+
+TEST_F(bench_tables, no_two_fields_have_one_place_in_json)
+{
+    std::set<std::pair<std::string, std::string>> places;
+    for (const RowField& field : row_fields())
+        if (field.schema != nullptr) EXPECT_TRUE(places.insert({field.group, field.key}).second) << field.key;
+}
+
+TEST_F(bench_tables, what_the_page_of_report_shows_is_in_json)
+{
+    for (const RowField& field : row_fields())
+        EXPECT_TRUE(field.report.title == nullptr || field.schema != nullptr) << field.key;
+}
+
+TEST_F(bench_tables, a_row_tells_its_schedule_in_csv_and_json)
+{
+    result_.run.rows[0].key.kernel.schedule = Schedule::packets;
+    EXPECT_TRUE(row_json(RowFacts(result_.run.rows[0]))["schedule"] == "packets");
+    const Table table = flat_table(result_);
+    const auto& columns = table.columns();
+    const auto found = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.key == "schedule"; });
+    ASSERT_NE(found, columns.end());
+    const auto place = static_cast<std::size_t>(found - columns.begin());
+    EXPECT_TRUE(table.rows()[0][place] == Cell("packets"));
+    EXPECT_TRUE(table.rows()[1][place] == Cell("tiles"));
+}
+
+TEST_F(bench_tables, a_row_without_an_answer_has_no_empty_group_in_json)
+{
+    result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
+    const nlohmann::json row = row_json(RowFacts(result_.run.rows[0]));
+    for (const char* group : {"counts", "visits", "verification", "times", "rates", "hit_hash"})
+        EXPECT_FALSE(row.contains(group)) << group;
+    EXPECT_EQ(row.at("reason"), "no scene");
 }

@@ -80,6 +80,21 @@ TEST_F(ResultFiles, of_the_repository_is_read_in_every_schema_version)
     EXPECT_GT(files, 0);
 }
 
+TEST_F(ResultFiles, has_the_schedule_of_its_key_or_of_an_older_rows_name)
+{
+    const auto schedule_of = [&](const char* name, const char* key) {
+        nlohmann::json json = small_result();
+        nlohmann::json& row = json["tetrace"]["rows"][0];
+        row["name"] = name;
+        if (key != nullptr) row["schedule"] = key;
+        return read(json.dump()).rows[0].schedule;
+    };
+    EXPECT_EQ(schedule_of("cdt/a/api:openmp", "packets"), "packets");
+    EXPECT_EQ(schedule_of("cdt/a/schedule:persistent/api:opencl", nullptr), "persistent");
+    EXPECT_EQ(schedule_of("cdt/a/schedule:packets", nullptr), "packets");
+    EXPECT_EQ(schedule_of("cdt/a/api:openmp", nullptr), "tiles");
+}
+
 TEST_F(ResultFiles, that_is_not_there_is_missing)
 {
     const std::string error = error_of([&] { static_cast<void>(read_result(folder_ / "none.json")); });
