@@ -98,7 +98,7 @@ struct RowField {
 };
 
 /// Every field of a row, stated once: tables, CSV, Markdown, JSON, its schema and the page of `report` are made of this
-/// list. After a change, `cmake --build --preset release --target result_schema` brings results/result.schema.json up
+/// list. After a change, `cmake --build build/release --target result_schema` brings results/result.schema.json up
 /// to date.
 [[nodiscard]] const std::vector<RowField>& row_fields();
 
