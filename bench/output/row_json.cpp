@@ -37,10 +37,10 @@ nlohmann::json row_json(const RowFacts& facts)
     nlohmann::json object;
     for (const RowField& field : row_fields()) {
         if (field.schema == nullptr || field.group == std::string_view(ratio_group)) continue;
+        const bool is_grouped = *field.group != '\0';
+        if (is_grouped && traced(*facts.row) == nullptr) continue; // all groups tell of an answer
         nlohmann::json value = field.value(facts);
-        if (value.is_null()) continue;
-        nlohmann::json& group = *field.group == '\0' ? object : object[field.group];
-        group[field.key] = std::move(value);
+        if (!value.is_null()) (is_grouped ? object[field.group] : object)[field.key] = std::move(value);
     }
     return object;
 }

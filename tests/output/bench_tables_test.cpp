@@ -112,7 +112,7 @@ TEST_F(BenchTables, a_row_that_did_not_run_comes_last)
     EXPECT_GT(text.find("not run"), text.find("H200 (gpu)")) << text;
 }
 
-TEST_F(bench_tables, no_two_columns_of_csv_have_one_key)
+TEST_F(BenchTables, no_two_columns_of_csv_have_one_key)
 {
     for (const Place place : {&RowField::csv, &RowField::check}) {
         std::set<std::string> keys;
@@ -121,7 +121,7 @@ TEST_F(bench_tables, no_two_columns_of_csv_have_one_key)
     }
 }
 
-TEST_F(bench_tables, no_two_fields_have_one_place_in_json)
+TEST_F(BenchTables, no_two_fields_have_one_place_in_json)
 {
     std::set<std::pair<std::string, std::string>> places;
     for (const RowField& field : row_fields()) {
@@ -130,13 +130,13 @@ TEST_F(bench_tables, no_two_fields_have_one_place_in_json)
     }
 }
 
-TEST_F(bench_tables, what_the_page_of_report_shows_is_in_json)
+TEST_F(BenchTables, what_the_page_of_report_shows_is_in_json)
 {
     for (const RowField& field : row_fields())
         EXPECT_TRUE(field.report.title == nullptr || field.schema != nullptr) << field.key;
 }
 
-TEST_F(bench_tables, a_row_tells_its_schedule_in_csv_and_json)
+TEST_F(BenchTables, a_row_tells_its_schedule_in_csv_and_json)
 {
     result_.run.rows[0].key.kernel.schedule = Schedule::packets;
     EXPECT_TRUE(row_json(RowFacts(result_.run.rows[0]))["schedule"] == "packets");
@@ -149,7 +149,7 @@ TEST_F(bench_tables, a_row_tells_its_schedule_in_csv_and_json)
     EXPECT_TRUE(table.rows()[1][place] == Cell("tiles"));
 }
 
-TEST_F(bench_tables, a_row_without_an_answer_has_no_empty_group_in_json)
+TEST_F(BenchTables, a_row_without_an_answer_has_no_empty_group_in_json)
 {
     result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
     const nlohmann::json row = row_json(RowFacts(result_.run.rows[0]));
