@@ -10,7 +10,7 @@ STRUCT(TraceParams)
     uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
     uint max_steps;
     uint any_hit;  // != 0: whether there is a hit is asked, and the first one found will do
-    uint start_v0; // vertices of start_tet, where tets cannot name theirs (compact_walk.h)
+    uint start_v0; // vertices of start_tet, where tets cannot name theirs (walk_compact.h)
     uint start_v1;
     uint start_v2;
     uint start_v3;

@@ -5,6 +5,7 @@
 // see shear.h; ties, Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9(1), 1990. 46
 // operations a step: 3 for the shear, 13 a vertex (3 + 5 + 5), 2 a sign; a sign at a tie 32 more.
 #define TAKES_RAYS
+#define WALKS_PATHS // its walk follows a path, which begins at a boundary face that holds the ray, or there is none
 
 #include "kernels/methods/signs.h"
 

@@ -2,9 +2,6 @@
 // them, which is never wrong and never undecided (docs/spec/project.md, P2 and P3). For walks that ask tets for their
 // corners (project.h) and for those that carry them.
 
-// Paths begin at a boundary face that holds the ray, or there is none (entry.h).
-#define WALKS_PATHS
-
 // For a build that counts which level decides a sign: 0 float products, 1 what they lost, 2 the order of the vertices;
 // it is never a timed one.
 #ifndef COUNT_SIGN

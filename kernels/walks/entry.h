@@ -1,14 +1,17 @@
 // From outside: where a ray meets the domain's box, and the boundary face that it enters by.
 // Only products are compared, never a quotient: position <= line is |direction| (line - origin) <= |gap| direction_a,
 // whose left side is monotone in the line, so that the squares of one side never contradict each other.
-// What includes this brings EntryFace, the corners of a boundary face, and entry_face(scene, index).
-#define NO_ENTRY 0xFFFFFFFFu
+// After this: entry_links.h or entry_faces.h, the boundary faces that a square lists, then entry_nearest.h or
+// entry_on_path.h, which of them a ray enters by.
+#define NO_ENTRY 0xFFFFFFFFu // instead of a boundary face's number
 
-// For a build that counts how often a path is sought from its beginning: 0 entry_anywhere(), 1 exit_ahead(), 2 a ray
-// that goes on beyond the face that it starts on; it is never a timed one.
-#ifndef COUNT_SEARCH
-#define COUNT_SEARCH(where)
-#endif
+// The corners of a boundary face, in the order of faces.h.
+STRUCT(EntryFace)
+{
+    Vec3 a;
+    Vec3 b;
+    Vec3 c;
+};
 
 // Index of the domain's line `index` along `axis`.
 KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
@@ -120,72 +123,13 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
     return (side * n + j) * n + i;
 }
 
-// How deep the ray is inside the boundary face `index` of the list: the smallest of its three side products, negative
-// outside. They are the method's own, so that no walk begins by a face that its method would not have left by.
-KERNEL_FN real depth_in_face(SceneView scene, uint index, Ray ray)
+// How deep the ray is inside a boundary face: the smallest of its three side products, negative outside. They are the
+// method's own, so that no walk begins by a face that its method would not have left by.
+KERNEL_FN real depth_in(EntryFace face, Ray ray)
 {
-    EntryFace face = entry_face(scene, index);
     real ab = side_at_entry(ray, face.a, face.b);
     real bc = side_at_entry(ray, face.b, face.c);
     real ca = side_at_entry(ray, face.c, face.a);
     real least = ab < bc ? ab : bc;
     return ca < least ? ca : least;
 }
-
-#ifdef WALKS_PATHS
-// The first boundary face that the ray enters by, of the square's, from first to last - 1, then of all: as its number
-// in their list, or NO_ENTRY.
-KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
-{
-    COUNT_SEARCH(0);
-    uint in_square = last - first;
-    uint faces = in_square + FETCH(scene, entry_ranges, 6u * scene.divisions * scene.divisions);
-    uint found = NO_ENTRY;
-    for (uint i = 0u; i < faces && found == NO_ENTRY; i++) {
-        uint index = i < in_square ? first + i : i - in_square;
-        found = depth_in_face(scene, index, ray) < real(0.0f) ? NO_ENTRY : index;
-    }
-    return found;
-}
-
-// The boundary face that the ray enters by, as its number, or NO_ENTRY where it misses the domain. A walk along paths
-// begins by a path's end or not at all. Float products settle nearly all; ties are decided behind the loop, since some
-// devices execute what is behind a condition whether a lane meets it or not.
-KERNEL_FN uint entry_index(SceneView scene, Ray ray)
-{
-    uint square = entry_square(scene, ray);
-    if (square == 6u * scene.divisions * scene.divisions) return NO_ENTRY;
-    uint first = FETCH(scene, entry_ranges, square);
-    uint last = FETCH(scene, entry_ranges, square + 1u);
-    Shear shear = shear_of(ray);
-    uint found = NO_ENTRY;
-    for (uint index = first;; index++) {
-        EntryFace face = entry_face(scene, index);
-        uint held = roughly_held(ray, shear, face.a, face.b, face.c);
-        if (held == HELD) {
-            found = index;
-            break;
-        }
-        if (held == HELD_OR_TIE || index + 1u == last) break;
-    }
-    if (found == NO_ENTRY) return entry_anywhere(scene, ray, first, last);
-    return found;
-}
-#else
-// The boundary face that the ray enters by, as its number, or NO_ENTRY where it misses the domain; the nearest where it
-// is inside none of the square's faces.
-KERNEL_FN uint entry_index(SceneView scene, Ray ray)
-{
-    uint square = entry_square(scene, ray);
-    if (square == 6u * scene.divisions * scene.divisions) return NO_ENTRY;
-    uint last = FETCH(scene, entry_ranges, square + 1u);
-    uint best = FETCH(scene, entry_ranges, square);
-    real depth = depth_in_face(scene, best, ray);
-    for (uint index = best + 1u; index < last && depth < real(0.0f); index++) {
-        real candidate = depth_in_face(scene, index, ray);
-        best = candidate > depth ? index : best;
-        depth = candidate > depth ? candidate : depth;
-    }
-    return best;
-}
-#endif

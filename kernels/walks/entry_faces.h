@@ -1,11 +1,4 @@
-// Boundary faces that rays enter by, with their vertices, into tets that cannot name theirs.
-STRUCT(EntryFace)
-{
-    Vec3 a; // in the order of faces.h
-    Vec3 b;
-    Vec3 c;
-};
-
+// Boundary faces with their vertices, into tets that cannot name theirs; after entry.h.
 KERNEL_FN Vec3 position_of(SceneView scene, uint vertex)
 {
     uint4 quad = FETCH(scene, vertices, vertex);
@@ -21,5 +14,3 @@ KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
     face.c = position_of(scene, quad.z);
     return face;
 }
-
-#include "kernels/walks/entry.h"

@@ -1,11 +1,4 @@
-// Boundary faces that rays enter by, as links into tets that hold their corners.
-STRUCT(EntryFace)
-{
-    Vec3 a; // in the order of faces.h
-    Vec3 b;
-    Vec3 c;
-};
-
+// Boundary faces as links into tets that hold their corners; after entry.h.
 KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
 {
     uint link = FETCH(scene, entry_links, index);
@@ -16,11 +9,8 @@ KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
     return face;
 }
 
-#include "kernels/walks/entry.h"
-
-// The link of the boundary face that a ray enters the domain by, or NO_LINK.
-KERNEL_FN uint entry_link(SceneView scene, Ray ray)
+// The link of a boundary face, or NO_LINK of NO_ENTRY.
+KERNEL_FN uint entry_link(SceneView scene, uint index)
 {
-    uint entry = entry_index(scene, ray);
-    return entry == NO_ENTRY ? NO_LINK : FETCH(scene, entry_links, entry);
+    return index == NO_ENTRY ? NO_LINK : FETCH(scene, entry_links, index);
 }

@@ -1,7 +1,6 @@
 // Where a path begins that does not begin at the domain's boundary: for methods that define WALKS_PATHS, whose signs
 // make the faces that a ray crosses one path from boundary to boundary (docs/spec/project.md, P5). Such a method brings
 // is_ahead(scene, tet, face, ray).
-#ifdef WALKS_PATHS
 
 // Instead of the triangle that a ray starts on: its walk began at the domain's boundary and is never begun anew.
 #define FROM_OUTSIDE 0xFFFFFFFEu
@@ -17,8 +16,7 @@
 KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint lost)
 {
     COUNT_SEARCH(1);
-    uint entry = entry_anywhere(scene, ray, 0u, 0u);
-    uint link = entry == NO_ENTRY ? NO_LINK : FETCH(scene, entry_links, entry);
+    uint link = entry_link(scene, entry_anywhere(scene, ray, 0u, 0u));
     uint exit = NO_LINK;
     bool ahead = false;
     bool to_end = start != FREE_FACE || lost != NO_LINK;
@@ -58,4 +56,3 @@ KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint link)
     if (beyond != NO_LINK) exit.face = exit_face(scene, exit.tet, beyond & 3u, ray);
     return exit;
 }
-#endif

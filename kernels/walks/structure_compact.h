@@ -6,8 +6,14 @@
 
 #include "kernels/methods/signs.h"
 
+#include "kernels/walks/entry.h"
+
 #include "kernels/walks/entry_faces.h"
+
+#include "kernels/walks/entry_on_path.h"
 
 #include "kernels/walks/triangle_hit.h"
 
-#include "kernels/walks/compact_walk.h"
+#include "kernels/walks/carried.h"
+
+#include "kernels/walks/walk_compact.h"

@@ -72,8 +72,9 @@ std::set<uint> brute_force(Float3 origin, Float3 direction)
 uint look_up(Float3 origin, Float3 direction)
 {
     const Vec3 d = to_vec3(direction);
-    return entry_link(view_of(box().packed),
-                      make_ray(to_vec3(origin), VEC3(without_dust(d.x), without_dust(d.y), without_dust(d.z))));
+    const Ray ray = make_ray(to_vec3(origin), VEC3(without_dust(d.x), without_dust(d.y), without_dust(d.z)));
+    const SceneView view = view_of(box().packed);
+    return entry_link(view, entry_index(view, ray));
 }
 
 void expect_brute_force(Float3 origin, Float3 direction)

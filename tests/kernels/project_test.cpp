@@ -30,7 +30,7 @@ using tetrace::test::traced;
 
 std::array<std::uint64_t, 3> decided{}; // signs by level: float products, what they lost, the order of the vertices
 #define COUNT_SIGN(level) (++decided[level])
-std::array<std::uint64_t, 3> sought{}; // see COUNT_SEARCH in kernels/walks/entry.h
+std::array<std::uint64_t, 3> sought{}; // see COUNT_SEARCH in kernels/walks/entry_on_path.h
 #define COUNT_SEARCH(where) (++sought[where])
 
 #define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"

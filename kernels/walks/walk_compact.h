@@ -1,17 +1,8 @@
 // The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; docs/spec/layouts.md, L8). The
-// three vertices of the face that the ray is at are carried as the ray sees them: the tet's fourth is what is left of
-// the xor, a step projects that one alone, and its two signs say which of the three it replaces. Decisions, and so the
-// bits of the hits, are those of walk.h. A layout brings CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank,
-// known_rank, known): what is behind the face opposite the vertex of that rank among the four, where `known` is behind
-// that of known_rank.
-
-// rank: in the order that decides ties; carried, since some devices would look it up in every step, tie or not.
-STRUCT(Carried)
-{
-    Sheared seen;
-    uint rank;
-    uint vertex;
-};
+// vertices of the face that the ray is at are carried, with their numbers: those and the xor give the tet's fourth.
+// Decisions, and so the bits of the hits, are those of walk_along_paths.h.
+// A layout brings CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank, known_rank, known): what is behind the face
+// opposite the vertex of that rank among the four, where `known` is behind that of known_rank.
 
 // The face that the ray is at, by which it leaves a tet. Seen by the tet behind, its edges from p0 to p1, p1 to p2, p2
 // to p0 have the ray on their positive side.
@@ -20,30 +11,13 @@ STRUCT(Gate)
     Carried p0;
     Carried p1;
     Carried p2;
-    uint tet;    // that is left; NO_TET where the ray enters the domain
+    uint v0; // their numbers
+    uint v1;
+    uint v2;
+    uint tet;    // the tet that is left; NO_TET where the ray enters the domain
     uint behind; // what the tet names behind the face: a tet, or an end of the walk (layout.h)
     uint before; // what the one behind names here
 };
-
-KERNEL_FN Carried carried(SceneView scene, Ray ray, Shear shear, uint vertex)
-{
-    uint4 quad = FETCH(scene, vertices, vertex);
-    Carried result;
-    result.seen = sheared(shear, sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), ray.origin));
-    result.rank = quad.w;
-    result.vertex = vertex;
-    return result;
-}
-
-// is_left() of signs.h, where ranks tell the order.
-KERNEL_FN bool carried_is_left(Carried p, Carried q)
-{
-    PRECISE real plus = p.seen.x * q.seen.y;
-    PRECISE real minus = p.seen.y * q.seen.x;
-    if (plus == minus) return SIDE_AT_TIE(p.seen, q.seen, p.rank < q.rank, plus);
-    COUNT_SIGN(0);
-    return plus > minus;
-}
 
 // How many of four vertices come before one of them.
 KERNEL_FN uint rank_among(uint vertex, uint a, uint b, uint c, uint d)
@@ -51,50 +25,30 @@ KERNEL_FN uint rank_among(uint vertex, uint a, uint b, uint c, uint d)
     return (a < vertex ? 1u : 0u) + (b < vertex ? 1u : 0u) + (c < vertex ? 1u : 0u) + (d < vertex ? 1u : 0u);
 }
 
-// Which of a gate's vertices is replaced by the apex of the tet behind it. The two tests of maria: of the edges that
-// end in the apex, that from p2, then that from p0 or p1.
-KERNEL_FN uint replaced_by(Gate gate, Carried apex)
+KERNEL_FN uint apex_behind(Gate gate, CompactTet tet)
 {
-    bool left = carried_is_left(gate.p2, apex);
-    bool left_of_other = carried_is_left(left ? gate.p1 : gate.p0, apex);
-    return left_of_other ? (left ? 2u : 1u) : (left ? 0u : 2u);
+    return tet.vertices ^ gate.v0 ^ gate.v1 ^ gate.v2;
 }
 
-// The same where float products decide; UNDECIDED at a tie.
-#define UNDECIDED 3u
-KERNEL_FN uint roughly_replaced_by(Gate gate, Sheared apex)
+KERNEL_FN Carried carried_vertex(SceneView scene, Ray ray, Shear shear, uint vertex)
 {
-    PRECISE real plus = gate.p2.seen.x * apex.y;
-    PRECISE real minus = gate.p2.seen.y * apex.x;
-    if (plus == minus) return UNDECIDED;
-    bool left = plus > minus;
-    real other_x = left ? gate.p1.seen.x : gate.p0.seen.x;
-    real other_y = left ? gate.p1.seen.y : gate.p0.seen.y;
-    PRECISE real other_plus = other_x * apex.y;
-    PRECISE real other_minus = other_y * apex.x;
-    if (other_plus == other_minus) return UNDECIDED;
-    return other_plus > other_minus ? (left ? 2u : 1u) : (left ? 0u : 2u);
+    return carried(ray, shear, FETCH(scene, vertices, vertex));
 }
 
-KERNEL_FN Carried apex_behind(SceneView scene, Ray ray, Shear shear, Gate gate, CompactTet tet)
+// The face by which the ray leaves the tet behind a gate. vertex: the apex's number.
+KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, uint vertex, Carried apex, uint replaced)
 {
-    return carried(scene, ray, shear, tet.vertices ^ gate.p0.vertex ^ gate.p1.vertex ^ gate.p2.vertex);
-}
-
-// The face by which the ray leaves the tet behind a gate.
-KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, Carried apex, uint replaced)
-{
-    uint v0 = gate.p0.vertex;
-    uint v1 = gate.p1.vertex;
-    uint v2 = gate.p2.vertex;
-    uint gone = replaced == 0u ? v0 : replaced == 1u ? v1 : v2;
-    uint rank = rank_among(gone, v0, v1, v2, apex.vertex);
+    uint gone = replaced == 0u ? gate.v0 : replaced == 1u ? gate.v1 : gate.v2;
+    uint rank = rank_among(gone, gate.v0, gate.v1, gate.v2, vertex);
     Gate next;
     next.p0 = replaced == 0u ? apex : gate.p0;
     next.p1 = replaced == 1u ? apex : gate.p1;
     next.p2 = replaced == 2u ? apex : gate.p2;
+    next.v0 = replaced == 0u ? vertex : gate.v0;
+    next.v1 = replaced == 1u ? vertex : gate.v1;
+    next.v2 = replaced == 2u ? vertex : gate.v2;
     next.tet = gate.behind;
-    next.behind = NEIGHBOUR(scene, tet, rank, rank_among(apex.vertex, v0, v1, v2, apex.vertex), gate.before);
+    next.behind = NEIGHBOUR(scene, tet, rank, rank_among(vertex, gate.v0, gate.v1, gate.v2, vertex), gate.before);
     next.before = gate.behind;
     return next;
 }
@@ -103,21 +57,33 @@ KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, Carried a
 KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
 {
     CompactTet tet = compact_tet(scene, gate.behind);
-    Carried apex = apex_behind(scene, ray, shear, gate, tet);
-    return gate_beyond(scene, gate, tet, apex, replaced_by(gate, apex));
+    uint vertex = apex_behind(gate, tet);
+    Carried apex = carried_vertex(scene, ray, shear, vertex);
+    return gate_beyond(scene, gate, tet, vertex, apex, replaced_by(gate.p0, gate.p1, gate.p2, apex));
+}
+
+// The face with these vertices.
+KERNEL_FN Gate gate_of(SceneView scene, Ray ray, Shear shear, uint v0, uint v1, uint v2)
+{
+    Gate gate;
+    gate.p0 = carried_vertex(scene, ray, shear, v0);
+    gate.p1 = carried_vertex(scene, ray, shear, v1);
+    gate.p2 = carried_vertex(scene, ray, shear, v2);
+    gate.v0 = v0;
+    gate.v1 = v1;
+    gate.v2 = v2;
+    gate.tet = NO_TET;
+    gate.behind = NO_LINK;
+    gate.before = NO_LINK;
+    return gate;
 }
 
 // The boundary face of that number, from outside.
 KERNEL_FN Gate entry_gate(SceneView scene, Ray ray, Shear shear, uint entry)
 {
     uint4 quad = FETCH(scene, entry_faces, entry);
-    Gate gate;
-    gate.p0 = carried(scene, ray, shear, quad.x);
-    gate.p1 = carried(scene, ray, shear, quad.y);
-    gate.p2 = carried(scene, ray, shear, quad.z);
-    gate.tet = NO_TET;
+    Gate gate = gate_of(scene, ray, shear, quad.x, quad.y, quad.z);
     gate.behind = quad.w;
-    gate.before = NO_LINK;
     return gate;
 }
 
@@ -133,10 +99,10 @@ KERNEL_FN Gate start_gate(SceneView scene, TraceParams params, Ray ray, Shear sh
 {
     uint rank =
         rank_among(start_vertex(params, face), params.start_v0, params.start_v1, params.start_v2, params.start_v3);
-    Gate gate; // turned round: the corners of a face are listed for the tet itself
-    gate.p0 = carried(scene, ray, shear, start_vertex(params, corner(face, 0u)));
-    gate.p1 = carried(scene, ray, shear, start_vertex(params, corner(face, 2u)));
-    gate.p2 = carried(scene, ray, shear, start_vertex(params, corner(face, 1u)));
+    uint v0 = start_vertex(params, corner(face, 0u));
+    uint v1 = start_vertex(params, corner(face, 1u));
+    uint v2 = start_vertex(params, corner(face, 2u));
+    Gate gate = gate_of(scene, ray, shear, v0, v2, v1); // turned round: corners are listed for the tet itself
     gate.tet = params.start_tet;
     gate.behind = NEIGHBOUR(scene, compact_tet(scene, params.start_tet), rank, 3u, params.start_neighbour);
     gate.before = params.start_tet;
@@ -157,8 +123,7 @@ KERNEL_FN Gate opened(SceneView scene, Gate gate)
 
 KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 {
-    return is_face_ahead(ray, position_of(scene, gate.p0.vertex), position_of(scene, gate.p1.vertex),
-                         position_of(scene, gate.p2.vertex));
+    return is_face_ahead(ray, position_of(scene, gate.v0), position_of(scene, gate.v1), position_of(scene, gate.v2));
 }
 
 // The first face of the ray's path that it crosses in front of its origin, as path.h finds it; tet is NO_TET where the
@@ -181,9 +146,9 @@ KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear sh
     return found;
 }
 
-// From a face that the ray leaves a tet by to the ray's hit. first_steps: tets that it has left by then. has_exit: of a
-// ray that starts in a tet: whether any face of that holds it. Loops ask at their end, and ties are decided behind the
-// inner one, as in carried_walk.h; where a walk begins by gate_ahead(): as in walk.h.
+// From a face by which the ray leaves a tet to the ray's hit. first_steps: tets that it has left by then. has_exit: for
+// a ray that starts in a tet, whether any face of that tet holds it. Loops ask at their end, and ties are decided after
+// the inner one, as in walk_by_records.h; where a walk begins by gate_ahead(): as in walk_along_paths.h.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps,
                    bool has_exit)
 {
@@ -195,10 +160,11 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
             for (;;) {
                 for (;;) {
                     CompactTet tet = compact_tet(scene, gate.behind);
-                    Carried apex = apex_behind(scene, ray, shear, gate, tet);
-                    uint replaced = roughly_replaced_by(gate, apex.seen);
+                    uint vertex = apex_behind(gate, tet);
+                    Carried apex = carried_vertex(scene, ray, shear, vertex);
+                    uint replaced = roughly_replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, apex.seen);
                     if (replaced == UNDECIDED) break;
-                    gate = gate_beyond(scene, gate, tet, apex, replaced);
+                    gate = gate_beyond(scene, gate, tet, vertex, apex, replaced);
                     steps++;
                     if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
                 }

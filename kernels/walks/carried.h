@@ -1,0 +1,51 @@
+// The vertices that a walk along a path carries, as the ray sees them: those of the face that it is at. A step projects
+// one new vertex, the apex of the tet behind the face, and two signs say which of the three vertices it replaces.
+STRUCT(Carried)
+{
+    Sheared seen;
+    uint rank; // in the order that decides ties; carried, since some devices would look it up in every step, tie or not
+    real along; // its depth, as ends_before() of links.h has it; not used for rays without an end
+};
+
+// vertex: its coordinates and its rank.
+KERNEL_FN Carried carried(Ray ray, Shear shear, uint4 vertex)
+{
+    Vec3 offset = sub3(VEC3(as_real(vertex.x), as_real(vertex.y), as_real(vertex.z)), ray.origin);
+    Carried result;
+    result.seen = sheared(shear, offset);
+    result.rank = vertex.w;
+    result.along = dot3(offset, ray.direction);
+    return result;
+}
+
+// is_left() of signs.h, where ranks tell the order.
+KERNEL_FN bool carried_is_left(Carried p, Carried q)
+{
+    PRECISE real plus = p.seen.x * q.seen.y;
+    PRECISE real minus = p.seen.y * q.seen.x;
+    if (plus == minus) return SIDE_AT_TIE(p.seen, q.seen, p.rank < q.rank, plus);
+    COUNT_SIGN(0);
+    return plus > minus;
+}
+
+// Which of the face's vertices the apex replaces: the ray leaves by the face that has it in that vertex's place. The
+// two tests of maria: of the edges that end in the apex, that from p2, then that from p0 or p1.
+KERNEL_FN uint replaced_by(Carried p0, Carried p1, Carried p2, Carried apex)
+{
+    bool left = carried_is_left(p2, apex);
+    bool other_left = carried_is_left(left ? p1 : p0, apex);
+    return other_left ? (left ? 2u : 1u) : (left ? 0u : 2u);
+}
+
+// The same by float products alone; UNDECIDED at a tie.
+#define UNDECIDED 3u
+KERNEL_FN uint roughly_replaced_by(Sheared p0, Sheared p1, Sheared p2, Sheared apex)
+{
+    PRECISE real plus = p2.x * apex.y;
+    PRECISE real minus = p2.y * apex.x;
+    bool left = plus > minus;
+    PRECISE real other_plus = (left ? p1.x : p0.x) * apex.y;
+    PRECISE real other_minus = (left ? p1.y : p0.y) * apex.x;
+    uint replaced = other_plus > other_minus ? (left ? 2u : 1u) : (left ? 0u : 2u);
+    return plus == minus || other_plus == other_minus ? UNDECIDED : replaced;
+}

@@ -1,0 +1,52 @@
+// The walk from tet to tet along a ray's path, for methods that define WALKS_PATHS: one always finds a face to go on
+// by. It brings rough_exit_face(), which returns TIE_AT | entry at a tie: exit_face() then decides after the loop. The
+// rare tie then costs nothing where there is none, nor on devices that execute what is behind a condition whether a
+// lane meets it or not.
+
+// From a tet and the face by which the ray leaves it to the ray's hit. end: ray parameter that a hit has at most;
+// NO_END of a ray without one. start: the triangle that a ray from inside starts on, or FREE_FACE; FROM_OUTSIDE of
+// others. A ray from inside begins by exit_ahead() where first_face is NO_EXIT, and where it is lost in circles.
+// Only the loops' own variables live on after them; everything else is loaded again (some compilers lose the rest).
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, uint start, real end)
+{
+    bool is_endless = end >= real(NO_END);
+    bool has_exit = start == FROM_OUTSIDE || first_face != NO_EXIT;
+    uint own = has_exit ? (first_tet << 2u) | first_face : NO_LINK;
+    bool may_begin_anew = start != FROM_OUTSIDE;
+    uint tet = first_tet;
+    uint face = has_exit ? first_face : 0u;
+    uint link = has_exit ? link_beyond(scene, tet, face) : NO_LINK;
+    uint triangle = face_triangle(scene, tet, face & 3u);
+    uint steps = 1u;
+    for (;;) {
+        for (;;) {
+            while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
+                   (is_endless || !ends_before(scene, link, ray, end))) {
+                tet = link >> 2u;
+                face = rough_exit_face(scene, tet, link & 3u, ray);
+                link = link_beyond(scene, tet, face);
+                triangle = face_triangle(scene, tet, face & 3u);
+                steps++;
+            }
+            if (face < TIE_AT) break;
+            face = exit_face(scene, tet, face & 3u, ray);
+            link = face_link(scene, tet, face);
+            triangle = face_triangle(scene, tet, face);
+        }
+        bool is_lost = steps >= params.max_steps && link != NO_LINK && triangle == FREE_FACE;
+        if (!may_begin_anew || (own != NO_LINK && !is_lost)) break;
+        uint exit = exit_ahead(scene, params, ray, start, own);
+        if (exit == own && own != NO_LINK) break;
+        tet = exit >> 2u;
+        if (exit == NO_LINK) break;
+        face = exit & 3u;
+        link = face_link(scene, tet, face);
+        triangle = face_triangle(scene, tet, face);
+        steps = 1u;
+        may_begin_anew = false;
+    }
+    if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
+    return hit_at_end(scene, params, ray, tet, face, steps, end);
+}
+
+#define FACE_AT_ENTRY(scene, tet, entry, ray) rough_exit_face(scene, tet, entry, ray)

@@ -1,0 +1,52 @@
+// The walk from tet to tet by the links of faces. A method's exit_face() and start_face() return a face of the tet, or
+// NO_EXIT: the walk is then lost.
+
+// From a tet and the face by which the ray leaves it to the ray's hit. end: ray parameter that a hit has at most;
+// NO_END of a ray without one.
+// Only the loop's own variables live on after it; everything else is loaded again (some compilers lose the rest).
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, real end)
+{
+    bool is_endless = end >= real(NO_END);
+    uint tet = first_tet;
+    uint face = first_face;
+    uint link = link_beyond(scene, tet, face);
+    uint triangle = face_triangle(scene, tet, face & 3u);
+    uint steps = 1u;
+    while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
+           (is_endless || !ends_before(scene, link, ray, end))) {
+        tet = link >> 2u;
+        face = exit_face(scene, tet, link & 3u, ray);
+        link = link_beyond(scene, tet, face);
+        triangle = face_triangle(scene, tet, face & 3u);
+        steps++;
+    }
+    if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
+    return hit_at_end(scene, params, ray, tet, face, steps, end);
+}
+
+KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
+{
+    uint tet = params.start_tet;
+    uint face = 0u;
+    if (tet == NO_TET) {
+        uint entry = entry_link(scene, entry_index(scene, ray));
+        if (entry == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+        tet = entry >> 2u;
+        face = exit_face(scene, tet, entry & 3u, ray);
+    } else {
+        face = start_face(scene, tet, ray);
+    }
+    return walk(scene, params, ray, tet, face, real(NO_END));
+}
+
+// A given ray starts on the face that its link names, on the side of that tet. A method never leaves by the face that
+// it entered by, so the surface that a ray starts on is not hit again.
+KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
+{
+    Ray ray = given_ray(direction, origin);
+    uint link = direction.w;
+    if (link == NO_LINK) link = entry_link(scene, entry_index(scene, ray));
+    if (link == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint face = exit_face(scene, link >> 2u, link & 3u, ray);
+    return walk(scene, params, ray, link >> 2u, face, as_real(origin.w));
+}
