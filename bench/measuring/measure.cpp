@@ -16,8 +16,6 @@ namespace tetrace {
 
 namespace {
 
-constexpr unsigned fewest_samples = 5; // with fewer, intervals of ratios are too narrow (results/README.md)
-
 bool is_timed(const RowRun& row)
 {
     const Status status = status_of(row);
@@ -33,6 +31,7 @@ void set_counters(benchmark::State& state, const RowRun& row)
 
 /// Counts the repetitions of all rows, for the progress line.
 struct Sweep {
+    const Budget* budget; ///< whose clock is read
     double done = 0, all = 1;
 };
 
@@ -42,7 +41,8 @@ struct Pass {
 };
 
 /// hits: where to read each view's back to, if at all.
-Pass trace_views(RowRun& row, std::vector<Hit>* hits, const std::function<void(double)>& tell_progress)
+Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
+                 const std::function<void(double)>& tell_progress)
 {
     const std::size_t views = row.scene->views().size();
     Pass pass;
@@ -52,10 +52,10 @@ Pass trace_views(RowRun& row, std::vector<Hit>* hits, const std::function<void(d
         const std::size_t rays = ray_count(row, view);
         if (rays == 0) continue; // rays that are given, and none is
         const TraceJob job = prepare_view(row, view);
-        const Stopwatch watch;
+        const double start_s = budget.now();
         row.session->launch(job);
         pass.kernel_s += row.session->wait();
-        pass.wall_s += watch.seconds();
+        pass.wall_s += budget.now() - start_s;
         if (hits == nullptr) continue;
         hits->resize(rays);
         row.session->read_back(*hits);
@@ -67,31 +67,38 @@ Pass trace_views(RowRun& row, std::vector<Hit>* hits, const std::function<void(d
 /// What a row's first passes pay once, its verification has paid: compiling at the first launch, finding the size of
 /// launches, touching memory. One more pass just before the samples wakes the device up, tells what a sample costs, and
 /// times the download.
-double warm_up(RowRun& row)
+void warm_up(RowRun& row, Budget& budget)
 {
-    double wall_s = 0;
     guarded(row, [&] {
         std::vector<Hit> hits;
-        const Pass pass = trace_views(row, &hits, [](double done) { progress_line().show("warming up", done); });
+        const Pass pass = trace_views(row, budget, &hits, [&](double done) {
+            progress_line().show("warming up " + row.key.scene, done, -1, row_label(row.key));
+        });
         std::get<Traced>(row.outcome).download_s = pass.download_s;
-        wall_s = pass.wall_s;
+        row.warm_s = pass.wall_s;
+        budget.traced(row, row.scene->views().size(), pass.wall_s);
     });
-    return wall_s;
 }
 
 /// Seconds of one sample of every row.
-double warm_up_rows(std::vector<RowRun>& rows)
+double warm_up_rows(std::vector<RowRun>& rows, Budget& budget)
 {
+    for (RowRun& row : rows) {
+        budget.review_timed();
+        if (is_timed(row)) warm_up(row, budget);
+    }
+    budget.review_timed();
     double sweep_s = 0;
-    for (RowRun& row : rows)
-        if (is_timed(row)) sweep_s += warm_up(row);
+    for (const RowRun& row : rows)
+        if (is_timed(row)) sweep_s += row.warm_s;
     return sweep_s;
 }
 
 double take_sample(RowRun& row, const Sweep& sweep)
 {
-    const Pass pass = trace_views(row, nullptr, [&](double done) {
-        progress_line().show("measuring, rows interleaved", (sweep.done + done) / sweep.all);
+    const Pass pass = trace_views(row, *sweep.budget, nullptr, [&](double done) {
+        progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
+                             row.key.scene + ", " + row_label(row.key));
     });
     row.wall_samples_s.push_back(pass.wall_s);
     return pass.kernel_s;
@@ -192,23 +199,23 @@ void check_rows_after(std::vector<RowRun>& rows)
 
 } // namespace
 
-unsigned affordable_samples(unsigned asked, double sweep_s, double budget_s)
+unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 {
-    if (sweep_s * asked <= budget_s) return asked;
-    const auto fitting = static_cast<unsigned>(budget_s / sweep_s);
+    if (sweep_s * asked <= left_s) return asked;
+    const auto fitting = static_cast<unsigned>(std::max(0.0, left_s / sweep_s));
     return std::clamp(fitting, std::min(asked, fewest_samples), asked);
 }
 
-Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags)
+Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget)
 {
     Measurement result;
-    const double sweep_s = warm_up_rows(rows);
-    result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, options.budget_s));
+    const double sweep_s = warm_up_rows(rows, budget);
+    result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
     result.lowered = !flags.repetitions && result.samples < options.samples;
     const auto timed = std::count_if(rows.begin(), rows.end(), is_timed);
     if (timed == 0) return result;
     const Stopwatch watch;
-    Sweep sweep{0, static_cast<double>(timed) * result.samples};
+    Sweep sweep{&budget, 0, static_cast<double>(timed) * result.samples};
     register_rows(rows, result.samples, sweep);
     std::ostringstream json;
     const auto display = make_display(flags, json);

@@ -17,19 +17,41 @@ std::vector<RowKey> rows_of(const std::string& label, const std::vector<RowKey>&
     return rows;
 }
 
-std::vector<RowRun> verified_rows(const std::vector<RowKey>& keys, SceneWork& scene, const Options& options,
-                                  const ImageSeen& image_seen)
+/// Whether an error ends the rows of a scene, and not the run.
+bool ends_rows(const Error& error)
 {
-    std::vector<RowRun> rows;
-    for (const RowKey& key : keys) {
-        progress_line().show(fmt::format("opening {}, {}", scene.label(), kernel_title(key)), -1);
-        rows.push_back(open_row(key, scene, options));
+    return error.kind() != ErrorKind::usage && error.kind() != ErrorKind::interrupted;
+}
+
+void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRequest& request, const Options& options)
+{
+    try {
+        auto scene = std::make_unique<SceneWork>(load_work(request, options));
+        for (const RowKey& key : keys) {
+            progress_line().show("opening " + scene->label(), -1, -1, row_label(key));
+            result.rows.push_back(open_row(key, *scene, options));
+        }
+        result.scenes.push_back(std::move(scene));
+    } catch (const Error& error) {
+        if (!ends_rows(error)) throw;
+        for (const RowKey& key : keys)
+            result.rows.push_back(failed_row(key, error));
     }
+}
+
+void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& options, const ImageSeen& image_seen,
+                  Budget& budget)
+{
     std::vector<RowRun*> pointers;
     for (RowRun& row : rows)
-        pointers.push_back(&row);
-    verify_rows(pointers, scene, options, image_seen);
-    return rows;
+        if (row.scene == &scene) pointers.push_back(&row);
+    try {
+        verify_rows(pointers, scene, options, image_seen, budget);
+    } catch (const Error& error) {
+        if (!ends_rows(error)) throw;
+        for (RowRun* row : pointers)
+            *row = failed_row(row->key, error);
+    }
 }
 
 /// Two files of one stem would give two rows of one name.
@@ -62,23 +84,18 @@ std::vector<RowKey> selected_rows(const Options& options, const std::function<bo
     return rows;
 }
 
-SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options, const ImageSeen& image_seen)
+SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options, const ImageSeen& image_seen,
+                          Budget& budget)
 {
     SceneRows result;
+    result.rows.reserve(keys.size()); // rows keep their addresses
     for (const SceneRequest& request : scene_requests(options)) {
         const auto scene_keys = rows_of(scene_label(request.name), keys);
-        if (scene_keys.empty()) continue;
-        try {
-            auto scene = std::make_unique<SceneWork>(load_work(request, options));
-            for (RowRun& row : verified_rows(scene_keys, *scene, options, image_seen))
-                result.rows.push_back(std::move(row));
-            result.scenes.push_back(std::move(scene));
-        } catch (const Error& error) {
-            if (error.kind() == ErrorKind::usage || error.kind() == ErrorKind::interrupted) throw;
-            for (const RowKey& key : scene_keys)
-                result.rows.push_back(failed_row(key, error));
-        }
+        if (!scene_keys.empty()) open_rows(result, scene_keys, request, options);
     }
+    budget.plan(result.rows, options.samples);
+    for (const auto& scene : result.scenes)
+        verify_scene(result.rows, *scene, options, image_seen, budget);
     return result;
 }
 

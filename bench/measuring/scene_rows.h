@@ -19,10 +19,11 @@ struct SceneRows {
 [[nodiscard]] std::vector<RowKey> selected_rows(const Options& options,
                                                 const std::function<bool(const std::string&)>& keeps);
 
-/// Loads each scene, opens its rows and verifies them (see verify.h). A scene that cannot be loaded ends its rows with
-/// the reason; a name that means no scene throws Error{usage}.
+/// Loads all scenes, opens their rows, skips those that do not fit the budget, and verifies the others (see verify.h).
+/// A scene that cannot be loaded ends its rows with the reason; a name that means no scene throws Error{usage}, and so
+/// does Budget::plan().
 [[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
-                                        const ImageSeen& image_seen = {});
+                                        const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 
 /// What the verification of all rows came to.
 [[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);

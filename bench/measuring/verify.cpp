@@ -16,12 +16,6 @@ namespace tetrace {
 
 namespace {
 
-bool needs_reference(const RowKey& key)
-{
-    const bool is_reference = key.backend == reference_backend && key.kernel.schedule == Schedule::tiles;
-    return is_portable(key.kernel) && key.kernel.math == MathMode::exact && !is_reference;
-}
-
 void poison(std::vector<Hit>& hits)
 {
     std::fill(hits.begin(), hits.end(), Hit{POISON, POISON, 0, 0, 0, 0});
@@ -34,7 +28,7 @@ public:
 
     const std::vector<Hit>& hits(const RowKey& key, std::size_t view)
     {
-        Reference& reference = find(key);
+        Reference& reference = find(*reference_of(key));
         if (reference.view == view) return reference.hits;
         RowRun& row = reference.row;
         if (row.session == nullptr)
@@ -53,11 +47,8 @@ private:
         std::vector<Hit> hits;
     };
 
-    Reference& find(RowKey key)
+    Reference& find(const RowKey& key)
     {
-        key.backend = reference_backend;
-        key.device = 0;
-        key.kernel.schedule = Schedule::tiles;
         for (const auto& reference : references_)
             if (reference->row.key == key) return *reference;
         references_.push_back(
@@ -72,12 +63,23 @@ private:
 
 } // namespace
 
+std::optional<RowKey> reference_of(const RowKey& key)
+{
+    const bool is_reference = key.backend == reference_backend && key.kernel.schedule == Schedule::tiles;
+    if (is_reference || !is_portable(key.kernel) || key.kernel.math != MathMode::exact) return std::nullopt;
+    RowKey reference = key;
+    reference.backend = reference_backend;
+    reference.device = 0;
+    reference.kernel.schedule = Schedule::tiles;
+    return reference;
+}
+
 /// The same steps for each row and view.
 class Verifier::Parts {
 public:
-    Parts(SceneWork& scene, const Options& options)
-        : scene_(&scene), threads_(resolved_threads(options)), oracle_(scene.loaded().scene.mesh, threads_),
-          references_(scene, options)
+    Parts(SceneWork& scene, const Options& options, const Budget& budget)
+        : scene_(&scene), budget_(&budget), threads_(resolved_threads(options)),
+          oracle_(scene.loaded().scene.mesh, threads_), references_(scene, options)
     {
     }
 
@@ -92,7 +94,7 @@ public:
         image.totals = checked_totals(row, view);
         image.visits = count_visits(row, view, hits, threads_);
         image.hit_hash = hash_of(hits);
-        if (needs_reference(row.key)) compare(row, image, view);
+        if (reference_of(row.key)) compare(row, image, view);
         image.verdicts = judge(row.key, view, image.hit_hash);
         return image;
     }
@@ -110,10 +112,10 @@ private:
     {
         poison(hits);
         const TraceJob job = prepare_view(row, view);
-        const Stopwatch watch;
+        const double start_s = budget_->now();
         row.session->launch(job);
         image.kernel_s = row.session->wait();
-        image.wall_s = watch.seconds();
+        image.wall_s = budget_->now() - start_s;
         const Stopwatch download;
         row.session->read_back(hits);
         image.download_s = download.seconds();
@@ -178,6 +180,7 @@ private:
     }
 
     SceneWork* scene_;
+    const Budget* budget_;
     unsigned threads_;
     Oracle oracle_;
     std::optional<GivenOracle> given_oracle_;
@@ -190,7 +193,10 @@ public:
     std::span<const Hit> reference;
 };
 
-Verifier::Verifier(SceneWork& scene, const Options& options) : parts_(std::make_unique<Parts>(scene, options)) {}
+Verifier::Verifier(SceneWork& scene, const Options& options, const Budget& budget)
+    : parts_(std::make_unique<Parts>(scene, options, budget))
+{
+}
 
 Verifier::~Verifier() = default;
 
@@ -216,7 +222,8 @@ std::span<const Hit> Verifier::reference() const
 
 namespace {
 
-void verify_view(Verifier& verifier, RowRun& row, std::size_t view)
+/// Returns the seconds of the tracing.
+double verify_view(Verifier& verifier, RowRun& row, std::size_t view)
 {
     const ImageVerdict image = verifier.verify(row, view);
     Traced& result = std::get<Traced>(row.outcome);
@@ -224,6 +231,7 @@ void verify_view(Verifier& verifier, RowRun& row, std::size_t view)
     if (image.totals.rays > 0) result.last_view_hash = image.hit_hash;
     if (view == 0) result.first_view_hash = image.hit_hash;
     result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
+    return image.wall_s;
 }
 
 /// A device that answers differently under repetition is caught here, after everything else that it was given.
@@ -248,24 +256,38 @@ Allowance allowance_of(const RowRun& row)
 }
 
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
-                 const ImageSeen& image_seen)
+                 const ImageSeen& image_seen, Budget& budget)
 {
     // Views outside, rows inside: the oracle traces each view once for all rows.
-    Verifier verifier(scene, options);
-    const double images = static_cast<double>(scene.views().size() * rows.size());
+    Verifier verifier(scene, options, budget);
+    const std::string stage = "verifying " + scene.label();
+    const std::size_t views = scene.views().size();
     double done = 0;
-    for (std::size_t view = 0; view < scene.views().size(); ++view)
+    for (std::size_t view = 0; view < views; ++view) {
+        const double start_s = budget.now();
+        double traced_s = 0;
         for (RowRun* row : rows) {
-            progress_line().show("verifying " + scene.label(), done / images);
+            progress_line().show(stage, done / static_cast<double>(views * rows.size()), -1,
+                                 fmt::format("{}, view {} of {}", row_label(row->key), view + 1, views));
             done += 1;
             if (row->session == nullptr) continue;
             guarded(*row, [&] {
-                verify_view(verifier, *row, view);
+                const double seconds = verify_view(verifier, *row, view);
+                traced_s += seconds;
+                budget.traced(*row, 1, seconds);
                 if (image_seen) image_seen({*row, view, verifier.hits(), verifier.reference()});
             });
+            budget.review();
         }
-    for (RowRun* row : rows)
-        if (row->session != nullptr) guarded(*row, [&] { verify_again(verifier, *row); });
+        budget.judged(budget.now() - start_s - traced_s);
+    }
+    for (RowRun* row : rows) {
+        progress_line().show(stage, 1, -1, row_label(row->key) + ", again");
+        if (row->session == nullptr) continue;
+        const double start_s = budget.now();
+        guarded(*row, [&] { verify_again(verifier, *row); });
+        budget.traced(*row, 1, budget.now() - start_s);
+    }
     progress_line().clear();
 }
 

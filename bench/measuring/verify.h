@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/measuring/budget.h"
 #include "bench/rows/row_run.h"
 
 #include <functional>
@@ -21,10 +22,14 @@ using ImageSeen = std::function<void(const SeenImage&)>;
 /// How far the row's answers may be from openmp's: what its device's self-test allows.
 [[nodiscard]] Allowance allowance_of(const RowRun& row);
 
+/// openmp's row that the row must agree with; empty where there is nothing to compare with.
+[[nodiscard]] std::optional<RowKey> reference_of(const RowKey& key);
+
 /// One scene's verification, image by image, for whoever goes through them in an order of its own.
 class Verifier {
 public:
-    Verifier(SceneWork& scene, const Options& options);
+    /// budget: whose clock is read; it outlives the verifier.
+    Verifier(SceneWork& scene, const Options& options, const Budget& budget = no_budget());
     ~Verifier();
 
     /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray, as verify_rows() does;
@@ -45,8 +50,9 @@ private:
 /// Traces every view of a scene once with each of its rows, and judges each ray in two questions: does the device
 /// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then the
 /// first view once more: its hits must be the same. Rows that cannot be traced end with their reason.
-/// rows: all of one scene, opened.
+/// rows: all of one scene, opened. budget: is told what everything takes, and may skip rows. Throws what
+/// Budget::review() throws.
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
-                 const ImageSeen& image_seen = {});
+                 const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 
 } // namespace tetrace

@@ -54,11 +54,12 @@ const VerbHelp verb_help[] = {
      "to have none, give exit code 1); 'wrong', it differs from openmp's answers (no rate, exit code 1); "
      "'unsupported', the host or "
      "the device cannot run this kernel, and 'skipped', there is no "
-     "usable device here, with the reason; 'error', with the reason. 'noisy' is added where the interquartile range "
+     "usable device here or --budget has no time for the row, with the reason; 'error', with the reason. 'noisy' is "
+     "added where the interquartile range "
      "exceeds 5 % of the median.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
      "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
-     "sample.",
+     "sample, and where their number is given there is no budget.",
      "  tetrace bench\n"
      "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
      "  tetrace bench --scene bunny --method all\n"

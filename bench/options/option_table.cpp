@@ -305,8 +305,10 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_samples},
         {"Measuring", "--budget", "TIME",
-         "Wall clock for the timed part: where it would take longer, fewer samples are taken, and the result says so; "
-         "but no fewer than 5, below which intervals are too narrow, where as many are asked for. Default: 2m.",
+         "Wall clock for verifying and timing all rows. Where all samples do not fit, fewer are taken, but no fewer "
+         "than 5, below which intervals are too narrow, where as many are asked for. Where 5 do not fit, the slowest "
+         "rows are skipped, and the result names the budget that they need. A run takes at most a quarter longer. "
+         "Loading scenes and opening devices is not counted, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "

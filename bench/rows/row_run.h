@@ -91,6 +91,7 @@ struct RowRun {
     std::unique_ptr<Session> session;
     std::optional<std::size_t> view_of_rays; ///< whose rays the session has been given; see prepare_view()
     Outcome outcome = Traced{};
+    double warm_s = 0;                  ///< wall seconds of the pass that warmed it up
     std::vector<double> samples_s;      ///< device seconds for all selected views, one a repetition
     std::vector<double> wall_samples_s; ///< the same on the host's clock, from launch to the end of wait
 };

@@ -261,6 +261,11 @@ std::string kernel_title(const RowKey& key)
     return title;
 }
 
+std::string row_label(const RowKey& key)
+{
+    return kernel_title(key) + " on " + device_label(key);
+}
+
 std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                 const std::vector<Backend*>& backends)
 {

@@ -60,4 +60,7 @@ inline constexpr const char* search_scene = "random-tets";
 /// "opencl", with ":1" behind it for a backend's later devices, "openmp, 1 thread": a row's device in tables.
 [[nodiscard]] std::string device_label(const RowKey& key);
 
+/// "cdt maria tet80 on opencl": a row of a scene that is named already.
+[[nodiscard]] std::string row_label(const RowKey& key);
+
 } // namespace tetrace

@@ -21,6 +21,7 @@ namespace {
 
 constexpr double quiet_s = 2.0;
 constexpr double redraw_s = 0.1;
+constexpr double rename_s = 0.005; // soon: work of minutes must not bear the name of the work before it
 
 std::size_t terminal_width()
 {
@@ -102,21 +103,24 @@ ProgressLine::~ProgressLine()
     clear();
 }
 
-void ProgressLine::show(const std::string& stage, double fraction, double left_s)
+void ProgressLine::show(const std::string& stage, double fraction, double left_s, const std::string& detail)
 {
     if (!draws_) return;
     if (stage != stage_) {
         stage_ = stage;
         stage_start_ = Clock::now();
     }
-    // Counted from the last output, not from the stage: a person waits for the whole, however short its stages are.
-    if (seconds_since(last_draw_) < (drawn_ == 0 ? quiet_s : redraw_s)) return;
-    const std::string text = progress_text(stage, seconds_since(stage_start_), fraction, terminal_width() - 1, left_s);
+    const double pause_s = !has_drawn_ ? quiet_s : detail != detail_ ? rename_s : redraw_s;
+    if (seconds_since(last_draw_) < pause_s) return;
+    detail_ = detail;
+    const std::string what = detail.empty() ? stage : stage + ", " + detail;
+    const std::string text = progress_text(what, seconds_since(stage_start_), fraction, terminal_width() - 1, left_s);
     const std::size_t columns = display_width(text);
     const std::string rest(drawn_ > columns ? drawn_ - columns : 0, ' ');
     std::fputs(fmt::format(fmt::runtime(colour_ ? "\r\x1b[2m{}\x1b[0m{}" : "\r{}{}"), text, rest).c_str(), stderr);
     std::fflush(stderr);
     drawn_ = columns;
+    has_drawn_ = true;
     columns_to_clear = columns;
     last_draw_ = Clock::now();
 }

@@ -8,7 +8,7 @@
 namespace tetrace {
 
 /// The one line on a terminal's standard error that tells what long work is doing: stage, elapsed time, percentage
-/// where it is known. Nothing is drawn without a terminal, nor before 2 seconds have passed without output.
+/// where it is known. Nothing is drawn without a terminal, nor in the first 2 seconds.
 class ProgressLine {
 public:
     /// draws: whether to draw at all. colour: whether escape sequences may be written.
@@ -18,7 +18,8 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     /// fraction: done so far in [0, 1]; left_s: seconds that it will still take. Negative where it cannot be known.
-    void show(const std::string& stage, double fraction, double left_s = -1);
+    /// detail: what the stage is working on; the time that is shown is the stage's.
+    void show(const std::string& stage, double fraction, double left_s = -1, const std::string& detail = {});
     /// Takes the line away, before anything else is written, and when the work is done.
     void clear();
     [[nodiscard]] Progress callback();
@@ -29,7 +30,8 @@ private:
     bool draws_;
     bool colour_;
     std::size_t drawn_ = 0; ///< columns that the line takes now
-    std::string stage_;
+    bool has_drawn_ = false;
+    std::string stage_, detail_;
     Clock::time_point stage_start_;
     Clock::time_point last_draw_;
 };

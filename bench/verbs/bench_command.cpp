@@ -41,8 +41,9 @@ int bench_command(const Options& options)
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
     BenchResult result;
     result.missing_scenes = missing_default_scenes(options);
-    result.run = open_and_verify(keys, options);
-    result.measurement = measure_rows(result.run.rows, options, flags);
+    Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
+    result.run = open_and_verify(keys, options, {}, budget);
+    result.measurement = measure_rows(result.run.rows, options, flags, budget);
     progress_line().show("measuring the devices themselves", -1);
     result.devices = devices_of(result.run.rows);
     measure_devices(result.devices, session_options(options));

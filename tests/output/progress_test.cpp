@@ -45,3 +45,18 @@ TEST(Progress, draws_after_two_seconds_and_leaves_the_line_empty)
     EXPECT_EQ(drawn.back(), '\r');
     EXPECT_EQ(drawn.find('\x1b'), std::string::npos) << "NO_COLOR is honoured";
 }
+
+TEST(Progress, names_other_work_at_once_and_keeps_the_time_of_the_stage)
+{
+    testing::internal::CaptureStderr();
+    {
+        ProgressLine line(true, false);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2050));
+        line.show("verifying bunny", 0, -1, "bvh2 on vulkan");
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        line.show("verifying bunny", 0, -1, "bvh rt on vulkan, view 2 of 4");
+    }
+    const std::string drawn = testing::internal::GetCapturedStderr();
+    EXPECT_NE(drawn.find("\rverifying bunny, bvh2 on vulkan  0.0 s"), std::string::npos) << drawn;
+    EXPECT_NE(drawn.find("\rverifying bunny, bvh rt on vulkan, view 2 of 4  0.0 s"), std::string::npos) << drawn;
+}

@@ -153,22 +153,6 @@ TEST_F(Measure, rows_are_interleaved_unless_a_flag_says_otherwise)
     EXPECT_TRUE(first_row_ends_before_the_second_starts(launched_));
 }
 
-TEST_F(Measure, a_budget_that_is_too_small_lowers_the_samples_and_says_so)
-{
-    options_.budget_s = 1e-9;
-    const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
-    EXPECT_EQ(measured.samples, 5u);
-    EXPECT_TRUE(measured.lowered);
-    EXPECT_EQ(rows_[1].samples_s.size(), 5u);
-}
-
-TEST_F(Measure, the_budget_counts_warm_passes_not_the_first_which_may_compile)
-{
-    for (RowRun& row : rows_)
-        std::get<Traced>(row.outcome).wall_s = 1000;
-    EXPECT_FALSE(measure_rows(rows_, options_, read_benchmark_flags({})).lowered);
-}
-
 TEST_F(Measure, a_device_that_is_lost_ends_its_row_and_the_others_go_on)
 {
     for (const LostAt at : {LostAt::launch, LostAt::wait, LostAt::read_back}) {
@@ -205,9 +189,8 @@ TEST_F(Measure, an_allocation_that_fails_is_unsupported_and_the_others_go_on)
     EXPECT_EQ(rows_[1].samples_s.size(), 30u);
 }
 
-TEST_F(Measure, repetitions_are_taken_whatever_the_budget)
+TEST_F(Measure, repetitions_are_taken_in_place_of_the_samples_asked_for)
 {
-    options_.budget_s = 1e-9;
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({"--benchmark_repetitions=4"}));
     EXPECT_EQ(measured.samples, 4u);
     EXPECT_FALSE(measured.lowered);

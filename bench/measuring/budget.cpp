@@ -1,0 +1,238 @@
+#include "bench/measuring/budget.h"
+
+#include "bench/measuring/verify.h"
+#include "bench/rows/row_tracing.h"
+#include "bench/terminal/progress.h"
+#include "bench/terminal/stopwatch.h"
+#include "bench/terminal/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+constexpr double slack = 0.25;    // of the budget, see the class
+constexpr double telling_s = 0.1; // a probe that takes this long is not mostly a launch's overhead
+constexpr unsigned coarsest_step = 16;
+
+std::size_t first_view_with_rays(const RowRun& row)
+{
+    std::size_t view = 0;
+    while (view < row.scene->views().size() && ray_count(row, view) == 0)
+        ++view;
+    return view;
+}
+
+/// The view's image, every step-th pixel of every step-th line.
+TraceJob coarse_job(TraceJob job, unsigned step)
+{
+    for (Float3* const part : {&job.view.step_x, &job.view.step_y})
+        for (float* const c : {&part->x, &part->y, &part->z})
+            *c *= static_cast<float>(step);
+    job.width /= step;
+    job.height /= step;
+    return job;
+}
+
+/// The job that traces 1 of step * step of the view's rays, the first ones where they are given.
+TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
+{
+    const TraceJob job = prepare_view(row, view);
+    if (row.key.kernel.task == Task::trace) return coarse_job(job, step);
+    const std::size_t all = ray_count(row, view);
+    const std::size_t rays = std::max<std::size_t>(all / (std::size_t{step} * step) / TILE_WIDTH, 1) * TILE_WIDTH;
+    const auto& quads =
+        row.scene->given_rays().rows(*row.scene, row.key, row.packed != nullptr ? &row.packed->scene : nullptr, view);
+    row.view_of_rays.reset();
+    row.session->set_rays(std::span(quads).first(quads.size() / all * rays));
+    return given_job(rays, job.max_steps, job.any_hit);
+}
+
+/// Estimates the seconds of a view from ever more of its rays, until there are enough of them to tell. The first
+/// launch, in which devices may compile, does not count; it becomes a part of the row's first pass.
+double estimated_view_s(RowRun& row, const Clock& clock)
+{
+    const std::size_t view = first_view_with_rays(row);
+    if (view == row.scene->views().size()) return 0;
+    unsigned step = coarsest_step;
+    while (step > 1 && std::min(row.scene->width(), row.scene->height()) / step < TILE_WIDTH)
+        step /= 2;
+    const auto launch = [&] {
+        const TraceJob job = prepare_probe(row, view, step);
+        const double start_s = clock();
+        row.session->launch(job);
+        static_cast<void>(row.session->wait());
+        return std::pair(clock() - start_s, static_cast<double>(job.width) * job.height);
+    };
+    std::get<Traced>(row.outcome).wall_s += launch().first;
+    for (;; step /= 2) {
+        // The quickest of three, where the first is slow: on a busy machine a thread may wait longer than its work
+        // takes.
+        auto [seconds, rays] = launch();
+        for (int again = 0; again < 2 && seconds >= telling_s; ++again)
+            seconds = std::min(seconds, launch().first);
+        if (seconds >= telling_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
+    }
+}
+
+/// Whether the row still goes on.
+bool is_alive(const RowRun& row)
+{
+    return row.session != nullptr && traced(row) != nullptr;
+}
+
+/// A time as --budget takes it, rounded up: "45s", "7m".
+std::string budget_text(double seconds)
+{
+    return seconds <= 60 ? fmt::format("{:.0f}s", std::max(1.0, std::ceil(seconds)))
+                         : fmt::format("{:.0f}m", std::ceil(seconds / 60));
+}
+
+} // namespace
+
+Budget::Budget(double seconds, Clock clock)
+    : seconds_(seconds), clock_(clock ? std::move(clock) : [watch = Stopwatch()] { return watch.seconds(); }),
+      start_s_(clock_())
+{
+}
+
+void Budget::plan(std::vector<RowRun>& rows, unsigned samples)
+{
+    start_s_ = now();
+    if (std::isinf(seconds_)) return;
+    std::set<const SceneWork*> scenes;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        RowRun& row = rows[i];
+        progress_line().show("estimating", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
+                             row_label(row.key));
+        Entry entry{&row};
+        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_); });
+        if (!is_alive(row)) continue;
+        const auto views = static_cast<double>(row.scene->views().size());
+        entry.views_left = views + 1 + views + views * std::min(samples, fewest_samples);
+        entries_.push_back(entry);
+        if (scenes.insert(row.scene).second) views_to_judge_ += views;
+    }
+    for (Entry& entry : entries_)
+        entry.is_reference = std::any_of(entries_.begin(), entries_.end(), [&](const Entry& other) {
+            return reference_of(other.row->key) == entry.row->key;
+        });
+    fit(left_s());
+}
+
+void Budget::traced(const RowRun& row, std::size_t views, double seconds)
+{
+    for (Entry& entry : entries_) {
+        if (entry.row != &row) continue;
+        entry.views_left = std::max(0.0, entry.views_left - static_cast<double>(views));
+        entry.seen_views += static_cast<double>(views);
+        entry.seen_s += seconds;
+        entry.view_s = entry.seen_s / entry.seen_views;
+    }
+}
+
+void Budget::judged(double seconds)
+{
+    judged_s_ += seconds;
+    judged_views_ += 1;
+}
+
+void Budget::review()
+{
+    fit(left_s() + slack * seconds_);
+}
+
+void Budget::review_timed()
+{
+    const double affordable_s = left_s() + slack * seconds_;
+    if (!skip_slowest(affordable_s, false)) skip_slowest(affordable_s, true);
+}
+
+void Budget::fit(double affordable_s)
+{
+    if (entries_.empty()) return;
+    const bool has_references =
+        std::any_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.is_reference; });
+    if (const double need_s = needed_s(true); has_references && need_s > affordable_s)
+        reject("openmp's rows that others are compared with", need_s);
+    const double need_s = needed_s();
+    skip_slowest(affordable_s, false);
+    if (skipped_s_ > 0 &&
+        std::none_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return is_alive(*entry.row); }))
+        reject("all rows", need_s);
+}
+
+/// Whether the rows fit afterwards.
+bool Budget::skip_slowest(double affordable_s, bool among_references)
+{
+    while (needed_s() > affordable_s) {
+        Entry* const entry = slowest(among_references);
+        if (entry == nullptr) return false;
+        skip(*entry, affordable_s);
+    }
+    return true;
+}
+
+/// Null where there is none.
+Budget::Entry* Budget::slowest(bool among_references)
+{
+    Entry* found = nullptr;
+    for (Entry& entry : entries_)
+        if (entry.is_reference == among_references && is_alive(*entry.row) &&
+            (found == nullptr || entry.need_s() > found->need_s()))
+            found = &entry;
+    return found;
+}
+
+void Budget::skip(Entry& entry, double affordable_s)
+{
+    RowRun& row = *entry.row;
+    if (!fails(row, true)) // an answer that is known to be wrong is reported
+        row.outcome =
+            Skipped{Status::skipped,
+                    fmt::format("would take about {}; --budget leaves {} for all rows; with --budget {} it is "
+                                "measured",
+                                seconds_text(entry.need_s()), seconds_text(std::max(0.0, affordable_s)), sufficient())};
+    row.session.reset();
+    skipped_s_ += entry.need_s();
+}
+
+void Budget::reject(const std::string& who, double need_s) const
+{
+    throw Error(ErrorKind::usage,
+                fmt::format("--budget: {} would take about {}, and {} of {} is left; use --budget {}, "
+                            "fewer rows, fewer --views or a smaller --size",
+                            who, seconds_text(need_s), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
+                            sufficient()));
+}
+
+/// A budget that all rows fit in, those included that have been skipped: a quarter more than they are expected to take.
+std::string Budget::sufficient() const
+{
+    return budget_text(1.25 * (now() - start_s_ + needed_s() + skipped_s_));
+}
+
+double Budget::judging_s() const
+{
+    return judged_views_ == 0 ? 0 : judged_s_ / judged_views_ * std::max(0.0, views_to_judge_ - judged_views_);
+}
+
+double Budget::needed_s(bool by_references_only) const
+{
+    double sum = judging_s();
+    for (const Entry& entry : entries_)
+        if (is_alive(*entry.row) && (entry.is_reference || !by_references_only)) sum += entry.need_s();
+    return sum;
+}
+
+Budget& no_budget()
+{
+    static Budget budget;
+    return budget;
+}
+
+} // namespace tetrace

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "bench/rows/row_run.h"
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// The wall clock of a run, in seconds from some start; tests give one of their own.
+using Clock = std::function<double()>;
+
+/// The fewest samples of a row: with fewer, intervals of ratios are too narrow (results/README.md).
+inline constexpr unsigned fewest_samples = 5;
+
+/// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
+/// more, a pass to warm up, and its fewest samples. Where the rows need more than is left, the slowest end as skipped,
+/// with their cost and the --budget that runs them. The others get all that they need, whatever the order of the rows.
+/// openmp's rows that others are compared with are skipped last, and only once rows are timed.
+///
+/// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself; later reviews allow a
+/// quarter more, so that noise skips no row. A run takes at most 1.25 budgets, and the pass that is under way then.
+class Budget {
+public:
+    /// Starts the clock. seconds: infinity: there is no limit, and all below does nothing.
+    explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = {});
+
+    [[nodiscard]] double now() const { return clock_(); }
+    [[nodiscard]] double left_s() const { return seconds_ - (now() - start_s_); }
+
+    /// Starts the clock again, estimates the rows by tracing a part of their rays, and skips those that do not fit.
+    /// Rows that cannot be traced end with their reason. rows: opened; they keep their addresses as long as the budget
+    /// is used. samples: asked for. Throws Error{usage} where no row fits, or not all of openmp's rows that others are
+    /// compared with.
+    void plan(std::vector<RowRun>& rows, unsigned samples);
+
+    /// Some views of a row were traced in so many seconds.
+    void traced(const RowRun& row, std::size_t views, double seconds);
+    /// All rows of a view were judged; seconds: without the tracing.
+    void judged(double seconds);
+
+    /// Skips the slowest rows until the others fit. Throws as plan().
+    void review();
+    /// The same while rows are timed: openmp's rows are skipped too, and nothing is thrown.
+    void review_timed();
+
+private:
+    struct Entry {
+        RowRun* row = nullptr;
+        bool is_reference = false; ///< others are compared with it
+        double view_s = 0;         ///< expected
+        double views_left = 0;     ///< all that the row still needs
+        double seen_s = 0, seen_views = 0;
+
+        [[nodiscard]] double need_s() const { return views_left * view_s; }
+    };
+
+    [[nodiscard]] double judging_s() const;
+    [[nodiscard]] double needed_s(bool by_references_only = false) const;
+    [[nodiscard]] Entry* slowest(bool among_references);
+    void skip(Entry& entry, double affordable_s);
+    bool skip_slowest(double affordable_s, bool among_references);
+    void fit(double affordable_s);
+    [[noreturn]] void reject(const std::string& who, double need_s) const;
+    [[nodiscard]] std::string sufficient() const;
+
+    double seconds_;
+    Clock clock_;
+    double start_s_;
+    std::vector<Entry> entries_;
+    double skipped_s_ = 0; ///< what the skipped rows would have needed
+    double judged_s_ = 0, judged_views_ = 0;
+    double views_to_judge_ = 0; ///< of all scenes
+};
+
+/// Of runs without a limit.
+[[nodiscard]] Budget& no_budget();
+
+} // namespace tetrace

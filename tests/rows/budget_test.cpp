@@ -1,0 +1,269 @@
+#include "bench/measuring/budget.h"
+#include "bench/measuring/measure.h"
+#include "bench/measuring/verify.h"
+#include "scenes/procedural.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+
+namespace {
+
+/// openmp's answers, for which a ray takes as long as a test says, on a clock that nothing else moves.
+class TimedSession : public Session {
+public:
+    TimedSession(std::unique_ptr<Session> inner, double& now_s, const double& ray_s, double first_launch_s)
+        : inner_(std::move(inner)), now_s_(&now_s), ray_s_(&ray_s), compile_s_(first_launch_s)
+    {
+    }
+    void set_rays(std::span<const Quad> quads) override { inner_->set_rays(quads); }
+    void launch(const TraceJob& job) override
+    {
+        *now_s_ += compile_s_ + *ray_s_ * job.width * job.height;
+        compile_s_ = 0;
+        inner_->launch(job);
+    }
+    [[nodiscard]] double wait() override { return inner_->wait(); }
+    void read_output(std::span<std::uint32_t> words) override
+    {
+        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
+        inner_->read_back(hits);
+        std::fill(words.begin(), words.end(), POISON);
+        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
+    }
+    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
+    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
+
+private:
+    std::unique_ptr<Session> inner_;
+    double* now_s_;
+    const double* ray_s_;
+    double compile_s_;
+};
+
+LoadedScene loaded_cubes()
+{
+    LoadedScene loaded;
+    loaded.scene = make_cubes(3);
+    loaded.scene.name = "cubes";
+    return loaded;
+}
+
+/// A row needs 2 views * (verified, warmed up, 5 samples) and 1 view again: 15 views. A view is 16 x 16 rays. The first
+/// estimate takes four launches of 64 rays.
+constexpr double view_rays = 256, views_needed = 15, views_estimated = 1;
+
+class BudgetOfRows : public testing::Test {
+protected:
+    /// Opens a row of openmp's that calls itself `backend` and whose views take so long.
+    std::size_t add_row(Layout layout, double view_s, const std::string& backend = "other", double first_launch_s = 0)
+    {
+        RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+        key.kernel.layout = layout;
+        rows_.push_back(open_row(key, scene_, options_));
+        RowRun& row = rows_.back();
+        ray_s_.push_back(std::make_unique<double>(view_s / view_rays));
+        row.session = std::make_unique<TimedSession>(std::move(row.session), now_s_, *ray_s_.back(), first_launch_s);
+        row.key.backend = backend;
+        return rows_.size() - 1;
+    }
+
+    Budget budget_of(double seconds)
+    {
+        return Budget(seconds, [this] { return now_s_; });
+    }
+
+    /// As `bench` runs the rows.
+    Measurement run(Budget& limit)
+    {
+        limit.plan(rows_, options_.samples);
+        std::vector<RowRun*> pointers;
+        for (RowRun& row : rows_)
+            pointers.push_back(&row);
+        verify_rows(pointers, scene_, options_, {}, limit);
+        return measure_rows(rows_, options_, read_benchmark_flags({}), limit);
+    }
+
+    void expect_measured(std::size_t row) const
+    {
+        EXPECT_EQ(status_of(rows_[row]), Status::ok) << reason_of(rows_[row]);
+        EXPECT_GE(rows_[row].samples_s.size(), fewest_samples);
+    }
+
+    void expect_skipped(std::size_t row) const
+    {
+        EXPECT_EQ(status_of(rows_[row]), Status::skipped);
+        EXPECT_TRUE(rows_[row].samples_s.empty());
+        EXPECT_NE(reason_of(rows_[row]).find("with --budget "), std::string::npos) << reason_of(rows_[row]);
+    }
+
+    Options options_ = parse_options({"bench", "--size", "16", "--views", "0,1"});
+    SceneWork scene_{loaded_cubes(), options_};
+    std::vector<RowRun> rows_;
+    std::vector<std::unique_ptr<double>> ray_s_;
+    double now_s_ = 100;
+};
+
+std::string message_of(const std::function<void()>& work)
+{
+    try {
+        work();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        return error.what();
+    }
+    ADD_FAILURE() << "nothing is thrown";
+    return {};
+}
+
+} // namespace
+
+TEST_F(BudgetOfRows, skips_a_slow_row_with_its_cost_and_measures_the_others)
+{
+    for (const std::size_t slow : {0, 1, 2}) {
+        rows_.clear();
+        rows_.reserve(3);
+        for (std::size_t row = 0; row < 3; ++row)
+            add_row(row == 1 ? Layout::tet96 : Layout::tet80, row == slow ? 100 : 1);
+        const double start_s = now_s_;
+        Budget limit = budget_of(100);
+        static_cast<void>(run(limit));
+        for (std::size_t row = 0; row < 3; ++row)
+            row == slow ? expect_skipped(row) : expect_measured(row);
+        EXPECT_NE(reason_of(rows_[slow]).find("would take about 25 min 00 s"), std::string::npos)
+            << reason_of(rows_[slow]);
+        EXPECT_EQ(exit_code(rows_, true), 0) << "a row that is skipped does not fail the run";
+        EXPECT_LE(now_s_ - start_s, 100 * 1.25);
+    }
+}
+
+TEST_F(BudgetOfRows, that_all_rows_fit_gives_them_all_samples_asked_for)
+{
+    rows_.reserve(2);
+    for (const Layout layout : {Layout::tet80, Layout::tet96})
+        add_row(layout, 1);
+    Budget limit = budget_of(2 * (views_needed + views_estimated + 5 * 2));
+    const Measurement measured = run(limit);
+    EXPECT_EQ(measured.samples, 10u);
+    EXPECT_FALSE(measured.lowered);
+    EXPECT_GE(limit.left_s(), 0);
+}
+
+TEST_F(BudgetOfRows, between_five_samples_and_ten_takes_what_fits_and_says_so)
+{
+    rows_.reserve(2);
+    for (const Layout layout : {Layout::tet80, Layout::tet96})
+        add_row(layout, 1);
+    Budget limit = budget_of(2 * (views_needed + views_estimated + 2 * 2));
+    const Measurement measured = run(limit);
+    EXPECT_EQ(measured.samples, 7u);
+    EXPECT_TRUE(measured.lowered);
+    EXPECT_GE(limit.left_s(), 0);
+}
+
+TEST_F(BudgetOfRows, is_not_spent_on_what_does_not_fit)
+{
+    rows_.reserve(1);
+    add_row(Layout::tet80, 1000);
+    Budget limit = budget_of(100);
+    const std::string message = message_of([&] { limit.plan(rows_, 10); });
+    EXPECT_NE(message.find("all rows would take about 250 min"), std::string::npos) << message;
+    EXPECT_LE(now_s_ - 100, 1000 + 1) << "four launches of a quarter of the rays";
+}
+
+TEST_F(BudgetOfRows, names_one_that_all_rows_fit_in)
+{
+    rows_.reserve(2);
+    add_row(Layout::tet80, 1);
+    add_row(Layout::tet96, 100);
+    Budget small = budget_of(100);
+    small.plan(rows_, 10);
+    EXPECT_NE(reason_of(rows_[1]).find("with --budget 33m it"), std::string::npos) << reason_of(rows_[1]);
+}
+
+TEST_F(BudgetOfRows, a_first_launch_that_compiles_makes_no_row_slow_and_is_a_part_of_its_first_pass)
+{
+    rows_.reserve(1);
+    add_row(Layout::tet80, 0.001, "other", 50);
+    Budget limit = budget_of(100);
+    static_cast<void>(run(limit));
+    expect_measured(0);
+    EXPECT_GE(traced(rows_[0])->wall_s, 50);
+}
+
+TEST_F(BudgetOfRows, a_row_that_becomes_slow_is_skipped_and_leaves_the_others_their_samples)
+{
+    rows_.reserve(2);
+    add_row(Layout::tet80, 1);
+    add_row(Layout::tet96, 1);
+    Budget limit = budget_of(100);
+    limit.plan(rows_, 10);
+    *ray_s_[0] *= 20;
+    verify_rows({&rows_[0], &rows_[1]}, scene_, options_, {}, limit);
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), limit));
+    expect_skipped(0);
+    expect_measured(1);
+    EXPECT_GE(limit.left_s(), -25);
+}
+
+TEST_F(BudgetOfRows, openmps_rows_that_others_are_compared_with_are_never_skipped)
+{
+    rows_.reserve(3);
+    const std::size_t reference = add_row(Layout::tet80, 5, "openmp"), compared = add_row(Layout::tet80, 4);
+    const std::size_t alone = add_row(Layout::tet96, 3, "openmp");
+    Budget limit = budget_of(100);
+    limit.plan(rows_, 10);
+    EXPECT_EQ(status_of(rows_[reference]), Status::ok);
+    expect_skipped(compared);
+    expect_skipped(alone);
+}
+
+TEST_F(BudgetOfRows, that_not_even_those_fit_ends_the_run_with_a_message)
+{
+    rows_.reserve(2);
+    add_row(Layout::tet80, 10, "openmp");
+    add_row(Layout::tet80, 1);
+    Budget limit = budget_of(100);
+    const std::string message = message_of([&] { limit.plan(rows_, 10); });
+    EXPECT_NE(message.find("openmp's rows that others are compared with would take about 2 min 30 s"),
+              std::string::npos)
+        << message;
+    EXPECT_NE(message.find("use --budget "), std::string::npos) << message;
+}
+
+TEST_F(BudgetOfRows, a_row_that_is_wrong_stays_wrong)
+{
+    rows_.reserve(2);
+    add_row(Layout::tet80, 1);
+    add_row(Layout::tet96, 1);
+    Budget limit = budget_of(100);
+    limit.plan(rows_, 10);
+    std::get<Traced>(rows_[0].outcome).different = 1;
+    limit.traced(rows_[0], 1, 100);
+    limit.review();
+    EXPECT_EQ(rows_[0].session, nullptr) << "nothing more is spent on it";
+    EXPECT_EQ(status_of(rows_[0]), Status::wrong);
+}
+
+TEST_F(BudgetOfRows, without_a_limit_estimates_and_skips_nothing)
+{
+    rows_.reserve(1);
+    add_row(Layout::tet80, 1e6);
+    no_budget().plan(rows_, 10);
+    EXPECT_EQ(now_s_, 100);
+    EXPECT_EQ(run(no_budget()).samples, 10u);
+}
+
+TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_a_part_of_them)
+{
+    rows_.reserve(1);
+    RowKey key{"cubes", "openmp", {}, RayKind::random, TetOrder::hilbert};
+    key.kernel.task = Task::rays;
+    rows_.push_back(open_row(key, scene_, options_));
+    const double ray_s = 1;
+    rows_[0].session = std::make_unique<TimedSession>(std::move(rows_[0].session), now_s_, ray_s, 0);
+    Budget limit = budget_of((views_needed + views_estimated) * view_rays);
+    static_cast<void>(run(limit));
+    expect_measured(0);
+}
