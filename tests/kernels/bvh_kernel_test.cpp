@@ -2,8 +2,8 @@
 // them.
 #include "backends/embree/bvh_builder.h"
 #include "core/bvh/balanced_bvh.h"
-#include "core/device/backend.h"
 #include "core/pack/pack_bvh.h"
+#include "tests/support/bvh_kernels.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,36 +23,11 @@
 #include <immintrin.h>
 #endif
 
+using namespace tetrace;
+using namespace tetrace::test;
+using namespace tetrace::test::bvh;
+
 namespace {
-
-using tetrace::Float3;
-using tetrace::PackedScene;
-using tetrace::TriangleMesh;
-using tetrace::test::Random;
-
-#include "kernels/language/dialect_cpp.h"
-
-#define KERNEL_ARRAYS_HEADER "kernels/bvh/bvh_arrays.h"
-#include "kernels/language/scene_view_cpp.h"
-
-#include "kernels/language/vector.h"
-
-#include "kernels/ray.h"
-
-#include "kernels/hit.h"
-
-#include "kernels/bvh/bvh.h"
-
-namespace bvh2 {
-#include "kernels/bvh/bvh2.h"
-}
-namespace cwbvh {
-#include "kernels/bvh/cwbvh.h"
-}
-
-#include "kernels/language/view_cpp.h"
-
-#include "kernels/language/params_cpp.h"
 
 Ray ray_of(Float3 origin, Float3 direction)
 {
@@ -73,7 +47,7 @@ TraceParams params_for(bool any_hit)
 }
 
 using Words = std::array<std::uint32_t, 6>;
-Words bits_of(const Hit& hit)
+Words bits_of(const bvh::Hit& hit)
 {
     return std::bit_cast<Words>(hit);
 }
@@ -81,14 +55,14 @@ Words bits_of(const Hit& hit)
 /// A mesh in several trees.
 struct Trees {
     explicit Trees(TriangleMesh of)
-        : mesh(std::move(of)), split(tetrace::build_bvh(mesh, 1).bvh),
-          balanced(tetrace::build_balanced_bvh(mesh)), packed{tetrace::pack_bvh(mesh, split, tetrace::Layout::bvh2),
-                                                              tetrace::pack_bvh(mesh, balanced, tetrace::Layout::bvh2),
-                                                              tetrace::pack_bvh(mesh, split, tetrace::Layout::cwbvh),
-                                                              tetrace::pack_bvh(mesh, balanced, tetrace::Layout::cwbvh)}
+        : mesh(std::move(of)), split(build_bvh(mesh, 1).bvh),
+          balanced(build_balanced_bvh(mesh)), packed{pack_bvh(mesh, split, Layout::bvh2),
+                                                     pack_bvh(mesh, balanced, Layout::bvh2),
+                                                     pack_bvh(mesh, split, Layout::cwbvh),
+                                                     pack_bvh(mesh, balanced, Layout::cwbvh)}
     {
     }
-    [[nodiscard]] Hit trace(std::size_t tree, const Ray& ray, float end = NO_END, bool any_hit = false) const
+    [[nodiscard]] bvh::Hit trace(std::size_t tree, const Ray& ray, float end = NO_END, bool any_hit = false) const
     {
         const SceneView view = view_of(packed[tree]);
         return tree < 2 ? bvh2::trace_ray(view, params_for(any_hit), ray, end)
@@ -101,12 +75,12 @@ struct Trees {
     }
 
     TriangleMesh mesh;
-    tetrace::Bvh split, balanced;
+    Bvh split, balanced;
     std::vector<PackedScene> packed;
 };
 
 /// The triangle test alone, on all leaf triangles of a tree from the last to the first.
-Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
+bvh::Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
 {
     const SceneView view = view_of(packed);
     const RayFrame frame = frame_of(ray);
@@ -118,10 +92,10 @@ Hit trace_all(const PackedScene& packed, const Ray& ray, float end = NO_END)
 
 void expect_same_everywhere(const Trees& trees, const Ray& ray, float end = NO_END)
 {
-    const Hit expected = trace_all(trees.packed[0], ray, end);
+    const bvh::Hit expected = trace_all(trees.packed[0], ray, end);
     for (std::size_t tree = 0; tree < trees.packed.size(); ++tree) {
         ASSERT_EQ(bits_of(trees.trace(tree, ray, end)), bits_of(expected)) << "tree " << tree;
-        const Hit any = trees.trace(tree, ray, end, true);
+        const bvh::Hit any = trees.trace(tree, ray, end, true);
         ASSERT_EQ(any.face_id == NO_HIT, expected.face_id == NO_HIT) << "tree " << tree;
     }
 }
@@ -160,8 +134,8 @@ TriangleMesh boulder(int n, std::uint64_t seed)
     TriangleMesh mesh = cube(n);
     Random random(seed);
     for (Float3& v : mesh.vertices) {
-        const double radius = random.between(0.5f, 1) / tetrace::length(tetrace::to_double(v));
-        v = tetrace::snap_to_grid(tetrace::to_float(tetrace::to_double(v) * radius));
+        const double radius = random.between(0.5f, 1) / length(to_double(v));
+        v = snap_to_grid(to_float(to_double(v) * radius));
     }
     return mesh;
 }
@@ -177,7 +151,7 @@ TriangleMesh soup(std::uint32_t count, std::uint64_t seed)
         if (i % 2 == 1) {
             const float width = std::ldexp(1.0f, -static_cast<int>(random.below(21)));
             const auto near_b = [&](float from, float to) { return from + (to - from) * width; };
-            c = tetrace::snap_to_grid(Float3{near_b(b.x, c.x), near_b(b.y, c.y), near_b(b.z, c.z)});
+            c = snap_to_grid(Float3{near_b(b.x, c.x), near_b(b.y, c.y), near_b(b.z, c.z)});
         }
         mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
         mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
@@ -217,6 +191,8 @@ protected:
     }
 };
 
+} // namespace
+
 TEST_P(Meshes, every_tree_gives_the_nearest_of_all_triangles_to_rays_that_are_aimed_at_them)
 {
     Random random(11);
@@ -229,7 +205,7 @@ TEST_P(Meshes, every_tree_gives_the_nearest_of_all_triangles_to_rays_between_two
 {
     Random random(12);
     for (int i = 0; i < 1500; ++i) {
-        const Float3 from = tetrace::snap_to_grid(point_of(trees(), random));
+        const Float3 from = snap_to_grid(point_of(trees(), random));
         const float end = random.below(2) == 0 ? NO_END : random.between(0, 2);
         ASSERT_NO_FATAL_FAILURE(expect_same_everywhere(trees(), ray_to(from, point_of(trees(), random)), end));
     }
@@ -245,7 +221,7 @@ TEST_P(Meshes, rays_along_the_axes_are_answered_by_every_tree_alike)
         direction[axis] = random.below(2) == 0 ? 1.0f : -1.0f;
         if (random.below(2) == 0) direction[(axis + 1) % 3] = random.between(-1, 1);
         origin[axis] = -2 * direction[axis];
-        ASSERT_NO_FATAL_FAILURE(expect_same_everywhere(trees(), ray_of(tetrace::snap_to_grid(origin), direction)));
+        ASSERT_NO_FATAL_FAILURE(expect_same_everywhere(trees(), ray_of(snap_to_grid(origin), direction)));
     }
 }
 
@@ -262,12 +238,12 @@ TEST_P(Meshes, the_first_exact_hit_is_found_but_for_rays_within_rounding_of_an_e
         double t = NO_END;
         for (std::uint32_t triangle = 0; triangle < trees().mesh.triangles.size(); ++triangle) {
             const auto [a, b, c] = trees().corners(triangle);
-            const auto crossing = tetrace::cross_exactly(origin, direction, a, b, c);
+            const auto crossing = cross_exactly(origin, direction, a, b, c);
             if (!crossing.met || crossing.t >= t) continue;
             first = triangle;
             t = crossing.t;
         }
-        const Hit hit = trees().trace(0, ray);
+        const bvh::Hit hit = trees().trace(0, ray);
         ++compared;
         differing += hit.face_id != first;
         if (hit.face_id == first && first != NO_HIT) {
@@ -284,7 +260,7 @@ TEST_P(Meshes, a_ray_ends_behind_its_hit_or_has_none)
     int hits = 0;
     for (int i = 0; i < 500; ++i) {
         const Ray ray = ray_to(random.point(-3, 3), point_of(trees(), random));
-        const Hit hit = trees().trace(0, ray);
+        const bvh::Hit hit = trees().trace(0, ray);
         if (hit.face_id == NO_HIT || hit.t < 0.01f) continue;
         ++hits;
         for (std::size_t tree = 0; tree < trees().packed.size(); ++tree) {
@@ -303,7 +279,7 @@ TEST_P(Meshes, a_device_that_flushes_denormals_gives_the_same_bits)
     Random random(16);
     const unsigned kept = _mm_getcsr();
     for (int i = 0; i < 500; ++i) {
-        const Ray ray = ray_to(tetrace::snap_to_grid(random.point(-3, 3)), point_of(trees(), random));
+        const Ray ray = ray_to(snap_to_grid(random.point(-3, 3)), point_of(trees(), random));
         const Words expected = bits_of(trees().trace(0, ray));
         _mm_setcsr(kept | 0x8040); // flush to zero, denormals are zero
         const Words flushed = bits_of(trees().trace(0, ray));
@@ -343,7 +319,7 @@ TEST(BvhKernel, of_triangles_that_are_met_at_once_the_first_is_the_hit)
             ASSERT_LT(twice.trace(tree, ray).face_id, count);
     }
     // The vertex in the middle of the side x = 3/4: all its triangles are met at t = 1.
-    const Hit hit = twice.trace(0, ray_of({0, 0, 0}, {0.75f, 0, 0}));
+    const bvh::Hit hit = twice.trace(0, ray_of({0, 0, 0}, {0.75f, 0, 0}));
     EXPECT_EQ(hit.t, 1);
     for (std::uint32_t triangle = 0; triangle < hit.face_id; ++triangle)
         for (const Float3 corner : twice.corners(triangle))
@@ -404,5 +380,3 @@ TEST(BvhKernel, a_reciprocal_is_right_to_some_units_in_the_last_place)
         ASSERT_NEAR(double{a} * reciprocal(a), 1, 3 * 0x1p-24);
     }
 }
-
-} // namespace

@@ -1,35 +1,28 @@
 #include "core/base/exact.h"
-#include "core/device/backend.h"
 #include "scenes/procedural.h"
+#include "tests/support/maria_kernel.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <set>
+
+using namespace tetrace;
+using namespace tetrace::test;
+using namespace tetrace::test::maria;
 
 namespace {
 
-#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
-#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
-#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet96.h"
-#define KERNEL_METHOD_HEADER "kernels/methods/maria.h"
-#include "kernels/kernel_cpp.h"
-
-using tetrace::Float3;
-
-struct Box {
-    tetrace::Scene scene = tetrace::make_cubes(5);
-    tetrace::PackedScene packed = tetrace::pack(scene, tetrace::Layout::tet96, tetrace::TetOrder::input);
+struct PackedCubes {
+    Scene scene = make_cubes(5);
+    PackedScene packed = pack(scene, Layout::tet96, TetOrder::input);
 };
-const Box& box()
+const PackedCubes& box()
 {
-    static const Box made;
+    static const PackedCubes made;
     return made;
 }
 
@@ -60,10 +53,10 @@ std::set<uint> brute_force(Float3 origin, Float3 direction)
         for (uint face = 0; face < 4; ++face) {
             if (mesh.tets[index].links[face] != NO_LINK) continue;
             const auto v = [&](uint k) { return mesh.vertices[mesh.tets[index].vertices[corner(face, k)]]; };
-            const auto crossing = tetrace::cross_exactly(origin, direction, v(0), v(1), v(2));
+            const auto crossing = cross_exactly(origin, direction, v(0), v(1), v(2));
             const bool entering =
                 crossing.edge_side[0] >= 0 && crossing.edge_side[1] >= 0 && crossing.edge_side[2] >= 0;
-            if (crossing.met && entering) met.insert(tetrace::make_link(index, face));
+            if (crossing.met && entering) met.insert(make_link(index, face));
         }
     }
     return met;
@@ -92,9 +85,11 @@ Float3 toward(Float3 from, Float3 to)
     return {to.x - from.x, to.y - from.y, to.z - from.z};
 }
 
+} // namespace
+
 TEST(Entry, agrees_with_brute_force_from_all_round)
 {
-    tetrace::test::Random random(8);
+    Random random(8);
     int differing = 0;
     int entered = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -166,10 +161,10 @@ TEST(Hit, a_ray_in_the_triangle_s_plane_gets_the_centroid)
     const auto centroid = [&](int axis) {
         return (mesh.vertices[a][axis] + mesh.vertices[b][axis] + mesh.vertices[c][axis]) / 3;
     };
-    tetrace::PackedScene packed = box().packed;
+    PackedScene packed = box().packed;
     for (std::size_t quad = 0; quad < 3; ++quad)
         packed.triangles[quad].z = 0; // the first triangle, flattened into z = 0
-    const Hit hit =
+    const maria::Hit hit =
         hit_on(view_of(packed), make_ray(VEC3(centroid(0) - 2, centroid(1), 0), VEC3(1, 0, 0)), 0, 5, 7, NO_END);
     EXPECT_NEAR(hit.t, 2, 1e-6);
     EXPECT_FLOAT_EQ(hit.u, 1.0f / 3);
@@ -183,5 +178,3 @@ TEST(Entry, tiny_direction_components_are_dropped)
     EXPECT_EQ(without_dust(-0x1p-21f), 0.0f);
     EXPECT_EQ(without_dust(0x1p-20f), 0x1p-20f);
 }
-
-} // namespace

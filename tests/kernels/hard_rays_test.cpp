@@ -11,6 +11,7 @@
 #include "tests/support/device_rays.h"
 #include "tests/support/hard_rays.h"
 #include "tests/support/hard_scenes.h"
+#include "tests/support/project_without_ties.h"
 
 #include <algorithm>
 #include <array>
@@ -20,19 +21,10 @@
 #include <fmt/ranges.h>
 #include <string>
 
-namespace {
-
-#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
-#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
-#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet80.h"
-#define KERNEL_METHOD_HEADER "kernels/methods/project.h"
-#define SIDE_AT_TIE(p, q, p_is_before, product) false // "not positive", in whichever direction the edge is asked for
-namespace mutant {
-#include "kernels/kernel_cpp.h"
-}
-
 using namespace tetrace;
 using namespace tetrace::test;
+
+namespace {
 
 constexpr std::uint64_t rays_at_once = 1 << 16;
 
@@ -155,14 +147,15 @@ INSTANTIATE_TEST_SUITE_P(each, HardRaysOf, testing::Values("bunny", "armadillo")
 TEST(HardRays, find_a_walk_without_the_rule_for_ties)
 {
     const Scene scene = std::move(make_hard_scenes().front().scene);
-    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
-    const mutant::SceneView view = mutant::view_of(packed);
-    mutant::TraceParams params{};
+    const PackedScene packed = pack(scene, Layout::tet96, TetOrder::hilbert);
+    const without_ties::SceneView view = without_ties::view_of(packed);
+    without_ties::TraceParams params{};
     params.max_steps = packed.tet_count + 1;
     const Judged all = judged(scene, packed, 1'800, [&](const RaySet& set, const std::vector<Quad>& quads) {
         std::vector<Hit> hits;
         for (std::size_t i = 0; i < set.rays.size(); ++i)
-            hits.push_back(std::bit_cast<Hit>(mutant::trace_given(view, params, quads[i], quads[set.rays.size() + i])));
+            hits.push_back(
+                std::bit_cast<Hit>(without_ties::trace_given(view, params, quads[i], quads[set.rays.size() + i])));
         return hits;
     });
     EXPECT_GT(all.verdicts.lost + all.verdicts.wrong - all.nearby, 20u);

@@ -1,34 +1,21 @@
-#include "core/device/backend.h"
-#include "tests/support/counted.h"
+#include "core/base/exact.h"
+#include "tests/support/counted_methods.h"
 #include "tests/support/random_tets.h"
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
+using namespace tetrace;
+using namespace tetrace::test;
+using namespace tetrace::test::counted::maria;
 
 namespace {
-
-#define KERNEL_REAL tetrace::test::Counted
-#define KERNEL_REAL_HAS_NO_BITS
-#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
-#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
-#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet96.h"
-#define KERNEL_METHOD_HEADER "kernels/methods/maria.h"
-#include "kernels/kernel_cpp.h"
-
-using tetrace::Float3;
-using tetrace::orientation;
-using namespace tetrace::test;
 
 Ray ray_of(Float3 origin, Float3 direction)
 {
     return make_ray(to_vec3(origin), to_vec3(direction));
 }
+
+} // namespace
 
 TEST(Faces, corners_wind_one_way_on_all_faces)
 {
@@ -78,6 +65,8 @@ TEST(Maria, leaves_by_the_face_that_the_exact_line_leaves_by)
     EXPECT_LE(differing, compared / 10000) << "only a line within rounding of an edge may leave by its other face";
 }
 
+namespace {
+
 // A tet with corners on a coarse grid, where the whole step is exact: what falls on an edge, falls on it in float too.
 RandomTet coarse_tet(Random& random)
 {
@@ -89,6 +78,8 @@ RandomTet coarse_tet(Random& random)
         if (orient(tet)) return tet;
     }
 }
+
+} // namespace
 
 // The tie rule of the paper's Table 1: a product of zero counts as "not negative" in both tests.
 TEST(Maria, a_line_through_an_edge_leaves_by_the_face_that_the_tie_rule_names)
@@ -144,5 +135,3 @@ TEST(Maria, starts_by_the_face_that_the_exact_ray_leaves_by)
     EXPECT_GT(compared, 15000);
     EXPECT_LE(differing, compared / 10000);
 }
-
-} // namespace

@@ -1,72 +1,32 @@
 // What each exit-face search costs, and that it is right, by exact arithmetic, on tets that a random ray stabs.
-#include "core/device/backend.h"
-#include "tests/support/counted.h"
+#include "tests/support/counted_methods.h"
 #include "tests/support/random_tets.h"
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cassert>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <set>
+#include <string>
 #include <vector>
+
+using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
-using namespace tetrace::test;
-using tetrace::Float3;
-
-#define KERNEL_REAL tetrace::test::Counted
-#define KERNEL_REAL_HAS_NO_BITS
-#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
-#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
-#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet96.h"
-
-#define KERNEL_METHOD_HEADER "kernels/methods/plane.h"
-namespace plane {
-#include "kernels/kernel_cpp.h"
-}
-#undef KERNEL_METHOD_HEADER
-#define KERNEL_METHOD_HEADER "kernels/methods/plucker.h"
-namespace plucker {
-#include "kernels/kernel_cpp.h"
-}
-#undef KERNEL_METHOD_HEADER
-#undef AS_SEEN
-#define KERNEL_METHOD_HEADER "kernels/methods/stp.h"
-namespace stp {
-#include "kernels/kernel_cpp.h"
-}
-#undef KERNEL_METHOD_HEADER
-#define KERNEL_METHOD_HEADER "kernels/methods/ms06.h"
-namespace ms06 {
-#include "kernels/kernel_cpp.h"
-}
-#undef KERNEL_METHOD_HEADER
-#define KERNEL_METHOD_HEADER "kernels/methods/maria.h"
-namespace maria {
-#include "kernels/kernel_cpp.h"
-}
-#undef KERNEL_METHOD_HEADER
-#define KERNEL_METHOD_HEADER "kernels/methods/project.h"
-namespace project {
-#include "kernels/kernel_cpp.h"
-}
-
-using Search = std::uint32_t (*)(const tetrace::PackedScene& packed, std::uint32_t tet, std::uint32_t entry,
-                                 Float3 origin, Float3 direction);
-using Start = std::uint32_t (*)(const tetrace::PackedScene& packed, Float3 origin, Float3 direction);
+using Search = std::uint32_t (*)(const PackedScene& packed, std::uint32_t tet, std::uint32_t entry, Float3 origin,
+                                 Float3 direction);
+using Start = std::uint32_t (*)(const PackedScene& packed, Float3 origin, Float3 direction);
 /// Face of a walk's end, its last tet and its steps.
 struct End {
     std::uint32_t face_id, tet, steps;
     friend bool operator==(const End&, const End&) = default;
 };
-using Trace = End (*)(const tetrace::PackedScene& packed, std::uint32_t max_steps, Float3 origin, Float3 direction);
+using Trace = End (*)(const PackedScene& packed, std::uint32_t max_steps, Float3 origin, Float3 direction);
 
-struct Method {
+struct CountedMethod {
     const char* name;
     Search exit_face;
     Start start_face;
@@ -79,21 +39,21 @@ struct Method {
 
 #define METHOD_FUNCTIONS(method)                                                                                       \
 #method,                                                                                                           \
-        [](const tetrace::PackedScene& packed, std::uint32_t tet, std::uint32_t entry, Float3 origin,                  \
+        [](const PackedScene& packed, std::uint32_t tet, std::uint32_t entry, Float3 origin,                  \
            Float3 direction) {                                                                                         \
-            using namespace method;                                                                                    \
+            using namespace counted::method;                                                                                    \
             return exit_face(view_of(packed), tet, entry, make_ray(to_vec3(origin), to_vec3(direction)));              \
         },                                                                                                             \
-        [](const tetrace::PackedScene& packed, Float3 origin, Float3 direction) {                                      \
-            using namespace method;                                                                                    \
+        [](const PackedScene& packed, Float3 origin, Float3 direction) {                                      \
+            using namespace counted::method;                                                                                    \
             return start_face(view_of(packed), 0, make_ray(to_vec3(origin), to_vec3(direction)));                      \
         },                                                                                                             \
-        [](const tetrace::PackedScene& packed, std::uint32_t max_steps, Float3 origin, Float3 direction) {             \
-            method::TraceParams params{};                                                                              \
+        [](const PackedScene& packed, std::uint32_t max_steps, Float3 origin, Float3 direction) {             \
+            counted::method::TraceParams params{};                                                                              \
             params.start_tet = 0;                                                                                      \
             params.max_steps = max_steps;                                                                              \
-            const auto ray = method::make_ray(method::to_vec3(origin), method::to_vec3(direction));                    \
-            const auto hit = method::trace(method::view_of(packed), params, ray);                                      \
+            const auto ray = counted::method::make_ray(counted::method::to_vec3(origin), counted::method::to_vec3(direction));                    \
+            const auto hit = counted::method::trace(counted::method::view_of(packed), params, ray);                                      \
             return End{hit.face_id, hit.tet, hit.steps};                                                               \
         }
 
@@ -109,12 +69,12 @@ double deviation_of(double first, double others)
     return std::sqrt(2.0) * third * (others - first);
 }
 
-const std::vector<Method>& methods()
+const std::vector<CountedMethod>& methods()
 {
     // plane: 12 for apex and edges; a normal and its slope are 14 a plane; 5 for each that is left by, and 4 to compare
     // two. Its mean was measured, with other rays.
     static const std::set<int> three_products{3 * (3 + 9 + 3 + 5)};
-    static const std::vector<Method> list = {
+    static const std::vector<CountedMethod> list = {
         {METHOD_FUNCTIONS(plane), {59, 68, 77}, {97, 106, 115}, 68.2, 6.2},
         {METHOD_FUNCTIONS(plucker), {69, 92}, three_products, mean_of(69, 92), deviation_of(69, 92)},
         {METHOD_FUNCTIONS(stp), {51, 68}, three_products, mean_of(51, 68), deviation_of(51, 68)},
@@ -143,7 +103,7 @@ Stabbed stabbed_tet(Random& random)
 
 class MethodsOf : public testing::TestWithParam<std::size_t> {
 protected:
-    [[nodiscard]] static const Method& method() { return methods()[GetParam()]; }
+    [[nodiscard]] static const CountedMethod& method() { return methods()[GetParam()]; }
 };
 
 constexpr int samples = 20'000;
@@ -211,7 +171,7 @@ TEST_P(MethodsOf, starts_by_the_face_that_the_exact_ray_leaves_by)
 namespace {
 
 /// Whether a tet that is entered is left, also one that the ray misses.
-bool always_leaves(const Method& method)
+bool always_leaves(const CountedMethod& method)
 {
     return std::set<std::string>{"ms06", "maria", "project"}.contains(method.name);
 }
@@ -224,7 +184,7 @@ RandomTet corner_tet(float x)
 
 /// A ray from tet 0 that leaves it by face 0, which is linked to that of tet 1: a tet that lies beside the ray.
 constexpr Float3 inside{0.1f, 0.1f, 0.1f}, outwards{1, 0.9f, 0.8f};
-tetrace::PackedScene misled()
+PackedScene misled()
 {
     auto packed = packed_tets({corner_tet(0), corner_tet(10)});
     packed.tets[4].x = 1u << 2u;
@@ -235,7 +195,7 @@ tetrace::PackedScene misled()
 
 TEST(Methods, a_walk_that_finds_no_exit_is_lost_where_it_stands)
 {
-    for (const Method& method : methods()) {
+    for (const CountedMethod& method : methods()) {
         const bool may_find_none = !always_leaves(method);
         const End expected = may_find_none ? End{LOST, 1, 1} : End{NO_HIT, 1, 2};
         EXPECT_EQ(method.trace(misled(), 100, inside, outwards), expected) << method.name;
@@ -249,7 +209,7 @@ TEST(Methods, a_walk_that_goes_in_circles_is_lost_at_its_cap_or_begins_anew)
         packed.tets[quad].x = packed.tets[quad].z = quad < TET96_QUADS ? 1u << 2u : 0u;
     }
     packed.entry_ranges.assign(7, 0); // no face of a boundary, where project begins anew: it finds no path
-    for (const Method& method : methods()) {
+    for (const CountedMethod& method : methods()) {
         if (!always_leaves(method)) continue;
         const End expected = method.name == std::string("project") ? End{NO_HIT, NO_TET, 0} : End{LOST, 1, 100};
         EXPECT_EQ(method.trace(packed, 100, inside, outwards), expected) << method.name;

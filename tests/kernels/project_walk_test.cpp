@@ -1,0 +1,164 @@
+// The walk of project: no ray is lost, from outside, from inside, or given, and its answers are right.
+#include "core/mesh/locate.h"
+#include "core/rays/ray_offset.h"
+#include "tests/support/device_rays.h"
+#include "tests/support/hard_rays.h"
+#include "tests/support/project_on_grids.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+/// Whether the ray enters by the face.
+bool holds(const Grid& grid, std::uint32_t link, const right::Ray& ray)
+{
+    const auto corner = [&](std::uint32_t i) {
+        return right::vertex(grid.view, link >> 2, right::corner(link & 3u, i));
+    };
+    return right::side_at_entry(ray, corner(0), corner(1)) > 0 && right::side_at_entry(ray, corner(1), corner(2)) > 0 &&
+           right::side_at_entry(ray, corner(2), corner(0)) > 0;
+}
+
+} // namespace
+
+TEST(ProjectWalk, loses_no_ray_from_outside_and_no_ray_from_a_vertex_an_edge_or_a_face)
+{
+    Random random(62);
+    for (const auto& grid : grids()) {
+        int elsewhere = 0;
+        for (int i = 0; i < 1500; ++i) {
+            const Line inside = line_through(*grid, special_point(*grid, random), random);
+            const Line outside = from_outside(*grid, inside);
+            ASSERT_NE(traced(*grid, outside, NO_TET).face_id, LOST) << grid->name << ", ray " << i;
+            const std::uint32_t tet = grid->packed.packed_of_mesh[locate(grid->scene.tets, inside.origin)];
+            const auto ray = right::make_ray(right::to_vec3(inside.origin), right::to_vec3(inside.direction));
+            elsewhere += right::start_face(grid->view, tet, ray) == NO_EXIT;
+            ASSERT_NE(traced(*grid, inside, tet).face_id, LOST) << grid->name << ", ray " << i;
+        }
+        EXPECT_GT(elsewhere, 150) << grid->name << ": starts whose tet the ray does not cross";
+    }
+}
+
+TEST(ProjectWalk, loses_no_ray_that_is_given_and_never_hits_the_face_that_it_starts_on)
+{
+    std::uint64_t elsewhere = 0, from_beginning = 0, beyond = 0;
+    for (const auto& grid : grids()) {
+        const auto set = hard_ray_set(grid->scene, 0, 9 * 800);
+        const auto quads = given_quads(set, grid->packed);
+        sought = {};
+        for (std::size_t i = 0; i < set.rays.size(); ++i) {
+            const auto hit =
+                right::trace_given(grid->view, params_of(*grid, NO_TET), quads[i], quads[set.rays.size() + i]);
+            ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
+            if (set.rays[i].triangle != FREE_FACE) {
+                ASSERT_NE(hit.face_id, set.rays[i].triangle) << grid->name << ", ray " << i;
+            }
+            if (quads[i].w == NO_LINK) continue;
+            const auto ray = right::given_ray(quads[i], quads[set.rays.size() + i]);
+            elsewhere += !holds(*grid, quads[i].w, ray);
+        }
+        from_beginning += sought[1];
+        beyond += sought[2];
+        EXPECT_GT(sought[1], 100u) << grid->name;
+    }
+    EXPECT_GT(elsewhere, from_beginning + beyond) << "starts whose face does not hold the rounded ray";
+    EXPECT_GT(beyond, 0u);
+    RecordProperty("starts_elsewhere", std::to_string(elsewhere));
+    RecordProperty("starts_from_the_beginning", std::to_string(from_beginning));
+    RecordProperty("starts_beyond", std::to_string(beyond));
+}
+
+TEST(ProjectWalk, stays_lost_at_a_small_cap_where_it_is_on_no_cycle)
+{
+    Random random(66);
+    const Grid& grid = *grids().front();
+    int lost = 0;
+    for (int i = 0; i < 500; ++i) {
+        const Line line = line_through(grid, special_point(grid, random), random);
+        const std::uint32_t tet = grid.packed.packed_of_mesh[locate(grid.scene.tets, line.origin)];
+        const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
+        if (right::start_face(grid.view, tet, ray) == NO_EXIT) continue;
+        const std::uint32_t steps = traced(grid, line, tet).steps;
+        for (std::uint32_t cap = 1; cap < steps; ++cap) {
+            auto params = params_of(grid, tet);
+            params.max_steps = cap;
+            const Hit hit = to_hit(right::trace(grid.view, params, ray));
+            ASSERT_EQ(hit.face_id, LOST) << "ray " << i << ", cap " << cap;
+            ASSERT_EQ(hit.steps, cap);
+            ++lost;
+        }
+    }
+    EXPECT_GT(lost, 500);
+}
+
+TEST(ProjectWalk, is_right_by_exact_arithmetic_or_within_rounding_of_an_edge)
+{
+    Random random(63);
+    for (const auto& grid : grids()) {
+        int hits = 0, ties = 0;
+        for (int i = 0; i < 200; ++i) {
+            const Line line = from_outside(*grid, line_through(*grid, special_point(*grid, random), random));
+            if (!is_in_range(line)) continue;
+            const std::uint32_t ours = traced(*grid, line, NO_TET).face_id;
+            const std::uint32_t exact = nearest_triangle(grid->scene.mesh, line);
+            hits += exact != NO_HIT;
+            if (ours == exact) continue;
+            const auto settled =
+                grid->settler.settle({line.origin, line.direction}, ours, exact, tie_bound(line.origin));
+            ties += settled.kind == Settlement::Kind::tie;
+            EXPECT_NE(settled.kind, Settlement::Kind::wrong)
+                << grid->name << ", ray " << i << ": " << settled.reason << ", ours " << ours << ", exact " << exact;
+        }
+        EXPECT_GT(hits, 25) << grid->name;
+    }
+}
+
+TEST(ProjectWalk, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
+{
+    // Along lines of the domain's own squares and edges, where the look-up's square and the signs may differ.
+    Random random(64);
+    sought = {};
+    for (const auto& grid : grids()) {
+        const auto& lines = grid->scene.domain.lines;
+        const auto at = [&](std::size_t axis) {
+            return lines[axis][random.below(static_cast<std::uint32_t>(lines[axis].size()))];
+        };
+        for (int i = 0; i < 300; ++i) {
+            const Float3 from{2 * at(0), 2 * at(1), 3}, to{at(0), at(1), at(2)};
+            const Line line{from, without_small({to.x - from.x, to.y - from.y, to.z - from.z})};
+            const Hit hit = traced(*grid, line, NO_TET);
+            ASSERT_NE(hit.face_id, LOST) << grid->name << ", ray " << i;
+        }
+    }
+    EXPECT_GT(sought[0], 0u) << "rays whose square has no face that holds them";
+}
+
+TEST(ProjectWalk, has_the_same_bits_on_openmp_and_cuda_host_where_rays_pass_vertices_and_edges)
+{
+    const Scene& scene = grids().front()->scene;
+    const KernelId kernel{.method = Method::project};
+    const auto packed = pack(scene, kernel.layout, TetOrder::hilbert);
+    TraceJob job;
+    job.view = {{0.25f, 0, 3}, {-1, -1, -2}, {0.125f, 0, 0}, {0, 0.125f, 0}};
+    job.width = job.height = 17;
+    job.start_tet = NO_TET;
+    job.max_steps = packed.tet_count + 1;
+    std::vector<std::vector<Hit>> answers;
+    for (Backend* backend : all_backends())
+        if (backend->name() == "openmp" || backend->name() == "cuda-host")
+            answers.push_back(traced(*backend->open(0, kernel, {&scene.mesh, &packed}, {.threads = 2}), job));
+    ASSERT_EQ(answers.size(), 2u);
+    EXPECT_EQ(different_rays(answers[0], answers[1], 0), 0u);
+    EXPECT_GT(std::count_if(answers[0].begin(), answers[0].end(),
+                            [](const Hit& hit) { return hit.face_id != NO_HIT && hit.face_id != LOST; }),
+              20);
+}

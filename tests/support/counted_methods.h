@@ -1,0 +1,66 @@
+#pragma once
+
+// The exit-face methods on layout tet96, compiled as host C++ with numbers that count their operations; a namespace
+// each.
+
+#include "core/device/backend.h"
+#include "tests/support/counted.h"
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#define KERNEL_REAL tetrace::test::Counted
+#define KERNEL_REAL_HAS_NO_BITS
+#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet96.h"
+
+namespace tetrace::test::counted {
+
+#define KERNEL_METHOD_HEADER "kernels/methods/plane.h"
+namespace plane {
+#include "kernels/kernel_cpp.h"
+}
+#undef KERNEL_METHOD_HEADER
+
+#define KERNEL_METHOD_HEADER "kernels/methods/plucker.h"
+namespace plucker {
+#include "kernels/kernel_cpp.h"
+}
+#undef KERNEL_METHOD_HEADER
+#undef AS_SEEN
+
+#define KERNEL_METHOD_HEADER "kernels/methods/stp.h"
+namespace stp {
+#include "kernels/kernel_cpp.h"
+}
+#undef KERNEL_METHOD_HEADER
+
+#define KERNEL_METHOD_HEADER "kernels/methods/ms06.h"
+namespace ms06 {
+#include "kernels/kernel_cpp.h"
+}
+#undef KERNEL_METHOD_HEADER
+
+#define KERNEL_METHOD_HEADER "kernels/methods/maria.h"
+namespace maria {
+#include "kernels/kernel_cpp.h"
+}
+#undef KERNEL_METHOD_HEADER
+
+#define KERNEL_METHOD_HEADER "kernels/methods/project.h"
+namespace project {
+#include "kernels/kernel_cpp.h"
+}
+#undef KERNEL_METHOD_HEADER
+
+} // namespace tetrace::test::counted
+
+#undef KERNEL_REAL
+#undef KERNEL_REAL_HAS_NO_BITS
+#undef KERNEL_STRUCTURE_HEADER
+#undef KERNEL_ARRAYS_HEADER
+#undef KERNEL_LAYOUT_HEADER
