@@ -13,6 +13,7 @@
 #include <tuple>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -53,7 +54,7 @@ TEST_P(CompactPacking, unpacking_gives_the_tets_back)
     const Scene scene = make_cubes(6);
     for (const TetOrder order : {TetOrder::hilbert, TetOrder::input}) {
         const PackedScene packed = pack(scene, GetParam(), order);
-        const TetMesh back = test::unpack(packed);
+        const TetMesh back = unpack(packed);
         ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
         std::vector<std::uint32_t> same(back.tets.size());
         for (std::uint32_t i = 0; i < same.size(); ++i)
@@ -121,7 +122,7 @@ TEST_P(CompactPacking, every_bit_of_a_tet_matters)
 {
     const Scene scene = make_cubes(2);
     const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
-    const TetMesh whole = test::unpack(packed);
+    const TetMesh whole = unpack(packed);
     for (std::size_t word = 0; word < 20; ++word)
         for (const std::uint32_t bit : {0u, 3u, 17u, 31u}) {
             PackedScene spoilt = packed;
@@ -129,7 +130,7 @@ TEST_P(CompactPacking, every_bit_of_a_tet_matters)
             std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= 1u << bit;
             try {
-                EXPECT_FALSE(test::unpack(spoilt) == whole) << "word " << word << " bit " << bit;
+                EXPECT_FALSE(unpack(spoilt) == whole) << "word " << word << " bit " << bit;
             } catch (const Error& error) {
                 EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
             }

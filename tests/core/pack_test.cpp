@@ -14,13 +14,14 @@
 #include <set>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
 // The scene's tets in packed order, with vertices by position, as unpack() gives them.
 void expect_same_tets(const Scene& scene, const PackedScene& packed)
 {
-    const TetMesh back = test::unpack(packed);
+    const TetMesh back = unpack(packed);
     ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
     for (std::size_t i = 0; i < scene.tets.tets.size(); ++i) {
         const Tet& tet = scene.tets.tets[i];
@@ -76,7 +77,7 @@ TEST(Pack, hilbert_order_has_no_long_jumps)
 {
     const Scene scene = make_cubes(12);
     const auto longest_jump = [&](TetOrder order) {
-        const TetMesh mesh = test::unpack(pack(scene, Layout::tet80, order));
+        const TetMesh mesh = unpack(pack(scene, Layout::tet80, order));
         double longest = 0;
         for (std::size_t i = 1; i < mesh.tets.size(); ++i)
             longest = std::max(longest, length(to_double(mesh.vertices[mesh.tets[i].vertices[0]]) -
@@ -91,7 +92,7 @@ TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached)
 {
     const Scene scene = make_cubes(12);
     const PackedScene packed = pack(scene, Layout::tet80, TetOrder::reached);
-    const TetMesh mesh = test::unpack(packed);
+    const TetMesh mesh = unpack(packed);
     std::vector<bool> reached(mesh.tets.size());
     std::size_t count = 0;
     for (bool grows = true; grows;) {
@@ -122,7 +123,7 @@ TEST(Pack, every_word_of_a_tet_matters)
     const Scene scene = make_cubes(2);
     for (const auto layout : {Layout::tet80, Layout::tet96}) {
         const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
-        const TetMesh whole = test::unpack(packed);
+        const TetMesh whole = unpack(packed);
         const std::size_t words = layout == Layout::tet80 ? 20 : 24;
         for (std::size_t word = 0; word < words; ++word) {
             if (layout == Layout::tet96 && word < 16 && word % 4 == 3) continue; // padding
@@ -130,7 +131,7 @@ TEST(Pack, every_word_of_a_tet_matters)
             Quad& quad = spoilt.tets[word / 4];
             std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= 1u;
-            EXPECT_FALSE(test::unpack(spoilt) == whole) << name_of(layout) << " word " << word;
+            EXPECT_FALSE(unpack(spoilt) == whole) << name_of(layout) << " word " << word;
         }
     }
 }
@@ -146,7 +147,7 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
             Quad& quad = spoilt.tets[word / 4];
             std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= bit;
-            EXPECT_THROW((void)test::unpack(spoilt), Error) << "word " << word << ", bit " << bit;
+            EXPECT_THROW((void)unpack(spoilt), Error) << "word " << word << ", bit " << bit;
         }
 }
 

@@ -15,6 +15,7 @@
 #endif
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -221,7 +222,7 @@ TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
                                 traced.job, size / 2, size / 2);
     ASSERT_EQ(path.size(), hit.steps);
     EXPECT_EQ(path.back(), hit.tet);
-    const TetMesh mesh = test::unpack(traced.packed);
+    const TetMesh mesh = unpack(traced.packed);
     for (std::size_t i = 1; i < path.size(); ++i) {
         bool neighbours = false;
         for (const auto link : mesh.tets[path[i - 1]].links)
