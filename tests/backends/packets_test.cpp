@@ -1,6 +1,7 @@
 // Packets give the bits of the scalar kernel, at every width that this processor has.
 #include "backends/openmp/packet_session.h"
 #include "core/base/error.h"
+#include "tests/support/damaged_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"
 #include "tests/support/hard_rays.h"
@@ -178,6 +179,17 @@ TEST(Packets, lose_the_rays_that_the_scalar_kernel_loses)
             expect_scalar_bits(rays, job, "at most " + std::to_string(most) + " steps");
         }
     }
+}
+
+TEST(Packets, have_the_scalar_kernels_bits_where_links_lead_to_wrong_tets)
+{
+    const tetrace::DeviceRays rays(tetrace::test::make_damaged_cubes(6), tetrace::Layout::half32);
+    std::ptrdiff_t lost = 0;
+    for (const TraceJob& job : {rays.from_outside(64, 48), rays.from_outside(32, 24, 0), rays.from_inside(64, 48)}) {
+        lost += count_of(scalar_hits(rays, job), LOST);
+        expect_scalar_bits(rays, job, job.start_tet == NO_TET ? "from outside" : "from inside");
+    }
+    EXPECT_GT(lost, 0);
 }
 
 TEST(Packets, are_a_schedule_of_openmp_for_one_kernel)

@@ -4,7 +4,7 @@
 #include "bench/output/self_test_json.h"
 #include "core/base/error.h"
 #include "scenes/procedural.h"
-#include "tests/support/random.h"
+#include "tests/support/damaged_scene.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
@@ -34,17 +34,12 @@ LoadedScene small_cubes()
     return loaded;
 }
 
-/// Cubes whose free faces lead anywhere: walks enter tets that their rays miss.
+/// Walks in them enter tets that their rays miss.
 LoadedScene damaged_cubes()
 {
-    LoadedScene loaded = small_cubes();
-    auto& tets = loaded.scene.tets.tets;
-    const auto count = static_cast<std::uint32_t>(tets.size());
-    Random random(30);
-    for (Tet& tet : tets)
-        for (std::size_t face = 0; face < 4; ++face)
-            if (tet.links[face] != NO_LINK && tet.faces[face] == FREE_FACE)
-                tet.links[face] = make_link(random.below(count), random.below(4));
+    LoadedScene loaded;
+    loaded.scene = make_damaged_cubes(6);
+    loaded.scene.name = "cubes";
     return loaded;
 }
 

@@ -12,6 +12,8 @@ struct Packets {
     uint x[most_packets], y[most_packets]; // first pixels
     uint record[most_packets];             // in front of which all rays stand, or by whose tet they have ended; NO_LINK
                                            // where they have no common way: some may be in the domain
+    uint carried[3][most_packets];         // of those that stand in front of a record, see Front
+    uint turn[most_packets];               // of those too
     uint exit[most_packets];               // of those that have ended
     uint steps[most_packets];              // tets left
     bool has_ended[most_packets];
@@ -75,6 +77,7 @@ LANE_FN Imaged select(Mask mask, const Imaged& a, const Imaged& b)
 // LANES beams on their way.
 struct BeamWalk : Way {
     Imaged carried[3];
+    Words apexes[3];    // the records whose apexes they are
     Floats column, row; // of their middle
     Words exit, steps;
     uint begun, ended;
@@ -116,8 +119,10 @@ LANE_FN void see_corners(const PacketJob& job, const Eye& eye, const BeamWalk& w
 // Lets beams enter tets by faces whose corners they carry then.
 LANE_FN void enter_tets_by(BeamWalk& walk, Mask lanes, Words links, const Imaged* corners)
 {
-    for (uint i = 0; i < 3; i++)
+    for (uint i = 0; i < 3; ++i) {
         walk.carried[i] = select(lanes, corners[i], walk.carried[i]);
+        walk.apexes[i] = select(lanes, record_of_corner(links, i), walk.apexes[i]);
+    }
     walk.record = select(lanes, links, walk.record);
     walk.live |= lanes_of(lanes);
 }
@@ -170,10 +175,14 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
                     s2 = sure_sides(walk.carried[2], apex);
     const Mask replaced[3] = {s2.left & s1.right, s0.left & s2.right, s1.left & s0.right};
     const uint going = walk.live & lanes_of(replaced[0] | replaced[1] | replaced[2]);
-    for (uint i = 0; i < 3; i++)
+    for (uint i = 0; i < 3; ++i) {
         walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
+        walk.apexes[i] = select(replaced[i], walk.record, walk.apexes[i]);
+    }
     walk.steps = select(mask_of(going), walk.steps + all(1u), walk.steps);
+    const Words turn = walk.turn;
     const Words exits = exits_of(walk, replaced, at.exits.of);
+    walk.turn = select(mask_of(going), walk.turn, turn); // beams that stop here keep theirs
     const uint ended = going & lanes_of(equal(exits & all(3u), all(HALF32_END)));
     walk.exit = select(mask_of(ended), exits, walk.exit);
     walk.ended |= ended;
@@ -200,6 +209,8 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
 {
     const uint lanes = aim(eye, packets, first, walk);
     walk.turn = walk.record = walk.steps = Words{};
+    for (Words& apex : walk.apexes)
+        apex = Words{};
     walk.exit = all(NO_LINK);
     for (Imaged& vertex : walk.carried)
         vertex = Imaged{Floats{}, Floats{}, Floats{}, Floats{}};
@@ -214,16 +225,30 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
 
 LANE_FN void end(Packets& packets, uint first, const BeamWalk& walk)
 {
-    LaneWords record, exit, steps;
+    LaneWords record, carried[3], turn, exit, steps;
     store(record, select(mask_of(walk.begun), walk.record, all(NO_LINK)));
+    for (uint i = 0; i < 3; ++i)
+        store(carried[i], walk.apexes[i]);
+    store(turn, walk.turn);
     store(exit, walk.exit);
     store(steps, walk.steps);
-    for (uint lane = 0; lane < LANES && first + lane < packets.count; lane++) {
-        packets.record[first + lane] = record.of[lane];
-        packets.exit[first + lane] = exit.of[lane];
-        packets.steps[first + lane] = steps.of[lane];
-        packets.has_ended[first + lane] = (walk.ended >> lane & 1u) != 0;
+    for (uint lane = 0; lane < LANES && first + lane < packets.count; ++lane) {
+        const uint number = first + lane;
+        packets.record[number] = record.of[lane];
+        for (uint i = 0; i < 3; ++i)
+            packets.carried[i][number] = carried[i].of[lane];
+        packets.turn[number] = turn.of[lane];
+        packets.exit[number] = exit.of[lane];
+        packets.steps[number] = steps.of[lane];
+        packets.has_ended[number] = (walk.ended >> lane & 1u) != 0;
     }
+}
+
+// Where a packet goes on that its beam has left in front of a record.
+LANE_FN Front front_of(const Packets& packets, uint number)
+{
+    const auto& carried = packets.carried;
+    return {packets.record[number], {carried[0][number], carried[1][number], carried[2][number]}, packets.turn[number]};
 }
 
 // The beams of a block's packets, as far as they come.

@@ -39,10 +39,10 @@ LANE_FN uint steps_before(const PacketJob& job)
     return job.start_tet == NO_TET ? 0 : 1;
 }
 
-// Lanes of several packets that have one deepest axis. records: that all rays of a packet stand in front of, or
-// NO_LINK.
+// Lanes of several packets of a block, by their numbers, that have one deepest axis.
 template <int z, uint count>
-[[gnu::noinline]] void trace_lanes(const PacketJob& job, Packet* packets, const ByAxis* lanes, const uint* records)
+[[gnu::noinline]] void trace_lanes(const PacketJob& job, const Packets& block, const uint* numbers, Packet* packets,
+                                   const ByAxis* lanes)
 {
     Walk<z> walks[count];
     for (uint i = 0; i < count; i++) {
@@ -52,8 +52,8 @@ template <int z, uint count>
             seen = Seen{Floats{}, Floats{}};
         walks[i].live = 0;
         if (lanes[i].of[z] == 0) continue;
-        if (records[i] != NO_LINK)
-            enter_record(job, packets[i], walks[i], lanes[i].of[z], records[i]);
+        if (block.record[numbers[i]] != NO_LINK)
+            go_on_from(job, packets[i], walks[i], lanes[i].of[z], front_of(block, numbers[i]));
         else if (job.start_tet == NO_TET)
             enter_domain(job, packets[i], walks[i], lanes[i].of[z]);
         else
@@ -76,18 +76,18 @@ void trace_packets(const PacketJob& job, const Packets& block, const uint* numbe
 {
     Packet packets[count];
     ByAxis lanes[count];
-    uint records[count], any[3] = {};
-    for (uint i = 0; i < count; i++) {
-        make_rays(job, block.x[numbers[i]], block.y[numbers[i]], packets[i]);
-        records[i] = block.record[numbers[i]];
-        if (records[i] != NO_LINK) packets[i].steps = all(block.steps[numbers[i]] - steps_before(job));
+    uint any[3] = {};
+    for (uint i = 0; i < count; ++i) {
+        const uint number = numbers[i];
+        make_rays(job, block.x[number], block.y[number], packets[i]);
+        if (block.record[number] != NO_LINK) packets[i].steps = all(block.steps[number] - steps_before(job));
         lanes[i] = by_deepest_axis(packets[i]);
-        for (uint axis = 0; axis < 3; axis++)
+        for (uint axis = 0; axis < 3; ++axis)
             any[axis] |= lanes[i].of[axis];
     }
-    if (any[0] != 0) trace_lanes<0, count>(job, packets, lanes, records);
-    if (any[1] != 0) trace_lanes<1, count>(job, packets, lanes, records);
-    if (any[2] != 0) trace_lanes<2, count>(job, packets, lanes, records);
+    if (any[0] != 0) trace_lanes<0, count>(job, block, numbers, packets, lanes);
+    if (any[1] != 0) trace_lanes<1, count>(job, block, numbers, packets, lanes);
+    if (any[2] != 0) trace_lanes<2, count>(job, block, numbers, packets, lanes);
     for (Packet& packet : packets)
         write_counted_hits(job, packet);
 }

@@ -57,6 +57,10 @@ LANE_FN Mask without(Mask a, Mask b)
 {
     return mask_of(lanes_of(a) & ~lanes_of(b));
 }
+LANE_FN Mask neither(Mask a, Mask b)
+{
+    return mask_of(~(lanes_of(a) | lanes_of(b)));
+}
 LANE_FN Mask greater(Floats a, Floats b)
 {
     return {_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ)};
@@ -83,6 +87,10 @@ using Mask = Words; // all bits of a lane, or none
 LANE_FN Mask without(Mask a, Mask b)
 {
     return a & ~b;
+}
+LANE_FN Mask neither(Mask a, Mask b)
+{
+    return ~(a | b);
 }
 LANE_FN Mask greater(Floats a, Floats b)
 {

@@ -58,7 +58,7 @@ template <int z>
             const uint link = job.entry_links[i];
             Seen corners[3];
             for (uint corner_i = 0; corner_i < 3; corner_i++)
-                corners[corner_i] = apex_seen(job, packet, walk.shear, (link & ~3u) | corner(link & 3u, corner_i));
+                corners[corner_i] = apex_seen(job, packet, walk.shear, record_of_corner(link, corner_i));
             const uint entering = lanes_entering(packet, waiting, corners);
             if (entering != 0) enter_record(job, packet, walk, entering, link);
             waiting &= ~(entering | packet.left_to_scalar);
@@ -71,7 +71,7 @@ template <int z>
 LANE_FN Quad corners_of(const PacketJob& job, Words links, uint i)
 {
     LaneWords offsets;
-    store(offsets, ((links & all(~3u)) | corner(links & 3u, i)) * (4 * HALF32_QUADS));
+    store(offsets, record_of_corner(links, i) * (4 * HALF32_QUADS));
     return load_quads(job.records, offsets);
 }
 

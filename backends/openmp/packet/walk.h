@@ -25,17 +25,41 @@ LANE_FN Words corner(Words face, uint index)
     return (all(0x634B39u) >> (6u * face + 2u * index)) & 3u;
 }
 
+// Record of a face's corner: that which has it as its apex.
+LANE_FN uint record_of_corner(uint link, uint index)
+{
+    return (link & ~3u) | corner(link & 3u, index);
+}
+LANE_FN Words record_of_corner(Words links, uint index)
+{
+    return (links & all(~3u)) | corner(links & 3u, index);
+}
+
+// Where several lanes are together: in front of a record, with the vertices that they carry there.
+struct Front {
+    uint record;
+    uint carried[3]; // records whose apexes they are
+    uint turn;
+};
+
+// Lets lanes go on from there.
+template <int z>
+LANE_FN void go_on_from(const PacketJob& job, const Packet& packet, Walk<z>& walk, uint lanes, const Front& front)
+{
+    const Mask mask = mask_of(lanes);
+    for (uint i = 0; i < 3; ++i)
+        walk.carried[i] = select(mask, apex_seen(job, packet, walk.shear, front.carried[i]), walk.carried[i]);
+    walk.turn = select(mask, all(front.turn), walk.turn);
+    walk.record = select(mask, all(front.record), walk.record);
+    walk.live |= lanes;
+}
+
 // Lets lanes enter a tet by the face that a record is of.
 template <int z>
 LANE_FN void enter_record(const PacketJob& job, const Packet& packet, Walk<z>& walk, uint lanes, uint record)
 {
-    const Mask mask = mask_of(lanes);
-    for (uint i = 0; i < 3; i++) {
-        const Seen seen = apex_seen(job, packet, walk.shear, (record & ~3u) | corner(record & 3u, i));
-        walk.carried[i] = select(mask, seen, walk.carried[i]);
-    }
-    walk.record = select(mask, all(record), walk.record);
-    walk.live |= lanes;
+    const auto corner_record = [&](uint index) { return record_of_corner(record, index); };
+    go_on_from(job, packet, walk, lanes, {record, {corner_record(0), corner_record(1), corner_record(2)}, 0});
 }
 
 // The lanes of the packet that see q to the left of p, those that see it to the right, and ties.
@@ -94,9 +118,10 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     const Seen apex = seen_at(packet, walk.shear, at.apex.of);
     const Sides s0 = sides_of(walk.carried[0], apex), s1 = sides_of(walk.carried[1], apex),
                 s2 = sides_of(walk.carried[2], apex);
-    // The table of exits, which is the same whichever corner comes first: the vertex goes behind which, in their
-    // order, a right side is followed by a left one.
-    const Mask replaced[3] = {without(s2.left, s1.left), without(s0.left, s2.left), without(s1.left, s0.left)};
+    // As left_behind() of carried_walk.h. Sides that are all alike, where the ray misses the tet, come from wrong links
+    // alone; there as here the third vertex then goes.
+    const Mask first = without(s2.left, s1.left), second = without(s0.left, s2.left);
+    const Mask replaced[3] = {first, second, neither(first, second)};
     for (uint i = 0; i < 3; i++)
         walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
     Words exit = exits_of(walk, replaced, at.exits.of);
