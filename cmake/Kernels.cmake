@@ -55,6 +55,31 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
 endif()
 
+# Packets of rays: the widths that are compiled, from 4 lanes up. Which of them the processor runs is asked at run time.
+set(TETRACE_PACKET_LANES 16 CACHE STRING "Most lanes of a packet: 16 (AVX-512), 8 (AVX2) or 4; other processors than x86-64 have 4")
+set_property(CACHE TETRACE_PACKET_LANES PROPERTY STRINGS 16 8 4)
+if(NOT TETRACE_PACKET_LANES MATCHES "^(4|8|16)$")
+  message(FATAL_ERROR "TETRACE_PACKET_LANES is '${TETRACE_PACKET_LANES}'; accepted are 4, 8 and 16")
+endif()
+set(TETRACE_PACKET_WIDTHS 4)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  foreach(lanes 8 16)
+    if(lanes LESS_EQUAL TETRACE_PACKET_LANES)
+      list(APPEND TETRACE_PACKET_WIDTHS ${lanes})
+    endif()
+  endforeach()
+endif()
+set(tetrace_packet_flags_8 -mavx2)
+set(tetrace_packet_flags_16 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512)
+
+# tetrace_compile_packets(<target> <lanes>): how a target is compiled whose source has packets of that width.
+function(tetrace_compile_packets target lanes)
+  target_compile_definitions(${target} PRIVATE LANES=${lanes})
+  target_link_libraries(${target} PRIVATE tetrace_options)
+  target_compile_options(${target} PRIVATE ${TETRACE_HOST_FLAGS_exact} -Wno-psabi ${tetrace_packet_flags_${lanes}})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+endfunction()
+
 find_program(TETRACE_XZ xz REQUIRED DOC "Packs the kernels that the program carries, and the bundle's scenes")
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB_RECURSE TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)

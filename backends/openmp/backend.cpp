@@ -51,8 +51,8 @@ public:
     {
         const PackedScene& packed = packed_scene(*this, 0, kernel, scene);
         if (kernel.schedule == Schedule::packets)
-            return std::make_unique<openmp::PacketSession>(openmp::packet_kernels().front(), kernel.task, packed,
-                                                           threads_of(options));
+            return std::make_unique<openmp::PacketSession>(openmp::packet_kernel(options.packet_lanes), kernel.task,
+                                                           packed, threads_of(options));
         return std::make_unique<openmp::OpenmpSession>(openmp::find_function(openmp::compiled_kernels(), kernel),
                                                        kernel.task, packed, threads_of(options),
                                                        tile_height_for(devices_[0], options));

@@ -60,14 +60,24 @@ void trace_given(const void* context, std::uint32_t number)
 std::vector<PacketKernel> kernels_of_host()
 {
     std::vector<PacketKernel> kernels;
-#ifdef TETRACE_WIDE_PACKETS
+#if MOST_PACKET_LANES >= 16
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
         kernels.push_back({16, tetrace_trace_block_16, tetrace_trace_rays_16});
+#endif
+#if MOST_PACKET_LANES >= 8
     if (__builtin_cpu_supports("avx2")) kernels.push_back({8, tetrace_trace_block_8, tetrace_trace_rays_8});
 #endif
     kernels.push_back({4, tetrace_trace_block_4, tetrace_trace_rays_4});
     return kernels;
+}
+
+std::string why_no_packets(unsigned lanes)
+{
+    if (lanes > MOST_PACKET_LANES)
+        return "this build has none of more than " + std::to_string(MOST_PACKET_LANES) +
+               " (CMake's TETRACE_PACKET_LANES)";
+    return std::string("this processor lacks ") + (lanes == 8 ? "AVX2" : "AVX-512 (F, BW, DQ, VL)");
 }
 
 std::uint32_t* copy_of(const std::vector<Quad>& quads)
@@ -143,6 +153,17 @@ const std::vector<PacketKernel>& packet_kernels()
 {
     static const std::vector<PacketKernel> kernels = kernels_of_host();
     return kernels;
+}
+
+PacketKernel packet_kernel(unsigned lanes)
+{
+    std::string widths;
+    for (const PacketKernel& kernel : packet_kernels()) {
+        if (lanes == kernel.lanes || lanes == 0) return kernel;
+        widths += (widths.empty() ? "" : ", ") + std::to_string(kernel.lanes);
+    }
+    throw Error(ErrorKind::unsupported, "there are no packets of " + std::to_string(lanes) +
+                                            " lanes: " + why_no_packets(lanes) + "; there are some of " + widths);
 }
 
 PacketSession::PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads)

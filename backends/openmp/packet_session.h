@@ -14,8 +14,11 @@ struct PacketKernel {
     TraceBlock* trace;
     TraceRays* rays;
 };
-/// Those that this processor runs, the widest first; never empty.
+/// Those that this build has and this processor runs, the widest first; never empty.
 [[nodiscard]] const std::vector<PacketKernel>& packet_kernels();
+/// The one with so many lanes; 0: the widest. Throws Error{unsupported} that says why it is missing, and which there
+/// are.
+[[nodiscard]] PacketKernel packet_kernel(unsigned lanes);
 
 /// Traces packets of primary or given rays through layout half32: schedule packets. The bits are those of schedule
 /// tiles.

@@ -121,6 +121,17 @@ void set_tile(Options& options, const std::string& text)
     options.tile_height = text == "8x4" ? 4 : 8;
 }
 
+void set_packet_lanes(Options& options, const std::string& text)
+{
+    std::vector<std::string> accepted;
+    for (const unsigned lanes : packet_widths) {
+        accepted.push_back(std::to_string(lanes));
+        if (text == accepted.back()) options.packet_lanes = lanes;
+    }
+    if (std::find(accepted.begin(), accepted.end(), text) == accepted.end())
+        reject_value("--packet-lanes", text, join_alternatives(accepted));
+}
+
 void set_samples(Options& options, const std::string& text)
 {
     options.samples = static_cast<unsigned>(parse_count("--samples", text, 3, 10000));
@@ -287,6 +298,10 @@ std::vector<OptionRow> ray_options()
         {"Rays", "--tile", "WxH",
          "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
          false, set_tile},
+        {"Rays", "--packet-lanes", "N",
+         "Rays of a packet, for rows of schedule 'packets': 4, 8 or 16. Where the processor or the build lacks that "
+         "width, those rows are unsupported. Default: the widest there is.",
+         tracing, false, set_packet_lanes},
         {"Rays", "--buffer-limit", "SIZE",
          "Treat every device's largest buffer as this small: bytes, or with K, M, G or T behind it. The array of tets "
          "is bound in parts that fit; where they do not suffice, the row is unsupported. Default: what each device "

@@ -69,6 +69,7 @@ struct Options {
 
     unsigned threads = 0;           ///< 0: all that the process may use
     unsigned tile_height = 0;       ///< 4 or 8; 0: tile_height_for() each device
+    unsigned packet_lanes = 0;      ///< one of packet_widths; 0: the widest there is
     std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
     unsigned samples = 10;
     double budget_s = 240; ///< for verifying and timing all rows

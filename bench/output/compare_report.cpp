@@ -118,7 +118,8 @@ std::string differences_text(const ResultComparison& comparison)
                               {"/host/cpu", "the processor"},
                               {"/host/system", "the system"},
                               {"/host/threads", "the threads that the process may use"},
-                              {"/threads", "the threads that it used"}};
+                              {"/threads", "the threads that it used"},
+                              {"/packet_lanes", "the lanes of packets"}};
     std::vector<std::string> differences;
     for (const Fact& fact : facts)
         if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))

@@ -117,14 +117,16 @@ nlohmann::json result_head(const Options& options)
 {
     const BuildIdentity build = build_identity();
     const HostIdentity host = host_identity();
-    return {{"schema_version", schema_version},
-            {"verb", name_of(options.verb)},
-            {"date", utc_now()},
-            {"version", build.version},
-            {"commit", build.commit},
-            {"compiler", build.compiler},
-            {"flags", build.flags},
-            {"host", {{"cpu", host.cpu}, {"system", host.system}, {"threads", host.threads}}}};
+    nlohmann::json head = {{"schema_version", schema_version},
+                           {"verb", name_of(options.verb)},
+                           {"date", utc_now()},
+                           {"version", build.version},
+                           {"commit", build.commit},
+                           {"compiler", build.compiler},
+                           {"flags", build.flags},
+                           {"host", {{"cpu", host.cpu}, {"system", host.system}, {"threads", host.threads}}}};
+    if (options.packet_lanes != 0) head["packet_lanes"] = options.packet_lanes;
+    return head;
 }
 
 } // namespace tetrace

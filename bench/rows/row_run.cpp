@@ -163,6 +163,7 @@ SessionOptions session_options(const Options& options)
     SessionOptions session;
     session.threads = resolved_threads(options);
     session.tile_height = options.tile_height;
+    session.packet_lanes = options.packet_lanes;
     session.max_buffer_bytes = options.buffer_limit;
     session.program_cache = program_cache();
     return session;

@@ -41,9 +41,13 @@ struct SceneData {
     const PackedScene* packed = nullptr;
 };
 
+/// Rays that a packet of schedule packets may have, each in a lane of a vector.
+inline constexpr unsigned packet_widths[] = {4, 8, 16};
+
 struct SessionOptions {
     unsigned threads = 0;                     ///< host threads; 0 is all that the process may use
     unsigned tile_height = 0;                 ///< 4 or 8; 0: tile_height_for() the device
+    unsigned packet_lanes = 0;                ///< of schedule packets, one of packet_widths; 0: the widest there is
     std::uint64_t max_buffer_bytes = 0;       ///< treat the device's largest buffer as this small; 0: as it is
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
 };

@@ -199,6 +199,10 @@ TEST(Options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_EQ(options.tile_height, 4u);
     EXPECT_EQ(options.buffer_limit, 65536u);
     EXPECT_TRUE(contains(rejection({"bench", "--tile", "4x8"}), "8x4 or 8x8"));
+    EXPECT_EQ(options.packet_lanes, 0u);
+    EXPECT_EQ(parse_options({"check", "--packet-lanes", "8"}).packet_lanes, 8u);
+    for (const char* const bad : {"0", "5", "32", "08", "all"})
+        EXPECT_TRUE(contains(rejection({"bench", "--packet-lanes", bad}), "4, 8 or 16")) << bad;
     EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent or packets"));
 }
 

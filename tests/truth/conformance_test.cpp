@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "scenes/procedural.h"
 #include "tests/support/damaged_scene.h"
+#include "tests/support/packet_widths.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
@@ -19,11 +20,31 @@ namespace {
 
 using nlohmann::json;
 
-/// Small: interpreters of kernels are among the devices.
-Options small_run(const std::string& backend, const std::string& rays, const std::string& structures)
+/// What is tested at once: a backend without its packets, or openmp's packets of one width.
+struct Part {
+    std::string backend;
+    unsigned packet_lanes = 0; ///< 0: no packets
+};
+
+std::string name_of(const Part& part)
 {
-    return parse_options({"check", "--backend", backend, "--structure", structures, "--method", "all", "--schedule",
-                          "tiles,persistent,packets", "--rays", rays, "--size", "32x24", "--views", "0,2"});
+    if (part.packet_lanes != 0) return fmt::format("packets_of_{}", part.packet_lanes);
+    std::string name = part.backend;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+/// Small: interpreters of kernels are among the devices.
+Options small_run(const Part& part, const std::string& rays, const std::string& structures)
+{
+    std::vector<std::string> words = {"check",    "--backend", part.backend, "--structure", structures,
+                                      "--method", "all",       "--rays",     rays,          "--size",
+                                      "32x24",    "--views",   "0,2",        "--schedule"};
+    if (part.packet_lanes == 0)
+        words.emplace_back("tiles,persistent");
+    else
+        words.insert(words.end(), {"packets", "--packet-lanes", std::to_string(part.packet_lanes)});
+    return parse_options(words);
 }
 
 LoadedScene small_cubes()
@@ -142,12 +163,23 @@ Backend& backend_named(const std::string& name)
 }
 
 /// All that run kernels of ours: Embree traces a structure of its own.
-std::vector<std::string> backend_names()
+std::vector<Part> all_parts()
 {
-    std::vector<std::string> names;
+    std::vector<Part> parts;
     for (const Backend* backend : all_backends())
-        if (backend->name() != "embree") names.push_back(backend->name());
-    return names;
+        if (backend->name() != "embree") parts.push_back({backend->name()});
+    for (const unsigned lanes : packet_widths)
+        parts.push_back({"openmp", lanes});
+    return parts;
+}
+
+/// The rows of tests/expected/ that a part has.
+json rows_of(const Part& part, const json& rows)
+{
+    json result = json::object();
+    for (const auto& [name, status] : rows.items())
+        if ((name.find("/packets") != std::string::npos) == (part.packet_lanes != 0)) result[name] = status;
+    return result;
 }
 
 bool may_find_no_exit(Method method)
@@ -155,12 +187,18 @@ bool may_find_no_exit(Method method)
     return method == Method::plane || method == Method::plucker || method == Method::stp;
 }
 
-class Conformance : public testing::TestWithParam<std::string> {
+class Conformance : public testing::TestWithParam<Part> {
 protected:
+    void SetUp() override
+    {
+        const std::string reason = why_no_packets_of(GetParam().packet_lanes);
+        if (!reason.empty()) GTEST_SKIP() << reason;
+    }
+
     /// Returns the text of the file to write where there is none.
     static std::string check_device(Backend& backend, std::size_t device)
     {
-        const Options options = small_run(backend.name(), names_of(traced_kinds), "cdt,bvh");
+        const Options options = small_run(GetParam(), names_of(traced_kinds), "cdt,bvh");
         SceneWork scene(small_cubes(), options);
         const auto rows = verified_rows(rows_on(backend, device, options), scene, options);
         const std::string name = backend.devices()[device].implementation + ".json";
@@ -168,7 +206,7 @@ protected:
         if (!std::filesystem::exists(path)) return fmt::format("tests/expected/{}:\n{}\n", name, file_of(rows).dump(2));
         const json file = json::parse(read_text(path));
         compare(name, "self_test", file.at("self_test"), found_self_test(rows));
-        compare(name, "rows", expected_rows(file), found_rows(rows));
+        compare(name, "rows", rows_of(GetParam(), expected_rows(file)), found_rows(rows));
         return {};
     }
 };
@@ -177,7 +215,7 @@ protected:
 
 TEST_P(Conformance, of_each_device_is_what_is_expected_of_its_implementation)
 {
-    Backend& backend = backend_named(GetParam());
+    Backend& backend = backend_named(GetParam().backend);
     std::string missing;
     bool found = false;
     for (std::size_t i = 0; i < backend.devices().size(); ++i)
@@ -192,8 +230,8 @@ TEST_P(Conformance, of_each_device_is_what_is_expected_of_its_implementation)
 
 TEST_P(Conformance, of_lost_rays_is_that_of_all_others)
 {
-    Backend& backend = backend_named(GetParam());
-    const Options options = small_run(backend.name(), "primary", "cdt");
+    Backend& backend = backend_named(GetParam().backend);
+    const Options options = small_run(GetParam(), "primary", "cdt");
     SceneWork scene(damaged_cubes(), options);
     std::size_t compared = 0;
     for (std::size_t device = 0; device < backend.devices().size(); ++device) {
@@ -212,8 +250,5 @@ TEST_P(Conformance, of_lost_rays_is_that_of_all_others)
     if (compared == 0) GTEST_SKIP() << backend.devices().front().reason;
 }
 
-INSTANTIATE_TEST_SUITE_P(each, Conformance, testing::ValuesIn(backend_names()), [](const auto& test) {
-    std::string name = test.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(each, Conformance, testing::ValuesIn(all_parts()),
+                         [](const auto& test) { return name_of(test.param); });
