@@ -4,7 +4,7 @@
 
 namespace tetrace::openmp {
 
-/// Does all rays of a job, tile after tile, on so many threads. rays: the quads of those that are given, empty for task
+/// Does all rays of a job, tile after tile. rays: the quads of those that are given, empty for task
 /// trace. output: words_per_ray() a ray, row after row.
 using RunFunction = void(const PackedScene& scene, std::span<const Quad> rays, const TraceJob& job,
                          std::span<std::uint32_t> output, unsigned threads, unsigned tile_height);
@@ -27,7 +27,7 @@ struct CompiledKernel {
 /// fetched for it, its `steps` that of the triangles tested; all else is as compiled_kernels() have it. Never timed.
 [[nodiscard]] const std::vector<CompiledKernel>& counting_kernels();
 
-/// The function of a kernel in such a list; null where it has none. The schedule is no matter.
+/// The function of a kernel, of any schedule, in such a list; null where the list has none.
 [[nodiscard]] RunFunction* find_function(const std::vector<CompiledKernel>& kernels, KernelId id);
 
 } // namespace tetrace::openmp

@@ -1,18 +1,6 @@
 #include "backends/openmp/session.h"
 
-#include <algorithm>
-
 namespace tetrace::openmp {
-
-RunFunction* find_function(const std::vector<CompiledKernel>& kernels, KernelId id)
-{
-    const Task task = id.task;
-    id.task = Task::trace;
-    id.schedule = Schedule::tiles;
-    const auto found =
-        std::find_if(kernels.begin(), kernels.end(), [&](const CompiledKernel& kernel) { return kernel.id == id; });
-    return found == kernels.end() ? nullptr : found->function(task);
-}
 
 OpenmpSession::OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads,
                              unsigned tile_height)

@@ -94,11 +94,7 @@ std::string budget_text(double seconds)
 
 } // namespace
 
-Budget::Budget(double seconds, Clock clock)
-    : seconds_(seconds), clock_(clock ? std::move(clock) : [watch = Stopwatch()] { return watch.seconds(); }),
-      start_s_(clock_())
-{
-}
+Budget::Budget(double seconds, Clock clock) : seconds_(seconds), clock_(std::move(clock)), start_s_(clock_()) {}
 
 void Budget::plan(std::vector<RowRun>& rows, unsigned samples)
 {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_tracing.h"
 
 #include <functional>
 #include <limits>
@@ -8,9 +8,6 @@
 #include <vector>
 
 namespace tetrace {
-
-/// The wall clock of a run, in seconds from some start; tests give one of their own.
-using Clock = std::function<double()>;
 
 /// The fewest samples of a row: with fewer, intervals of ratios are too narrow (results/README.md).
 inline constexpr unsigned fewest_samples = 5;
@@ -25,8 +22,9 @@ inline constexpr unsigned fewest_samples = 5;
 class Budget {
 public:
     /// Starts the clock. seconds: infinity: there is no limit, and all below does nothing.
-    explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = {});
+    explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
 
+    [[nodiscard]] const Clock& clock() const { return clock_; }
     [[nodiscard]] double now() const { return clock_(); }
     [[nodiscard]] double left_s() const { return seconds_ - (now() - start_s_); }
 

@@ -52,10 +52,9 @@ Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
         const std::size_t rays = ray_count(row, view);
         if (rays == 0) continue; // rays that are given, and none is
         const TraceJob job = prepare_view(row, view);
-        const double start_s = budget.now();
-        row.session->launch(job);
-        pass.kernel_s += row.session->wait();
-        pass.wall_s += budget.now() - start_s;
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, job, budget.clock());
+        pass.kernel_s += kernel_s;
+        pass.wall_s += wall_s;
         if (hits == nullptr) continue;
         hits->resize(rays);
         row.session->read_back(*hits);

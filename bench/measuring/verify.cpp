@@ -112,10 +112,9 @@ private:
     {
         poison(hits);
         const TraceJob job = prepare_view(row, view);
-        const double start_s = budget_->now();
-        row.session->launch(job);
-        image.kernel_s = row.session->wait();
-        image.wall_s = budget_->now() - start_s;
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, job, budget_->clock());
+        image.kernel_s = kernel_s;
+        image.wall_s = wall_s;
         const Stopwatch download;
         row.session->read_back(hits);
         image.download_s = download.seconds();

@@ -1,5 +1,6 @@
 #include "bench/reproduce/row_recorder.h"
 
+#include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
 
@@ -120,11 +121,7 @@ void RowRecorder::time_rows(std::size_t part)
 void RowRecorder::time_row(std::size_t i, std::size_t part, bool counts)
 {
     RowRun& row = run_->rows[i];
-    const TraceJob job = job_of(row, part);
-    const Stopwatch watch;
-    row.session->launch(job);
-    const double kernel_s = row.session->wait();
-    const double wall_s = watch.seconds();
+    const auto [kernel_s, wall_s] = timed_launch(*row.session, job_of(row, part));
     if (!counts) return;
     records_[i].samples_s.push_back(kernel_s);
     records_[i].wall_samples_s.push_back(wall_s);
@@ -207,8 +204,7 @@ void RowRecorder::repeat_first_part()
         if (run_->rows[i].session != nullptr)
             guarded(run_->rows[i], [&] {
                 prepare(run_->rows[i], 0);
-                run_->rows[i].session->launch(job_of(run_->rows[i], 0));
-                static_cast<void>(run_->rows[i].session->wait());
+                static_cast<void>(timed_launch(*run_->rows[i].session, job_of(run_->rows[i], 0)));
                 if (hash_of_answers(run_->rows[i], 0) != run_->images[i].front().verdict.hit_hash)
                     throw Error(ErrorKind::wrong_result, "the first answers changed when they were asked for again");
             });

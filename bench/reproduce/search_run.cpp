@@ -1,6 +1,7 @@
 #include "bench/reproduce/search_run.h"
 
 #include "backends/openmp/backend.h"
+#include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "core/base/hash.h"
 #include "core/rays/search_set.h"
@@ -37,10 +38,8 @@ public:
             session = openmp_backend().open(0, kernel, {nullptr, &run_->tets.at(kernel.layout).scene},
                                             session_options(*options_));
         session->set_rays(rays.quads);
-        session->launch(search_job(rays.count()));
-        static_cast<void>(session->wait());
         Faces faces(rays.count(), POISON);
-        session->read_back(faces);
+        static_cast<void>(session->search(search_job(rays.count()), faces));
         return faces_[name] = std::move(faces);
     }
 
@@ -112,10 +111,9 @@ private:
         ImageRecord record;
         ImageVerdict& verdict = record.verdict;
         prepare(row, batch);
-        const Stopwatch watch;
-        row.session->launch(job_of(row, batch));
-        verdict.kernel_s = row.session->wait();
-        verdict.wall_s = watch.seconds();
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, job_of(row, batch));
+        verdict.kernel_s = kernel_s;
+        verdict.wall_s = wall_s;
         verdict.hit_hash = hash_of_answers(row, batch);
         verdict.download_s = row.session->download_s();
         record.chained_hash = hash_of(faces_, run_->images[i].empty() ? 0 : run_->images[i].back().chained_hash);

@@ -3,7 +3,7 @@
 #include "backends/openmp/backend.h"
 #include "bench/rows/scene_work.h"
 #include "core/base/error.h"
-#include "core/rays/ray_offset.h"
+#include "core/device/given_quads.h"
 #include "core/rays/ray_order.h"
 
 #include <string>
@@ -28,9 +28,7 @@ const std::vector<Hit>& RayStore::primary_hits(SceneWork& scene, std::size_t vie
     const auto session =
         openmp_backend().open(0, {}, {&scene.loaded().scene.mesh, &packed}, {.threads = scene.threads()});
     entry->second.resize(scene.rays_per_view());
-    session->launch(scene.job(view, &packed));
-    static_cast<void>(session->wait());
-    session->read_back(entry->second);
+    static_cast<void>(session->trace(scene.job(view, &packed), entry->second));
     return entry->second;
 }
 

@@ -1,6 +1,7 @@
 #include "bench/rows/row_tracing.h"
 
 #include "bench/rows/ray_store.h"
+#include "bench/terminal/stopwatch.h"
 #include "core/base/hash.h"
 
 namespace tetrace {
@@ -51,10 +52,20 @@ TraceJob prepare_view(RowRun& row, std::size_t view)
 
 double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits)
 {
-    row.session->launch(prepare_view(row, view));
-    const double seconds = row.session->wait();
-    row.session->read_back(hits);
-    return seconds;
+    return row.session->trace(prepare_view(row, view), hits);
+}
+
+Clock host_clock()
+{
+    return [watch = Stopwatch()] { return watch.seconds(); };
+}
+
+LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock)
+{
+    const double start_s = clock();
+    session.launch(job);
+    const double kernel_s = session.wait();
+    return {kernel_s, clock() - start_s};
 }
 
 } // namespace tetrace

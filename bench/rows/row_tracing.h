@@ -3,6 +3,7 @@
 #include "bench/rows/row_run.h"
 
 #include <cstddef>
+#include <functional>
 #include <span>
 
 namespace tetrace {
@@ -26,5 +27,19 @@ namespace tetrace {
 
 /// Traces a view and waits; returns device seconds. hits: ray_count() of them are read back.
 [[nodiscard]] double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits);
+
+/// What a launch took until the end of wait(): seconds of the device's kernel, and of the host's clock.
+struct LaunchTimes {
+    double kernel_s, wall_s;
+};
+
+/// A wall clock, in seconds from some start.
+using Clock = std::function<double()>;
+
+/// The steady clock, from now on.
+[[nodiscard]] Clock host_clock();
+
+/// Launches a job and waits; nothing is read back. clock: the host's; tests of budgets bring their own.
+[[nodiscard]] LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock = host_clock());
 
 } // namespace tetrace

@@ -31,9 +31,7 @@ std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std:
     const auto trace = [&](std::uint32_t cap) {
         Hit hit{};
         pixel.max_steps = cap;
-        session.launch(pixel);
-        (void)session.wait();
-        session.read_back({&hit, 1});
+        static_cast<void>(session.trace(pixel, {&hit, 1}));
         return hit;
     };
     // A walk that is cut off after k steps says in which tet it stood.

@@ -57,9 +57,7 @@ void count_steps(Built& built, SceneWork& scene, const Options& options)
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("counting steps, " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        row.session->launch(scene.job(view, &row.packed->scene));
-        static_cast<void>(row.session->wait());
-        row.session->read_back(hits);
+        static_cast<void>(row.session->trace(scene.job(view, &row.packed->scene), hits));
         built.totals.add(count_rays(hits));
     }
     built.bytes = row.session->bytes();

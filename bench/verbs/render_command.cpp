@@ -51,9 +51,7 @@ std::vector<Hit> trace(RowRun& row, std::size_t view)
 {
     const SceneWork& scene = *row.scene;
     std::vector<Hit> hits(scene.rays_per_view(), Hit{POISON, NO_TET, 0, 0, 0, 0});
-    row.session->launch(scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr));
-    (void)row.session->wait();
-    row.session->read_back(hits);
+    static_cast<void>(row.session->trace(scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr), hits));
     return hits;
 }
 

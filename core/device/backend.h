@@ -93,9 +93,9 @@ struct Yardstick {
 class Session {
 public:
     virtual ~Session() = default;
-    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before. quads:
-    /// as many a ray as quads_per_ray() says (kernels/layouts/layout.h), for a multiple of TILE_WIDTH rays. Before any
-    /// launch. Throws Error{unsupported} with both numbers where they exceed the largest buffer.
+    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before; before
+    /// any launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a multiple of TILE_WIDTH
+    /// rays. Throws Error{unsupported} with both numbers where they exceed the largest buffer.
     virtual void set_rays(std::span<const Quad> quads);
     /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so
     /// long that a watchdog fires (core/device/launch.h).
@@ -108,6 +108,10 @@ public:
     /// Task search: copies the faces that were found by the last launch, 0 to 3 or NO_EXIT, in the order of the rays.
     /// faces.size(): their number. Throws Error{wrong_result} where the kernel wrote elsewhere, or no face.
     void read_back(std::span<std::uint32_t> faces);
+    /// launch(), wait() and read_back() of one job; returns device seconds.
+    [[nodiscard]] double trace(const TraceJob& job, std::span<Hit> hits);
+    /// The same of task search.
+    [[nodiscard]] double search(const TraceJob& job, std::span<std::uint32_t> faces);
     /// Seconds that copying the output took in the last read_back(), its checks left out.
     [[nodiscard]] double download_s() const { return download_s_; }
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;

@@ -31,11 +31,6 @@ std::size_t words_per_ray(Task task)
     return task == Task::search ? 1 : HIT_WORDS;
 }
 
-std::size_t quads_per_ray(Task task)
-{
-    return task == Task::search ? RAY_QUADS : task == Task::rays ? GIVEN_RAY_QUADS : 0;
-}
-
 std::size_t output_words(const TraceJob& job, Task task)
 {
     return 2 * std::size_t{GUARD_WORDS} + words_per_ray(task) * job.width * job.height;

@@ -26,9 +26,6 @@ static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; se
 /// Words that a kernel writes a ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 
-/// Quads that a ray is given by; 0 of task trace.
-[[nodiscard]] std::size_t quads_per_ray(Task task);
-
 /// Words of an image's output, guards included.
 [[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
 

@@ -79,6 +79,22 @@ void Session::read_back(std::span<Hit> hits)
     std::memcpy(hits.data(), output.data() + GUARD_WORDS, hits.size_bytes());
 }
 
+double Session::trace(const TraceJob& job, std::span<Hit> hits)
+{
+    launch(job);
+    const double seconds = wait();
+    read_back(hits);
+    return seconds;
+}
+
+double Session::search(const TraceJob& job, std::span<std::uint32_t> faces)
+{
+    launch(job);
+    const double seconds = wait();
+    read_back(faces);
+    return seconds;
+}
+
 void Session::read_back(std::span<std::uint32_t> faces)
 {
     const auto output = checked_output(faces.size());

@@ -131,7 +131,6 @@ PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
                                                 " tets, its kernels reach at most " + std::to_string(traits.most));
     PackedScene packed;
     packed.layout = layout;
-    packed.order = order;
     packed.tet_count = static_cast<std::uint32_t>(scene.tets.tets.size());
 
     const auto tets = packing_order(scene, order);

@@ -29,7 +29,6 @@ struct StartTet {
 /// A scene in the form that crosses to a device: the tets of a CDT, or a BVH; the arrays of the other are empty.
 struct PackedScene {
     Layout layout = Layout::tet80;
-    TetOrder order = TetOrder::hilbert;
     std::uint32_t tet_count = 0;
     std::uint32_t divisions = 1;
 

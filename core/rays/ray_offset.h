@@ -1,9 +1,6 @@
 #pragma once
 
-#include "core/pack/packed_scene.h"
 #include "core/rays/ray_set.h"
-
-#include <vector>
 
 namespace tetrace {
 
@@ -17,13 +14,5 @@ namespace tetrace {
 /// The origin that a BVH's ray starts from: offset along the normal of the triangle that the ray starts on, to the side
 /// that it goes to; its own where it starts on none.
 [[nodiscard]] Float3 offset_origin(const GivenRay& ray, const TriangleMesh& mesh);
-
-/// The rays as Session::set_rays wants them: GIVEN_RAY_QUADS a ray (kernels/layouts/layout.h).
-/// packed: tets of the set's scene; links are numbered as it is.
-/// Throws Error{internal} where a link names none of its tets.
-[[nodiscard]] std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed);
-
-/// The same for a BVH: origins offset, no links.
-[[nodiscard]] std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh);
 
 } // namespace tetrace

@@ -188,7 +188,6 @@ PackedScene search_tets(std::uint32_t count, Layout layout)
     }
     PackedScene packed;
     packed.layout = layout;
-    packed.order = TetOrder::input;
     packed.tet_count = count;
     std::get<PackTets*>(traits_of(layout).pack)(packed, mesh);
     return packed;

@@ -1,8 +1,8 @@
 // On every device of every API that can be used here: rays that are given are traced as those of an image, to BVHs and
 // to tets, whatever was given before.
 #include "core/base/error.h"
+#include "core/device/given_quads.h"
 #include "core/device/self_test.h"
-#include "core/rays/ray_offset.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"

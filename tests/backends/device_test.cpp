@@ -61,10 +61,8 @@ Backend& backend_of(const Api& api)
 std::vector<std::uint32_t> searched(Session& session, const SearchRays& rays)
 {
     session.set_rays(rays.quads);
-    session.launch(search_job(rays.count()));
-    EXPECT_GT(session.wait(), 0);
     std::vector<std::uint32_t> faces(rays.count());
-    session.read_back(faces);
+    EXPECT_GT(session.search(search_job(rays.count()), faces), 0);
     return faces;
 }
 

@@ -1,6 +1,7 @@
 // Packets of each width give the bits of the scalar kernel.
 #include "backends/openmp/packet_session.h"
 #include "core/base/error.h"
+#include "core/device/given_quads.h"
 #include "tests/support/damaged_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"

@@ -3,6 +3,7 @@
 #include "backends/vulkan/session.h"
 #include "bench/truth/given_oracle.h"
 #include "bench/truth/oracle.h"
+#include "core/device/given_quads.h"
 #include "tests/support/given_scene.h"
 #include "tests/support/temporary_folder.h"
 
@@ -33,10 +34,8 @@ KernelId rt_kernel(Task task)
 
 std::vector<Hit> traced(Session& session, const TraceJob& job)
 {
-    session.launch(job);
-    EXPECT_GT(session.wait(), 0);
     std::vector<Hit> hits(std::size_t{job.width} * job.height);
-    session.read_back(hits);
+    EXPECT_GT(session.trace(job, hits), 0);
     return hits;
 }
 

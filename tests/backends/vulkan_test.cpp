@@ -4,6 +4,7 @@
 #include "backends/vulkan/instance.h"
 #include "backends/vulkan/session.h"
 #include "backends/vulkan/ticks.h"
+#include "core/device/given_quads.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"

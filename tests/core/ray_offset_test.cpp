@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/exact.h"
+#include "core/device/given_quads.h"
 #include "tests/support/given_scene.h"
 #include "tests/support/random.h"
 

@@ -176,10 +176,8 @@ TEST(SearchSet, openmp_finds_the_exits_with_every_method)
         const PackedScene tets = search_tets(200, kernel.layout);
         const auto session = openmp_backend().open(0, kernel, {nullptr, &tets}, {.threads = 2});
         session->set_rays(rays.quads);
-        session->launch(search_job(rays.count()));
-        EXPECT_GT(session->wait(), 0);
         std::vector<std::uint32_t> found(rays.count());
-        session->read_back(found);
+        EXPECT_GT(session->search(search_job(rays.count()), found), 0);
         std::size_t others = 0;
         for (std::size_t i = 0; i < found.size(); ++i)
             if (judge(rays, i, found[i]) != SearchVerdict::right) ++others;

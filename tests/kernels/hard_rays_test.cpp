@@ -6,7 +6,7 @@
 #include "bench/truth/hit_point.h"
 #include "core/base/exact.h"
 #include "core/base/random_words.h"
-#include "core/rays/ray_offset.h"
+#include "core/device/given_quads.h"
 #include "scenes/load.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/hard_rays.h"

@@ -1,5 +1,5 @@
 // Cycles of project: tets off the ray's path that its signs join in a circle, and the walk that begins anew there.
-#include "core/rays/ray_offset.h"
+#include "core/device/given_quads.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/hard_rays.h"
 #include "tests/support/project_on_grids.h"

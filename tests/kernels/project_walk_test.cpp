@@ -1,6 +1,6 @@
 // The walk of project: no ray is lost, from outside, from inside, or given, and its answers are right.
+#include "core/device/given_quads.h"
 #include "core/mesh/locate.h"
-#include "core/rays/ray_offset.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/hard_rays.h"
 #include "tests/support/project_on_grids.h"

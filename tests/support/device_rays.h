@@ -86,10 +86,8 @@ private:
 /// The hits of one launch.
 [[nodiscard]] inline std::vector<Hit> traced(Session& session, const TraceJob& job)
 {
-    session.launch(job);
-    (void)session.wait();
     std::vector<Hit> hits(std::size_t{job.width} * job.height);
-    session.read_back(hits);
+    (void)session.trace(job, hits);
     return hits;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "backends/openmp/backend.h"
+#include "core/device/given_quads.h"
 #include "core/mesh/locate.h"
 #include "core/rays/camera.h"
-#include "core/rays/ray_offset.h"
 #include "core/rays/ray_set.h"
 #include "scenes/procedural.h"
 
@@ -51,9 +51,7 @@ struct GivenScene {
         const auto session =
             openmp_backend().open(0, {.method = method, .task = Task::rays}, {&scene.mesh, &packed}, {.threads = 2});
         session->set_rays(given_quads(set, packed));
-        session->launch(given_job(set.rays.size(), packed.tet_count + 1, set.any_hit));
-        (void)session->wait();
-        session->read_back(answers);
+        (void)session->trace(given_job(set.rays.size(), packed.tet_count + 1, set.any_hit), answers);
         return answers;
     }
 
@@ -62,9 +60,7 @@ private:
     {
         hits.resize(std::size_t{job.width} * job.height);
         const auto session = openmp_backend().open(0, {}, {&scene.mesh, &packed}, {.threads = 2});
-        session->launch(job);
-        (void)session->wait();
-        session->read_back(hits);
+        (void)session->trace(job, hits);
     }
 };
 

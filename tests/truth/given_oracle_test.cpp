@@ -3,6 +3,7 @@
 #include "backends/embree/bvh_builder.h"
 #include "bench/truth/settle.h"
 #include "core/base/exact.h"
+#include "core/device/given_quads.h"
 #include "core/pack/pack_bvh.h"
 #include "core/rays/ray_order.h"
 #include "tests/support/given_scene.h"
@@ -58,10 +59,8 @@ std::vector<Hit> bvh_answers(const TriangleMesh& mesh, const PackedScene& bvh, c
         .structure = Structure::bvh, .method = Method::single, .layout = bvh.layout, .task = Task::rays};
     const auto session = openmp_backend().open(0, kernel, {&mesh, &bvh}, {.threads = 2});
     session->set_rays(given_quads_offset(set, mesh));
-    session->launch(given_job(set.rays.size(), 1, set.any_hit));
-    (void)session->wait();
     std::vector<Hit> answers(set.rays.size());
-    session->read_back(answers);
+    (void)session->trace(given_job(set.rays.size(), 1, set.any_hit), answers);
     return answers;
 }
 

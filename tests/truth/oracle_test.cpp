@@ -47,9 +47,7 @@ struct Traced {
     void trace(const KernelId& kernel, unsigned threads = 2)
     {
         const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {.threads = threads});
-        session->launch(job);
-        (void)session->wait();
-        session->read_back(hits);
+        (void)session->trace(job, hits);
     }
     [[nodiscard]] Verdicts judged() const { return Oracle(scene.mesh, 2).judge(0, job.view, size, size, hits); }
     [[nodiscard]] std::size_t hit_pixel() const { return std::size_t{size} / 2 * size + size / 2; }

@@ -1,0 +1,56 @@
+#include "core/device/given_quads.h"
+
+#include "core/base/error.h"
+#include "core/rays/ray_offset.h"
+
+#include <bit>
+#include <string>
+
+namespace tetrace {
+namespace {
+
+Quad given_quad(Float3 a, std::uint32_t last)
+{
+    return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z),
+            last};
+}
+
+std::uint32_t packed_link(std::uint32_t link, const PackedScene& packed)
+{
+    if (link == NO_LINK) return NO_LINK;
+    if (link_tet(link) >= packed.packed_of_mesh.size())
+        throw Error(ErrorKind::internal, "packing rays: one starts in tet " + std::to_string(link_tet(link)) + " of " +
+                                             std::to_string(packed.packed_of_mesh.size()));
+    return make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
+}
+
+// link_of and origin_of: what the quads have of a ray.
+template <class LinkOf, class OriginOf>
+std::vector<Quad> quads_of_rays(const RaySet& set, const LinkOf& link_of, const OriginOf& origin_of)
+{
+    const std::size_t count = set.rays.size();
+    std::vector<Quad> quads(GIVEN_RAY_QUADS * count);
+    for (std::size_t i = 0; i < count; i++) {
+        const GivenRay& ray = set.rays[i];
+        quads[i] = given_quad(ray.direction, link_of(ray));
+        quads[count + i] = given_quad(origin_of(ray), std::bit_cast<std::uint32_t>(ray.end));
+    }
+    return quads;
+}
+
+} // namespace
+
+std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed)
+{
+    return quads_of_rays(
+        set, [&](const GivenRay& ray) { return packed_link(ray.link, packed); },
+        [](const GivenRay& ray) { return ray.origin; });
+}
+
+std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh)
+{
+    return quads_of_rays(
+        set, [](const GivenRay&) { return NO_LINK; }, [&](const GivenRay& ray) { return offset_origin(ray, mesh); });
+}
+
+} // namespace tetrace
