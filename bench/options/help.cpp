@@ -20,43 +20,38 @@ struct VerbHelp {
 
 const VerbHelp verb_help[] = {
     {Verb::devices, "list the devices of every backend",
-     "Lists the devices of every backend of this build, grouped by the hardware that they are (whatever computes on "
-     "the "
-     "processor is one), with the limits that matter here and the outcome of a self-test of their arithmetic in exact "
-     "mode; then what cannot be used, with the reason, and the optional parts of this build with what would bring a "
-     "missing one.",
+     "Lists the devices of every backend of this build, grouped by hardware (everything that computes on the processor "
+     "is one group), with the limits that matter here and the outcome of a self-test of their arithmetic in exact "
+     "mode. Then it lists what cannot be used, with the reason, and the optional parts of this build, with what would "
+     "bring a missing one.",
      "  tetrace devices\n"
      "  tetrace devices --require openmp,vulkan   exit with 3 unless both are usable\n"},
     {Verb::scenes, "list the catalogue and the cache of built scenes",
-     "Lists the catalogue, where each scene comes from, and whether its mesh can be had here; then the cache of built "
-     "scenes with sizes. The cache lies in $XDG_CACHE_HOME/tetrace, else in ~/.cache/tetrace.",
+     "Lists the catalogue: where each scene comes from, and whether its mesh is available here. Then it lists the "
+     "cache of built scenes, with sizes. The cache is in $XDG_CACHE_HOME/tetrace, or else in ~/.cache/tetrace.",
      "  tetrace scenes\n"
      "  tetrace scenes --clear                    empty the cache\n"},
-    {Verb::build, "build scenes and tell what came out",
+    {Verb::build, "build scenes and report what came out",
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
-     "the rays of a camera set. --domain, --divisions and --switches take lists: every combination is built. One that "
-     "fails is a row with its reason; the others go on, and the exit code is 1.",
+     "the rays of a camera set. --domain, --divisions and --switches take lists: every combination is built. A "
+     "combination that fails is a row with its reason; the others are still built, and the exit code is 1.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
      "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"},
     {Verb::bench, "verify rows, then measure them",
-     "Loads the scenes, traces every selected view once with every row and judges each ray; then warms every row up "
-     "and "
-     "takes samples with Google Benchmark, rows interleaved at random; then measures each device's copy bandwidth and "
-     "launch latency. Rows of one piece of hardware are compared, with the 95 % interval of each ratio; emulations of "
-     "GPUs' APIs on the processor are told apart and never ranked with GPUs. A row is a combination of scene, "
-     "structure, method, layout, kind of rays, math mode, backend and device. Defaults: maria on tet80 and tet96, "
-     "project on half32 and both BVHs with every usable device of every backend, project's packets on openmp, and "
-     "Embree with single rays and packets of 16; --method all brings the other exit-face searches too.\n\n"
-     "A row's status: 'ok'; 'flawed', some rays of the method itself are wrong or lost: its walk found no exit face, "
-     "or "
-     "reached its cap of steps (their numbers are told, the rate stands; lost rays of maria and project, which claim "
-     "to have none, give exit code 1); 'wrong', it differs from openmp's answers (no rate, exit code 1); "
-     "'unsupported', the host or "
-     "the device cannot run this kernel, and 'skipped', there is no "
-     "usable device here or --budget has no time for the row, with the reason; 'error', with the reason. 'noisy' is "
-     "added where the interquartile range "
-     "exceeds 5 % of the median.\n\n"
+     "Loads the scenes, traces every selected view once with every row, and judges each ray. Then it warms up every "
+     "row and takes samples with Google Benchmark, with the rows interleaved at random. Last, it measures each "
+     "device's copy bandwidth and launch latency. Rows on one piece of hardware are compared, with the 95 % interval "
+     "of each ratio. GPU APIs that are emulated on the processor are marked, and never ranked with GPUs. A row is a "
+     "combination of scene, structure, method, layout, kind of rays, math mode, backend and device. Defaults: maria on "
+     "tet80 and tet96, project on half32 and both BVHs on every usable device of every backend, project's packets on "
+     "openmp, and Embree with single rays and with packets of 16. --method all adds the other exit-face searches.\n\n"
+     "A row's status is 'ok'; 'flawed', some rays of the method itself are wrong, or lost: the walk found no exit "
+     "face, or reached its cap of steps (the row has their numbers and keeps its rate; lost rays of maria and project, "
+     "which claim to have none, give exit code 1); 'wrong', the row differs from openmp's answers (no rate, exit code "
+     "1); 'unsupported', the host or the device cannot run this kernel; 'skipped', there is no usable device here, "
+     "or --budget has no time for the row; or 'error'. The last three have a reason. 'noisy' is added if the "
+     "interquartile range exceeds 5 % of the median.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
      "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
      "sample, and where their number is given there is no budget.",
@@ -67,61 +62,57 @@ const VerbHelp verb_help[] = {
      "  tetrace bench --filter 'tet96|embree' --list\n"
      "  tetrace bench --scene bunny --threads 1 --benchmark_repetitions=30\n"},
     {Verb::check, "judge every ray on every device, without timing",
-     "Traces every selected view with every row on every device and judges each ray in two questions.\n\n"
+     "Traces every selected view with every row on every device, and asks two questions of each ray.\n\n"
      "Does the device conform? In exact mode all bits of all hits are compared with openmp's for the same method and "
-     "layout. A cell of the matrix says 'bit-exact'; 'within N ulp', where t, u and v differ by no more than what the "
-     "device's self-test allows (nothing, where its division is correctly rounded); 'not exact', where the hits are "
-     "openmp's but the self-test shows that the device contracts or rounds otherwise; 'wrong', with the number of "
-     "rays, "
-     "also where rays were never written, words outside the hits were, or a second run gave other hits; "
-     "'unsupported', 'skipped' or 'error', with the reason. Equal hits have equal hashes.\n\n"
+     "layout. A cell of the matrix is 'bit-exact'; 'within N ulp', if t, u and v differ by no more than the device's "
+     "self-test allows (nothing, if its division is correctly rounded); 'not exact', if the hits are openmp's but the "
+     "self-test shows that the device contracts or rounds differently; 'wrong', with the number of rays, also if rays "
+     "were never written, words outside the hits were written, or a second run gave other hits; or 'unsupported', "
+     "'skipped' or 'error', with the reason. Equal hits have equal hashes.\n\n"
      "Is the method right? Each different answer is compared with Embree in robust mode, and each disagreement is "
-     "settled in exact arithmetic on the original triangles. Both answers right within rounding of a shared edge are a "
-     "tie; Embree's being the inexact one is settled; else the ray is wrong.\n\n"
-     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 where a device is wrong "
-     "or "
-     "not exact, or where maria or project, which claim to be robust, has wrong or lost rays; --allow-flawed lets its "
-     "wrong ones pass. Those of plane, plucker, stp, ms06 and Embree are counted and fail nothing. The rows of maria, "
-     "of project on half32 and of both BVHs are judged by default; other exit-face searches' where --method names "
-     "them, Embree's where --structure, --method, "
-     "--layout, --backend, --filter or --require does.",
+     "settled in exact arithmetic on the original triangles. If both answers are right within rounding of a shared "
+     "edge, they are a tie. If Embree's is the inexact one, the ray is settled for us. Otherwise the ray is wrong.\n\n"
+     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 if a device is wrong or "
+     "not exact, or if maria or project, which claim to be robust, have wrong or lost rays (--allow-flawed accepts "
+     "maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06 and Embree are counted, and fail nothing. "
+     "By default the rows of maria, of project on half32 and of both BVHs are judged. Other exit-face searches are "
+     "judged if --method names them, and Embree if --structure, --method, --layout, --backend, --filter or --require "
+     "does.",
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
      "  tetrace check --scene bunny --backend vulkan --picture differences\n"
      "  tetrace check --scene bunny --method all\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
-     "ray in false colour with a scale bar. The first selected row of each scene makes them.",
+     "ray in false colour with a scale bar. The pictures are made by the first selected row of each scene.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"},
-    {Verb::reproduce, "make the paper's tables and figures anew",
-     "Makes the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
-     "Tetrahedralization\" (GRAPP 2017), anew on every device at hand, its own numbers beside ours, with a verdict on "
-     "each claim that is computed from intervals: 'holds', 'does not hold' or 'not testable here'.\n\n"
-     "table3: tets, faces, memory and rates of each scene, built as the options say, and banana, bunny and armadillo "
-     "also as near to the paper's counts as known.\n\n"
+    {Verb::reproduce, "regenerate the paper's tables and figures",
+     "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
+     "Tetrahedralization\" (GRAPP 2017), on every device at hand. The paper's numbers stand next to ours, and each "
+     "claim gets a verdict that is computed from intervals: 'holds', 'does not hold' or 'not testable here'.\n\n"
+     "table3: tets, faces, memory and rates of each scene, built as the options say. Banana, bunny and armadillo are "
+     "also built as close to the paper's counts as known.\n\n"
      "table4: rays with a wrong result per image, by method, scene and device, as the exact oracle of 'check' judges "
-     "them, and where they are; project, which is ours, beside the paper's methods.\n\n"
+     "them, and where they are. project, which is ours, is compared with the paper's methods.\n\n"
      "table5: the exit search alone, without the walk around it: random tets, random rays that enter each by a known "
      "face, on one thread of the CPU and on every device. Every face that is found is compared with exact arithmetic. "
-     "It needs no scene; --searches takes fewer. A row takes about 80 MB for its rays.\n\n"
-     "table6: the CDT against BVHs: maria beside bvh2, which is the paper's kind of BVH, and cwbvh on every device, "
-     "and "
-     "beside Embree on the host. Frames a second, build time and memory; the ratio of their times, paired view by "
-     "view; "
-     "and after how many rays a slower build is paid. Of --method and --layout, what is a BVH's selects among the BVHs "
-     "alone, and what is the CDT's among its own.\n\n"
-     "growth: how cost grows with the mesh: banana in several sizes (--sizes), traced as table6 traces its scenes; "
-     "what a "
-     "ray visits, its time, build and memory, and the exponents of power laws of the number of occlusive faces that "
-     "fit "
-     "them. Not in the paper, and made where it is named; it traces every 64th view unless --views is given.\n\n"
-     "figure6: time and tets traversed, a point a view, their correlation, and pictures of the two extreme views.\n\n"
-     "The views are those of the camera set 'flight'; --views takes a sample of them, and numbers then have 95 % "
-     "intervals. Default scenes: banana, bunny and armadillo, as far as they can be had. With --out FILE, each "
-     "finished view or batch of searches is kept in FILE.journal: a run that was stopped goes on with --resume, and "
-     "pictures lie beside FILE. CSV has a row for each number, text, verdict and point of a figure; Markdown leaves "
-     "the points out. Exits with 1 where a row differs from openmp's.",
+     "No scene is needed; --searches sets the number. A row needs about 80 MB for its rays.\n\n"
+     "table6: the CDT against BVHs: maria is compared with bvh2, which is the paper's kind of BVH, and with cwbvh on "
+     "every device, and with Embree on the host. It has frames a second, build time and memory; the ratio of their "
+     "times, paired view by view; and the number of rays after which a slower build pays off. In --method and "
+     "--layout, the values of BVHs select among the BVHs only, and those of the CDT among its rows only.\n\n"
+     "growth: how cost grows with the mesh: banana in several sizes (--sizes), traced as table6 traces its scenes. It "
+     "has what a ray visits, its time, the build and the memory, and the exponents of the power laws of the number of "
+     "occlusive faces that fit them. It is not in the paper, and made only if it is named. It traces every 64th view "
+     "unless --views is given.\n\n"
+     "figure6: time over tets traversed, one point a view, their correlation, and pictures of the two extreme "
+     "views.\n\n"
+     "The views are those of the camera set 'flight'; --views selects a sample of them, and numbers then have 95 % "
+     "intervals. Default scenes: banana, bunny and armadillo, as far as they are available. With --out FILE, each "
+     "finished view or batch of searches is kept in FILE.journal, so that --resume can continue a run that was "
+     "stopped; pictures are written next to FILE. CSV has a row for each number, text, verdict and point of a figure; "
+     "Markdown leaves out the points. Exits with 1 if a row differs from openmp's.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
@@ -129,28 +120,27 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::compare, "compare two results of bench, row by row",
      "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "
-     "commit, driver, compiler or machine, as the head of the output tells. For each row it prints the ratio of the "
-     "rates (of the medians; above 1 B is faster) with its interval, and a verdict: 'SAME', the interval lies within "
-     "--tolerance; 'FASTER' and 'SLOWER', it does not hold 1; 'UNSURE', it does, and reaches beyond the tolerance, or "
-     "there are too few samples for an interval: more would tell. Rows that only one of them timed are 'FAILED' (wrong "
-     "or in error in B), 'MISSING' (not "
-     "in B, skipped or unsupported there) or 'NEW'; they have no part in the geometric mean.\n\n"
-     "The intervals come from ranks and make no assumption on the noise but that samples are independent: where "
-     "nothing changed, the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from "
-     "10 samples a row on; with fewer, down to 5, that is so for each row. What differs between two runs apart from "
-     "noise is not in their samples: it is what the tolerance is for.\n\n"
-     "Exits with 1 where a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing); with 2, "
-     "naming the rows, where scenes, views or hit hashes differ, since times of different work do not compare.",
+     "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "
+     "of the rates (of the medians; above 1, B is faster) with its interval, and a verdict: 'SAME', the interval lies "
+     "within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', it contains 1 and reaches "
+     "beyond the tolerance, or there are too few samples for an interval, so that more samples would decide. Rows that "
+     "only one of them timed are 'FAILED' (wrong or in error in B), 'MISSING' (not in B, or skipped or unsupported "
+     "there) or 'NEW'; they have no part in the geometric mean.\n\n"
+     "The intervals come from ranks, and assume of the noise only that samples are independent. If nothing changed, "
+     "the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from 10 samples a row "
+     "on; with fewer, down to 5, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples "
+     "do not show: that is what the tolerance is for.\n\n"
+     "Exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing). Exits with "
+     "2, and names the rows, if scenes, views or hit hashes differ, since times of different work do not compare.",
      "  tetrace compare before.json after.json\n"
      "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
      "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},
     {Verb::report, "write one HTML page from results",
      "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
-     "APIs beside each other with intervals, each device's roofline with its rows on it, the matrix of check, and "
-     "pictures. The page loads nothing and runs no script; it follows the reader's choice of light or dark, and "
-     "prints. Rows of several results stand in one chart where they traced the same rays through the same scene; "
-     "emulated "
-     "devices and GPUs never do.",
+     "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, and pictures. The "
+     "page loads nothing and runs no script. It follows the reader's choice of light or dark, and prints. Rows of "
+     "several results share a chart if they traced the same rays through the same scene. Emulated devices and GPUs "
+     "never share one.",
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
     {Verb::help, "describe the program or a verb",
@@ -170,7 +160,7 @@ constexpr std::size_t page_width = 100;
 std::string option_entry(const OptionRow& row)
 {
     const std::string head = row.value.empty() ? row.name : row.name + " " + row.value;
-    return fmt::format("  {}\n{}", head, wrapped(row.help, page_width, 6));
+    return fmt::format("  {}\n{}", head, wrapped_without_orphans(row.help, page_width, 6));
 }
 
 std::string option_entries(Verb verb)
@@ -192,7 +182,7 @@ std::string verb_text(const VerbHelp& entry)
     std::string text =
         fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}{}{}\n\n{}\n", name, entry.summary, name, files.names,
                     files.most > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
-                    wrapped(entry.description, page_width, 0));
+                    wrapped_without_orphans(entry.description, page_width, 0));
     if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
     text += fmt::format("Examples\n{}\n", entry.examples);
     return text + exit_codes;
@@ -209,7 +199,7 @@ std::string program_text()
             "Results go to standard output or to --out FILE; messages and progress to standard error. NO_COLOR is "
             "honoured.\n\n"
             "Examples\n"
-            "  tetrace bench                             the main job: bunny and armadillo beside Embree\n"
+            "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"
             "  tetrace build --scene dragon.ply          your own mesh\n\n";
     return text + exit_codes;

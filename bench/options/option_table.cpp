@@ -146,15 +146,16 @@ std::vector<OptionRow> reproduce_options()
 {
     return {
         {"Tables", "TABLE", "LIST",
-         "What of the paper to make anew: " + target_names() + ". Default: all but growth, which is not the paper's.",
+         "The tables and figures to regenerate: " + target_names() +
+             ". Default: all except growth, which is not in the paper.",
          bit(Verb::reproduce), true, add_target},
         {"Tables", "--searches", "TETSxRAYS",
-         "Exit searches of table5: random tets, and the rays that stab each, a multiple of 8. Default: 10000x16384, as "
-         "the paper has it.",
+         "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
+         "10000x16384, as in the paper.",
          bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.searches = parse_searches(v); }},
         {"Tables", "--sizes", "N",
-         "Sizes of growth: triangles of banana, or cubes along an axis where --scene is cubes. Default: 1500, 6000, "
-         "25000, 100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
+         "Sizes of growth: triangles of banana, or cubes along an axis with --scene cubes. Default: 1500, 6000, 25000, "
+         "100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
          bit(Verb::reproduce), true,
          [](Options& o, const std::string& v) {
              o.sizes.push_back(static_cast<std::uint32_t>(parse_count("--sizes", v, 2, most_banana)));
@@ -166,10 +167,9 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
-         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana of about N triangles), a mesh file "
-         "(PLY, OBJ, OFF, STL) or a .tet file. "
-         "May be repeated; several with commas between. Default: bunny and armadillo, or the embedded scenes where "
-         "those cannot be had.",
+         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana with about N triangles), a mesh file "
+         "(PLY, OBJ, OFF, STL), or a .tet file. May be repeated, or a list with commas. Default: bunny and armadillo, "
+         "or the embedded scenes if those are missing.",
          building, true, [](Options& o, const std::string& v) { o.scenes.push_back(v); }},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
@@ -183,7 +183,7 @@ std::vector<OptionRow> scene_options()
              o.divisions.push_back(static_cast<std::uint32_t>(parse_count("--divisions", v, 1, 64)));
          }},
         {"Scenes", "--switches", "SWITCHES",
-         "TetGen's switches, as its manual has them. 'build' takes a list. Default: " + BuildOptions{}.switches + ".",
+         "TetGen's switches, as in its manual. 'build' takes a list. Default: " + BuildOptions{}.switches + ".",
          building, true, [](Options& o, const std::string& v) { o.switches.push_back(v); }},
         {"Scenes", "--resolution", "N",
          "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
@@ -193,11 +193,11 @@ std::vector<OptionRow> scene_options()
              o.resolution = static_cast<std::uint32_t>(parse_count("--resolution", v, 2, 128));
          }},
         {"Scenes", "--time-limit", "TIME",
-         "End the scene builder after this long: seconds, or with s, m or h behind it. Default: 10m.", building, false,
-         [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
+         "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
+         false, [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
         {"Scenes", "--memory-limit", "SIZE",
-         "Memory that the scene builder may use: bytes, or with K, M, G or T behind it. Default: 8G.", building, false,
-         [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
+         "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
+         false, [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
         {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false,
          [](Options& o, const std::string&) { o.clear = true; }},
     };
@@ -212,59 +212,56 @@ std::vector<OptionRow> row_options()
     const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt or bvh. Default: both; 'check' leaves the rows of Embree's and a "
-         "driver's own BVHs out unless "
-         "--structure, --method, --layout, --backend, --filter or '--require embree' is given.",
+         "Keep the rows of this structure: cdt or bvh. Default: both. 'check' leaves out the rows of Embree's and a "
+         "driver's own BVHs unless --structure, --method, --layout, --backend, --filter or '--require embree' is "
+         "given.",
          tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
-             " (how many rays at once a BVH is asked), or 'all'. Default: maria, project on half32, and those "
-             "of the BVHs where these are kept; of 'reproduce', all; table6 compares maria with BVHs.",
+             " (the number of rays that a BVH gets at once), or 'all'. Default: maria, project on half32, and the "
+             "methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria with BVHs.",
          reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this packed form: tet80 or tet96 of the cdt, of project also half32, tet20 or tet16; bvh2 "
-         "or "
-         "cwbvh of our BVHs; embree, what Embree "
-         "builds for itself; rt, what Vulkan's driver builds for its ray queries. Default: all of the structures kept, "
-         "rt only on GPUs that have it; on emulated devices it is slow, and a row where rt is named here or in a "
-         "filter.",
+         "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet20 or tet16 (cdt with project), bvh2 or "
+         "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its ray queries). "
+         "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
+         "where rt is named here or in a filter.",
          reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
-         "Keep the rows of this backend ('tetrace devices' lists them). One without a usable device has rows only "
-         "where "
-         "it is named here or by --require; they are skipped with the reason. Default: all that have a usable device "
-         "and a kernel of the structures kept.",
+         "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
+         "only if it is named here or by --require; they are skipped, with the reason. Default: all that have a usable "
+         "device and a kernel of the structures kept.",
          reproducing, true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
-         "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, in whatever case, for "
-         "example 'gpu', 'llvmpipe' or 'vulkan:1', the second one of vulkan. Default: all.",
+         "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
+         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Default: all.",
          reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
         {"Rows", "--rays", "KIND",
-         "Trace rays of this kind: 'primary', the image's own, made by the kernels; and, made on the host from the "
-         "primary hits, 'shadow', towards a light; 'ao', short ones round the normal (of both, any hit answers); "
-         "'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
+         "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
+         "from the primary hits: 'shadow', towards a light, and 'ao', short rays round the normal (for both, any hit "
+         "is an answer); 'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
          measuring, true, append("--rays", &Options::rays, kinds)},
         {"Rows", "--ray-order", "ORDER",
-         "Order in which rays of other kinds than primary are given: 'tiles', as their pixels lie; 'morton', sorted by "
-         "origin and direction; 'shuffled'. Each is a row of its own. Default: tiles.",
+         "Order of the rays of all kinds but primary: 'tiles', as their pixels lie; 'morton', sorted by origin and "
+         "direction; 'shuffled'. Each is a row of its own. Default: tiles.",
          measuring, true, append("--ray-order", &Options::ray_orders, ray_orders)},
         {"Rows", "--math", "MODE",
-         "'exact': no contraction, the same bits everywhere; 'fast': what the compiler likes. Embree has "
-         "one build, and rows of it whatever the mode. Default: exact.",
+         "'exact': no contraction, the same bits everywhere; 'fast': the compiler is free. Embree has one build, and "
+         "its rows appear in both modes. Default: exact.",
          tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
         {"Rows", "--order", "ORDER",
-         "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same with the tets that "
-         "no ray from outside reaches behind all others; 'input', as TetGen wrote them. Rows of structure cdt only. "
+         "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but the tets that "
+         "no ray from outside reaches come last; 'input', as TetGen wrote them. For rows of structure cdt only. "
          "Default: hilbert.",
          tracing, true, append("--order", &Options::orders, orders)},
         {"Rows", "--schedule", "NAME",
-         "How rays come to work items: 'tiles', one each; 'persistent', items that stay and fetch rays until none is "
-         "left, on the backends that have such kernels; 'packets', many rays in the lanes of openmp's vectors, of "
-         "project and half32. Embree has a schedule of its own. Default: tiles, and packets.",
+         "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
+         "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
+         "project on half32. Embree has a schedule of its own. Default: tiles and packets.",
          tracing, true, append("--schedule", &Options::schedules, schedules)},
         {"Rows", "--filter", "REGEX",
-         "Keep the rows whose name matches somewhere, for example 'tet96.*openmp'. Default: all.",
+         "Keep the rows whose names contain a match, for example 'tet96.*openmp'. Default: all.",
          measuring | bit(Verb::compare), false, set_filter},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false,
          [](Options& o, const std::string&) { o.list = true; }},
@@ -284,13 +281,13 @@ std::vector<OptionRow> ray_options()
                  choose<CameraSet>("--camera-set", v, {CameraSet::smoke, CameraSet::orbit, CameraSet::flight});
          }},
         {"Rays", "--views", "LIST",
-         "Views of the camera set, counted from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
+         "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
          "Default: all.",
          with_rays, true, [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
-        {"Rays", "--size", "WxH", "Image size in pixels, a ray each; N is NxN. Default: 1024x1024.", with_rays, false,
-         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
+        {"Rays", "--size", "WxH", "Image size in pixels, one ray each; N means NxN. Default: 1024x1024.", with_rays,
+         false, [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
-         "Host threads; 0 for OMP_NUM_THREADS, where it is set, else all that the process may use. Default: 0.",
+         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use. Default: 0.",
          with_rays, false,
          [](Options& o, const std::string& v) {
              o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
@@ -303,9 +300,9 @@ std::vector<OptionRow> ray_options()
          "width, those rows are unsupported. Default: the widest there is.",
          tracing, false, set_packet_lanes},
         {"Rays", "--buffer-limit", "SIZE",
-         "Treat every device's largest buffer as this small: bytes, or with K, M, G or T behind it. The array of tets "
-         "is bound in parts that fit; where they do not suffice, the row is unsupported. Default: what each device "
-         "says.",
+         "Limit the buffers of every device to this size: bytes, or a number followed by K, M, G or T. The array of "
+         "tets is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
+         "device reports.",
          reproducing, false,
          [](Options& o, const std::string& v) { o.buffer_limit = parse_bytes("--buffer-limit", v); }},
     };
@@ -320,37 +317,37 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_samples},
         {"Measuring", "--budget", "TIME",
-         "Wall clock for verifying and timing all rows. Where all samples do not fit, fewer are taken, but no fewer "
-         "than 5, below which intervals are too narrow, where as many are asked for. Where 5 do not fit, the slowest "
-         "rows are skipped, and the result names the budget that they need. A run takes at most a quarter longer. "
-         "Loading scenes and opening devices is not counted, and --benchmark_repetitions lifts the limit. Default: 4m.",
+         "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
+         "(if "
+         "as many are asked for), since intervals from fewer are too narrow. If 5 do not fit, the slowest rows are "
+         "skipped, and the result names the budget that they need. A run takes at most a quarter longer. Loading "
+         "scenes "
+         "and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
-         "none is "
-         "skipped or unsupported.",
+         "none is skipped or unsupported.",
          bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
         {"Judging", "--allow-flawed", "",
-         "Exit with 0 where maria itself has wrong rays; lost ones, and rows that differ from openmp, still fail. "
-         "Wrong "
-         "and lost rays of the other methods never do: those do not claim to have none.",
+         "Exit with 0 even if maria itself has wrong rays. Lost rays, and rows that differ from openmp, still fail. "
+         "Wrong and lost rays of plane, plucker, stp and ms06 never fail, since these methods do not claim to have "
+         "none.",
          bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
         {"Judging", "--tolerance", "PERCENT",
-         "Differences in time up to so many percent do not matter: a row that is SLOWER by more is a regression, one "
-         "whose whole interval lies within is the SAME. 0 to 100. Default: 3.",
+         "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
+         "regression; a row whose whole interval lies within it is the SAME. Default: 3.",
          bit(Verb::compare), false,
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
         {"Judging", "--allow-missing", "",
-         "Exit with 0 where rows that A timed are missing, skipped or unsupported in B; failed ones still count.",
+         "Exit with 0 even if rows that A timed are missing, skipped or unsupported in B. Failed rows still count.",
          bit(Verb::compare), false, [](Options& o, const std::string&) { o.allow_missing = true; }},
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
          bit(Verb::render), true, append("--picture", &Options::pictures, {Picture::normals, Picture::steps})},
         {"Pictures", "--picture", "FOLDER",
-         "Write a picture of each view on which a row differs from openmp, the differing pixels marked: PNG, or PPM "
-         "where "
-         "OpenImageIO is missing. Default: none.",
+         "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
+         "PPM if OpenImageIO is missing. Default: none.",
          bit(Verb::check), false, set_path("--picture", &Options::picture_folder)},
     };
 }
@@ -359,9 +356,8 @@ std::vector<OptionRow> report_options()
 {
     return {
         {"Pictures", "--picture", "FILE",
-         "Put this picture into the page, a PNG or PPM file as 'tetrace render' writes it. May be repeated; several "
-         "with "
-         "commas between. Default: none but those that a figure of a result names.",
+         "Put this picture into the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a list "
+         "with commas. Default: only those that a figure of a result names.",
          bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
     };
 }
@@ -370,29 +366,29 @@ std::vector<OptionRow> output_options()
 {
     return {
         {"Output", "--format", "FORMAT",
-         "Form of the result: table, json, csv or markdown. Any but table goes to FILE where --out names one, else to "
-         "standard output in place of the table. Default: table.",
+         "Form of the result: table, json, csv or markdown. With --out, all but table go to that file; otherwise they "
+         "replace the table on standard output. Default: table.",
          reporting, false,
          [](Options& o, const std::string& v) {
              o.format = choose<Format>("--format", v, {Format::table, Format::json, Format::csv, Format::markdown});
          }},
         {"Output", "--out", "FILE",
-         "Also write the result to FILE; without --format, its ending chooses the form: .json, .csv, .md, or .txt for "
-         "the table. The table is printed on standard output all the same.",
+         "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
+         "the table. The table still goes to standard output.",
          reporting, false, set_path("--out", &Options::out)},
         {"Output", "--anonymous", "",
-         "Leave out of the result what tells whose machine it comes from: the host's name, and the folders of files.",
-         reporting, false, [](Options& o, const std::string&) { o.anonymous = true; }},
+         "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
+         false, [](Options& o, const std::string&) { o.anonymous = true; }},
         {"Output", "--resume", "",
-         "Go on with the run whose journal lies beside FILE of --out, as FILE.journal: views and batches of "
-         "searches that it has are not done again. Where there is none, begin one.",
+         "Continue the run whose journal is FILE.journal, for FILE of --out: views and batches of searches that it has "
+         "are not repeated. If there is no journal, begin one.",
          bit(Verb::reproduce), false, [](Options& o, const std::string&) { o.resume = true; }},
-        {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, a test case a row. Default: none.",
+        {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, one test case a row. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
-         "Write the picture to FILE, which ends in .png, .exr or .ppm; with several pictures, scene, view and kind go "
-         "in front of the ending. Where FILE is a folder, and by default in the current one: SCENE-VIEW-KIND.png, or "
-         ".ppm, which needs no library, where OpenImageIO is missing.",
+         "Write the picture to FILE, which ends in .png, .exr or .ppm. With several pictures, scene, view and kind are "
+         "inserted before the ending. If FILE is a folder, the pictures in it are called SCENE-VIEW-KIND.png, or .ppm "
+         "if OpenImageIO is missing (PPM needs no library). Default: the current folder.",
          bit(Verb::render), false, set_path("--out", &Options::out)},
         {"Output", "--out", "FILE", "Write the page to FILE. Default: report.html.", bit(Verb::report), false,
          set_path("--out", &Options::out)},

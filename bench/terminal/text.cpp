@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <sstream>
+#include <vector>
 
 namespace tetrace {
 
@@ -15,18 +16,46 @@ std::size_t display_width(const std::string& text)
 
 namespace {
 
-std::string filled(const std::string& paragraph, std::size_t width, const std::string& margin)
+/// The words of a paragraph in lines of at most `width` columns.
+std::vector<std::string> lines_of(const std::string& paragraph, std::size_t width)
 {
     std::istringstream words(paragraph);
-    std::string text, line, word;
-    while (words >> word) {
-        if (!line.empty() && margin.size() + display_width(line) + 1 + display_width(word) > width) {
-            text += margin + line + "\n";
-            line.clear();
-        }
-        line += (line.empty() ? "" : " ") + word;
+    std::vector<std::string> lines;
+    for (std::string word; words >> word;) {
+        if (lines.empty() || display_width(lines.back()) + 1 + display_width(word) > width)
+            lines.push_back(word);
+        else
+            lines.back() += " " + word;
     }
-    return line.empty() ? text : text + margin + line + "\n";
+    return lines;
+}
+
+/// Moves a word down where the last line is one short word.
+void move_to_orphan(std::vector<std::string>& lines)
+{
+    constexpr std::size_t short_word = 12;
+    if (lines.size() < 2 || lines.back().size() > short_word || lines.back().find(' ') != std::string::npos) return;
+    std::string& before = lines[lines.size() - 2];
+    const std::size_t space = before.rfind(' ');
+    if (space == std::string::npos) return;
+    lines.back() = before.substr(space + 1) + " " + lines.back();
+    before.resize(space);
+}
+
+std::string filled(const std::string& text, std::size_t width, std::size_t indent, bool has_orphans)
+{
+    const std::string margin(indent, ' ');
+    std::string result;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find("\n\n", begin), text.size());
+        std::vector<std::string> lines = lines_of(text.substr(begin, end - begin), width - std::min(width, indent));
+        if (!has_orphans) move_to_orphan(lines);
+        if (begin > 0) result += "\n";
+        for (const std::string& line : lines)
+            result.append(margin).append(line).append("\n");
+        begin = end + 2;
+    }
+    return result;
 }
 
 /// Bytes of the UTF-8 character at `i` that XML can hold; 0 where there is none.
@@ -53,15 +82,12 @@ std::size_t character_length(const std::string& text, std::size_t i)
 
 std::string wrapped(const std::string& text, std::size_t width, std::size_t indent)
 {
-    std::string result;
-    std::size_t begin = 0;
-    while (begin <= text.size()) {
-        const std::size_t end = std::min(text.find("\n\n", begin), text.size());
-        result.append(begin > 0 ? "\n" : "")
-            .append(filled(text.substr(begin, end - begin), width, std::string(indent, ' ')));
-        begin = end + 2;
-    }
-    return result;
+    return filled(text, width, indent, true);
+}
+
+std::string wrapped_without_orphans(const std::string& text, std::size_t width, std::size_t indent)
+{
+    return filled(text, width, indent, false);
 }
 
 std::string with_commas(std::uint64_t value)

@@ -10,6 +10,8 @@ namespace tetrace {
 
 /// Paragraphs (separated by empty lines) filled to `width` columns, each line indented; ends in a newline.
 [[nodiscard]] std::string wrapped(const std::string& text, std::size_t width, std::size_t indent);
+/// The same, and no paragraph ends in a line of one short word.
+[[nodiscard]] std::string wrapped_without_orphans(const std::string& text, std::size_t width, std::size_t indent);
 
 /// A whole number with commas between thousands: 209,397.
 [[nodiscard]] std::string with_commas(std::uint64_t value);

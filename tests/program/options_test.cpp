@@ -1,11 +1,14 @@
+#include "bench/options/help.h"
 #include "bench/options/option_table.h"
 #include "bench/options/option_values.h"
 #include "bench/options/options.h"
+#include "bench/terminal/text.h"
 #include "core/base/error.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <set>
+#include <sstream>
 
 using namespace tetrace;
 
@@ -127,6 +130,21 @@ TEST(Options, google_benchmarks_flags_pass_through)
         parse_options({"bench", "--benchmark_repetitions=5", "--size", "8", "--benchmark_filter=maria"});
     EXPECT_EQ(options.benchmark_flags,
               (std::vector<std::string>{"--benchmark_repetitions=5", "--benchmark_filter=maria"}));
+}
+
+TEST(Options, help_has_no_line_of_one_short_word)
+{
+    EXPECT_EQ(wrapped_without_orphans("one two three four", 13, 2), "  one two\n  three four\n");
+    EXPECT_EQ(wrapped_without_orphans("one two incomprehensible", 9, 0), "one two\nincomprehensible\n");
+    for (const Verb verb : {Verb::devices, Verb::scenes, Verb::build, Verb::bench, Verb::check, Verb::render,
+                            Verb::reproduce, Verb::compare, Verb::report, Verb::help}) {
+        std::istringstream lines(help_text(std::string(name_of(verb))));
+        for (std::string line, before; std::getline(lines, line); before = line)
+            EXPECT_FALSE(before.size() > 60 && line.size() < 18 && !line.empty() && line.find("  --") != 0 &&
+                         line.find(' ', line.find_first_not_of(' ')) == std::string::npos)
+                << name_of(verb) << ": " << before << "\n"
+                << line;
+    }
 }
 
 TEST(Options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
