@@ -49,12 +49,12 @@ const VerbHelp verb_help[] = {
      "A row's status is 'ok'; 'flawed', some rays of the method itself are wrong, or lost: the walk found no exit "
      "face, or reached its cap of steps (the row has their numbers and keeps its rate; lost rays of maria and project, "
      "which claim to have none, give exit code 1); 'wrong', the row differs from openmp's answers (no rate, exit code "
-     "1); 'unsupported', the host or the device cannot run this kernel; 'skipped', there is no usable device here, "
-     "or --budget has no time for the row; or 'error'. The last three have a reason. 'noisy' is added if the "
+     "1); 'unsupported', the host or the device cannot run this kernel; 'skipped', there is no usable device here, or "
+     "--budget has no time for the row; or 'error'. The last three have a reason. 'noisy' is added if the "
      "interquartile range exceeds 5 % of the median.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
      "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
-     "sample, and where their number is given there is no budget.",
+     "sample, and if their number is given, there is no budget.",
      "  tetrace bench\n"
      "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
      "  tetrace bench --scene bunny --method all\n"
@@ -196,8 +196,8 @@ std::string program_text()
     for (const VerbHelp& entry : verb_help)
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
     text += "\n'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options.\n"
-            "Results go to standard output or to --out FILE; messages and progress to standard error. NO_COLOR is "
-            "honoured.\n\n"
+            "Results go to standard output, or to --out FILE.\n"
+            "Messages and progress go to standard error; NO_COLOR is honoured.\n\n"
             "Examples\n"
             "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"

@@ -296,8 +296,8 @@ std::vector<OptionRow> ray_options()
          "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
          false, set_tile},
         {"Rays", "--packet-lanes", "N",
-         "Rays of a packet, for rows of schedule 'packets': 4, 8 or 16. Where the processor or the build lacks that "
-         "width, those rows are unsupported. Default: the widest there is.",
+         "Rays of a packet, for rows of schedule 'packets': 4, 8 or 16. If the processor or the build lacks that "
+         "width, those rows are unsupported. Default: the widest available.",
          tracing, false, set_packet_lanes},
         {"Rays", "--buffer-limit", "SIZE",
          "Limit the buffers of every device to this size: bytes, or a number followed by K, M, G or T. The array of "
@@ -318,11 +318,9 @@ std::vector<OptionRow> judging_options()
          bit(Verb::reproduce), false, set_samples},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
-         "(if "
-         "as many are asked for), since intervals from fewer are too narrow. If 5 do not fit, the slowest rows are "
+         "(if as many are asked for), since intervals from fewer are too narrow. If 5 do not fit, the slowest rows are "
          "skipped, and the result names the budget that they need. A run takes at most a quarter longer. Loading "
-         "scenes "
-         "and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
+         "scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
