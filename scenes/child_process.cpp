@@ -1,12 +1,11 @@
 #include "scenes/child_process.h"
 
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
@@ -337,7 +336,7 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
                        const std::function<void(double elapsed_s)>& on_tick)
 {
     const InterruptGuard guard;
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     ChildOutcome outcome;
     Output output(outcome, on_error_line);
     Terminator terminator;
@@ -347,7 +346,7 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
     while (child.running()) {
         // Without streams, poll() does not wake when the child ends: look more often.
         streams = output.take(child, streams ? tick_ms : tick_ms / 20);
-        const double elapsed_s = seconds_since(start);
+        const double elapsed_s = watch.seconds();
         terminator.check(child, limits, elapsed_s);
         if (on_tick && elapsed_s >= next_tick_s) {
             on_tick(elapsed_s);
@@ -357,7 +356,7 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
     const int status = child.end();
     output.take(child, 0);
     output.finish();
-    outcome.wall_s = seconds_since(start);
+    outcome.wall_s = watch.seconds();
     outcome.end = terminator.reason();
     outcome.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
     if (outcome.end == ChildOutcome::End::exited && WIFSIGNALED(status)) outcome.end = ChildOutcome::End::signalled;

@@ -1,9 +1,9 @@
 #include "scenes/load.h"
 
 #include "core/base/atomic_file.h"
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/stopwatch.h"
 #include "scenes/build_scene.h"
 #include "scenes/cache.h"
 #include "scenes/file_lock.h"
@@ -204,10 +204,10 @@ struct Unused {
 LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
 {
     if (progress) progress("making cubes", -1);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     LoadedScene loaded;
     loaded.scene = make_cubes(request.build.resolution);
-    loaded.scene.build.build_s = seconds_since(start);
+    loaded.scene.build.build_s = watch.seconds();
     loaded.hash = scene_hash(loaded.scene);
     Unused unused{request.build, {}};
     unused.add_build();

@@ -49,14 +49,14 @@ void describe_driver(Device& device, const Driver& driver)
     driver.driver_version(&version);
     device.driver = "CUDA " + version_text(version);
     if (driver.is_emulation()) {
-        device.type = "emulated";
+        device.kind = DeviceKind::emulated;
         device.driver += ", emulated on the host";
         device.implementation = "cuda-host";
         device.timer_period_s = host_period_s;
         return;
     }
     const std::string module = kernel_module_version();
-    device.type = "gpu";
+    device.kind = DeviceKind::gpu;
     if (!module.empty()) device.driver += ", NVIDIA driver " + module;
     device.implementation =
         module.empty() ? "nvidia-cuda-" + version_text(version) : implementation_name("nvidia", module);

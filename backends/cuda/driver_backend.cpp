@@ -76,7 +76,7 @@ std::unique_ptr<Session> DriverBackend::open(std::size_t device, const KernelId&
     const PackedScene& packed = packed_scene(*this, device, kernel, scene);
     const Driver& driver = here.driver.driver;
     return std::make_unique<CudaSession>(driver, ordinal_of(driver, device), here.programs, kernel, packed, options,
-                                         tile_height_for(here.devices[device], options));
+                                         tile_height_of(options));
 }
 
 std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode math, std::span<const Quad> operations)

@@ -114,19 +114,19 @@ Owned<EventHandle> make_event(Context& context)
 
 } // namespace
 
-Stopwatch::Stopwatch(Context& context) : context_(context), start_(make_event(context)), stop_(make_event(context)) {}
+EventTimer::EventTimer(Context& context) : context_(context), start_(make_event(context)), stop_(make_event(context)) {}
 
-void Stopwatch::start(StreamHandle stream)
+void EventTimer::start(StreamHandle stream)
 {
     context_.check(context_.driver().event_record(start_.get(), stream), "recording an event");
 }
 
-void Stopwatch::stop(StreamHandle stream)
+void EventTimer::stop(StreamHandle stream)
 {
     context_.check(context_.driver().event_record(stop_.get(), stream), "recording an event");
 }
 
-double Stopwatch::seconds()
+double EventTimer::seconds()
 {
     context_.check(context_.driver().event_synchronize(stop_.get()), "waiting for the device");
     float milliseconds = 0;

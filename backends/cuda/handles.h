@@ -64,9 +64,9 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Result (*)(Handle)>
 [[nodiscard]] Owned<StreamHandle> make_stream(Context& context);
 
 /// Two events, for the time between them by the device's clock.
-class Stopwatch {
+class EventTimer {
 public:
-    explicit Stopwatch(Context& context);
+    explicit EventTimer(Context& context);
     void start(StreamHandle stream);
     void stop(StreamHandle stream);
     /// Waits for stop(). Seconds, with a resolution of about half a microsecond.

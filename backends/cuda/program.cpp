@@ -1,11 +1,10 @@
 #include "backends/cuda/program.h"
 
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/stopwatch.h"
 #include "core/device/program_cache.h"
 
-#include <chrono>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -90,9 +89,9 @@ std::vector<std::string> compiler_options(const ProgramId& id)
 LoadedProgram load_program(Context& context, int capability, const Programs& programs, const ProgramId& id,
                            const std::filesystem::path& cache)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const auto loaded = [&](Module module, bool cached) {
-        return LoadedProgram{std::move(module), seconds_since(start), cached};
+        return LoadedProgram{std::move(module), watch.seconds(), cached};
     };
     if (auto module = build_module(context, programs, id)) return loaded(std::move(*module), false);
     auto [module, cached] = compiled_module(context, capability, programs, id, ProgramCache(cache));

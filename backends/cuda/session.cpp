@@ -1,11 +1,10 @@
 #include "backends/cuda/session.h"
 
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/device/scene_buffers.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tetrace::cuda {
 
@@ -36,7 +35,7 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
     : device_(driver, device),
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
       task_(kernel.task), schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))),
-      divisions_(scene.divisions), stopwatch_(device_.context), tile_height_(tile_height), threads_(options.threads),
+      divisions_(scene.divisions), timer_(device_.context), tile_height_(tile_height), threads_(options.threads),
       max_buffer_bytes_(options.max_buffer_bytes), launches_(tile_height), bytes_(scene.bytes())
 {
     require_arrays_fit(scene, max_buffer_bytes_);
@@ -66,11 +65,11 @@ void CudaSession::make_current()
 
 void CudaSession::upload(const PackedScene& scene)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     for (const SceneBuffer& buffer : scene_buffers(scene))
         arrays_.emplace_back(device_.context, buffer.bytes, buffer.name, device_.stream.get());
     device_.synchronize();
-    setup_.upload_s = seconds_since(start);
+    setup_.upload_s = watch.seconds();
     for (const SceneArray& array : scene_arrays(scene.layout))
         scene_.push_back(arrays_[array.binding].address());
     scene_.push_back(divisions_); // in the low half of the last eight bytes, as a little-endian host has it
@@ -117,9 +116,9 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
     LaunchParams launch = params;
     Address output = output_.address(), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
-    stopwatch_.start(device_.stream.get());
+    timer_.start(device_.stream.get());
     device_.launch(kernel_, tiles, TILE_WIDTH * tile_height_, parameters);
-    stopwatch_.stop(device_.stream.get());
+    timer_.stop(device_.stream.get());
 }
 
 void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t tiles)
@@ -130,15 +129,15 @@ void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t ti
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
     device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");
-    stopwatch_.start(device_.stream.get());
+    timer_.start(device_.stream.get());
     device_.launch(kernel_, std::min(blocks, resident_blocks_), persistent_block_threads, parameters);
-    stopwatch_.stop(device_.stream.get());
+    timer_.stop(device_.stream.get());
 }
 
 void CudaSession::finish_launch()
 {
     if (launched_tiles_ == 0) return;
-    launches_.took(launched_tiles_, stopwatch_.seconds());
+    launches_.took(launched_tiles_, timer_.seconds());
     launched_tiles_ = 0;
 }
 

@@ -41,7 +41,7 @@ private:
         scene_; ///< what the kernels get: SceneView of kernels/language/scene_view_cuda.h, word for word
     std::uint32_t divisions_;
     Memory output_, counter_, rays_;
-    Stopwatch stopwatch_;
+    EventTimer timer_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
     unsigned resident_blocks_ = 0; ///< of schedule persistent: as many as the device holds at once

@@ -13,15 +13,15 @@ constexpr int passes = 8;
 
 double copy_s(OpenDevice& device, const Memory& from, const Memory& to)
 {
-    Stopwatch stopwatch(device.context);
+    EventTimer timer(device.context);
     double best_s = 1e300;
     for (int pass = 0; pass < passes; pass++) {
-        stopwatch.start(device.stream.get());
+        timer.start(device.stream.get());
         device.context.check(
             device.driver().copy_on_device(to.address(), from.address(), from.bytes(), device.stream.get()),
             "copying memory to memory");
-        stopwatch.stop(device.stream.get());
-        const double seconds = stopwatch.seconds();
+        timer.stop(device.stream.get());
+        const double seconds = timer.seconds();
         if (pass > 0) best_s = std::min(best_s, seconds); // the first one may touch pages
     }
     return best_s;

@@ -1,10 +1,9 @@
 #include "backends/embree/accelerator.h"
 
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 
 namespace tetrace::embree {
@@ -58,9 +57,9 @@ Accelerator::Accelerator(const TriangleMesh& mesh, bool robust, unsigned threads
     rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     try {
         attach_mesh(device_, scene_, mesh);
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         rtcCommitScene(scene_);
-        build_s_ = seconds_since(start);
+        build_s_ = watch.seconds();
         check(device_, "building the BVH");
     } catch (...) {
         rtcReleaseScene(scene_);

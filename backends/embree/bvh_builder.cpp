@@ -1,8 +1,8 @@
 #include "backends/embree/bvh_builder.h"
 
 #include "backends/embree/accelerator.h"
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/bvh/balanced_bvh.h"
 #include "core/bvh/triangle_split.h"
 #include "kernels/layouts/layout.h"
@@ -184,7 +184,7 @@ void check_bvh_input(const TriangleMesh& mesh)
 BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads)
 {
     check_bvh_input(mesh);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     std::fenv_t environment; // Embree's bins assert rounding to nearest, and it may leave the thread flushing denormals
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV);
@@ -195,7 +195,7 @@ BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads)
     built.balanced = !bvh || depth_of(*bvh) > BVH2_STACK;
     built.bvh = built.balanced ? build_balanced_bvh(mesh) : std::move(*bvh);
     built.spatial_splits = built.bvh.references.size() - mesh.triangles.size();
-    built.build_s = seconds_since(start);
+    built.build_s = watch.seconds();
     return built;
 }
 

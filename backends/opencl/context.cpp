@@ -35,7 +35,7 @@ Context::Context(const FoundDevice& found, unsigned threads)
     : found_(found), device_(found.id, true), threads_(found.facts.threads)
 {
     run("making a context", 0, [&] {
-        if (found.facts.type == "emulated" && threads != 0 && threads < threads_) {
+        if (found.facts.kind == DeviceKind::emulated && threads != 0 && threads < threads_) {
             device_ = part_of(device_, threads);
             threads_ = device_.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
         }

@@ -69,9 +69,9 @@ unsigned group_width_of(const cl::Device& device)
 }
 
 /// Oclgrind says of its device that it is everything.
-std::string type_of(const cl::Device& device)
+DeviceKind kind_of(const cl::Device& device)
 {
-    return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 ? "emulated" : "gpu";
+    return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 ? DeviceKind::emulated : DeviceKind::gpu;
 }
 
 /// Empty where the device has all that the kernels need.
@@ -94,7 +94,7 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     const cl::Device device(found.id, true);
     Device& facts = found.facts;
     facts.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
-    facts.type = type_of(device);
+    facts.kind = kind_of(device);
     const std::string platform_name = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
     const std::string platform_version = trimmed(platform.getInfo<CL_PLATFORM_VERSION>());
     const std::string driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>());

@@ -16,7 +16,7 @@ std::string options_for(const FoundDevice& device, const ProgramId& id)
     if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
     // No decision has denormals (docs/spec/numbers.md, N1), but unused lanes of a processor's vectors have, where
     // compilers compute with all words of a quad; some processors multiply those a hundred times slower.
-    if (device.facts.type != "gpu") options += " -cl-denorms-are-zero";
+    if (device.facts.kind != DeviceKind::gpu) options += " -cl-denorms-are-zero";
     return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
 }
 

@@ -1,10 +1,9 @@
 #include "backends/opencl/session.h"
 
-#include "core/base/elapsed.h"
+#include "core/base/stopwatch.h"
 #include "core/device/open_checks.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tetrace::opencl {
 
@@ -42,7 +41,7 @@ cl::Buffer make_uploaded(const cl::Context& context, const cl::CommandQueue& que
 
 OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
-    : context_(std::move(context)), kernel_id_(kernel), tile_height_(tile_height_for(context_->facts(), options)),
+    : context_(std::move(context)), kernel_id_(kernel), tile_height_(tile_height_of(options)),
       max_buffer_bytes_(largest_buffer(context_->facts(), options)), divisions_(scene.divisions),
       parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()), launches_(tile_height_)
 {
@@ -59,7 +58,7 @@ void OpenclSession::run(const char* doing, std::uint64_t output_bytes, const Wor
 
 void OpenclSession::upload(const PackedScene& scene)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     run("uploading the scene", 0, [&] {
         const auto buffers = scene_buffers(scene);
         for (const SceneBuffer& buffer : buffers)
@@ -71,14 +70,14 @@ void OpenclSession::upload(const PackedScene& scene)
         counter_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint));
         rays_ = make_buffer(context_->handle(), CL_MEM_READ_ONLY, 0);
     });
-    times_.upload_s = seconds_since(start);
+    times_.upload_s = watch.seconds();
     resize_output(output_words({}, kernel_id_.task));
 }
 
 /// Compiles, and runs the kernel on no pixel: some drivers finish compiling at the first launch.
 void OpenclSession::compile(const ProgramCache& cache)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height_);
     if (kernel_id_.schedule == Schedule::persistent) defines += " -DPERSISTENT";
     if (kernel_id_.task == Task::rays) defines += " -DRAYS";
@@ -95,7 +94,7 @@ void OpenclSession::compile(const ProgramCache& cache)
         queue_.finish();
         enqueued_.clear();
     });
-    times_.compile_s = seconds_since(start);
+    times_.compile_s = watch.seconds();
     times_.compile_cached = program.is_cached();
     program.keep();
 }
@@ -142,8 +141,9 @@ std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
 {
     if (kernel_id_.schedule == Schedule::tiles) return tiles;
     const std::size_t units = context_->threads();
-    const std::size_t resident =
-        context_->facts().type == "gpu" ? units * (resident_items / (std::size_t{TILE_WIDTH} * tile_height_)) : units;
+    const std::size_t resident = context_->facts().kind == DeviceKind::gpu
+                                     ? units * (resident_items / (std::size_t{TILE_WIDTH} * tile_height_))
+                                     : units;
     return std::min<std::size_t>(tiles, resident);
 }
 

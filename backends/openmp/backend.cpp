@@ -55,7 +55,7 @@ public:
                                                            packed, threads_of(options));
         return std::make_unique<openmp::OpenmpSession>(openmp::find_function(openmp::compiled_kernels(), kernel),
                                                        kernel.task, packed, threads_of(options),
-                                                       tile_height_for(devices_[0], options));
+                                                       tile_height_of(options));
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode math,

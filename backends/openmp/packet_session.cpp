@@ -1,7 +1,7 @@
 #include "backends/openmp/packet_session.h"
 
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 
 #include <sys/mman.h>
 
@@ -9,7 +9,6 @@
 #include <bit>
 #include <cassert>
 #include <cfenv>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -169,9 +168,9 @@ PacketKernel packet_kernel(unsigned lanes)
 PacketSession::PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads)
     : HostSession(task), kernel_(kernel), task_(task), scene_(scene), threads_(threads)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     records_.reset(copy_of(scene.tets));
-    copy_s_ = seconds_since(start);
+    copy_s_ = watch.seconds();
 }
 
 void PacketSession::Free::operator()(void* block) const

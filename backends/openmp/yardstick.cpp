@@ -1,10 +1,9 @@
 #include "backends/openmp/yardstick.h"
 
-#include "core/base/elapsed.h"
+#include "core/base/stopwatch.h"
 #include "core/device/yardstick.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,12 +31,12 @@ double copy_bytes_per_s(int team)
         a[i] = i;
     double best_s = 1e300;
     for (int pass = 0; pass < passes; ++pass) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         if (pass % 2 == 0)
             copy_words(b.get(), a.get(), team);
         else
             copy_words(a.get(), b.get(), team);
-        if (pass > 0) best_s = std::min(best_s, seconds_since(start));
+        if (pass > 0) best_s = std::min(best_s, watch.seconds());
     }
     return 2.0 * static_cast<double>(words * sizeof(std::uint64_t)) / best_s;
 }

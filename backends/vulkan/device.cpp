@@ -114,14 +114,15 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     found.limits = limits_of(device);
     Device& facts = found.facts;
     facts.name = properties.deviceName.data();
-    facts.type = properties.deviceType == vk::PhysicalDeviceType::eCpu ? "emulated" : "gpu";
-    if (facts.type == "emulated") facts.threads = std::max(1u, std::thread::hardware_concurrency());
+    const bool is_emulated = properties.deviceType == vk::PhysicalDeviceType::eCpu;
+    facts.kind = is_emulated ? DeviceKind::emulated : DeviceKind::gpu;
+    if (is_emulated) facts.threads = std::max(1u, std::thread::hardware_concurrency());
     // lavapipe 22.3 reads a storage buffer lane after lane, through memory: 3.5 times slower on this walk, and 7 times
     // where quads are read (results/texels.md).
-    found.reads_texels = facts.type == "emulated";
-    if (facts.type == "emulated") found.shares = facts.threads;
+    found.reads_texels = is_emulated;
+    if (is_emulated) found.shares = facts.threads;
     // Its minimum is three instructions, two of them for NaNs; bvh2 is 7 % faster by selects, cwbvh 3 %.
-    found.selects_minima = facts.type == "emulated";
+    found.selects_minima = is_emulated;
     facts.driver = "Vulkan driver " + version_text(properties.driverVersion);
     facts.implementation = "vulkan-" + std::to_string(properties.vendorID);
     facts.memory_bytes = device_memory(device);

@@ -1,11 +1,10 @@
 #include "backends/vulkan/session.h"
 
 #include "backends/vulkan/kernels.h"
-#include "core/base/elapsed.h"
+#include "core/base/stopwatch.h"
 #include "core/device/open_checks.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tetrace::vulkan {
 
@@ -62,22 +61,22 @@ void require_variant(const KernelId& kernel, const TetParts& parts)
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
-      max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_for(found.facts, options)),
-      kernel_(kernel), program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, parts_)),
+      max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
+      program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, parts_)),
       divisions_(scene.divisions), launches_(tile_height_, found.limits.groups)
 {
     require_storage_buffers(found, scene, parts_);
     require_variant(kernel, parts_);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
-    setup_.upload_s = seconds_since(start);
+    setup_.upload_s = watch.seconds();
     compile();
 }
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
                              const SessionOptions& options)
     : context_(found, Uses::ray_queries), max_buffer_bytes_(largest_buffer(found.facts, options)),
-      tile_height_(tile_height_for(found.facts, options)), kernel_(kernel), program_cache_(options.program_cache),
+      tile_height_(tile_height_of(options)), kernel_(kernel), program_cache_(options.program_cache),
       launches_(tile_height_, found.limits.groups)
 {
     acceleration_.emplace(context_, mesh);
@@ -115,9 +114,9 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
 
 void VulkanSession::compile()
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     make_program();
-    setup_.compile_s += seconds_since(start);
+    setup_.compile_s += watch.seconds();
     context_.check_validation("the first launch");
 }
 

@@ -3,8 +3,8 @@
 #include "bench/measuring/verify.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
-#include "bench/terminal/stopwatch.h"
 #include "bench/terminal/text.h"
+#include "core/base/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
     const std::size_t all = ray_count(row, view);
     const std::size_t rays = std::max<std::size_t>(all / (std::size_t{step} * step) / TILE_WIDTH, 1) * TILE_WIDTH;
     const auto& quads =
-        row.scene->given_rays().rows(*row.scene, row.key, row.packed != nullptr ? &row.packed->scene : nullptr, view);
+        row.scene->given_rays().rows(*row.scene, row.key, row.packed != nullptr ? &row.packed->data : nullptr, view);
     row.view_of_rays.reset();
     row.session->set_rays(std::span(quads).first(quads.size() / all * rays));
     return given_job(rays, job.max_steps, job.any_hit);

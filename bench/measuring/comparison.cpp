@@ -7,6 +7,9 @@ namespace tetrace {
 
 namespace {
 
+/// The API that a GPU's others are compared with, where it has the row.
+constexpr const char* preferred_on_gpus = "cuda";
+
 std::vector<std::size_t> hardware_of(const std::vector<RowRun>& rows)
 {
     std::vector<Device> devices;
@@ -15,26 +18,21 @@ std::vector<std::size_t> hardware_of(const std::vector<RowRun>& rows)
     return physical_devices(devices);
 }
 
-/// Whether `other` is the same work as the row, as its reference would do it.
-bool does_the_same(const RowKey& row, const RowKey& other)
-{
-    KernelId kernel = row.kernel;
-    kernel.schedule = Schedule::tiles;
-    return other.kernel == kernel && other.scene == row.scene && other.rays == row.rays && other.order == row.order;
-}
-
 /// The row's reference, which may be itself; null where there is none.
 const RowRun* find_reference(const std::vector<RowRun>& rows, const std::vector<std::size_t>& hardware,
                              std::size_t index)
 {
     const RowRun& row = rows[index];
     const bool on_host = runs_on_host(row.device);
-    const char* const preferred = on_host ? "openmp" : "cuda";
+    const std::string preferred = on_host ? reference_backend().name() : preferred_on_gpus;
     const RowRun* first = nullptr;
-    for (std::size_t i = 0; i < rows.size(); i++) {
-        if (hardware[i] != hardware[index] || !does_the_same(row.key, rows[i].key) || !figures_of(rows[i])) continue;
-        if (rows[i].key.backend == preferred) return &rows[i];
-        if (first == nullptr && !on_host) first = &rows[i];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const RowRun& other = rows[i];
+        if (hardware[i] != hardware[index] || !same_work(row.key, other.key) ||
+            other.key.kernel.schedule != Schedule::tiles || !figures_of(other))
+            continue;
+        if (other.key.backend == preferred) return &other;
+        if (first == nullptr && !on_host) first = &other;
     }
     return first;
 }
@@ -45,7 +43,7 @@ std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& r
 {
     const auto hardware = hardware_of(rows);
     std::vector<std::optional<Comparison>> result(rows.size());
-    for (std::size_t i = 0; i < rows.size(); i++) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!is_portable(rows[i].key.kernel) || !figures_of(rows[i])) continue;
         const RowRun* reference = find_reference(rows, hardware, i);
         if (reference == nullptr || reference == &rows[i]) continue;

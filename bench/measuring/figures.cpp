@@ -60,8 +60,8 @@ std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRu
     if (!runs_on_host(row.device)) return std::nullopt;
     const auto figures = figures_of(row);
     for (const RowRun& other : rows)
-        if (other.key.scene == row.key.scene && other.key.rays == row.key.rays &&
-            other.key.kernel.layout == Layout::embree && other.key.kernel.method == Method::single)
+        if (other.key.kernel.layout == Layout::embree && other.key.kernel.method == Method::single &&
+            same_rays(other.key, row.key))
             if (const auto single = figures_of(other); figures && single)
                 return figures->mrays_per_s / single->mrays_per_s;
     return std::nullopt;

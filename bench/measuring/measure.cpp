@@ -3,8 +3,8 @@
 #include "bench/measuring/reporters.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
-#include "bench/terminal/stopwatch.h"
 #include "core/base/hash.h"
+#include "core/base/stopwatch.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,8 +1,7 @@
 #include "bench/measuring/row_devices.h"
 
-#include "backends/openmp/backend.h"
 #include "bench/measuring/figures.h"
-#include "bench/rows/device_facts.h"
+#include "bench/rows/device_abilities.h"
 #include "bench/rows/physical_device.h"
 
 #include <algorithm>
@@ -48,7 +47,7 @@ void measure_device(RowDevice& device, const SessionOptions& options)
         if (device.yardstick) return;
         device.yardstick = yardstick_of(*device.backend, device.index, options);
         if (!device.yardstick && runs_on_host(device.device))
-            device.yardstick = yardstick_of(openmp_backend(), 0, options);
+            device.yardstick = yardstick_of(reference_backend(), 0, options);
     });
     for (const MathMode math : device.math)
         attempt(device, "self-test", [&] {
@@ -80,8 +79,8 @@ std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows)
     }
     number_hardware(devices);
     std::stable_sort(devices.begin(), devices.end(), [](const RowDevice& a, const RowDevice& b) {
-        return std::tuple(a.hardware, a.device.type == "emulated") <
-               std::tuple(b.hardware, b.device.type == "emulated");
+        return std::tuple(a.hardware, a.device.kind == DeviceKind::emulated) <
+               std::tuple(b.hardware, b.device.kind == DeviceKind::emulated);
     });
     return devices;
 }

@@ -25,9 +25,9 @@ struct RowDevice {
 /// The devices of all rows that were opened, each once: by hardware, on one piece of hardware emulations last.
 [[nodiscard]] std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows);
 
-/// Measures yardstick and self-test of each device (see device_facts.h). Where an API on the host has no yardstick of
-/// its own, openmp's stands for it; a yardstick that a device already has is kept. A device that fails keeps the reason
-/// as its problem; only Error{interrupted} is thrown.
+/// Measures yardstick and self-test of each device (see device_abilities.h). Where an API on the host has no yardstick
+/// of its own, openmp's stands for it; a yardstick that a device already has is kept. A device that fails keeps the
+/// reason as its problem; only Error{interrupted} is thrown.
 void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options);
 
 /// The place of the row's device in the list; empty where the row was not opened.

@@ -3,14 +3,12 @@
 #include "bench/measuring/visits.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
-#include "bench/terminal/stopwatch.h"
 #include "bench/truth/given_oracle.h"
 #include "core/base/hash.h"
+#include "core/base/stopwatch.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <map>
-#include <tuple>
 
 namespace tetrace {
 
@@ -65,13 +63,9 @@ private:
 
 std::optional<RowKey> reference_of(const RowKey& key)
 {
-    const bool is_reference = key.backend == reference_backend && key.kernel.schedule == Schedule::tiles;
-    if (is_reference || !is_portable(key.kernel) || key.kernel.math != MathMode::exact) return std::nullopt;
-    RowKey reference = key;
-    reference.backend = reference_backend;
-    reference.device = 0;
-    reference.kernel.schedule = Schedule::tiles;
-    return reference;
+    if (!is_portable(key.kernel) || key.kernel.math != MathMode::exact || key == reference_row(key))
+        return std::nullopt;
+    return reference_row(key);
 }
 
 /// The same steps for each row and view.
@@ -108,6 +102,13 @@ public:
     }
 
 private:
+    /// The first row that had hits of this hash, and what the oracle said.
+    struct Judged {
+        RowKey key;
+        std::uint64_t hash;
+        Verdicts verdicts;
+    };
+
     void trace_timed(RowRun& row, ImageVerdict& image, std::size_t view)
     {
         poison(hits);
@@ -142,9 +143,11 @@ private:
     {
         if (judged_view_ != view) judged_.clear();
         judged_view_ = view;
-        const auto rays = std::tuple(key.rays, key.ray_order, key.kernel.structure, hash);
-        if (const auto found = judged_.find(rays); found != judged_.end()) return found->second;
-        return judged_.emplace(rays, judge_anew(key, view)).first->second;
+        for (const Judged& judged : judged_)
+            if (judged.hash == hash && judged.key.kernel.structure == key.kernel.structure &&
+                same_rays(judged.key, key))
+                return judged.verdicts;
+        return judged_.emplace_back(Judged{key, hash, judge_anew(key, view)}).verdicts;
     }
 
     Verdicts judge_anew(const RowKey& key, std::size_t view)
@@ -185,7 +188,7 @@ private:
     std::optional<GivenOracle> given_oracle_;
     References references_;
     std::size_t judged_view_ = 0;
-    std::map<std::tuple<RayKind, RayOrder, Structure, std::uint64_t>, Verdicts> judged_; ///< of judged_view_, by hits
+    std::vector<Judged> judged_; ///< of judged_view_
 
 public:
     std::vector<Hit> hits;

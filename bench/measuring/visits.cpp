@@ -21,7 +21,7 @@ bool is_answer_of(const Hit& counted, const Hit& hit)
 
 openmp::RunFunction* counting_function(const RowKey& key)
 {
-    return key.backend == reference_backend ? openmp::find_function(openmp::counting_kernels(), key.kernel) : nullptr;
+    return on_reference(key) ? openmp::find_function(openmp::counting_kernels(), key.kernel) : nullptr;
 }
 
 } // namespace
@@ -31,7 +31,7 @@ Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hi
     openmp::RunFunction* const count = counting_function(row.key);
     if (count == nullptr) return {};
     SceneWork& scene = *row.scene;
-    const PackedScene& packed = row.packed->scene;
+    const PackedScene& packed = row.packed->data;
     std::vector<std::uint32_t> output(hits.size() * HIT_WORDS, POISON);
     const auto rays = row.key.kernel.task == Task::rays
                           ? std::span<const Quad>(scene.given_rays().rows(scene, row.key, &packed, view))

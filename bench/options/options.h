@@ -68,7 +68,7 @@ struct Options {
     std::uint32_t width = 1024, height = 1024;
 
     unsigned threads = 0;           ///< 0: all that the process may use
-    unsigned tile_height = 0;       ///< 4 or 8; 0: tile_height_for() each device
+    unsigned tile_height = 0;       ///< 4 or 8; 0: see tile_height_of()
     unsigned packet_lanes = 0;      ///< one of packet_widths; 0: the widest there is
     std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
     unsigned samples = 10;

@@ -119,7 +119,7 @@ std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& ro
     std::string sizes;
     for (const RowRun* row : rows_of(scene.label(), rows))
         if (row->packed != nullptr && sizes.empty() && row->key.kernel.structure == Structure::cdt)
-            sizes = size_text(row->packed->scene.bytes()) + ", ";
+            sizes = size_text(row->packed->data.bytes()) + ", ";
     std::string how = fmt::format("{} {}x{}", name_of(loaded.scene.domain.kind), loaded.scene.domain.divisions,
                                   loaded.scene.domain.divisions);
     if (!loaded.scene.build.switches.empty()) how += ", -" + loaded.scene.build.switches;

@@ -30,8 +30,8 @@ std::vector<std::size_t> by_device(const BenchResult& result)
 std::string heading_of(const RowRun& row, const std::vector<RowDevice>& devices)
 {
     if (!device_of(row, devices)) return "not run";
-    if (row.device.type == "emulated") return "emulated by the processor, not to be ranked with GPUs";
-    return fmt::format("{} ({})", row.device.name, row.device.type);
+    if (row.device.kind == DeviceKind::emulated) return "emulated by the processor, not to be ranked with GPUs";
+    return fmt::format("{} ({})", row.device.name, name_of(row.device.kind));
 }
 
 /// Heads the rows that are added one after the other, where what they run on changes.
@@ -127,7 +127,8 @@ Table device_table(const std::vector<RowDevice>& devices)
         const SelfTest* test = device.self_tests.empty() ? nullptr : &device.self_tests.begin()->second;
         const std::string verdict = test != nullptr ? test->text().substr(0, test->text().find(';')) : "";
         table.add({device_label({{}, device.backend->name(), {}, {}, {}, device.index}), device.device.implementation,
-                   device.device.type, device.yardstick ? Cell(1e-9 * device.yardstick->copy_bytes_per_s) : Cell(),
+                   std::string(name_of(device.device.kind)),
+                   device.yardstick ? Cell(1e-9 * device.yardstick->copy_bytes_per_s) : Cell(),
                    device.yardstick ? Cell(1e6 * device.yardstick->launch_s) : Cell(), text_cell(verdict),
                    test != nullptr ? Cell(std::uint64_t{test->division_ulps}) : Cell(),
                    test != nullptr ? Cell(std::uint64_t{test->square_root_ulps}) : Cell(),

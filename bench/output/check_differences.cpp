@@ -32,7 +32,7 @@ TraceJob job_of(const RowRun& row, std::uint32_t view)
 {
     const auto& numbers = row.scene->view_numbers();
     const auto index = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), view) - numbers.begin());
-    return row.scene->job(index, &row.packed->scene);
+    return row.scene->job(index, &row.packed->data);
 }
 
 /// Whether a ray of the row can be walked again by its pixel: BVHs leave no tets, and rays that are given are not told
@@ -48,7 +48,7 @@ Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32
     if (row.packed == nullptr || !leaves_tets(row)) return {};
     KernelId kernel = row.key.kernel;
     kernel.schedule = Schedule::tiles;
-    return walk_path(row.packed->scene, kernel, job_of(row, view), x, y);
+    return walk_path(row.packed->data, kernel, job_of(row, view), x, y);
 }
 
 /// The device's own walk; empty where the device cannot tell any more.

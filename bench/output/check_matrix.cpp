@@ -118,7 +118,8 @@ std::string devices_text(const std::vector<RowRun>& rows)
             std::find(told.begin(), told.end(), label) != told.end())
             continue;
         told.push_back(label);
-        table.add({label, row.device.name, row.device.type, row.self_test ? Cell(row.self_test->brief()) : Cell()});
+        table.add({label, row.device.name, std::string(name_of(row.device.kind)),
+                   row.self_test ? Cell(row.self_test->brief()) : Cell()});
     }
     return told.empty() ? "" : table.text(2);
 }

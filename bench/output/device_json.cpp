@@ -23,7 +23,7 @@ void set_known(json& object, const char* key, Number number)
 
 json device_json(const Device& device)
 {
-    json object = {{"name", device.name}, {"type", device.type}, {"driver", device.driver}, {"id", device.id}};
+    json object = {{"name", device.name}, {"type", name_of(device.kind)}, {"driver", device.driver}, {"id", device.id}};
     set_known(object, "implementation", device.implementation);
     set_known(object, "uuid", device.uuid);
     set_known(object, "pci", device.pci);

@@ -1,4 +1,5 @@
 #include "bench/report/sections.h"
+#include "core/device/backend.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -20,7 +21,8 @@ std::vector<std::string> devices_of(const ResultValue& scene)
     for (const auto& [kernel, cells] : scene.members())
         for (const auto& [device, cell] : cells.members())
             if (std::find(devices.begin(), devices.end(), device) == devices.end()) devices.push_back(device);
-    std::stable_partition(devices.begin(), devices.end(), [](const std::string& name) { return name == "openmp"; });
+    std::stable_partition(devices.begin(), devices.end(),
+                          [](const std::string& name) { return name == reference_backend().name(); });
     return devices;
 }
 

@@ -63,7 +63,8 @@ Html results_table(const ReportInput& input)
 
 /// A device as results tell it; several results may.
 struct ToldDevice {
-    std::string host, api, name, type, driver, self_test, problem;
+    std::string host, api, name, driver, self_test, problem;
+    DeviceKind kind = DeviceKind::cpu;
     std::string letters;
     Html copy, launch, memory;
 };
@@ -87,7 +88,7 @@ ToldDevice device_of_bench(const ResultValue& device)
     ToldDevice told;
     told.api = api_with_index(device, "index");
     told.name = device.at("name").line();
-    told.type = device.at("type").line();
+    told.kind = device_kind_of(device);
     told.driver = text_at(device, "driver");
     told.self_test = self_test_text(device);
     told.problem = text_at(device, "problem");
@@ -105,7 +106,7 @@ std::optional<ToldDevice> device_of_row(const ResultValue& row)
     ToldDevice told;
     told.api = api_with_index(row, "device_index");
     told.name = device->at("name").line();
-    told.type = device->at("type").line();
+    told.kind = device_kind_of(*device);
     told.driver = text_at(*device, "driver");
     told.memory = scaled(*device, "memory_bytes", 1e-9);
     if (const auto test = row.find("self_test")) told.self_test = text_at(*test, "text");
@@ -173,7 +174,8 @@ Html device_table(const ReportInput& input)
                      {"problem"}});
     for (const ToldDevice& device : all_devices(input))
         table.add({text(device.letters), text(device.api), text(device.name),
-                   text_element("span", device.type == "emulated" ? "type emulated" : "type", device.type),
+                   text_element("span", device.kind == DeviceKind::emulated ? "type emulated" : "type",
+                                std::string(name_of(device.kind))),
                    text(device.driver), device.memory, device.copy, device.launch, verdict_and_rest(device.self_test),
                    text(device.problem)});
     if (table.empty()) return paragraph("These results name no device.");

@@ -1,5 +1,6 @@
 #include "bench/report/charts/axis.h"
 #include "bench/report/charts/bar_chart.h"
+#include "bench/report/html/svg.h"
 #include "bench/report/sections.h"
 #include "bench/terminal/text.h"
 
@@ -47,14 +48,13 @@ bool needs_devices(const RowGroup& group, std::size_t files)
 {
     const bool one_result = std::all_of(group.rows.begin(), group.rows.end(),
                                         [&](const ReportRow* row) { return row->file == group.rows.front()->file; });
-    return devices_in(group, files).size() > 1 && (group.device_class != DeviceClass::emulated || !one_result);
+    return devices_in(group, files).size() > 1 && (group.kind != DeviceKind::emulated || !one_result);
 }
 
 BarChart chart_of(const RowGroup& group, std::size_t files)
 {
     const bool tell_device = needs_devices(group, files);
-    BarChart chart{
-        fmt::format("Rates of the {} on {}", name_of(group.device_class), scene_title(group)), "Mrays/s", {}};
+    BarChart chart{fmt::format("Rates of the {} on {}", plural_of(group.kind), scene_title(group)), "Mrays/s", {}};
     for (const ReportRow* row : group.rows)
         chart.bars.push_back({row->name(), row->kernel + "  " + row->api, tell_device ? device_text(*row, files) : "",
                               api_series(row->row->backend), row->rate->mrays_per_s, row->rate->low, row->rate->high,
@@ -64,17 +64,10 @@ BarChart chart_of(const RowGroup& group, std::size_t files)
 
 std::string group_title(const RowGroup& group, std::size_t files)
 {
-    switch (group.device_class) {
-    case DeviceClass::emulated: return "Emulated by the processor";
-    case DeviceClass::gpu:
-    case DeviceClass::processor: {
-        const auto devices = devices_in(group, files);
-        const std::string kind = group.device_class == DeviceClass::gpu ? "GPU" : "Processor";
-        return devices.size() == 1 ? fmt::format("{}: {}", kind, *devices.begin()) : kind + "s";
-    }
-    case DeviceClass::not_run: break;
-    }
-    return "Not run";
+    if (group.kind == DeviceKind::emulated) return "Emulated by the processor";
+    const auto devices = devices_in(group, files);
+    const std::string kind = group.kind == DeviceKind::gpu ? "GPU" : "Processor";
+    return devices.size() == 1 ? fmt::format("{}: {}", kind, *devices.begin()) : kind + "s";
 }
 
 Html rows_without_rate(const ReportInput& input)
@@ -95,9 +88,13 @@ std::string device_text(const ReportRow& row, std::size_t files)
 
 std::size_t api_series(const std::string& backend)
 {
-    constexpr std::array known = {"openmp", "embree", "opencl", "vulkan", "cuda", "cuda-host"};
-    const auto found = std::find(known.begin(), known.end(), backend);
-    return static_cast<std::size_t>(found - known.begin());
+    // The styles of all_backends(), in their order; backends after those go on from there.
+    constexpr std::array<std::size_t, 6> styles = {0, 2, 3, 4, 5, 1};
+    const auto& known = all_backends();
+    const auto found = std::find_if(known.begin(), known.end(), [&](const Backend* b) { return b->name() == backend; });
+    const auto place = static_cast<std::size_t>(found - known.begin());
+    if (found == known.end()) return series_styles - 1;
+    return place < styles.size() ? styles.at(place) : place;
 }
 
 Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files)

@@ -18,7 +18,7 @@ struct RatioKey {
     std::size_t file;
     std::string scene;
     std::string rays; ///< kind
-    DeviceClass device_class;
+    DeviceKind kind;
     std::string reference; ///< API
 
     [[nodiscard]] bool operator==(const RatioKey&) const = default;
@@ -49,8 +49,8 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
 {
     const ResultValue name = ratio.at("row");
     const ReportRow& row = row_named(input, file, name);
-    const RatioKey key{file, row.row->scene, row.rays, row.device_class,
-                       row_named(input, file, ratio.at("reference")).api};
+    if (!row.row->device_kind) name.reject("is of a row without a device");
+    const RatioKey key{file, row.row->scene, row.rays, row.kind(), row_named(input, file, ratio.at("reference")).api};
     auto group = std::find_if(groups.begin(), groups.end(), [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
     group->intervals.push_back({row.name(), row.kernel + "  " + row.api, "", api_series(row.row->backend),
@@ -62,7 +62,7 @@ Html chart_of(const RatioGroup& group, const ReportInput& input)
     const RatioKey& key = group.key;
     const std::string letter = file_letter(key.file, input.files.size());
     const std::string title = fmt::format("{}, {}{}{}", key.scene, key.rays == "primary" ? "" : key.rays + " rays, ",
-                                          name_of(key.device_class), letter.empty() ? "" : " · " + letter);
+                                          plural_of(key.kind), letter.empty() ? "" : " · " + letter);
     return figure(title,
                   draw(IntervalChart{fmt::format("Rates over those of {}: {}", key.reference, title),
                                      "slower than " + key.reference, "faster", group.intervals}),

@@ -3,19 +3,11 @@
 #include "core/base/error.h"
 
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 
 namespace tetrace {
 
 namespace {
-
-DeviceClass class_of(const ResultRow& row)
-{
-    if (row.device_type == "cpu") return DeviceClass::processor;
-    if (row.device_type == "gpu") return DeviceClass::gpu;
-    return row.device_type.empty() ? DeviceClass::not_run : DeviceClass::emulated;
-}
 
 /// Products of such numbers stay finite.
 double positive(const ResultValue& value)
@@ -86,9 +78,8 @@ bool same_rays(const ResultScene& a, const ResultScene& b)
 RowGroup& group_for(std::vector<RowGroup>& groups, const ResultScene& scene, const ReportRow& row)
 {
     for (RowGroup& group : groups)
-        if (same_rays(group.scene, scene) && group.rays == row.rays && group.device_class == row.device_class)
-            return group;
-    return groups.emplace_back(RowGroup{scene, row.rays, row.device_class, {}});
+        if (same_rays(group.scene, scene) && group.rays == row.rays && group.kind == row.kind()) return group;
+    return groups.emplace_back(RowGroup{scene, row.rays, row.kind(), {}});
 }
 
 /// Groups of one scene stand together, in the order in which scenes appear.
@@ -101,8 +92,7 @@ void order_groups(std::vector<RowGroup>& groups)
         const auto others = std::stable_partition(groups.begin(), groups.end(), [&](const RowGroup& group) {
             return same_rays(group.scene, scene) && group.rays == rays;
         });
-        std::stable_sort(groups.begin(), others,
-                         [](const RowGroup& a, const RowGroup& b) { return a.device_class < b.device_class; });
+        std::stable_sort(groups.begin(), others, [](const RowGroup& a, const RowGroup& b) { return a.kind < b.kind; });
         std::move(groups.begin(), others, std::back_inserter(ordered));
         groups.erase(groups.begin(), others);
     }
@@ -124,8 +114,8 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         row.kernel = kernel_of(items[i], result.rows[i]);
         row.api = result.rows[i].api();
         row.rays = items[i].at("rays").line();
-        row.device_class = class_of(result.rows[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
+        if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");
         rows.push_back(std::move(row));
     }
     return rows;
@@ -158,10 +148,14 @@ std::string file_letter(std::size_t file, std::size_t files)
     return file < 26 ? std::string(1, static_cast<char>('A' + file)) : std::to_string(file + 1);
 }
 
-const char* name_of(DeviceClass device_class)
+const char* plural_of(DeviceKind kind)
 {
-    constexpr std::array names = {"processors", "GPUs", "emulated", "not run"};
-    return names.at(static_cast<std::size_t>(device_class));
+    switch (kind) {
+    case DeviceKind::cpu: return "processors";
+    case DeviceKind::gpu: return "GPUs";
+    case DeviceKind::emulated: return "emulated";
+    }
+    throw Error(ErrorKind::internal, "plural_of: no such kind of device");
 }
 
 } // namespace tetrace

@@ -18,29 +18,27 @@ struct RowRate {
     bool noisy = false;
 };
 
-/// Rows that may be ranked with each other are of one class.
-enum class DeviceClass { processor, gpu, emulated, not_run };
-
 /// A row as the page shows it. Refers to its file.
 struct ReportRow {
     std::size_t file = 0; ///< its number in the order of the command line
     const ResultRow* row = nullptr;
-    std::string kernel; ///< "cdt maria tet80", with what is not as usual
-    std::string api;    ///< "vulkan", "vulkan:1"
-    std::string rays;   ///< kind
-    DeviceClass device_class = DeviceClass::not_run;
-    std::optional<RowRate> rate;
+    std::string kernel;          ///< "cdt maria tet80", with what is not as usual
+    std::string api;             ///< "vulkan", "vulkan:1"
+    std::string rays;            ///< kind
+    std::optional<RowRate> rate; ///< of rows with a device alone
 
     [[nodiscard]] const std::string& name() const { return row->name; }
+    /// Of a row with a device. Rows that may be ranked with each other ran on devices of one kind.
+    [[nodiscard]] DeviceKind kind() const { return row->device_kind.value(); }
     /// With the kind of rays behind it, where these are not primary ones.
     [[nodiscard]] std::string kernel_and_rays() const { return rays == "primary" ? kernel : kernel + ", " + rays; }
 };
 
-/// Rows of any file that trace the same rays through the same scene on devices of one class.
+/// Rows of any file that trace the same rays through the same scene on devices of one kind.
 struct RowGroup {
     ResultScene scene;
     std::string rays;
-    DeviceClass device_class = DeviceClass::not_run;
+    DeviceKind kind = DeviceKind::cpu;
     std::vector<const ReportRow*> rows; ///< those with a rate, fastest first
 };
 
@@ -55,6 +53,7 @@ struct RowGroup {
 /// What names a result on the page: A, B, ... Z, then 27, 28, ...; nothing where there is only one.
 [[nodiscard]] std::string file_letter(std::size_t file, std::size_t files);
 
-[[nodiscard]] const char* name_of(DeviceClass device_class);
+/// "processors", "GPUs", "emulated".
+[[nodiscard]] const char* plural_of(DeviceKind kind);
 
 } // namespace tetrace

@@ -19,7 +19,7 @@ const char* const how_to_read =
 /// A device of a result under its roof.
 struct DeviceRoof {
     std::string title;
-    DeviceClass device_class = DeviceClass::not_run;
+    DeviceKind kind = DeviceKind::cpu;
     Roofline roofline;
     std::optional<double> launch_s, largest_launch_share;
 };
@@ -40,7 +40,7 @@ std::size_t scene_number(const ResultFile& file, const std::string& scene)
 void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
 {
     const RowRate& rate = *row.rate;
-    roof.device_class = row.device_class;
+    roof.kind = row.kind();
     roof.roofline.points.push_back({row.name(), without_structure(row.kernel_and_rays()) + "  " + row.row->scene,
                                     scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
                                     *rate.msteps_per_s});
@@ -88,11 +88,11 @@ std::string launch_text(const DeviceRoof& roof)
     return text.empty() ? text : text + ".";
 }
 
-Html charts_of(const std::vector<DeviceRoof>& roofs, DeviceClass device_class, const char* title)
+Html charts_of(const std::vector<DeviceRoof>& roofs, DeviceKind kind, const char* title)
 {
     Html charts;
     for (const DeviceRoof& roof : roofs)
-        if (roof.device_class == device_class) charts += figure(roof.title, draw(roof.roofline), launch_text(roof));
+        if (roof.kind == kind) charts += figure(roof.title, draw(roof.roofline), launch_text(roof));
     return charts.empty() ? charts : heading(title) + side_by_side(charts);
 }
 
@@ -111,9 +111,9 @@ Section roofline_section(const ReportInput& input)
             paragraph("No device of these results has both a measured copy bandwidth and a row with a step "
                       "rate; 'tetrace bench' measures both in one run.");
     else
-        section.content = note(how_to_read) + charts_of(roofs, DeviceClass::processor, "Processors") +
-                          charts_of(roofs, DeviceClass::gpu, "GPUs") +
-                          charts_of(roofs, DeviceClass::emulated, "Emulated by the processor");
+        section.content = note(how_to_read) + charts_of(roofs, DeviceKind::cpu, "Processors") +
+                          charts_of(roofs, DeviceKind::gpu, "GPUs") +
+                          charts_of(roofs, DeviceKind::emulated, "Emulated by the processor");
     return section;
 }
 

@@ -1,6 +1,5 @@
 #include "bench/reproduce/flat_tets.h"
 
-#include "backends/openmp/backend.h"
 #include "bench/truth/walk_path.h"
 
 #include <algorithm>
@@ -63,20 +62,21 @@ FlatTets::Walker& FlatTets::walker_of(const RowRun& row)
     kernel.schedule = Schedule::tiles;
     for (Walker& walker : walkers_)
         if (walker.kernel == kernel && walker.packed == row.packed) return walker;
-    auto session = openmp_backend().open(0, kernel, {&scene_->loaded().scene.mesh, &row.packed->scene}, {.threads = 1});
+    auto session =
+        reference_backend().open(0, kernel, {&scene_->loaded().scene.mesh, &row.packed->data}, {.threads = 1});
     walkers_.push_back({kernel, row.packed, std::move(session)});
     std::vector<bool>& flat = flat_packed_[row.packed];
     if (flat.empty()) {
         flat.resize(flat_.size());
         for (std::size_t tet = 0; tet < flat_.size(); ++tet)
-            flat[row.packed->scene.packed_of_mesh[tet]] = flat_[tet];
+            flat[row.packed->data.packed_of_mesh[tet]] = flat_[tet];
     }
     return walkers_.back();
 }
 
 bool FlatTets::passes_flat(const Walker& walker, std::size_t view, std::uint32_t pixel) const
 {
-    const TraceJob job = scene_->job(view, &walker.packed->scene);
+    const TraceJob job = scene_->job(view, &walker.packed->data);
     const std::vector<bool>& flat = flat_packed_.at(walker.packed);
     const auto path = walk_path(*walker.session, job, pixel % job.width, pixel / job.width, steps_looked_at);
     return std::any_of(path.begin(), path.end(), [&](std::uint32_t tet) { return flat.at(tet); });

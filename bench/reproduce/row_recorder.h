@@ -3,7 +3,7 @@
 #include "bench/reproduce/image_record.h"
 #include "bench/reproduce/journal.h"
 #include "bench/statistics/interval.h"
-#include "bench/terminal/stopwatch.h"
+#include "core/base/stopwatch.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,5 @@
 #include "bench/reproduce/search_run.h"
 
-#include "backends/openmp/backend.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "core/base/hash.h"
@@ -35,8 +34,8 @@ public:
         if (const auto known = faces_.find(name); known != faces_.end()) return known->second;
         auto& session = sessions_[name];
         if (session == nullptr)
-            session = openmp_backend().open(0, kernel, {nullptr, &run_->tets.at(kernel.layout).scene},
-                                            session_options(*options_));
+            session = reference_backend().open(0, kernel, {nullptr, &run_->tets.at(kernel.layout).data},
+                                               session_options(*options_));
         session->set_rays(rays.quads);
         Faces faces(rays.count(), POISON);
         static_cast<void>(session->search(search_job(rays.count()), faces));
@@ -186,7 +185,7 @@ private:
 
 bool is_reference(const RowKey& key)
 {
-    return key.backend == reference_backend && key.threads == 1;
+    return on_reference(key) && key.threads == 1;
 }
 
 std::uint32_t tets_of_batch(const SearchSize& size)
@@ -209,7 +208,7 @@ SearchRun open_search_run(const Options& options, const std::vector<Backend*>& b
     run.threads = resolved_threads(options);
     for (const RowKey& key : select_search_rows(options, backends)) {
         Packed& tets = run.tets[key.kernel.layout];
-        if (tets.scene.tet_count == 0) tets.scene = search_tets(run.size.tets, key.kernel.layout);
+        if (tets.data.tet_count == 0) tets.data = search_tets(run.size.tets, key.kernel.layout);
         run.rows.push_back(open_row(key, tets, options, backends));
     }
     run.images.resize(run.rows.size());

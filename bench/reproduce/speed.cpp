@@ -13,16 +13,13 @@ namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-/// The rated row of that method, with the same layout and device as the other; none where there is none.
-std::size_t find_beside(const RecordedRows& run, const RowRun& other, std::string_view method)
+/// The rated row that is the other but for its method; none where there is none.
+std::size_t find_beside(const RecordedRows& run, const RowRun& other, Method method)
 {
-    for (std::size_t i = 0; i < run.rows.size(); ++i) {
-        const RowKey& key = run.rows[i].key;
-        if (name_of(key.kernel.method) == method && key.kernel.layout == other.key.kernel.layout &&
-            key.backend == other.key.backend && key.device == other.key.device && key.threads == other.key.threads &&
-            !view_seconds(run, i).empty())
-            return i;
-    }
+    RowKey wanted = other.key;
+    wanted.kernel.method = method;
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+        if (run.rows[i].key == wanted && !view_seconds(run, i).empty()) return i;
     return none;
 }
 
@@ -53,17 +50,17 @@ struct Ratios {
     std::string missing;
     bool noisy = false;
 
-    void add(const RecordedRows& run, const RowRun& other, std::string_view above, std::string_view below)
+    void add(const RecordedRows& run, const RowRun& other, Method above, Method below)
     {
         const std::size_t a = find_beside(run, other, above), b = find_beside(run, other, below);
         if (a == none || b == none) {
-            missing = fmt::format("{} has no rate beside {} on {} {}.", a == none ? above : below,
-                                  a == none ? below : above, other.key.scene, device_label(other.key));
+            missing = fmt::format("{} has no rate beside {} on {} {}.", name_of(a == none ? above : below),
+                                  name_of(a == none ? below : above), other.key.scene, device_label(other.key));
             return;
         }
         noisy = noisy || is_noisy(run.rows[a]) || is_noisy(run.rows[b]);
         ratios.push_back(
-            {fmt::format("{} / {}", above, below),
+            {fmt::format("{} / {}", name_of(above), name_of(below)),
              fmt::format("{} {} {}", other.key.scene, name_of(other.key.kernel.layout), device_label(other.key)),
              ratio_of_sums(view_seconds(run, a), view_seconds(run, b), run.sampling)});
     }
@@ -110,19 +107,19 @@ void for_rows_of(Method method, const RecordedRuns& runs, const IsMeant& is_mean
                 visit(*run, run->rows[i]);
 }
 
-/// Rows of the cdt that have a rate on a device of that type.
+/// Rows of the cdt that have a rate on a device of that kind.
 template <class Visit>
-void for_rated_rows(const RecordedRuns& runs, const std::string& type, const Visit& visit)
+void for_rated_rows(const RecordedRuns& runs, DeviceKind kind, const Visit& visit)
 {
     for (const RecordedRows* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (is_cdt(run->rows[i]) && run->rows[i].device.type == type && !view_seconds(*run, i).empty())
+            if (is_cdt(run->rows[i]) && run->rows[i].device.kind == kind && !view_seconds(*run, i).empty())
                 visit(*run, i);
 }
 
-IsMeant of_type(const std::string& type)
+IsMeant of_kind(DeviceKind kind)
 {
-    return [=](const RowRun& row) { return row.device.type == type; };
+    return [=](const RowRun& row) { return row.device.kind == kind; };
 }
 
 } // namespace
@@ -188,7 +185,7 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
     Ratios ratios;
     for_rows_of(Method::maria, runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
         for (const Method method : older_methods())
-            ratios.add(run, row, name_of(method), "maria");
+            ratios.add(run, row, method, Method::maria);
     });
     ratios.decide(claim);
     return claim;
@@ -197,8 +194,9 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
 Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 {
     Ratios ratios;
-    for_rows_of(Method::plucker, runs, of_type("gpu"),
-                [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, "stp", "plucker"); });
+    for_rows_of(Method::plucker, runs, of_kind(DeviceKind::gpu), [&](const RecordedRows& run, const RowRun& row) {
+        ratios.add(run, row, Method::stp, Method::plucker);
+    });
     ratios.decide(claim);
     if (ratios.ratios.empty() && ratios.missing.empty()) claim.evidence = "No row of a GPU has a rate.";
     return claim;
@@ -207,19 +205,20 @@ Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 std::vector<Claim> speed_claims(const RecordedRuns& runs)
 {
     return {fastest_claim({"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU", {}, ""},
-                          runs, of_type("cpu")),
+                          runs, of_kind(DeviceKind::cpu)),
             overtaking_claim({"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp", {}, ""}, runs)};
 }
 
-Claim proportional_claim(const RecordedRuns& runs, const std::string& type)
+Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind)
 {
-    Claim claim{"time-is-proportional-to-tets-" + type,
-                fmt::format("time is proportional to the tets traversed, on a {}", type == "gpu" ? "GPU" : "CPU"),
+    const char* const device = kind == DeviceKind::gpu ? "GPU" : "CPU";
+    Claim claim{fmt::format("time-is-proportional-to-tets-{}", name_of(kind)),
+                fmt::format("time is proportional to the tets traversed, on a {}", device),
                 {},
                 ""};
     std::vector<Estimate> correlations, intercepts;
     bool noisy = false, is_short = false;
-    for_rated_rows(runs, type, [&](const RecordedRows& run, std::size_t i) {
+    for_rated_rows(runs, kind, [&](const RecordedRows& run, std::size_t i) {
         const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
         const auto r = correlation(steps, seconds, run.sampling);
         is_short = is_short || !r;
@@ -234,7 +233,7 @@ Claim proportional_claim(const RecordedRuns& runs, const std::string& type)
     if (is_short)
         claim.evidence = fmt::format("It takes {} views that differ.", least_views);
     else if (correlations.empty())
-        claim.evidence = fmt::format("No row of a {} has a rate.", type == "gpu" ? "GPU" : "CPU");
+        claim.evidence = fmt::format("No row of a {} has a rate.", device);
     else {
         claim.verdict =
             judge_both(judge_above(correlations, proportional_above), judge_within(intercepts, proportional_intercept));

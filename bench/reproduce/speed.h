@@ -43,9 +43,9 @@ void withdraw_if_noisy(Claim& claim, bool noisy);
 /// The first of them for the walk through the scenes, on a CPU; and the second.
 [[nodiscard]] std::vector<Claim> speed_claims(const RecordedRuns& runs);
 
-/// "Time is proportional to the tets traversed", for the rows of one type of device ("cpu", "gpu"): over the views of
-/// each they lie on a line (correlation), and the line passes near the origin (its part of the mean time at 0 tets).
-[[nodiscard]] Claim proportional_claim(const RecordedRuns& runs, const std::string& type);
+/// "Time is proportional to the tets traversed", for the rows of one kind of device: over the views of each they lie on
+/// a line (correlation), and the line passes near the origin (its part of the mean time at 0 tets).
+[[nodiscard]] Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind);
 inline constexpr double proportional_above = 0.9, proportional_intercept = 0.1;
 
 } // namespace tetrace

@@ -152,7 +152,7 @@ ResultRow read_row(const ResultValue& value)
     if (const auto reason = value.find("reason")) row.reason = printable(reason->text());
     if (const auto device = value.find("device")) {
         row.device = device->at("name").line();
-        row.device_type = device->at("type").line();
+        row.device_kind = device_kind_of(*device);
         row.driver = line_or_nothing(*device, "driver");
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
@@ -206,6 +206,18 @@ const ResultScene* ResultFile::find_scene(const std::string& name) const
 const ResultRow* ResultFile::find_row(const std::string& name) const
 {
     return find_named(rows, name);
+}
+
+DeviceKind device_kind_of(const ResultValue& device)
+{
+    const ResultValue type = device.at("type");
+    const std::string name = type.line();
+    std::vector<std::string_view> known;
+    for (const DeviceKind kind : device_kinds) {
+        if (name == name_of(kind)) return kind;
+        known.push_back(name_of(kind));
+    }
+    type.reject(fmt::format("is '{}', and a device is {}", name, fmt::join(known, ", ")));
 }
 
 ResultFile read_result(const std::filesystem::path& path)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/results/result_value.h"
+#include "core/device/backend.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -34,11 +35,12 @@ struct ResultRow {
     std::string scene, backend, status;
     std::string reason;   ///< several lines perhaps; no other control characters
     std::string schedule; ///< how rays come to work items, "tiles" for example
-    std::string device, device_type, driver;
-    std::uint64_t device_index = 0;    ///< in its backend
-    std::string hit_hash;              ///< empty where no rays were traced
-    std::optional<double> mrays_per_s; ///< of the median sample
-    std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
+    std::string device, driver;
+    std::optional<DeviceKind> device_kind; ///< empty where the row has no device
+    std::uint64_t device_index = 0;        ///< in its backend
+    std::string hit_hash;                  ///< empty where no rays were traced
+    std::optional<double> mrays_per_s;     ///< of the median sample
+    std::vector<double> samples_s; ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
     /// The API and the device's number in it: "opencl", "opencl:1".
     [[nodiscard]] std::string api() const;
@@ -59,6 +61,10 @@ struct ResultFile {
     [[nodiscard]] const ResultScene* find_scene(const std::string& name) const;
     [[nodiscard]] const ResultRow* find_row(const std::string& name) const;
 };
+
+/// The kind of a device, from a device of a result. Throws Error{invalid_input} where its "type" is none of
+/// device_kinds.
+[[nodiscard]] DeviceKind device_kind_of(const ResultValue& device);
 
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
 /// ResultFile's members hold.

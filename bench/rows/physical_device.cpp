@@ -29,7 +29,7 @@ std::vector<std::size_t> numbered_by_appearance(const std::vector<std::size_t>& 
 
 bool runs_on_host(const Device& device)
 {
-    return device.type == "cpu" || device.type == "emulated";
+    return device.kind != DeviceKind::gpu;
 }
 
 std::vector<std::size_t> physical_devices(std::span<const Device> devices)

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// Whether the device computes on the host's own processor: type cpu or emulated.
+/// Whether the device computes on the host's own processor.
 [[nodiscard]] bool runs_on_host(const Device& device);
 
 /// The piece of hardware that each device, of whatever APIs, is: equal numbers are one piece, counted from 0 in the

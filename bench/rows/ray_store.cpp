@@ -1,6 +1,5 @@
 #include "bench/rows/ray_store.h"
 
-#include "backends/openmp/backend.h"
 #include "bench/rows/scene_work.h"
 #include "core/base/error.h"
 #include "core/device/given_quads.h"
@@ -15,7 +14,7 @@ namespace {
 /// The packed form and the kernel whose primary hits other rays are made from.
 const PackedScene& reference_scene(SceneWork& scene)
 {
-    return scene.packed(KernelId{}.layout, TetOrder::hilbert).scene;
+    return scene.packed(KernelId{}.layout, TetOrder::hilbert).data;
 }
 
 } // namespace
@@ -26,7 +25,7 @@ const std::vector<Hit>& RayStore::primary_hits(SceneWork& scene, std::size_t vie
     if (!is_new) return entry->second;
     const PackedScene& packed = reference_scene(scene);
     const auto session =
-        openmp_backend().open(0, {}, {&scene.loaded().scene.mesh, &packed}, {.threads = scene.threads()});
+        reference_backend().open(0, {}, {&scene.loaded().scene.mesh, &packed}, {.threads = scene.threads()});
     entry->second.resize(scene.rays_per_view());
     static_cast<void>(session->trace(scene.job(view, &packed), entry->second));
     return entry->second;

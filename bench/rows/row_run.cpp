@@ -1,6 +1,6 @@
 #include "bench/rows/row_run.h"
 
-#include "bench/rows/device_facts.h"
+#include "bench/rows/device_abilities.h"
 #include "scenes/cache.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ void open_on_scene(RowRun& row, const Options& options)
 {
     if (!find_device(row, all_backends())) return;
     if (is_portable(row.key.kernel)) row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
-    open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->scene : nullptr}, options);
+    open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->data : nullptr}, options);
 }
 
 std::string traced_reason(const Traced& traced)
@@ -93,6 +93,11 @@ std::string_view name_of(Status status)
     case Status::error: return "error";
     }
     throw Error(ErrorKind::internal, "name_of(Status): no such status");
+}
+
+std::string device_kind_text(const RowRun& row)
+{
+    return row.device.name.empty() ? std::string() : std::string(name_of(row.device.kind));
 }
 
 std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<RowRun>& rows)
@@ -184,7 +189,7 @@ RowRun open_row(const RowKey& key, const Packed& tets, const Options& options, c
     row.key = key;
     row.packed = &tets;
     guarded(row, [&] {
-        if (find_device(row, backends)) open_session(row, {nullptr, &tets.scene}, options);
+        if (find_device(row, backends)) open_session(row, {nullptr, &tets.data}, options);
     });
     return row;
 }

@@ -99,6 +99,8 @@ struct RowRun {
 [[nodiscard]] Status status_of(const RowRun& row);
 /// Why, in one line; empty where the status is ok.
 [[nodiscard]] std::string reason_of(const RowRun& row);
+/// "cpu", "gpu" or "emulated"; empty where the row has no device, since its scene could not be loaded.
+[[nodiscard]] std::string device_kind_text(const RowRun& row);
 /// The rows of a scene, by its label.
 [[nodiscard]] std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<RowRun>& rows);
 /// What was traced; null where the row failed or was skipped.

@@ -1,8 +1,8 @@
 #include "bench/rows/row_tracing.h"
 
 #include "bench/rows/ray_store.h"
-#include "bench/terminal/stopwatch.h"
 #include "core/base/hash.h"
+#include "core/base/stopwatch.h"
 
 namespace tetrace {
 
@@ -32,8 +32,7 @@ std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray)
 TraceJob job_of(const RowRun& row, std::size_t view)
 {
     SceneWork& scene = *row.scene;
-    if (row.key.kernel.task == Task::trace)
-        return scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr);
+    if (row.key.kernel.task == Task::trace) return scene.job(view, row.packed != nullptr ? &row.packed->data : nullptr);
     const RaySet& set = scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view);
     return given_job(set.rays.size(), scene.max_steps(), set.any_hit);
 }
@@ -44,7 +43,7 @@ TraceJob prepare_view(RowRun& row, std::size_t view)
         SceneWork& scene = *row.scene;
         row.view_of_rays.reset();
         row.session->set_rays(
-            scene.given_rays().rows(scene, row.key, row.packed != nullptr ? &row.packed->scene : nullptr, view));
+            scene.given_rays().rows(scene, row.key, row.packed != nullptr ? &row.packed->data : nullptr, view));
         row.view_of_rays = view;
     }
     return job_of(row, view);

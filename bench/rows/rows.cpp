@@ -80,8 +80,8 @@ std::string in_lower_case(std::string text)
 bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
-    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver, device.type,
-                                                       device.id, backend.name(), index));
+    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
+                                                       name_of(device.kind), device.id, backend.name(), index));
     const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
     return options.devices.empty() || std::any_of(options.devices.begin(), options.devices.end(), holds);
 }
@@ -113,7 +113,7 @@ bool names_rt(const Options& options)
 bool wanted_there(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
 {
     if (kernel.layout != Layout::rt || names_rt(options)) return true;
-    return backend.devices()[device].type != "emulated" && backend.why_not(device, kernel).empty();
+    return backend.devices()[device].kind != DeviceKind::emulated && backend.why_not(device, kernel).empty();
 }
 
 bool filter_keeps(const std::string& filter, const std::string& name)
@@ -171,8 +171,8 @@ std::string device_names(const Options& options, const Backend& backend)
     if (!options.devices.empty())
         for (std::size_t i = 0; i < backend.devices().size(); ++i)
             if (const Device& device = backend.devices()[i]; device.usable)
-                text += fmt::format("\n  a device is {}:{}: {}, {}, {}", backend.name(), i, device.name, device.type,
-                                    device.driver);
+                text += fmt::format("\n  a device is {}:{}: {}, {}, {}", backend.name(), i, device.name,
+                                    name_of(device.kind), device.driver);
     return text;
 }
 
@@ -212,6 +212,44 @@ std::string numbered_backend(const RowKey& key)
 }
 
 } // namespace
+
+// Copies of whole keys are compared, so that a field that is added later counts as a difference.
+RowKey reference_row(RowKey key)
+{
+    key.backend = reference_backend().name();
+    key.device = 0;
+    key.threads = 0;
+    key.kernel.schedule = Schedule::tiles;
+    return key;
+}
+
+bool same_work(const RowKey& a, const RowKey& b)
+{
+    return reference_row(a) == reference_row(b);
+}
+
+bool same_rays(RowKey a, RowKey b)
+{
+    for (RowKey* key : {&a, &b}) {
+        key->kernel = {};
+        key->order = {};
+    }
+    return same_work(a, b);
+}
+
+bool same_place(const RowKey& a, const RowKey& b)
+{
+    RowKey there = a;
+    there.backend = b.backend;
+    there.device = b.device;
+    there.threads = b.threads;
+    return there == a;
+}
+
+bool on_reference(const RowKey& key)
+{
+    return key.backend == reference_backend().name();
+}
 
 std::string row_name(const RowKey& key)
 {
@@ -283,7 +321,7 @@ std::vector<RowKey> select_search_rows(const Options& options, const std::vector
 {
     std::vector<RowKey> rows;
     for (RowKey key : rows_of_scene(options, search_scene, backends, kernels_of(Task::search))) {
-        if (key.backend == reference_backend) {
+        if (on_reference(key)) {
             key.threads = 1;
             rows.push_back(key);
             key.threads = 0;

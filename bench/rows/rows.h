@@ -22,6 +22,22 @@ struct RowKey {
     friend bool operator==(const RowKey&, const RowKey&) = default;
 };
 
+/// The row of the reference that does the work of a row: on its device, with all threads, in schedule tiles.
+[[nodiscard]] RowKey reference_row(RowKey key);
+
+/// Whether two rows do the same work: one kernel, but for its schedule, on the same tets, rays and orders. Backends,
+/// devices and threads may differ.
+[[nodiscard]] bool same_work(const RowKey& a, const RowKey& b);
+
+/// Whether two rows trace the same rays of the same scene in the same order, with whatever kernels and wherever.
+[[nodiscard]] bool same_rays(RowKey a, RowKey b);
+
+/// Whether two rows run in the same place: a backend's device, with the same threads.
+[[nodiscard]] bool same_place(const RowKey& a, const RowKey& b);
+
+/// Whether the row runs on the reference_backend().
+[[nodiscard]] bool on_reference(const RowKey& key);
+
 /// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; no device's name and no
 /// counts in it. Rows of another order than hilbert have "order:reached" or "order:input" before the api, rows of
 /// another schedule than tiles "schedule:persistent", rows whose given rays come in another order than that of tiles
@@ -42,9 +58,6 @@ struct RowKey {
 /// where nothing is selected: it names the options, and what there would be without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
-
-/// The backend whose answers every other's are compared with.
-inline constexpr const char* reference_backend = "openmp";
 
 /// What rows of task search call the tets of core/rays/search_set.h.
 inline constexpr const char* search_scene = "random-tets";

@@ -1,7 +1,7 @@
 #include "bench/rows/scene_work.h"
 
 #include "bench/terminal/progress.h"
-#include "bench/terminal/stopwatch.h"
+#include "core/base/stopwatch.h"
 #include "core/mesh/locate.h"
 #include "core/pack/pack_bvh.h"
 
@@ -42,7 +42,7 @@ const Packed& SceneWork::packed(Layout layout, TetOrder order)
     const BuiltBvh* const built = is_bvh ? &bvh() : nullptr;
     const Stopwatch watch;
     Packed made;
-    made.scene = is_bvh ? pack_bvh(loaded_.scene.mesh, built->bvh, layout) : pack(loaded_.scene, layout, order);
+    made.data = is_bvh ? pack_bvh(loaded_.scene.mesh, built->bvh, layout) : pack(loaded_.scene, layout, order);
     made.pack_s = watch.seconds();
     if (is_bvh) made.bvh_build_s = built->build_s;
     return packed_.emplace(key, std::move(made)).first->second;

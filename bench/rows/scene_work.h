@@ -15,7 +15,7 @@ namespace tetrace {
 
 /// A scene in packed form, and what packing it took.
 struct Packed {
-    PackedScene scene;
+    PackedScene data;
     double pack_s = 0;
     std::optional<double> bvh_build_s; ///< of a BVH, which is built for all its layouts once
 };

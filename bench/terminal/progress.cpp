@@ -1,7 +1,6 @@
 #include "bench/terminal/progress.h"
 
 #include "bench/terminal/text.h"
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -93,10 +92,7 @@ std::string progress_text(const std::string& stage, double elapsed_s, double fra
     return text.substr(0, end);
 }
 
-ProgressLine::ProgressLine(bool draws, bool colour)
-    : draws_(draws), colour_(colour), stage_start_(Clock::now()), last_draw_(stage_start_)
-{
-}
+ProgressLine::ProgressLine(bool draws, bool colour) : draws_(draws), colour_(colour) {}
 
 ProgressLine::~ProgressLine()
 {
@@ -108,13 +104,13 @@ void ProgressLine::show(const std::string& stage, double fraction, double left_s
     if (!draws_) return;
     if (stage != stage_) {
         stage_ = stage;
-        stage_start_ = Clock::now();
+        in_stage_ = {};
     }
     const double pause_s = !has_drawn_ ? quiet_s : detail != detail_ ? rename_s : redraw_s;
-    if (seconds_since(last_draw_) < pause_s) return;
+    if (since_draw_.seconds() < pause_s) return;
     detail_ = detail;
     const std::string what = detail.empty() ? stage : stage + ", " + detail;
-    const std::string text = progress_text(what, seconds_since(stage_start_), fraction, terminal_width() - 1, left_s);
+    const std::string text = progress_text(what, in_stage_.seconds(), fraction, terminal_width() - 1, left_s);
     const std::size_t columns = display_width(text);
     const std::string rest(drawn_ > columns ? drawn_ - columns : 0, ' ');
     std::fputs(fmt::format(fmt::runtime(colour_ ? "\r\x1b[2m{}\x1b[0m{}" : "\r{}{}"), text, rest).c_str(), stderr);
@@ -122,7 +118,7 @@ void ProgressLine::show(const std::string& stage, double fraction, double left_s
     drawn_ = columns;
     has_drawn_ = true;
     columns_to_clear = columns;
-    last_draw_ = Clock::now();
+    since_draw_ = {};
 }
 
 void ProgressLine::clear()
@@ -132,7 +128,7 @@ void ProgressLine::clear()
     std::fflush(stderr);
     drawn_ = 0;
     columns_to_clear = 0;
-    last_draw_ = Clock::now();
+    since_draw_ = {};
 }
 
 Progress ProgressLine::callback()

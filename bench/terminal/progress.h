@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/base/stopwatch.h"
 
-#include <chrono>
 #include <string>
 
 namespace tetrace {
@@ -25,15 +25,12 @@ public:
     [[nodiscard]] Progress callback();
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     bool draws_;
     bool colour_;
     std::size_t drawn_ = 0; ///< columns that the line takes now
     bool has_drawn_ = false;
     std::string stage_, detail_;
-    Clock::time_point stage_start_;
-    Clock::time_point last_draw_;
+    Stopwatch in_stage_, since_draw_;
 };
 
 /// The line as show() draws it, at most `width` columns.

@@ -1,7 +1,5 @@
 #include "bench/truth/walk_path.h"
 
-#include "backends/openmp/backend.h"
-
 #include <algorithm>
 
 namespace tetrace {
@@ -47,7 +45,7 @@ std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std:
 std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,
                                      std::uint32_t x, std::uint32_t y)
 {
-    const auto session = openmp_backend().open(0, kernel, {nullptr, &packed}, {.threads = 1});
+    const auto session = reference_backend().open(0, kernel, {nullptr, &packed}, {.threads = 1});
     return walk_path(*session, job, x, y, job.max_steps);
 }
 

@@ -45,7 +45,7 @@ RowKey counting_row(const Options& options, const std::string& label)
 {
     Options selection = options;
     selection.structures = {Structure::cdt};
-    selection.backends = {"openmp"};
+    selection.backends = {reference_backend().name()};
     return select_rows(selection, {label}).front();
 }
 
@@ -57,7 +57,7 @@ void count_steps(Built& built, SceneWork& scene, const Options& options)
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("counting steps, " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        static_cast<void>(row.session->trace(scene.job(view, &row.packed->scene), hits));
+        static_cast<void>(row.session->trace(scene.job(view, &row.packed->data), hits));
         built.totals.add(count_rays(hits));
     }
     built.bytes = row.session->bytes();

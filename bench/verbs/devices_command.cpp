@@ -1,7 +1,7 @@
 #include "bench/options/identity.h"
 #include "bench/output/report.h"
 #include "bench/output/self_test_json.h"
-#include "bench/rows/device_facts.h"
+#include "bench/rows/device_abilities.h"
 #include "bench/rows/physical_device.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
@@ -98,9 +98,9 @@ Table device_table(const std::vector<ApiDevice>& devices)
                  {"reason", "reason"}});
     for (const ApiDevice& found : devices) {
         const Device& device = found.device;
-        table.add({backend_of(found), found.label, device.name, device.type, text_cell(device.driver),
-                   text_cell(device.implementation), std::uint64_t{found.physical}, text_cell(device.id),
-                   text_cell(device.uuid), text_cell(device.pci), std::uint64_t{device.threads},
+        table.add({backend_of(found), found.label, device.name, std::string(name_of(device.kind)),
+                   text_cell(device.driver), text_cell(device.implementation), std::uint64_t{found.physical},
+                   text_cell(device.id), text_cell(device.uuid), text_cell(device.pci), std::uint64_t{device.threads},
                    count_cell(device.memory_bytes), count_cell(device.max_buffer_bytes),
                    count_cell(device.max_group_items), count_cell(device.group_width),
                    device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(), text_cell(found.self_test_text),
@@ -150,7 +150,7 @@ std::string api_text(const ApiDevice& found)
     constexpr std::size_t width = 110, margin = 13;
     const Device& device = found.device;
     std::string text =
-        fmt::format("{}, {}{}{}", device.name, device.type, device.driver.empty() ? "" : ", ", device.driver);
+        fmt::format("{}, {}{}{}", device.name, name_of(device.kind), device.driver.empty() ? "" : ", ", device.driver);
     if (const std::string limits = limits_text(device); !limits.empty()) text += "\n\n" + limits;
     if (!found.self_test_text.empty()) text += "\n\nself-test: " + found.self_test_text;
     std::string lines = wrapped(text, width, margin);

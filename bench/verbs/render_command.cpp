@@ -51,7 +51,7 @@ std::vector<Hit> trace(RowRun& row, std::size_t view)
 {
     const SceneWork& scene = *row.scene;
     std::vector<Hit> hits(scene.rays_per_view(), Hit{POISON, NO_TET, 0, 0, 0, 0});
-    static_cast<void>(row.session->trace(scene.job(view, row.packed != nullptr ? &row.packed->scene : nullptr), hits));
+    static_cast<void>(row.session->trace(scene.job(view, row.packed != nullptr ? &row.packed->data : nullptr), hits));
     return hits;
 }
 

@@ -5,20 +5,28 @@
 #include "core/rays/camera.h"
 #include "core/rays/hit.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
 
+/// What a device computes on. Emulated: an API of GPUs that runs on the processor here.
+enum class DeviceKind { cpu, gpu, emulated };
+inline constexpr std::array device_kinds{DeviceKind::cpu, DeviceKind::gpu, DeviceKind::emulated};
+/// As results have it: "cpu", "gpu", "emulated".
+[[nodiscard]] std::string_view name_of(DeviceKind kind);
+
 /// A device as its API describes it; usable, or with the reason why not and what would bring it.
 struct Device {
     std::string name;
-    std::string type;           ///< "cpu", "gpu", or "emulated": an API of GPUs that runs on the processor here
+    DeviceKind kind = DeviceKind::cpu;
     std::string driver;         ///< driver or library, with version
     std::string implementation; ///< of the API, in short, as tests/expected/ names it: "pocl-3.1", "lavapipe-22.3"
     std::string id;             ///< its name for the user: UUID, else PCI id, else the name
@@ -46,7 +54,7 @@ inline constexpr unsigned packet_widths[] = {4, 8, 16};
 
 struct SessionOptions {
     unsigned threads = 0;                     ///< host threads; 0 is all that the process may use
-    unsigned tile_height = 0;                 ///< 4 or 8; 0: tile_height_for() the device
+    unsigned tile_height = 0;                 ///< 4 or 8; 0: see tile_height_of()
     unsigned packet_lanes = 0;                ///< of schedule packets, one of packet_widths; 0: the widest there is
     std::uint64_t max_buffer_bytes = 0;       ///< treat the device's largest buffer as this small; 0: as it is
     std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
@@ -151,5 +159,8 @@ public:
 
 /// Every backend of this build, in CMake's order; those that cannot run here say so in their devices.
 [[nodiscard]] const std::vector<Backend*>& all_backends();
+
+/// The one of them whose answers all others' are compared with; it runs on the host, on one device.
+[[nodiscard]] Backend& reference_backend();
 
 } // namespace tetrace

@@ -1,5 +1,7 @@
 #include "core/device/device_facts.h"
 
+#include "core/base/error.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -45,11 +47,21 @@ std::string version_in(std::string_view text, int most_numbers)
 
 } // namespace
 
+std::string_view name_of(DeviceKind kind)
+{
+    switch (kind) {
+    case DeviceKind::cpu: return "cpu";
+    case DeviceKind::gpu: return "gpu";
+    case DeviceKind::emulated: return "emulated";
+    }
+    throw Error(ErrorKind::internal, "name_of(DeviceKind): no such kind");
+}
+
 Device unusable_device(const std::string& name, const std::string& reason)
 {
     Device device;
     device.name = device.id = name;
-    device.type = "gpu";
+    device.kind = DeviceKind::gpu;
     device.usable = false;
     device.reason = reason;
     return device;

@@ -23,7 +23,7 @@ Device host_device()
 {
     Device device;
     device.name = processor_name();
-    device.type = "cpu";
+    device.kind = DeviceKind::cpu;
     device.id = device.name;
     device.memory_bytes =
         static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));

@@ -1,11 +1,10 @@
 #include "core/device/host_session.h"
 
-#include "core/base/elapsed.h"
+#include "core/base/stopwatch.h"
 #include "core/device/launch.h"
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 namespace tetrace {
 
@@ -13,9 +12,9 @@ void HostSession::launch(const TraceJob& job)
 {
     output_.assign(output_words(job, task_), POISON);
     const auto between_guards = std::span(output_).subspan(GUARD_WORDS, output_.size() - 2 * std::size_t{GUARD_WORDS});
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     run(job, between_guards);
-    kernel_s_ = seconds_since(start);
+    kernel_s_ = watch.seconds();
 }
 
 void HostSession::read_output(std::span<std::uint32_t> words)

@@ -31,7 +31,7 @@ std::uint64_t largest_buffer(const Device& device, const SessionOptions& options
     return std::min(device.max_buffer_bytes, options.max_buffer_bytes);
 }
 
-unsigned tile_height_for(const Device&, const SessionOptions& options)
+unsigned tile_height_of(const SessionOptions& options)
 {
     return options.tile_height != 0 ? options.tile_height : 8;
 }

@@ -16,7 +16,7 @@ void require_kernel(const Backend& backend, std::size_t device, const KernelId& 
 /// Bytes of the largest buffer that a session may make: the device's, or what the options say it is; 0 is no limit.
 [[nodiscard]] std::uint64_t largest_buffer(const Device& device, const SessionOptions& options);
 
-/// Pixel rows of a tile: what the options ask for, else chosen by measurement per type of device (results/tiles.md).
-[[nodiscard]] unsigned tile_height_for(const Device& device, const SessionOptions& options);
+/// Pixel rows of a tile: what the options ask for, else 8, by measurement (results/tiles.md).
+[[nodiscard]] unsigned tile_height_of(const SessionOptions& options);
 
 } // namespace tetrace

@@ -1,9 +1,8 @@
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/device/backend.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 
 namespace tetrace {
@@ -63,9 +62,9 @@ void Session::set_rays(std::span<const Quad>)
 std::vector<std::uint32_t> Session::checked_output(std::size_t words)
 {
     std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + words);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     read_output(output);
-    download_s_ = seconds_since(start);
+    download_s_ = watch.seconds();
     const std::span<const std::uint32_t> all = output;
     check_guard(all.first(GUARD_WORDS), "before");
     check_guard(all.last(GUARD_WORDS), "behind");

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "core/base/elapsed.h"
+#include "core/base/stopwatch.h"
 #include "core/device/backend.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +15,7 @@ namespace tetrace {
 [[nodiscard]] inline std::uint64_t copied_bytes(const Device& device, std::uint64_t max_buffer_bytes)
 {
     constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
-    std::uint64_t bytes = (device.type == "gpu" ? 512 : 128) * mebibyte;
+    std::uint64_t bytes = (device.kind == DeviceKind::gpu ? 512 : 128) * mebibyte;
     bytes = std::min(bytes, device.memory_bytes / 4);
     if (max_buffer_bytes != 0) bytes = std::min(bytes, max_buffer_bytes);
     return bytes & ~std::uint64_t{3};
@@ -29,9 +28,9 @@ template <class Work>
     constexpr std::size_t times = 101;
     std::vector<double> seconds;
     for (std::size_t i = 0; i < times; i++) {
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         work();
-        seconds.push_back(seconds_since(start));
+        seconds.push_back(watch.seconds());
     }
     std::nth_element(seconds.begin(), seconds.begin() + times / 2, seconds.end());
     return seconds[times / 2];

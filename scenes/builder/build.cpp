@@ -1,7 +1,7 @@
 #include "scenes/builder/build.h"
 
-#include "core/base/elapsed.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"
@@ -120,7 +120,6 @@ std::string builder_tool()
 PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk)
 {
     PreparedScene prepared;
-    prepared.begun = std::chrono::steady_clock::now();
     Scene& scene = prepared.scene;
     scene.name = options.name.empty() ? options.mesh.stem().string() : options.name;
     scene.build.source = options.mesh.filename().string();
@@ -155,7 +154,7 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
             rounding.damaged, rounding.repaired, rounding.moved_points));
     require_sound(scene, output, rounding);
     require_entry_grid(scene);
-    scene.build.build_s = seconds_since(prepared.begun);
+    scene.build.build_s = prepared.watch.seconds();
     return scene;
 }
 

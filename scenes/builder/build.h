@@ -30,7 +30,7 @@ struct BuilderTalk {
 struct PreparedScene {
     Scene scene;
     TriangleMesh surface; ///< the domain's
-    std::chrono::steady_clock::time_point begun;
+    Stopwatch watch;      ///< since its mesh was read
 };
 
 /// This program and the libraries that decide a scene, with their versions.

@@ -120,7 +120,7 @@ protected:
 TEST_P(CudaWithoutGpu, says_that_it_is_an_emulation)
 {
     const Device& device = backend->devices().at(0);
-    EXPECT_EQ(device.type, "emulated");
+    EXPECT_EQ(device.kind, DeviceKind::emulated);
     EXPECT_EQ(device.implementation, "cuda-host");
     EXPECT_TRUE(contains(device.name, "host emulation of CUDA"));
     EXPECT_TRUE(contains(device.driver, "emulated"));

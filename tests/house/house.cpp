@@ -62,15 +62,22 @@ bool House::covers(const std::string& arrow, const std::string& room)
     return room.starts_with(arrow.substr(0, arrow.size() - 1));
 }
 
+const std::string* House::line_of(const std::string& room) const
+{
+    auto line = arrows_.find(room);
+    if (line == arrows_.end()) line = arrows_.find(fs::path(room).parent_path() / "*");
+    return line == arrows_.end() ? nullptr : &line->first;
+}
+
 bool House::allows(const std::string& from, const std::string& to) const
 {
-    return std::ranges::any_of(arrows_.at(from), [&](const std::string& arrow) { return covers(arrow, to); });
+    return std::ranges::any_of(arrows_.at(*line_of(from)), [&](const std::string& arrow) { return covers(arrow, to); });
 }
 
 std::string House::room_of(const std::string& file) const
 {
     for (fs::path folder = fs::path(file).parent_path(); !folder.empty(); folder = folder.parent_path())
-        if (arrows_.contains(folder.string())) return folder.string();
+        if (line_of(folder.string()) != nullptr) return folder.string();
     return {};
 }
 
@@ -91,7 +98,7 @@ std::vector<std::string> House::unused(const std::vector<Include>& includes) con
 {
     std::set<std::pair<std::string, std::string>> needed;
     for (const Include& include : includes)
-        needed.insert({room_of(include.from), room_of(include.to)});
+        if (const std::string* line = line_of(room_of(include.from))) needed.insert({*line, room_of(include.to)});
     std::vector<std::string> arrows;
     for (const auto& [from, list] : arrows_)
         for (const std::string& arrow : list)

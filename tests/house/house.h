@@ -25,7 +25,8 @@ struct Sources {
 /// The house: which folder may include which. A folder that is not listed is a part of the listed one that it lies in.
 class House {
 public:
-    /// Reads lines "folder -> folder folder ..."; "core/*" means every folder below core. A '#' begins a comment.
+    /// Reads lines "folder -> folder folder ..."; "core/*" means every folder below core, and before the arrow each
+    /// folder in core that has no line of its own. A '#' begins a comment.
     explicit House(const std::filesystem::path& table);
 
     /// The listed folder that a file lies in; empty where there is none.
@@ -39,6 +40,8 @@ public:
 
 private:
     [[nodiscard]] static bool covers(const std::string& arrow, const std::string& room);
+    /// The line of a folder: its own, else that of its parent's "/*"; null without one.
+    [[nodiscard]] const std::string* line_of(const std::string& room) const;
     [[nodiscard]] bool allows(const std::string& from, const std::string& to) const;
 
     std::map<std::string, std::vector<std::string>> arrows_;

@@ -85,6 +85,20 @@ TEST(House, says_of_each_folder_what_belongs_there)
     }
 }
 
+TEST(House, has_one_line_for_all_folders_of_a_kind)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder.path() / "arrows.txt") << "core/low ->\nbackends/* -> core/low\n";
+    const test::House twin(folder.path() / "arrows.txt");
+    const std::vector<test::Include> includes = {{"backends/one/a.h", "core/low/b.h"},
+                                                 {"backends/one/part/a.h", "backends/one/a.h"},
+                                                 {"backends/two/c.h", "backends/one/a.h"}};
+    EXPECT_EQ(twin.room_of("backends/one/part/a.h"), "backends/one");
+    EXPECT_EQ(joined(twin.forbidden(includes)),
+              "backends/two/c.h includes backends/one/a.h: backends/two -> backends/one is no arrow of the house\n");
+    EXPECT_EQ(joined(twin.unused(includes)), "");
+}
+
 TEST(House, finds_what_does_not_belong)
 {
     const TemporaryFolder folder;

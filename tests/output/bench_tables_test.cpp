@@ -43,22 +43,22 @@ protected:
         result_.run.rows.push_back(std::move(row));
     }
 
-    static Device device(const char* name, const char* type, const char* implementation, const char* uuid = "")
+    static Device device(const char* name, DeviceKind kind, const char* implementation, const char* uuid = "")
     {
         Device result;
         result.name = name;
-        result.type = type;
+        result.kind = kind;
         result.implementation = implementation;
         result.uuid = uuid;
         return result;
     }
 
-    FakeBackend vulkan_{"vulkan", device("llvmpipe", "emulated", "lavapipe-22.3")};
-    FakeBackend opencl_{"opencl", device("pthread", "emulated", "pocl-3.1")};
-    FakeBackend cuda_host_{"cuda-host", device("host C++", "emulated", "cuda-host")};
-    FakeBackend openmp_{"openmp", device("CPU", "cpu", "openmp")};
-    FakeBackend cuda_{"cuda", device("H200", "gpu", "cuda-13.0", "a")};
-    FakeBackend vulkan_gpu_{"vulkan", device("H200", "gpu", "nvidia-570", "a")};
+    FakeBackend vulkan_{"vulkan", device("llvmpipe", DeviceKind::emulated, "lavapipe-22.3")};
+    FakeBackend opencl_{"opencl", device("pthread", DeviceKind::emulated, "pocl-3.1")};
+    FakeBackend cuda_host_{"cuda-host", device("host C++", DeviceKind::emulated, "cuda-host")};
+    FakeBackend openmp_{"openmp", device("CPU", DeviceKind::cpu, "openmp")};
+    FakeBackend cuda_{"cuda", device("H200", DeviceKind::gpu, "cuda-13.0", "a")};
+    FakeBackend vulkan_gpu_{"vulkan", device("H200", DeviceKind::gpu, "nvidia-570", "a")};
     BenchResult result_;
 };
 

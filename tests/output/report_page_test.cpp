@@ -1,4 +1,5 @@
 #include "bench/report/page.h"
+#include "bench/report/sections.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
@@ -265,6 +266,16 @@ TEST_F(ReportPage, emulated_devices_and_gpus_share_no_chart)
     }
 }
 
+TEST(ReportColours, are_those_of_earlier_pages_and_one_for_each_backend)
+{
+    const std::vector<std::string> first = {"openmp", "embree", "opencl", "vulkan", "cuda", "cuda-host"};
+    for (std::size_t i = 0; i < first.size(); ++i)
+        EXPECT_EQ(api_series(first[i]), i) << first[i];
+    std::set<std::size_t> seen;
+    for (const Backend* backend : all_backends())
+        EXPECT_TRUE(seen.insert(api_series(backend->name())).second) << backend->name();
+}
+
 TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
 {
     json other = bench_json();
@@ -343,6 +354,10 @@ TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/rates/mrays_per_s", 0), "rows[0].rates.mrays_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/rates/mrays_per_s", nullptr), "rows[0].rates.mrays_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/1/times/median_s", "1"), "rows[1].times.median_s"));
+    EXPECT_TRUE(contains(error_with(bench_json(), "/devices/0/type", "fpga"), "devices[0].type: is 'fpga'"));
+    json nowhere = bench_json();
+    nowhere["tetrace"]["rows"][1].erase("device");
+    EXPECT_TRUE(contains(error_of_page(nowhere), "rows[1]: has a rate and no device"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/devices/0/copy_bytes_per_s", -1), "devices[0].copy_bytes_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/ratios/0/low", 0), "ratios[0].low"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/ratios/0/row", "none"), "no row of that name"));

@@ -109,9 +109,9 @@ std::optional<double> number_cell(const PaperTable& table, std::size_t row, cons
 RowRun timed_row(Method method, unsigned threads, double seconds)
 {
     RowRun row;
-    row.key = {search_scene, reference_backend, {Structure::cdt, method, Layout::tet80}};
+    row.key = {search_scene, reference_backend().name(), {Structure::cdt, method, Layout::tet80}};
     row.key.threads = threads;
-    row.device.type = "cpu";
+    row.device.kind = DeviceKind::cpu;
     Traced result;
     result.totals.rays = result.verdicts.rays = result.verdicts.agreed = 1000;
     row.outcome = result;
@@ -295,7 +295,7 @@ TEST(SearchRun, a_gpu_decides_whether_plucker_overtakes_stp)
     public:
         Gpu() : DamagedBackend("gpu", leave_as_they_are), devices_(openmp_backend().devices())
         {
-            devices_[0].type = "gpu";
+            devices_[0].kind = DeviceKind::gpu;
         }
         [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
 

@@ -244,7 +244,7 @@ TEST(Table6, the_papers_frames_stand_beside_a_gpu_alone)
     EXPECT_EQ(text_of(table6({&run}), find_row(run, Layout::cwbvh, Method::single), "papers_frames_per_s"),
               "not its BVH");
     for (RowRun& row : run.rows)
-        row.device.type = "gpu";
+        row.device.kind = DeviceKind::gpu;
     EXPECT_EQ(papers(cdt), 160);
     EXPECT_EQ(papers(bvh), 260);
     run.build.scene = "bunny";
@@ -303,11 +303,11 @@ TEST(Table6, claims_are_decided_by_the_interval_on_the_kind_of_device_that_they_
     set_all(run, 2, 1);
     EXPECT_EQ(verdict_of(run, "table6-bvh-is-faster-on-armadillo-cpu"), ClaimVerdict::holds);
     for (RowRun& row : run.rows)
-        row.device.type = "gpu";
+        row.device.kind = DeviceKind::gpu;
     EXPECT_EQ(verdict_of(run, "table6-bvh-is-faster-on-armadillo-gpu"), ClaimVerdict::holds);
     EXPECT_EQ(verdict_of(run, "table6-bvh-is-faster-on-armadillo-cpu"), ClaimVerdict::not_testable);
     for (RowRun& row : run.rows)
-        row.device.type = "emulated";
+        row.device.kind = DeviceKind::emulated;
     EXPECT_EQ(verdict_of(run, "table6-bvh-is-faster-on-armadillo-gpu"), ClaimVerdict::not_testable);
 }
 

@@ -6,11 +6,11 @@ using namespace tetrace;
 
 namespace {
 
-RowRun row_on(const std::string& backend, const std::string& type, double seconds, const std::string& uuid = "")
+RowRun row_on(const std::string& backend, DeviceKind kind, double seconds, const std::string& uuid = "")
 {
     RowRun row;
     row.key = {"bunny", backend, {}, RayKind::primary, TetOrder::hilbert, 0};
-    row.device.type = type;
+    row.device.kind = kind;
     row.device.uuid = uuid;
     Traced result;
     result.totals.rays = 1000;
@@ -31,8 +31,8 @@ std::vector<RowRun> list(Rows... rows)
 
 TEST(Comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
 {
-    const auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 4), row_on("vulkan", "gpu", 1, "a"),
-                           row_on("cuda", "gpu", 0.5, "a"));
+    const auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 4),
+                           row_on("vulkan", DeviceKind::gpu, 1, "a"), row_on("cuda", DeviceKind::gpu, 0.5, "a"));
     const auto found = compare_rows(rows);
     EXPECT_FALSE(found[0].has_value()) << "the reference itself";
     ASSERT_TRUE(found[1].has_value());
@@ -46,7 +46,7 @@ TEST(Comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
 
 TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)
 {
-    const auto rows = list(row_on("opencl", "gpu", 2, "a"), row_on("vulkan", "gpu", 1, "a"));
+    const auto rows = list(row_on("opencl", DeviceKind::gpu, 2, "a"), row_on("vulkan", DeviceKind::gpu, 1, "a"));
     const auto found = compare_rows(rows);
     EXPECT_FALSE(found[0].has_value());
     ASSERT_TRUE(found[1].has_value());
@@ -55,21 +55,24 @@ TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)
 
 TEST(Comparison, an_emulation_without_openmp_beside_it_has_no_ratio)
 {
-    for (const auto& found : compare_rows(list(row_on("opencl", "emulated", 2), row_on("vulkan", "emulated", 1))))
+    for (const auto& found :
+         compare_rows(list(row_on("opencl", DeviceKind::emulated, 2), row_on("vulkan", DeviceKind::emulated, 1))))
         EXPECT_FALSE(found.has_value());
 }
 
 TEST(Comparison, no_ratio_joins_host_and_gpu_or_two_gpus)
 {
     for (const auto& found :
-         compare_rows(list(row_on("openmp", "cpu", 2), row_on("cuda", "gpu", 1, "a"), row_on("vulkan", "gpu", 1, "b"))))
+         compare_rows(list(row_on("openmp", DeviceKind::cpu, 2), row_on("cuda", DeviceKind::gpu, 1, "a"),
+                           row_on("vulkan", DeviceKind::gpu, 1, "b"))))
         EXPECT_FALSE(found.has_value());
 }
 
 TEST(Comparison, only_the_same_kernel_on_the_same_scene_compares)
 {
-    auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2), row_on("opencl", "emulated", 2),
-                     row_on("opencl", "emulated", 2), row_on("opencl", "emulated", 2));
+    auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 2),
+                     row_on("opencl", DeviceKind::emulated, 2), row_on("opencl", DeviceKind::emulated, 2),
+                     row_on("opencl", DeviceKind::emulated, 2));
     rows[1].key.scene = "armadillo";
     rows[2].key.kernel.layout = Layout::tet96;
     rows[3].key.kernel.math = MathMode::fast;
@@ -81,9 +84,20 @@ TEST(Comparison, only_the_same_kernel_on_the_same_scene_compares)
     EXPECT_EQ(found[4]->reference, &rows[0]);
 }
 
+TEST(Comparison, rows_of_each_ray_order_compare_with_openmps_of_that_order)
+{
+    auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("openmp", DeviceKind::cpu, 3),
+                     row_on("vulkan", DeviceKind::emulated, 4), row_on("vulkan", DeviceKind::emulated, 5));
+    rows[1].key.ray_order = rows[3].key.ray_order = RayOrder::morton;
+    const auto found = compare_rows(rows);
+    ASSERT_TRUE(found[2].has_value() && found[3].has_value());
+    EXPECT_EQ(found[2]->reference, &rows[0]);
+    EXPECT_EQ(found[3]->reference, &rows[1]);
+}
+
 TEST(Comparison, a_row_without_a_rate_neither_compares_nor_is_a_reference)
 {
-    auto rows = list(row_on("openmp", "cpu", 2), row_on("opencl", "emulated", 2));
+    auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 2));
     std::get<Traced>(rows[0].outcome).different = 1;
     EXPECT_FALSE(compare_rows(rows)[1].has_value());
     std::get<Traced>(rows[0].outcome).different = 0;

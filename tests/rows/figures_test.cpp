@@ -12,7 +12,7 @@ RowRun timed_row(Layout layout = Layout::tet80)
     RowRun row;
     row.key = {"a", "openmp", {}, RayKind::primary, TetOrder::hilbert};
     row.key.kernel.layout = layout;
-    row.device.type = "cpu";
+    row.device.kind = DeviceKind::cpu;
     Traced result;
     result.totals.rays = 4'000'000;
     result.totals.hits = 1'000'000;
@@ -102,14 +102,27 @@ TEST(Figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_sc
     EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
 }
 
+TEST(Figures, the_ratio_is_over_single_rays_of_the_same_kind_and_order)
+{
+    std::vector<RowRun> rows;
+    rows.push_back(single_row("a"));
+    rows.push_back(timed_row());
+    rows[1].key.ray_order = RayOrder::morton;
+    EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
+    rows[0].key.ray_order = RayOrder::morton;
+    EXPECT_TRUE(ratio_to_single(rows[1], rows).has_value());
+    rows[1].key.rays = RayKind::ao;
+    EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
+}
+
 TEST(Figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
 {
     std::vector<RowRun> rows;
     rows.push_back(single_row("a"));
     rows.push_back(timed_row());
-    rows[1].device.type = "gpu";
+    rows[1].device.kind = DeviceKind::gpu;
     EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
-    rows[1].device.type = "emulated";
+    rows[1].device.kind = DeviceKind::emulated;
     EXPECT_TRUE(ratio_to_single(rows[1], rows).has_value());
 }
 

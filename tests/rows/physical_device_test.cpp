@@ -8,17 +8,17 @@ namespace {
 
 using Numbers = std::vector<std::size_t>;
 
-Device host(const char* type)
+Device host(DeviceKind kind)
 {
     Device device;
-    device.type = type;
+    device.kind = kind;
     return device;
 }
 
 Device gpu(const char* uuid, const char* pci)
 {
     Device device;
-    device.type = "gpu";
+    device.kind = DeviceKind::gpu;
     device.uuid = uuid;
     device.pci = pci;
     return device;
@@ -40,9 +40,10 @@ Numbers numbers_of(std::vector<Device> devices)
 
 TEST(PhysicalDevices, what_runs_on_the_host_is_one_whatever_its_uuid)
 {
-    Device lavapipe = host("emulated");
+    Device lavapipe = host(DeviceKind::emulated);
     lavapipe.uuid = "6d657361";
-    EXPECT_EQ(numbers_of({host("cpu"), gpu("a", ""), lavapipe, host("emulated")}), (Numbers{0, 1, 0, 0}));
+    EXPECT_EQ(numbers_of({host(DeviceKind::cpu), gpu("a", ""), lavapipe, host(DeviceKind::emulated)}),
+              (Numbers{0, 1, 0, 0}));
 }
 
 TEST(PhysicalDevices, a_gpu_is_known_by_its_uuid_else_by_its_pci_address)
@@ -64,8 +65,9 @@ TEST(PhysicalDevices, a_device_that_knows_both_names_joins_two_that_know_one_eac
 
 TEST(PhysicalDevices, nameless_gpus_and_what_is_missing_are_never_one)
 {
-    EXPECT_EQ(numbers_of({gpu("", ""), gpu("", ""), missing(), missing(), host("cpu")}), (Numbers{0, 1, 2, 3, 4}));
-    Device unusable = host("emulated");
+    EXPECT_EQ(numbers_of({gpu("", ""), gpu("", ""), missing(), missing(), host(DeviceKind::cpu)}),
+              (Numbers{0, 1, 2, 3, 4}));
+    Device unusable = host(DeviceKind::emulated);
     unusable.usable = false;
-    EXPECT_EQ(numbers_of({host("cpu"), unusable}), (Numbers{0, 1}));
+    EXPECT_EQ(numbers_of({host(DeviceKind::cpu), unusable}), (Numbers{0, 1}));
 }

@@ -9,11 +9,11 @@ using namespace tetrace::test;
 
 namespace {
 
-Device device(const char* name, const char* type, const char* uuid = "")
+Device device(const char* name, DeviceKind kind, const char* uuid = "")
 {
     Device result;
     result.name = name;
-    result.type = type;
+    result.kind = kind;
     result.uuid = uuid;
     return result;
 }
@@ -47,8 +47,9 @@ std::vector<RowRun> list(Rows... rows)
 
 TEST(RowDevices, are_listed_once_by_hardware_emulations_last)
 {
-    static FakeBackend opencl("opencl", device("PoCL", "emulated")), cuda("cuda", device("GPU", "gpu", "a")),
-        vulkan("vulkan", device("GPU", "gpu", "a")), openmp("openmp", device("CPU", "cpu"));
+    static FakeBackend opencl("opencl", device("PoCL", DeviceKind::emulated)),
+        cuda("cuda", device("GPU", DeviceKind::gpu, "a")), vulkan("vulkan", device("GPU", DeviceKind::gpu, "a")),
+        openmp("openmp", device("CPU", DeviceKind::cpu));
     const auto rows = list(row_of(opencl), row_of(cuda), row_of(openmp), row_of(vulkan), row_of(openmp));
     const auto devices = devices_of(rows);
     std::string order;
@@ -61,7 +62,7 @@ TEST(RowDevices, are_listed_once_by_hardware_emulations_last)
 
 TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
 {
-    static FakeBackend slow("a", device("slow", "gpu", "a")), fast("b", device("fast", "gpu", "b"));
+    static FakeBackend slow("a", device("slow", DeviceKind::gpu, "a")), fast("b", device("fast", DeviceKind::gpu, "b"));
     slow.measure = [] { return Yardstick{88e9, 1e-6}; };
     fast.measure = [] { return Yardstick{440e9, 1e-6}; };
     const auto rows = list(row_of(slow), row_of(fast));
@@ -74,7 +75,7 @@ TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
 
 TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)
 {
-    static FakeBackend host("host", device("CPU", "cpu")), gpu("gpu", device("GPU", "gpu"));
+    static FakeBackend host("host", device("CPU", DeviceKind::cpu)), gpu("gpu", device("GPU", DeviceKind::gpu));
     auto devices = devices_of(list(row_of(host), row_of(gpu)));
     measure_devices(devices, {.threads = 1});
     ASSERT_TRUE(devices[0].yardstick.has_value());
@@ -84,7 +85,8 @@ TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a
 
 TEST(RowDevices, a_device_that_fails_keeps_the_reason_and_the_others_are_measured)
 {
-    static FakeBackend lost("lost", device("lost", "gpu", "a")), good("good", device("good", "gpu", "b"));
+    static FakeBackend lost("lost", device("lost", DeviceKind::gpu, "a")),
+        good("good", device("good", DeviceKind::gpu, "b"));
     lost.measure = []() -> std::optional<Yardstick> { throw Error(ErrorKind::internal, "the device was lost"); };
     good.measure = [] { return Yardstick{1e9, 1e-6}; };
     auto devices = devices_of(list(row_of(lost), row_of(good)));

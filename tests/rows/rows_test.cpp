@@ -1,3 +1,5 @@
+#include "backends/embree/backend.h"
+#include "backends/openmp/backend.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/rows/rows.h"
 #include "core/base/error.h"
@@ -13,8 +15,7 @@ std::vector<std::string> names(const std::vector<std::string>& arguments, const 
 {
     std::vector<std::string> list;
     // Not those of this machine's GPU interfaces.
-    for (const RowKey& key :
-         select_rows(parse_options(arguments), scenes, {all_backends().front(), all_backends().back()}))
+    for (const RowKey& key : select_rows(parse_options(arguments), scenes, {&openmp_backend(), &embree_backend()}))
         list.push_back(row_name(key));
     return list;
 }
@@ -43,11 +44,11 @@ private:
     std::vector<Device> devices_;
 };
 
-Device device_named(const char* name, const char* type, bool usable = true)
+Device device_named(const char* name, DeviceKind kind, bool usable = true)
 {
     Device device;
     device.name = name;
-    device.type = type;
+    device.kind = kind;
     device.usable = usable;
     if (!usable) device.reason = "no driver; install one";
     return device;
@@ -56,7 +57,7 @@ Device device_named(const char* name, const char* type, bool usable = true)
 /// A backend whose kernels trace by the driver's own BVH, on its device number 1 alone.
 class Drivers : public OldHost {
 public:
-    explicit Drivers(const char* type = "gpu") : OldHost({device_named("a", type), device_named("b", type)}) {}
+    explicit Drivers(DeviceKind kind = DeviceKind::gpu) : OldHost({device_named("a", kind), device_named("b", kind)}) {}
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId&) const override
     {
@@ -96,7 +97,8 @@ TEST(Rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
 
 TEST(Rows, every_usable_device_has_rows_named_by_its_index)
 {
-    OldHost old({device_named("a", "gpu"), device_named("b", "gpu", false), device_named("c", "cpu")});
+    OldHost old({device_named("a", DeviceKind::gpu), device_named("b", DeviceKind::gpu, false),
+                 device_named("c", DeviceKind::cpu)});
     const auto rows = select_rows(parse_options({"bench", "--layout", "tet80"}), {"s"}, {&old});
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(row_name(rows[0]), "cdt/maria/tet80/s/primary/math:exact/api:old");
@@ -107,7 +109,7 @@ TEST(Rows, every_usable_device_has_rows_named_by_its_index)
 
 TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
 {
-    OldHost old({device_named("Radeon", "gpu"), device_named("llvmpipe", "emulated")});
+    OldHost old({device_named("Radeon", DeviceKind::gpu), device_named("llvmpipe", DeviceKind::emulated)});
     const auto indices = [&](const char* text) {
         std::vector<std::size_t> found;
         for (const RowKey& key :
@@ -123,7 +125,7 @@ TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
 
 TEST(Rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
 {
-    OldHost old({device_named("none", "gpu", false)});
+    OldHost old({device_named("none", DeviceKind::gpu, false)});
     OldHost usable;
     EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 4u);
     EXPECT_THROW(static_cast<void>(select_rows(parse_options({"bench"}), {"s"}, {&old})), Error);
@@ -149,7 +151,7 @@ TEST(Rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_as
 
 TEST(Rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
 {
-    Drivers drivers("emulated");
+    Drivers drivers(DeviceKind::emulated);
     for (const auto& unnamed : {std::vector<std::string>{}, {"--filter", "api:old"}, {"--filter", "start|/s/"}})
         EXPECT_THROW((void)names_on(drivers, unnamed), Error);
     const std::string on_0 = "bvh/single/rt/s/primary/math:fast/api:old", on_1 = on_0 + ":1";

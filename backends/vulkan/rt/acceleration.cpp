@@ -1,9 +1,8 @@
 #include "backends/vulkan/rt/acceleration.h"
 
-#include "core/base/elapsed.h"
+#include "core/base/stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 
 namespace tetrace::vulkan {
@@ -114,10 +113,10 @@ Acceleration::Level Acceleration::build(LevelType type, const vk::AccelerationSt
 
 Buffer Acceleration::uploaded(std::span<const std::byte> bytes)
 {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Buffer buffer(*context_, bytes.size(), Place::geometry);
     upload(*context_, buffer, bytes);
-    upload_s_ += seconds_since(start);
+    upload_s_ += watch.seconds();
     return buffer;
 }
 

@@ -41,7 +41,7 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
             std::string(name_of(row.key.kernel.method)),
             std::string(name_of(row.key.kernel.layout)),
             device_label(row.key),
-            row.device.type,
+            device_kind_text(row),
             exact_cell(static_cast<double>(steps.size())),
             exact_cell(*fewest, beside_ours(paper::least_tets_a_ray)),
             exact_cell(*most, beside_ours(paper::most_tets_a_ray)),
@@ -56,26 +56,27 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
 std::vector<Claim> claims_of(const RecordedRuns& runs)
 {
     auto claims = speed_claims(runs);
-    claims.insert(claims.begin(), {proportional_claim(runs, "cpu"), proportional_claim(runs, "gpu")});
+    claims.insert(claims.begin(),
+                  {proportional_claim(runs, DeviceKind::cpu), proportional_claim(runs, DeviceKind::gpu)});
     return claims;
 }
 
-/// The types of the devices that rated rows ran on, in the rows' order.
-std::vector<std::string> rated_types(const SceneRun& run)
+/// The kinds of devices that rated rows ran on, in the rows' order.
+std::vector<DeviceKind> rated_kinds(const SceneRun& run)
 {
-    std::vector<std::string> types;
+    std::vector<DeviceKind> kinds;
     for_rated(run, [&](std::size_t i) {
-        const std::string& type = run.rows[i].device.type;
-        if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
+        const DeviceKind kind = run.rows[i].device.kind;
+        if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
     });
-    return types;
+    return kinds;
 }
 
-std::vector<std::size_t> rated_rows(const SceneRun& run, const std::string& type)
+std::vector<std::size_t> rated_rows(const SceneRun& run, DeviceKind kind)
 {
     std::vector<std::size_t> rows;
     for_rated(run, [&](std::size_t i) {
-        if (run.rows[i].device.type == type) rows.push_back(i);
+        if (run.rows[i].device.kind == kind) rows.push_back(i);
     });
     return rows;
 }
@@ -109,12 +110,14 @@ PaperFigure::Series series_of(const SceneRun& run, std::size_t i, const std::str
     return series;
 }
 
-/// The scene's rows on the devices of one type: emulations of GPUs share no figure with GPUs, nor either with a CPU.
-PaperFigure figure_of(const SceneRun& run, const std::string& type)
+/// The scene's rows on the devices of one kind, none without a kind: emulations of GPUs share no figure with GPUs, nor
+/// either with a CPU.
+PaperFigure figure_of(const SceneRun& run, std::optional<DeviceKind> kind)
 {
+    const std::string kind_text(kind ? name_of(*kind) : "");
     PaperFigure figure{
-        fmt::format("figure6-{}{}{}", run.build.scene, type.empty() ? "" : "-", type),
-        fmt::format("Time and tets traversed, a point a view: {}{}{}", run.build.scene, type.empty() ? "" : ", ", type),
+        fmt::format("figure6-{}{}{}", run.build.scene, kind ? "-" : "", kind_text),
+        fmt::format("Time and tets traversed, a point a view: {}{}{}", run.build.scene, kind ? ", " : "", kind_text),
         source(),
         {"tets traversed", "a ray"},
         {"time of an image", "ms"},
@@ -123,7 +126,7 @@ PaperFigure figure_of(const SceneRun& run, const std::string& type)
         {},
         {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
          "interleaved."}};
-    const auto rows = rated_rows(run, type);
+    const auto rows = kind ? rated_rows(run, *kind) : std::vector<std::size_t>();
     const auto names = distinct_names(run, rows);
     for (std::size_t i = 0; i < rows.size(); ++i)
         figure.series.push_back(series_of(run, rows[i], names[i]));
@@ -145,8 +148,8 @@ std::vector<PaperFigure> figure6(const SceneRuns& runs)
     std::vector<PaperFigure> figures;
     for (const SceneRun* run : runs) {
         const std::size_t first = figures.size();
-        for (const std::string& type : rated_types(*run))
-            figures.push_back(figure_of(*run, type));
+        for (const DeviceKind kind : rated_kinds(*run))
+            figures.push_back(figure_of(*run, kind));
         if (figures.size() == first) figures.push_back(figure_of(*run, {}));
         add_pictures(figures[first], *run);
     }

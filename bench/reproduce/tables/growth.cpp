@@ -90,7 +90,7 @@ std::vector<PaperCell> size_cells(const SceneRun& run, std::size_t i)
     const std::string status(name_of(status_of(row))), reason = reason_of(row);
     std::vector<PaperCell> cells = {run.build.label, std::string(name_of(row.key.kernel.method)),
                                     std::string(name_of(row.key.kernel.layout)), device_label(row.key),
-                                    row.device.type.empty() ? PaperCell() : PaperCell(row.device.type)};
+                                    known_text(device_kind_text(row))};
     if (run.scene != nullptr) {
         const Growing point = growing(run, i);
         const auto figures = figures_of(row);
@@ -171,13 +171,13 @@ void add_series(PaperFigure& figure, PaperFigure::Series series)
     if (!series.points.empty()) figure.series.push_back(std::move(series));
 }
 
-PaperFigure time_figure(const std::vector<GrowthLine>& lines, const std::string& family, const std::string& type)
+PaperFigure time_figure(const std::vector<GrowthLine>& lines, const std::string& family, DeviceKind kind)
 {
     PaperFigure figure =
-        empty_figure(fmt::format("growth-{}-time-{}", family, type),
-                     fmt::format("Time of a ray as {} is refined, {}", family, type), "time", "ns a ray");
+        empty_figure(fmt::format("growth-{}-time-{}", family, name_of(kind)),
+                     fmt::format("Time of a ray as {} is refined, {}", family, name_of(kind)), "time", "ns a ray");
     for (const GrowthLine& line : lines)
-        if (line.family == family && line.row->device.type == type)
+        if (line.family == family && line.row->device.kind == kind)
             add_series(figure, series_of(line, line_name(line), &Growing::ns_a_ray));
     return figure;
 }
@@ -189,7 +189,7 @@ PaperFigure visits_figure(const std::vector<GrowthLine>& lines, const std::strin
                                       fmt::format("What a ray visits as {} is refined", family), "visits", "a ray");
     bool has_cdt = false;
     for (const GrowthLine& line : lines) {
-        if (line.family != family || line.row->key.backend != reference_backend) continue;
+        if (line.family != family || !on_reference(line.row->key)) continue;
         const std::string layout(name_of(line.row->key.kernel.layout));
         if (!has_cdt) add_series(figure, series_of(line, "CDT, tets", &Growing::steps));
         has_cdt = has_cdt || is_cdt(*line.row);
@@ -298,8 +298,8 @@ std::vector<PaperFigure> growth_figures(const SceneRuns& runs)
     const auto lines = lines_of(runs);
     std::vector<PaperFigure> figures;
     for (const std::string& family : families_of(lines)) {
-        for (const char* const type : {"gpu", "cpu", "emulated"})
-            figures.push_back(time_figure(lines, family, type));
+        for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu, DeviceKind::emulated})
+            figures.push_back(time_figure(lines, family, kind));
         figures.push_back(visits_figure(lines, family));
     }
     std::erase_if(figures, [](const PaperFigure& figure) { return figure.series.empty(); });

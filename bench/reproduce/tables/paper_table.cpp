@@ -247,6 +247,11 @@ std::optional<double> Quantity::ratio() const
     return ours.value / *paper;
 }
 
+PaperCell known_text(std::string text)
+{
+    return text.empty() ? PaperCell() : PaperCell(std::move(text));
+}
+
 PaperCell exact_cell(double value, std::optional<double> paper)
 {
     return Quantity{{value, {}, {}, true}, paper};

@@ -24,6 +24,8 @@ struct Quantity {
 using PaperCell = std::variant<std::monostate, std::string, Quantity>;
 
 [[nodiscard]] PaperCell exact_cell(double value, std::optional<double> paper = {});
+/// Nothing where the text is empty.
+[[nodiscard]] PaperCell known_text(std::string text);
 
 /// A table of the paper, made anew.
 struct PaperTable {

@@ -16,7 +16,7 @@ constexpr double count_tolerance = 0.01;
 
 double megabytes(SceneWork& scene, Layout layout)
 {
-    return 1e-6 * static_cast<double>(scene.packed(layout, TetOrder::hilbert).scene.bytes());
+    return 1e-6 * static_cast<double>(scene.packed(layout, TetOrder::hilbert).data.bytes());
 }
 
 std::vector<PaperCell> scene_cells(const SceneRun& run)
@@ -91,7 +91,7 @@ std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRun& row)
             std::string(name_of(row.key.kernel.method)),
             std::string(name_of(row.key.kernel.layout)),
             device_label(row.key),
-            row.device.type.empty() ? PaperCell() : PaperCell(row.device.type),
+            known_text(device_kind_text(row)),
             number(figures ? mean_steps(traced(row)->totals).all.value_or(0) : 0),
             number(figures ? figures->mrays_per_s : 0),
             number(figures ? figures->msteps_per_s.value_or(0) : 0),

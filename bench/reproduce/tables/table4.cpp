@@ -51,7 +51,7 @@ PaperCell share_cell(const std::vector<ImageRecord>& images, FlatWalks ImageReco
 std::string agreement(const RowRun& row)
 {
     const Traced& result = *traced(row);
-    if (!result.compared) return row.key.backend == "openmp" ? "reference" : "not compared";
+    if (!result.compared) return on_reference(row.key) ? "reference" : "not compared";
     if (result.different > 0) return fmt::format("{} rays differ", with_commas(result.different));
     return result.inexact == 0 ? "bit for bit" : fmt::format("within {} ulp", result.largest_ulps);
 }
@@ -236,12 +236,12 @@ std::vector<MethodRow> method_rows(const SceneRuns& runs)
     std::vector<MethodRow> rows;
     for (const SceneRun* run : runs) {
         std::vector<Method> seen;
-        for (const bool openmp : {true, false})
+        for (const bool of_reference : {true, false})
             for (std::size_t i = 0; i < run->rows.size(); ++i) {
                 const RowRun& row = run->rows[i];
                 const Method method = row.key.kernel.method;
                 const bool usable = is_cdt(row) && is_whole(row) && traced(row)->different == 0 &&
-                                    (row.key.backend == "openmp") == openmp;
+                                    on_reference(row.key) == of_reference;
                 if (!usable || std::find(seen.begin(), seen.end(), method) != seen.end()) continue;
                 seen.push_back(method);
                 rows.push_back({run, i});

@@ -40,7 +40,7 @@ std::string face_agreement(const RowRun& row)
 
 PaperCell threads_cell(const SearchRun& run, const RowKey& key)
 {
-    if (key.backend != reference_backend) return {};
+    if (!on_reference(key)) return {};
     return exact_cell(key.threads == 0 ? run.threads : key.threads);
 }
 
@@ -78,7 +78,7 @@ std::vector<PaperCell> cells_of(const SearchRun& run, const RowRun& row, const s
     std::vector<PaperCell> cells = {std::string(name_of(row.key.kernel.method)),
                                     std::string(name_of(row.key.kernel.layout)),
                                     device_label(row.key),
-                                    row.device.type.empty() ? PaperCell() : PaperCell(row.device.type),
+                                    known_text(device_kind_text(row)),
                                     threads_cell(run, row.key),
                                     is_whole(row) ? exact_cell(static_cast<double>(traced(row)->totals.rays))
                                                   : PaperCell()};

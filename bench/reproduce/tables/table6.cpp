@@ -30,8 +30,8 @@ bool is_embree(const RowRun& row)
 
 bool run_beside(const RowRun& cdt, const RowRun& bvh)
 {
-    if (is_embree(bvh)) return cdt.key.backend == reference_backend;
-    return cdt.key.backend == bvh.key.backend && cdt.key.device == bvh.key.device;
+    if (is_embree(bvh)) return on_reference(cdt.key);
+    return same_place(cdt.key, bvh.key);
 }
 
 double total_s(const SceneRun& run, std::size_t row)
@@ -112,11 +112,11 @@ std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
     const std::string status(name_of(status_of(row))), reason = reason_of(row);
     std::vector<PaperCell> cells = {run.build.scene, std::string(name_of(row.key.kernel.method)),
                                     std::string(name_of(row.key.kernel.layout)), device_label(row.key),
-                                    row.device.type.empty() ? PaperCell() : PaperCell(row.device.type)};
+                                    known_text(device_kind_text(row))};
     if (figures) {
         const auto frames = view_frames(run, i);
         const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
-        const auto papers = row.device.type == "gpu" ? papers_frames(run, row) : std::nullopt;
+        const auto papers = row.device.kind == DeviceKind::gpu ? papers_frames(run, row) : std::nullopt;
         cells.push_back(exact_cell(static_cast<double>(frames.size())));
         cells.push_back(Quantity{median_of_views(frames, run.sampling), {}});
         cells.push_back(exact_cell(*least, papers ? std::optional(papers->first) : std::nullopt));
@@ -174,7 +174,7 @@ std::vector<PaperCell> pair_cells(const RowPair& pair)
             std::string(name_of(cdt.key.kernel.layout)),
             rival_name(bvh),
             device_label(cdt.key),
-            cdt.device.type,
+            device_kind_text(cdt),
             Quantity{pair.ratio.median, {}},
             exact_cell(pair.ratio.lowest),
             exact_cell(pair.ratio.highest),
@@ -191,15 +191,15 @@ Estimate inverse(const Estimate& estimate)
     return {1 / estimate.value, over(estimate.high), over(estimate.low), estimate.exact};
 }
 
-/// The pairs that the paper has: bvh2 and the device's fastest layout of the CDT, on devices of a type.
-std::vector<RowPair> papers_pairs(const SceneRuns& runs, std::string_view scene, const std::string& type)
+/// The pairs that the paper has: bvh2 and the device's fastest layout of the CDT, on devices of a kind.
+std::vector<RowPair> papers_pairs(const SceneRuns& runs, std::string_view scene, DeviceKind kind)
 {
     std::vector<RowPair> pairs;
     for (const SceneRun* run : runs)
         if (run->build.scene == scene)
             for (RowPair& pair : fastest_pairs(*run))
                 if (const RowRun& bvh = run->rows[pair.bvh];
-                    bvh.key.kernel.layout == Layout::bvh2 && bvh.device.type == type)
+                    bvh.key.kernel.layout == Layout::bvh2 && bvh.device.kind == kind)
                     pairs.push_back(std::move(pair));
     return pairs;
 }
@@ -219,10 +219,11 @@ std::string pair_evidence(const RowPair& pair)
                        range(cdt_frames), range(bvh_frames));
 }
 
-Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, const std::string& type)
+Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, DeviceKind kind)
 {
-    const bool is_gpu = type == "gpu";
-    Claim claim{fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene, type),
+    const bool is_gpu = kind == DeviceKind::gpu;
+    Claim claim{fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene,
+                            name_of(kind)),
                 fmt::format("on {}, the {} is faster than the {} on {}",
                             is_gpu ? "a GPU"
                                    : "this CPU (the paper's claim is of "
@@ -233,7 +234,7 @@ Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, const
                 ""};
     std::vector<Estimate> ratios;
     bool noisy = false;
-    for (const RowPair& pair : papers_pairs(runs, outcome.scene, type)) {
+    for (const RowPair& pair : papers_pairs(runs, outcome.scene, kind)) {
         ratios.push_back(outcome.cdt_is_faster ? pair.ratio.median : inverse(pair.ratio.median));
         noisy = noisy || is_noisy(pair.run->rows[pair.cdt]) || is_noisy(pair.run->rows[pair.bvh]);
         claim.evidence += (claim.evidence.empty() ? "" : " ") + pair_evidence(pair);
@@ -250,9 +251,9 @@ Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, const
 std::vector<Claim> pair_claims(const SceneRuns& runs)
 {
     std::vector<Claim> claims;
-    for (const char* const type : {"gpu", "cpu"})
+    for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu})
         for (const paper::PairOutcome& outcome : paper::outcomes())
-            claims.push_back(pair_claim(runs, outcome, type));
+            claims.push_back(pair_claim(runs, outcome, kind));
     return claims;
 }
 
@@ -277,23 +278,23 @@ PaperFigure::Series curve_of(const RowPair& pair, bool with_device)
     return series;
 }
 
-PaperFigure ratio_figure(const SceneRun& run, const std::string& type, const std::vector<RowPair>& pairs)
+PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector<RowPair>& pairs)
 {
-    PaperFigure figure{fmt::format("table6-{}-{}", run.build.scene, type),
-                       fmt::format("Time of a BVH over the CDT's, view by view: {}, {}", run.build.scene, type),
-                       source(),
-                       {"views that have at most this ratio", "%"},
-                       {"time of the BVH over the CDT's", "", true},
-                       {},
-                       {},
-                       {},
-                       {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
-                        "the share of the "
-                        "views in which the BVH is faster. The CDT has its device's fastest layout."}};
-    const std::string first = device_label(pairs.front().run->rows[pairs.front().cdt].key);
-    const bool one_device = std::all_of(pairs.begin(), pairs.end(), [&](const RowPair& pair) {
-        return device_label(pair.run->rows[pair.cdt].key) == first;
-    });
+    PaperFigure figure{
+        fmt::format("table6-{}-{}", run.build.scene, name_of(kind)),
+        fmt::format("Time of a BVH over the CDT's, view by view: {}, {}", run.build.scene, name_of(kind)),
+        source(),
+        {"views that have at most this ratio", "%"},
+        {"time of the BVH over the CDT's", "", true},
+        {},
+        {},
+        {},
+        {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
+         "the share of the "
+         "views in which the BVH is faster. The CDT has its device's fastest layout."}};
+    const RowKey& first = run.rows[pairs.front().cdt].key;
+    const bool one_device = std::all_of(pairs.begin(), pairs.end(),
+                                        [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
     for (const RowPair& pair : pairs)
         figure.series.push_back(curve_of(pair, !one_device));
     figure.series.push_back({"equal", {{0, 1}, {100, 1}}});
@@ -324,7 +325,7 @@ std::vector<RowPair> fastest_pairs(const SceneRun& run)
         for (std::size_t i = 0; i < run.rows.size(); ++i) {
             const RowRun& other = run.rows[i];
             if (i == pair.cdt || !is_cdt(other) || !is_compared(other) || view_seconds(run, i).empty() ||
-                device_label(other.key) != device_label(row.key))
+                !same_place(other.key, row.key))
                 continue;
             const double theirs = total_s(run, i), ours = total_s(run, pair.cdt);
             if (theirs < ours || (theirs == ours && i < pair.cdt)) return true;
@@ -394,10 +395,10 @@ std::vector<PaperFigure> table6_figures(const SceneRuns& runs)
 {
     std::vector<PaperFigure> figures;
     for (const SceneRun* run : runs)
-        for (const char* const type : {"gpu", "cpu", "emulated"}) {
+        for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu, DeviceKind::emulated}) {
             auto pairs = fastest_pairs(*run);
-            std::erase_if(pairs, [&](const RowPair& pair) { return run->rows[pair.cdt].device.type != type; });
-            if (!pairs.empty()) figures.push_back(ratio_figure(*run, type, pairs));
+            std::erase_if(pairs, [&](const RowPair& pair) { return run->rows[pair.cdt].device.kind != kind; });
+            if (!pairs.empty()) figures.push_back(ratio_figure(*run, kind, pairs));
         }
     return figures;
 }

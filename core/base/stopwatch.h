@@ -4,7 +4,7 @@
 
 namespace tetrace {
 
-/// Wall-clock seconds since it was made.
+/// Seconds on the host's steady clock since it was made.
 class Stopwatch {
 public:
     [[nodiscard]] double seconds() const

@@ -1,4 +1,4 @@
-#include "bench/rows/device_facts.h"
+#include "bench/rows/device_abilities.h"
 
 #include <map>
 #include <tuple>
