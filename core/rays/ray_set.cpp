@@ -4,6 +4,7 @@
 #include "core/base/exact.h"
 #include "core/base/hash.h"
 #include "core/base/random_words.h"
+#include "core/pack/packed_scene.h"
 #include "core/rays/ray_start.h"
 
 #include <algorithm>

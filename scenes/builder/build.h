@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/stopwatch.h"
 #include "core/mesh/scene.h"
 #include "scenes/builder/clean.h"
 #include "scenes/builder/convert_tets.h"
