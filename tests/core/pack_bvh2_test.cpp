@@ -10,8 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <functional>
-#include <numeric>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -91,18 +89,7 @@ private:
     const TriangleMesh& mesh_;
 };
 
-struct MeshRow {
-    const char* name;
-    std::function<TriangleMesh()> make;
-};
 class PackBvh2Of : public testing::TestWithParam<MeshRow> {};
-
-std::vector<std::uint32_t> counted_up_to(std::size_t count)
-{
-    std::vector<std::uint32_t> numbers(count);
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    return numbers;
-}
 
 } // namespace
 
@@ -120,12 +107,7 @@ TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(each, PackBvh2Of,
-                         testing::Values(MeshRow{"surface", [] { return make_cubes(6).mesh; }},
-                                         MeshRow{"needles", [] { return needles(300); }},
-                                         MeshRow{"one_triangle", [] { return identical_triangles(1); }},
-                                         MeshRow{"same_triangles", [] { return identical_triangles(500); }},
-                                         MeshRow{"deep", [] { return nested_groups(2, 30, 300); }}),
+INSTANTIATE_TEST_SUITE_P(each, PackBvh2Of, testing::ValuesIn(meshes_to_pack()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(PackBvh2, boxes_are_the_trees_and_the_margin)

@@ -12,8 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <functional>
-#include <numeric>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -142,10 +140,6 @@ private:
     const TriangleMesh& mesh_;
 };
 
-struct MeshRow {
-    const char* name;
-    std::function<TriangleMesh()> make;
-};
 class PackCwbvhOf : public testing::TestWithParam<MeshRow> {};
 
 } // namespace
@@ -158,20 +152,14 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
     EXPECT_EQ(packed.tet_count, 0u);
     const CwbvhReader read(packed, mesh);
     EXPECT_EQ(read.node_seen, std::vector<int>(read.node_seen.size(), 1));
-    std::vector<std::uint32_t> numbers(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS);
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    EXPECT_EQ(read.leaf_order, numbers) << "in the order of their leaves";
+    EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS))
+        << "in the order of their leaves";
     EXPECT_LE(read.most_waiting, CWBVH_STACK);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(each, PackCwbvhOf,
-                         testing::Values(MeshRow{"surface", [] { return make_cubes(6).mesh; }},
-                                         MeshRow{"needles", [] { return needles(300); }},
-                                         MeshRow{"one_triangle", [] { return identical_triangles(1); }},
-                                         MeshRow{"same_triangles", [] { return identical_triangles(500); }},
-                                         MeshRow{"deep", [] { return nested_groups(2, 30, 300); }}),
+INSTANTIATE_TEST_SUITE_P(each, PackCwbvhOf, testing::ValuesIn(meshes_to_pack()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)

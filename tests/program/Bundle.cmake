@@ -2,23 +2,23 @@
 foreach(claim steps_that_end_well_give_0 a_hang_and_a_failure_lose_no_other_step
     a_hanging_look_for_devices_costs_no_picture_of_other_apis the_summary_is_json_too
     an_interrupt_ends_the_step_and_keeps_the_summary refuses_what_it_does_not_know)
-  add_test(NAME run_all.${claim}
+  add_test(NAME RunAll.${claim}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/run_all_test.sh ${claim} ${PROJECT_SOURCE_DIR}/bundle)
-  set_tests_properties(run_all.${claim} PROPERTIES LABELS large SKIP_RETURN_CODE 77 TIMEOUT 120)
+  set_tests_properties(RunAll.${claim} PROPERTIES LABELS large SKIP_RETURN_CODE 77 TIMEOUT 120)
 endforeach()
 
 if(TARGET bundle)
-  add_test(NAME bundle.builds COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target bundle)
-  set_tests_properties(bundle.builds PROPERTIES FIXTURES_SETUP bundle LABELS large PROCESSORS 2 TIMEOUT 600)
+  add_test(NAME Bundle.builds COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target bundle)
+  set_tests_properties(Bundle.builds PROPERTIES FIXTURES_SETUP bundle LABELS large PROCESSORS 2 TIMEOUT 600)
   set(stub "")
   if(TARGET tetrace_stub_cuda)
     set(stub $<TARGET_FILE_DIR:tetrace_stub_cuda>)
   endif()
   foreach(claim brings_every_library_but_the_systems states_licences_and_the_c_library
       runs_all_steps_without_this_systems_drivers)
-    add_test(NAME bundle.${claim}
+    add_test(NAME Bundle.${claim}
       COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/bundle_test.sh ${claim} ${CMAKE_BINARY_DIR}/bundle "${stub}")
-    set_tests_properties(bundle.${claim} PROPERTIES FIXTURES_REQUIRED bundle LABELS large TIMEOUT 600)
+    set_tests_properties(Bundle.${claim} PROPERTIES FIXTURES_REQUIRED bundle LABELS large TIMEOUT 600)
   endforeach()
-  set_tests_properties(bundle.runs_all_steps_without_this_systems_drivers PROPERTIES PROCESSORS 2)
+  set_tests_properties(Bundle.runs_all_steps_without_this_systems_drivers PROPERTIES PROCESSORS 2)
 endif()

@@ -3,6 +3,7 @@
 
 #include "backends/openmp/backend.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wrapped_session.h"
 
 #include <algorithm>
 #include <functional>
@@ -16,26 +17,21 @@ using Faces = std::span<std::uint32_t>;
 /// What becomes of the faces that were found; count: of outputs that were read back before.
 using Damage = std::function<void(Faces faces, std::size_t count)>;
 
-class DamagedSession : public Session {
+class DamagedSession : public WrappedSession {
 public:
-    DamagedSession(std::unique_ptr<Session> inner, Damage damage) : inner_(std::move(inner)), damage_(std::move(damage))
+    DamagedSession(std::unique_ptr<Session> session, Damage damage)
+        : WrappedSession(std::move(session)), damage_(std::move(damage))
     {
     }
-    void set_rays(std::span<const Quad> quads) override { inner_->set_rays(quads); }
-    void launch(const TraceJob& job) override { inner_->launch(job); }
-    [[nodiscard]] double wait() override { return inner_->wait(); }
     void read_output(std::span<std::uint32_t> words) override
     {
         std::fill(words.begin(), words.end(), POISON);
         const Faces faces = words.subspan(GUARD_WORDS, words.size() - 2 * std::size_t{GUARD_WORDS});
-        inner_->read_back(faces);
+        inner().read_back(faces);
         damage_(faces, count_++);
     }
-    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
-    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
 
 private:
-    std::unique_ptr<Session> inner_;
     Damage damage_;
     std::size_t count_ = 0;
 };

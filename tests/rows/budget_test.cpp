@@ -1,54 +1,35 @@
 #include "bench/measuring/budget.h"
 #include "bench/measuring/measure.h"
 #include "bench/measuring/verify.h"
-#include "scenes/procedural.h"
+#include "tests/support/row_runs.h"
+#include "tests/support/wrapped_session.h"
 
-#include <cstring>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
 /// openmp's answers, for which a ray takes as long as a test says, on a clock that nothing else moves.
-class TimedSession : public Session {
+class TimedSession : public WrappedSession {
 public:
     TimedSession(std::unique_ptr<Session> inner, double& now_s, const double& ray_s, double first_launch_s)
-        : inner_(std::move(inner)), now_s_(&now_s), ray_s_(&ray_s), compile_s_(first_launch_s)
+        : WrappedSession(std::move(inner)), now_s_(&now_s), ray_s_(&ray_s), compile_s_(first_launch_s)
     {
     }
-    void set_rays(std::span<const Quad> quads) override { inner_->set_rays(quads); }
     void launch(const TraceJob& job) override
     {
         *now_s_ += compile_s_ + *ray_s_ * job.width * job.height;
         compile_s_ = 0;
-        inner_->launch(job);
+        WrappedSession::launch(job);
     }
-    [[nodiscard]] double wait() override { return inner_->wait(); }
-    void read_output(std::span<std::uint32_t> words) override
-    {
-        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
-        inner_->read_back(hits);
-        std::fill(words.begin(), words.end(), POISON);
-        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
-    }
-    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
-    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
 
 private:
-    std::unique_ptr<Session> inner_;
     double* now_s_;
     const double* ray_s_;
     double compile_s_;
 };
-
-LoadedScene loaded_cubes()
-{
-    LoadedScene loaded;
-    loaded.scene = make_cubes(3);
-    loaded.scene.name = "cubes";
-    return loaded;
-}
 
 /// A row needs 2 views * (verified, warmed up, 5 samples) and 1 view again: 15 views. A view is 16 x 16 rays. The first
 /// estimate takes four launches of 64 rays.

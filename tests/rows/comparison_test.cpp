@@ -1,8 +1,11 @@
 #include "bench/measuring/comparison.h"
 
+#include "tests/support/row_runs.h"
+
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
@@ -17,14 +20,6 @@ RowRun row_on(const std::string& backend, DeviceKind kind, double seconds, const
     row.outcome = result;
     row.samples_s = {0.99 * seconds, seconds, 1.01 * seconds, seconds, 0.99 * seconds, 1.01 * seconds};
     return row;
-}
-
-template <class... Rows>
-std::vector<RowRun> list(Rows... rows)
-{
-    std::vector<RowRun> result;
-    (result.push_back(std::move(rows)), ...);
-    return result;
 }
 
 } // namespace

@@ -1,45 +1,39 @@
 #include "bench/measuring/figures.h"
 #include "bench/measuring/measure.h"
 #include "bench/measuring/verify.h"
-#include "scenes/procedural.h"
+#include "tests/support/row_runs.h"
+#include "tests/support/wrapped_session.h"
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
 #include <new>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
 /// openmp's answers, told one by one: who was launched, and, where asked for, other hits once it is being timed.
-class WatchedSession : public Session {
+class WatchedSession : public WrappedSession {
 public:
     WatchedSession(std::unique_ptr<Session> inner, std::size_t number, std::vector<std::size_t>& launched,
                    const bool& changes)
-        : inner_(std::move(inner)), number_(number), launched_(&launched), changes_(&changes)
+        : WrappedSession(std::move(inner)), number_(number), launched_(&launched), changes_(&changes)
     {
     }
     void launch(const TraceJob& job) override
     {
         launched_->push_back(number_);
-        inner_->launch(job);
+        WrappedSession::launch(job);
     }
-    [[nodiscard]] double wait() override { return inner_->wait(); }
-    void read_output(std::span<std::uint32_t> words) override
-    {
-        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
-        inner_->read_back(hits);
-        if (*changes_) hits[7].t += 1;
-        std::fill(words.begin(), words.end(), POISON);
-        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
-    }
-    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
-    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
 
 private:
-    std::unique_ptr<Session> inner_;
+    void change(std::span<Hit> hits) override
+    {
+        if (*changes_) hits[7].t += 1;
+    }
+
     std::size_t number_;
     std::vector<std::size_t>* launched_;
     const bool* changes_;
@@ -47,32 +41,27 @@ private:
 
 /// A device that is lost at some call.
 enum class LostAt { launch, wait, read_back };
-class LostSession : public Session {
+class LostSession : public WrappedSession {
 public:
     LostSession(std::unique_ptr<Session> inner, LostAt at, std::function<void()> lose)
-        : inner_(std::move(inner)), at_(at), lose_(std::move(lose))
+        : WrappedSession(std::move(inner)), at_(at), lose_(std::move(lose))
     {
     }
     void launch(const TraceJob& job) override
     {
         lose_at(LostAt::launch);
-        inner_->launch(job);
+        WrappedSession::launch(job);
     }
     [[nodiscard]] double wait() override
     {
         lose_at(LostAt::wait);
-        return inner_->wait();
+        return WrappedSession::wait();
     }
     void read_output(std::span<std::uint32_t> words) override
     {
         lose_at(LostAt::read_back);
-        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
-        inner_->read_back(hits);
-        std::fill(words.begin(), words.end(), POISON);
-        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
+        WrappedSession::read_output(words);
     }
-    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
-    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
 
 private:
     void lose_at(LostAt call)
@@ -80,7 +69,6 @@ private:
         if (call == at_) lose_();
     }
 
-    std::unique_ptr<Session> inner_;
     LostAt at_;
     std::function<void()> lose_;
 };
@@ -102,14 +90,6 @@ protected:
         }
         verify_rows({&rows_[0], &rows_[1]}, scene_, options_);
         launched_.clear();
-    }
-
-    static LoadedScene loaded_cubes()
-    {
-        LoadedScene loaded;
-        loaded.scene = make_cubes(3);
-        loaded.scene.name = "cubes";
-        return loaded;
     }
 
     Options options_ = parse_options({"bench", "--size", "8", "--views", "0,1", "--samples", "30"});

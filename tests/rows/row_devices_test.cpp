@@ -1,6 +1,7 @@
 #include "bench/measuring/row_devices.h"
 
 #include "tests/support/fake_backend.h"
+#include "tests/support/row_runs.h"
 
 #include <gtest/gtest.h>
 
@@ -33,14 +34,6 @@ RowRun row_of(Backend& backend)
     row.outcome = result;
     row.samples_s = {1e-3, 1e-3, 1e-3};
     return row;
-}
-
-template <class... Rows>
-std::vector<RowRun> list(Rows... rows)
-{
-    std::vector<RowRun> result;
-    (result.push_back(std::move(rows)), ...);
-    return result;
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/support/temporary_folder.h"
+#include "tests/support/program_fixture.h"
 
 #include <chrono>
 #include <csignal>
@@ -14,12 +14,6 @@
 #include <unistd.h>
 
 namespace tetrace::test {
-
-/// How a run of the program ended.
-struct Ended {
-    int code = -1;
-    std::string out, errors;
-};
 
 /// The program's reproduce in a folder of its own, on a scene that it makes itself unless another is named.
 class ReproduceTest : public testing::Test {

@@ -4,11 +4,11 @@
 #include "bench/output/check_differences.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/rows/ray_store.h"
-#include "scenes/procedural.h"
+#include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wrapped_session.h"
 
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
 
@@ -20,27 +20,16 @@ namespace {
 using Damage = std::function<void(std::span<Hit>)>;
 
 /// A device that answers as openmp does, and then damages the answers.
-class DamagedSession : public Session {
+class DamagedSession : public WrappedSession {
 public:
-    DamagedSession(std::unique_ptr<Session> inner, Damage damage) : inner_(std::move(inner)), damage_(std::move(damage))
+    DamagedSession(std::unique_ptr<Session> inner, Damage damage)
+        : WrappedSession(std::move(inner)), damage_(std::move(damage))
     {
     }
-    void set_rays(std::span<const Quad> rows) override { inner_->set_rays(rows); }
-    void launch(const TraceJob& job) override { inner_->launch(job); }
-    [[nodiscard]] double wait() override { return inner_->wait(); }
-    void read_output(std::span<std::uint32_t> words) override
-    {
-        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
-        inner_->read_back(hits);
-        damage_(hits);
-        std::fill(words.begin(), words.end(), POISON);
-        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
-    }
-    [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
-    [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }
 
 private:
-    std::unique_ptr<Session> inner_;
+    void change(std::span<Hit> hits) override { damage_(hits); }
+
     Damage damage_;
 };
 
@@ -82,14 +71,6 @@ protected:
         return row;
     }
 
-    static LoadedScene loaded_cubes()
-    {
-        LoadedScene loaded;
-        loaded.scene = make_cubes(6);
-        loaded.scene.name = "cubes";
-        return loaded;
-    }
-
     static void damage_first_hit(std::span<Hit> hits, const std::function<void(Hit&)>& change)
     {
         for (Hit& hit : hits)
@@ -101,7 +82,7 @@ protected:
     }
 
     Options options_ = parse_options({"check", "--size", "40", "--views", "0,2"});
-    SceneWork scene_{loaded_cubes(), options_};
+    SceneWork scene_{loaded_cubes(6), options_};
 };
 
 } // namespace

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "bench/rows/row_run.h"
+#include "scenes/load.h"
+#include "scenes/procedural.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace tetrace::test {
+
+/// `cubes`, as load_scene() would give them.
+[[nodiscard]] inline LoadedScene loaded_cubes(std::uint32_t resolution = 3)
+{
+    LoadedScene loaded;
+    loaded.scene = make_cubes(resolution);
+    loaded.scene.name = "cubes";
+    return loaded;
+}
+
+/// The rows as one vector. They cannot be copied, so an initialiser list does not do.
+template <class... Rows>
+[[nodiscard]] std::vector<RowRun> list(Rows... rows)
+{
+    std::vector<RowRun> result;
+    (result.push_back(std::move(rows)), ...);
+    return result;
+}
+
+} // namespace tetrace::test
