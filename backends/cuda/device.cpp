@@ -114,7 +114,7 @@ std::vector<Device> list_devices(const LoadedDriver& loaded, const Programs& pro
         return {unusable_device("none", "counting the NVIDIA driver's devices: " + text_of(driver, result))};
     if (count == 0) return {unusable_device("none", "the NVIDIA driver finds no device")};
     std::vector<Device> devices;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         Device& device = devices.emplace_back(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i))));
         device.usable = !programs.code.empty() || programs.has_nvrtc();
         if (!device.usable)

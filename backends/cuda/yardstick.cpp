@@ -15,7 +15,7 @@ double copy_s(OpenDevice& device, const Memory& from, const Memory& to)
 {
     EventTimer timer(device.context);
     double best_s = 1e300;
-    for (int pass = 0; pass < passes; pass++) {
+    for (int pass = 0; pass < passes; ++pass) {
         timer.start(device.stream.get());
         device.context.check(
             device.driver().copy_on_device(to.address(), from.address(), from.bytes(), device.stream.get()),

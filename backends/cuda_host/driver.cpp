@@ -296,9 +296,9 @@ Result event_elapsed(float* milliseconds, EventHandle start, EventHandle end)
 
 void run_block(Entry entry, Dimensions block, void** arguments)
 {
-    for (std::uint32_t z = 0; z < block.z; z++)
-        for (std::uint32_t y = 0; y < block.y; y++)
-            for (std::uint32_t x = 0; x < block.x; x++) {
+    for (std::uint32_t z = 0; z < block.z; ++z)
+        for (std::uint32_t y = 0; y < block.y; ++y)
+            for (std::uint32_t x = 0; x < block.x; ++x) {
                 current_thread = {x, y, z};
                 entry(arguments);
             }
@@ -313,7 +313,7 @@ void run_grid(Entry entry, std::uint32_t blocks, Dimensions block, void** argume
         std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
         block_size = block;
 #pragma omp for schedule(dynamic)
-        for (std::uint32_t index = 0; index < blocks; index++) {
+        for (std::uint32_t index = 0; index < blocks; ++index) {
             current_block = {index, 0, 0};
             run_block(entry, block, arguments);
         }

@@ -31,7 +31,7 @@ void* new_inner_node(RTCThreadLocalAllocator allocator, unsigned, void*)
 
 void set_children(void* node, void** children, unsigned count, void*)
 {
-    for (unsigned i = 0; i < count; i++)
+    for (unsigned i = 0; i < count; ++i)
         static_cast<EmbreeNode*>(node)->child[i] = static_cast<EmbreeNode*>(children[i]);
 }
 
@@ -70,7 +70,7 @@ void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float po
 std::vector<RTCBuildPrimitive> build_primitives(const TriangleMesh& mesh)
 {
     std::vector<RTCBuildPrimitive> primitives(2 * mesh.triangles.size() + 1); // room for spatial splits
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); i++) {
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const Box box = triangle_box(mesh, i);
         primitives[i] = {box.low.x, box.low.y, box.low.z, 0, box.high.x, box.high.y, box.high.z, i};
     }
@@ -101,7 +101,7 @@ private:
     void add_leaf(BvhNode& leaf, const EmbreeNode& built)
     {
         std::vector<std::uint32_t> triangles;
-        for (std::size_t i = 0; i < built.count; i++) {
+        for (std::size_t i = 0; i < built.count; ++i) {
             triangles.push_back(built.primitives[i].primID);
             leaf.box = merged(leaf.box, box_of(built.primitives[i]));
         }
@@ -167,10 +167,10 @@ void check_bvh_input(const TriangleMesh& mesh)
     if (mesh.triangles.empty()) refuse("the mesh has no triangle; give it one at least");
     if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max() / 4)
         refuse(std::to_string(mesh.triangles.size()) + " triangles, at most 2^30 can be numbered");
-    for (std::size_t i = 0; i < mesh.triangles.size(); i++) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (const auto v : mesh.triangles[i]) {
             if (v >= mesh.vertices.size()) refuse("triangle " + std::to_string(i) + " has a corner that there is not");
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 if (!(std::abs(mesh.vertices[v][axis]) <= largest_bvh_coordinate))
                     refuse("triangle " + std::to_string(i) + " has a corner that is not finite or beyond " +
                            std::to_string(static_cast<int>(largest_bvh_coordinate)) +

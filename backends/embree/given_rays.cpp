@@ -52,7 +52,7 @@ void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t
 {
     alignas(64) int valid[packet_rays];
     RTCRayHit16 query{};
-    for (std::size_t i = 0; i < packet_rays; i++) {
+    for (std::size_t i = 0; i < packet_rays; ++i) {
         valid[i] = first + i < hits.size() ? -1 : 0;
         if (valid[i] == 0) continue;
         const Quad& direction = rays.directions[first + i];
@@ -73,7 +73,7 @@ void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t
         accelerator.occluded16(valid, query.ray, Coherence::incoherent);
     else
         accelerator.intersect16(valid, query, Coherence::incoherent);
-    for (std::size_t i = 0; i < packet_rays && first + i < hits.size(); i++)
+    for (std::size_t i = 0; i < packet_rays && first + i < hits.size(); ++i)
         hits[first + i] = rays.any_hit
                               ? any_hit(query.ray.tfar[i])
                               : nearest_hit(query.hit.primID[i], query.ray.tfar[i], query.hit.u[i], query.hit.v[i]);

@@ -40,7 +40,7 @@ void trace_packet(const Accelerator& accelerator, const TraceParams& params, std
 {
     alignas(64) int valid[16];
     RTCRayHit16 query;
-    for (std::uint32_t i = 0; i < 16; i++) {
+    for (std::uint32_t i = 0; i < 16; ++i) {
         const std::uint32_t x = x0 + i % packet_size;
         const std::uint32_t y = y0 + i / packet_size;
         valid[i] = x < params.width && y < params.height ? -1 : 0;
@@ -62,7 +62,7 @@ void trace_packet(const Accelerator& accelerator, const TraceParams& params, std
         query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
     accelerator.intersect16(valid, query, Coherence::coherent);
-    for (std::uint32_t i = 0; i < 16; i++) {
+    for (std::uint32_t i = 0; i < 16; ++i) {
         if (valid[i] == 0) continue;
         const std::size_t pixel = std::size_t{y0 + i / packet_size} * params.width + x0 + i % packet_size;
         hits[pixel] = hit_of(query.hit.primID[i], query.ray.tfar[i], query.hit.u[i], query.hit.v[i]);
@@ -94,7 +94,7 @@ void trace_image(const Accelerator& accelerator, Method method, const TraceJob& 
     const std::uint32_t tiles_x = (job.width + tile_size - 1) / tile_size;
     const std::uint32_t tiles = tiles_x * ((job.height + tile_size - 1) / tile_size);
 #pragma omp parallel for schedule(dynamic, 4) num_threads(static_cast <int>(threads))
-    for (std::uint32_t tile = 0; tile < tiles; tile++)
+    for (std::uint32_t tile = 0; tile < tiles; ++tile)
         trace_tile(accelerator, method, params, tile % tiles_x * tile_size, tile / tiles_x * tile_size, hits.data());
 }
 

@@ -64,7 +64,7 @@ void OpenclSession::upload(const PackedScene& scene)
         for (const SceneBuffer& buffer : buffers)
             arrays_.push_back(make_uploaded(context_->handle(), queue_,
                                             arrays_.empty() ? parts_.part(buffer.bytes, 0) : buffer.bytes));
-        for (unsigned part = 1; part < parts_.count; part++)
+        for (unsigned part = 1; part < parts_.count; ++part)
             more_parts_[part] = make_uploaded(context_->handle(), queue_, parts_.part(buffers[0].bytes, part));
         queue_.finish();
         counter_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint));
@@ -104,7 +104,7 @@ void OpenclSession::set_arguments()
     cl_uint argument = first_array_argument;
     for (const SceneArray& array : scene_arrays(kernel_id_.layout))
         kernel_.setArg(argument++, arrays_[array.binding]);
-    for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; part++)
+    for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; ++part)
         kernel_.setArg(argument++, part < parts_.count ? more_parts_[part] : arrays_[0]);
     kernel_.setArg(counter_argument, counter_);
     kernel_.setArg(rays_argument, rays_);

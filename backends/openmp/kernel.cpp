@@ -51,8 +51,8 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
         std::fegetenv(&environment);
         std::fesetenv(FE_DFL_ENV); // other libraries leave their threads flushing denormals
 #pragma omp for schedule(dynamic, 4)
-        for (uint tile = 0; tile < tiles; tile++)
-            for (uint item = 0; item < TILE_WIDTH * launch.tile_height; item++)
+        for (uint tile = 0; tile < tiles; ++tile)
+            for (uint item = 0; item < TILE_WIDTH * launch.tile_height; ++item)
                 if (const Pixel pixel = pixel_of(launch, tile, item); is_in_image(launch, pixel))
                     work(scene, launch, pixel);
         std::fesetenv(&environment);

@@ -208,7 +208,7 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
             return;
         }
 #pragma omp for schedule(dynamic, 1)
-        for (std::uint32_t block = 0; block < blocks; block++)
+        for (std::uint32_t block = 0; block < blocks; ++block)
             kernel_.trace(packets, block % across * packet_block_size, block / across * packet_block_size);
     });
 }

@@ -47,7 +47,7 @@ std::initializer_list<vk::MemoryPropertyFlags> wishes_for(Place place)
 std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& memory, std::uint32_t allowed, Place place)
 {
     for (const vk::MemoryPropertyFlags wish : wishes_for(place))
-        for (std::uint32_t i = 0; i < memory.memoryTypeCount; i++)
+        for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i)
             if ((allowed >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & wish) == wish) return i;
     throw Error(ErrorKind::unsupported, "the device has no type of memory for a buffer");
 }

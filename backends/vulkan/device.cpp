@@ -44,7 +44,7 @@ std::uint64_t device_memory(const vk::raii::PhysicalDevice& device)
 {
     const vk::PhysicalDeviceMemoryProperties memory = device.getMemoryProperties();
     std::uint64_t largest = 0;
-    for (std::uint32_t i = 0; i < memory.memoryHeapCount; i++)
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
         if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
             largest = std::max<std::uint64_t>(largest, memory.memoryHeaps[i].size);
     return largest;
@@ -53,7 +53,7 @@ std::uint64_t device_memory(const vk::raii::PhysicalDevice& device)
 void find_queue(const vk::raii::PhysicalDevice& device, Limits& limits)
 {
     const auto families = device.getQueueFamilyProperties();
-    for (std::uint32_t i = 0; i < families.size() && !limits.queue_family; i++)
+    for (std::uint32_t i = 0; i < families.size() && !limits.queue_family; ++i)
         if ((families[i].queueFlags & vk::QueueFlagBits::eCompute) && families[i].timestampValidBits > 0) {
             limits.queue_family = i;
             limits.timestamp_bits = families[i].timestampValidBits;

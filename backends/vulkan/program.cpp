@@ -86,7 +86,7 @@ void Program::make_pipeline(const Context& context, const ProgramId& id, const P
     const std::array<std::uint32_t, 3> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE,
                                                  id.selects_minima ? VK_TRUE : VK_FALSE};
     std::array<vk::SpecializationMapEntry, values.size()> entries;
-    for (std::uint32_t i = 0; i < entries.size(); i++)
+    for (std::uint32_t i = 0; i < entries.size(); ++i)
         entries[i].setConstantID(i).setOffset(i * sizeof(values[0])).setSize(sizeof(values[0]));
     const auto constants =
         vk::SpecializationInfo{}.setMapEntries(entries).setDataSize(sizeof(values)).setPData(values.data());

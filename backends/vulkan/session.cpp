@@ -106,9 +106,9 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
     const auto buffers = scene_buffers(scene);
     const std::span<const std::byte> tets = buffers[0].bytes;
     arrays_.push_back(make(parts_.part(tets, 0)));
-    for (std::size_t binding = 1; binding < buffers.size(); binding++)
+    for (std::size_t binding = 1; binding < buffers.size(); ++binding)
         arrays_.push_back(make(buffers[binding].bytes));
-    for (unsigned part = 1; part < parts_.count; part++)
+    for (unsigned part = 1; part < parts_.count; ++part)
         more_parts_.push_back(make(parts_.part(tets, part)));
 }
 
@@ -140,11 +140,11 @@ void VulkanSession::make_program()
                  .selects_minima = context_.found().selects_minima};
     if (in_texels_) id.texels = texel_bindings(kernel_.layout);
     if (acceleration_) id.structure = structure_binding;
-    for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
+    for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)
         id.bindings.push_back(binding);
     if (takes_rays && in_texels_) id.texels.push_back(rays_as_texels);
     if (takes_rays && !in_texels_) id.bindings.push_back(RAYS_BINDING);
-    for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++)
+    for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
     program_.emplace(context_, id, ProgramCache(program_cache_));
     setup_.compile_cached = program_->is_cached();
@@ -156,9 +156,9 @@ void VulkanSession::bind_scene()
     if (acceleration_) program_->bind_structure(context_, structure_binding, acceleration_->handle());
     for (const TexelBinding& texels : in_texels_ ? texel_bindings(kernel_.layout) : std::vector<TexelBinding>{})
         program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_QUADS_BINDING]);
-    for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); binding++)
+    for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)
         program_->bind(context_, binding, arrays_[binding]);
-    for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; part++) // those beyond the last are never read
+    for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part) // those beyond the last are never read
         program_->bind(context_, SECOND_PART_BINDING - 1 + part,
                        part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
 }
@@ -270,7 +270,7 @@ double VulkanSession::wait()
 void VulkanSession::take_times()
 {
     context_.finish();
-    for (std::size_t i = 0; i < enqueued_.size(); i++)
+    for (std::size_t i = 0; i < enqueued_.size(); ++i)
         launches_.took(enqueued_[i], context_.seconds_of(chunks_[i].times));
     enqueued_.clear();
 }

@@ -18,7 +18,7 @@ void number_hardware(std::vector<RowDevice>& devices)
     for (const RowDevice& device : devices)
         plain.push_back(device.device);
     const auto hardware = physical_devices(plain);
-    for (std::size_t i = 0; i < devices.size(); i++)
+    for (std::size_t i = 0; i < devices.size(); ++i)
         devices[i].hardware = hardware[i];
 }
 
@@ -59,7 +59,7 @@ void measure_device(RowDevice& device, const SessionOptions& options)
 
 std::optional<std::size_t> device_of(const RowRun& row, const std::vector<RowDevice>& devices)
 {
-    for (std::size_t i = 0; i < devices.size(); i++)
+    for (std::size_t i = 0; i < devices.size(); ++i)
         if (devices[i].backend == row.backend && devices[i].index == row.key.device) return i;
     return std::nullopt;
 }

@@ -35,10 +35,10 @@ bool runs_on_host(const Device& device)
 std::vector<std::size_t> physical_devices(std::span<const Device> devices)
 {
     std::vector<std::size_t> numbers;
-    for (std::size_t i = 0; i < devices.size(); i++) {
+    for (std::size_t i = 0; i < devices.size(); ++i) {
         numbers.push_back(i);
         // A device that knows both its UUID and its PCI address can join two that know one each.
-        for (std::size_t j = 0; j < i; j++) {
+        for (std::size_t j = 0; j < i; ++j) {
             const auto mine = numbers[i], earlier = numbers[j];
             if (are_one(devices[i], devices[j])) std::replace(numbers.begin(), numbers.end(), mine, earlier);
         }

@@ -29,7 +29,7 @@ MedianRatio ratio_of_medians(const std::vector<double>& numerator, const std::ve
     const double value = statistics_of(numerator).median / statistics_of(denominator).median;
     std::mt19937_64 random(seed);
     std::vector<double> ratios;
-    for (int i = 0; i < resamples; i++) {
+    for (int i = 0; i < resamples; ++i) {
         const double above = resampled_median(numerator, random);
         ratios.push_back(above / resampled_median(denominator, random));
     }

@@ -81,7 +81,7 @@ void GivenOracle::Parts::trace_reference(const RaySet& set)
     reference.resize(set.rays.size());
     reference_hash = hash;
 #pragma omp parallel for schedule(dynamic, 256) num_threads(threads)
-    for (std::size_t i = 0; i < set.rays.size(); i++) {
+    for (std::size_t i = 0; i < set.rays.size(); ++i) {
         const GivenRay& ray = set.rays[i];
         reference[i] =
             embree_nearest(accelerator, exact_ray_of(ray, Origins::own), {ray.triangle, ray.end, set.any_hit});
@@ -138,7 +138,7 @@ void GivenOracle::Parts::judge_ray(Verdicts& verdicts, const RaySet& set, std::s
     const GivenRay& ray = set.rays[number];
     Judged judged{ray, {ray.triangle, ray.end, set.any_hit}, ours, reference[number]};
     const auto blame = [&](std::uint64_t& count, const char* reason) {
-        count++;
+        ++count;
         verdicts.flawed.push_back(ray.pixel);
         if (!verdicts.first_wrong)
             verdicts.first_wrong = WrongRay{set.view, ray.pixel % set.width, ray.pixel / set.width,
@@ -153,18 +153,18 @@ void GivenOracle::Parts::judge_ray(Verdicts& verdicts, const RaySet& set, std::s
     } else if (const char* flaw = flaw_of(judged, origins))
         return blame(verdicts.wrong, flaw);
     if (judged.ours.face_id == judged.theirs.face) {
-        verdicts.agreed++;
+        ++verdicts.agreed;
         return;
     }
     const Settlement settlement = settle(judged, Origins::own);
     const bool both_hit = ours.face_id != NO_HIT && judged.theirs.face != NO_HIT;
     if (settlement.kind == Kind::tie) {
-        verdicts.ties++;
+        ++verdicts.ties;
         verdicts.largest_tie_distance = std::max(verdicts.largest_tie_distance, settlement.distance);
     } else if (settlement.kind == Kind::ours)
         (set.any_hit && both_hit ? verdicts.agreed : verdicts.settled)++;
     else if (origins == Origins::offset && settle(judged, origins).kind != Kind::wrong)
-        verdicts.offset++;
+        ++verdicts.offset;
     else
         blame(verdicts.wrong, settlement.reason);
 }
@@ -179,8 +179,8 @@ Verdicts GivenOracle::judge(const RaySet& set, std::span<const Hit> hits, Origin
     parts_->trace_reference(set);
     std::vector<Verdicts> blocks((hits.size() + rays_at_once - 1) / rays_at_once);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(parts_->threads)
-    for (std::size_t block = 0; block < blocks.size(); block++)
-        for (std::size_t i = block * rays_at_once; i < std::min((block + 1) * rays_at_once, hits.size()); i++)
+    for (std::size_t block = 0; block < blocks.size(); ++block)
+        for (std::size_t i = block * rays_at_once; i < std::min((block + 1) * rays_at_once, hits.size()); ++i)
             parts_->judge_ray(blocks[block], set, i, hits[i], origins);
     Verdicts all;
     for (const Verdicts& block : blocks) {

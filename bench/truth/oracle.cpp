@@ -82,7 +82,7 @@ void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_
     const auto y = static_cast<std::uint32_t>(pixel / reference_width);
     const Hit& theirs = reference[pixel];
     const auto blame = [&](std::uint64_t& count, const char* reason) {
-        count++;
+        ++count;
         verdicts.flawed.push_back(static_cast<std::uint32_t>(pixel));
         if (!verdicts.first_wrong)
             verdicts.first_wrong = WrongRay{number, x, y, ours, theirs.face_id, theirs.t, reason};
@@ -97,7 +97,7 @@ void Oracle::Parts::judge_ray(Verdicts& verdicts, const View& view, std::uint32_
     if (is_face && !names_one_point(mesh, ray, ours, bound))
         return blame(verdicts.wrong, "its t, u and v do not name one point");
     if (ours.face_id == theirs.face_id) {
-        verdicts.agreed++;
+        ++verdicts.agreed;
         return;
     }
     const Settlement settlement = settler.settle(ray, ours.face_id, theirs.face_id, bound);
@@ -117,8 +117,8 @@ Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_
     parts_->trace_reference(view, width, height);
     std::vector<Verdicts> rows(height);
 #pragma omp parallel for schedule(dynamic, 8) num_threads(static_cast <int>(parts_->threads))
-    for (std::uint32_t y = 0; y < height; y++)
-        for (std::size_t pixel = std::size_t{y} * width; pixel < std::size_t{y + 1} * width; pixel++)
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::size_t pixel = std::size_t{y} * width; pixel < std::size_t{y + 1} * width; ++pixel)
             parts_->judge_ray(rows[y], view, view_number, pixel, hits[pixel]);
     Verdicts all;
     for (const Verdicts& row : rows) {

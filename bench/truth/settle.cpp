@@ -31,11 +31,11 @@ Settler::Settler(const TriangleMesh& mesh) : mesh_(mesh)
     for (const auto& triangle : mesh.triangles)
         for (const auto v : triangle)
             ranges_[v + 1]++;
-    for (std::size_t v = 1; v < ranges_.size(); v++)
+    for (std::size_t v = 1; v < ranges_.size(); ++v)
         ranges_[v] += ranges_[v - 1];
     incident_.resize(ranges_.back());
     auto next = ranges_;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); i++)
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
         for (const auto v : mesh.triangles[i])
             incident_[next[v]++] = i;
 }

@@ -13,7 +13,7 @@ float direction_component(float corner, float step_x, float step_y, std::uint32_
 
 TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
 {
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         job.view.corner[axis] =
             direction_component(job.view.corner[axis], job.view.step_x[axis], job.view.step_y[axis], x, y);
     job.width = job.height = 1;
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std:
     std::vector<std::uint32_t> path;
     const Hit last = trace(job.max_steps);
     const std::uint32_t steps = std::min(last.steps, job.max_steps); // a broken device may claim any number
-    for (std::uint32_t cap = 1; cap < steps && path.size() < most; cap++)
+    for (std::uint32_t cap = 1; cap < steps && path.size() < most; ++cap)
         path.push_back(trace(cap).tet);
     if (last.tet != NO_TET && path.size() < most) path.push_back(last.tet);
     return path;

@@ -95,7 +95,7 @@ ExactCrossing cross_exactly(Float3 origin, Float3 direction, Float3 v0, Float3 v
     const auto d = wide(to_integers(direction, directions_per_unit));
     const Vector<int256_t> corners[3] = {difference(v0, origin), difference(v1, origin), difference(v2, origin)};
     ExactCrossing crossing;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; ++i)
         crossing.edge_side[i] = dot(d, cross(corners[i], corners[(i + 1) % 3])).sign();
     const auto [least, most] = std::minmax({crossing.edge_side[0], crossing.edge_side[1], crossing.edge_side[2]});
 

@@ -22,7 +22,7 @@ RandomWords random_words(const RandomWords& place, std::uint32_t stream)
 
 Double3 random_direction(const RandomPlace& place)
 {
-    for (std::uint32_t attempt = 0;; attempt++) {
+    for (std::uint32_t attempt = 0;; ++attempt) {
         const RandomWords words = random_words({place.view, place.pixel, place.dimension, attempt}, place.stream);
         const Double3 point{signed_unit(words[0]), signed_unit(words[1]), signed_unit(words[2])};
         const double square = dot(point, point);

@@ -12,7 +12,7 @@ class BalancedBuilder {
 public:
     explicit BalancedBuilder(const TriangleMesh& mesh) : boxes_(mesh.triangles.size())
     {
-        for (std::size_t i = 0; i < boxes_.size(); i++)
+        for (std::size_t i = 0; i < boxes_.size(); ++i)
             boxes_[i] = triangle_box(mesh, i);
         bvh_.references.resize(boxes_.size());
         std::iota(bvh_.references.begin(), bvh_.references.end(), 0u);
@@ -32,7 +32,7 @@ private:
         if (count <= most_balanced_leaf) {
             bvh_.nodes[node].first = static_cast<std::uint32_t>(first);
             bvh_.nodes[node].count = static_cast<std::uint32_t>(count);
-            for (std::size_t i = first; i < first + count; i++)
+            for (std::size_t i = first; i < first + count; ++i)
                 bvh_.nodes[node].box = merged(bvh_.nodes[node].box, boxes_[bvh_.references[i]]);
             return node;
         }

@@ -32,12 +32,12 @@ Defect leaf_defect(const Bvh& bvh, std::size_t leaf, BvhCoverage& coverage)
 {
     const auto& [box, child, first, count] = bvh.nodes[leaf];
     if (std::uint64_t{first} + count > bvh.references.size()) return node_text(leaf) + "has references beyond the last";
-    for (std::size_t i = first; i < std::size_t{first} + count; i++) {
+    for (std::size_t i = first; i < std::size_t{first} + count; ++i) {
         const std::uint32_t triangle = bvh.references[i];
         if (coverage.referred[i]) return "reference " + std::to_string(i) + " is in two leaves";
         coverage.referred[i] = true;
         if (triangle >= coverage.of_triangle.size()) return node_text(leaf) + "names a triangle beyond the last";
-        for (std::size_t j = first; j < i; j++)
+        for (std::size_t j = first; j < i; ++j)
             if (bvh.references[j] == triangle) return node_text(leaf) + "names a triangle twice";
         coverage.of_triangle[triangle] = merged(coverage.of_triangle[triangle], box);
     }
@@ -46,9 +46,9 @@ Defect leaf_defect(const Bvh& bvh, std::size_t leaf, BvhCoverage& coverage)
 
 Defect coverage_defect(const BvhCoverage& coverage, const TriangleMesh& mesh)
 {
-    for (std::size_t i = 0; i < coverage.referred.size(); i++)
+    for (std::size_t i = 0; i < coverage.referred.size(); ++i)
         if (!coverage.referred[i]) return "reference " + std::to_string(i) + " is in no leaf";
-    for (std::size_t i = 0; i < mesh.triangles.size(); i++)
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         if (!contains(coverage.of_triangle[i], triangle_box(mesh, i)))
             return "triangle " + std::to_string(i) + " is not covered by the boxes of its leaves";
     return {};
@@ -60,7 +60,7 @@ std::uint32_t depth_of(const Bvh& bvh)
 {
     std::vector<std::uint32_t> depth(bvh.nodes.size());
     std::uint32_t deepest = 0;
-    for (std::size_t i = 0; i < bvh.nodes.size(); i++) {
+    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
         deepest = std::max(deepest, depth[i]);
         if (bvh.nodes[i].count == 0)
             for (const auto child : bvh.nodes[i].child)
@@ -74,7 +74,7 @@ std::optional<std::string> find_defect(const Bvh& bvh, const TriangleMesh& mesh)
     if (bvh.nodes.empty()) return "there is no root";
     std::vector<bool> is_child(bvh.nodes.size());
     BvhCoverage coverage{std::vector<bool>(bvh.references.size()), std::vector<Box>(mesh.triangles.size())};
-    for (std::size_t i = 0; i < bvh.nodes.size(); i++) {
+    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
         auto defect = bvh.nodes[i].count == 0 ? child_defect(bvh, i, is_child) : leaf_defect(bvh, i, coverage);
         if (defect) return defect;
         if (i > 0 && !is_child[i]) return node_text(i) + "is nobody's child";

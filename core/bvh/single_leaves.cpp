@@ -33,9 +33,9 @@ std::size_t best_split(std::span<TrianglePart> parts)
     double least = std::numeric_limits<double>::infinity();
     int best_axis = 0;
     std::size_t best = parts.size() / 2;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         sort_by_centre(parts, axis);
-        for (std::size_t i = 1; i < parts.size(); i++) {
+        for (std::size_t i = 1; i < parts.size(); ++i) {
             const double cost = half_area(box_round(parts.first(i))) * static_cast<double>(i) +
                                 half_area(box_round(parts.subspan(i))) * static_cast<double>(parts.size() - i);
             if (cost < least) {

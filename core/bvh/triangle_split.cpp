@@ -9,7 +9,7 @@ Box crossing(Double3 from, Double3 to, int axis, double position)
     const double coordinates[2][3] = {{from.x, from.y, from.z}, {to.x, to.y, to.z}};
     const double t = (position - coordinates[0][axis]) / (coordinates[1][axis] - coordinates[0][axis]);
     Box box;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
         const double x = i == axis ? position : coordinates[0][i] + t * (coordinates[1][i] - coordinates[0][i]);
         const double error = i == axis ? 0 : 0x1p-50 * (std::abs(coordinates[0][i]) + std::abs(coordinates[1][i]));
         box.low[i] = float_below(x - error);
@@ -23,7 +23,7 @@ Box crossing(Double3 from, Double3 to, int axis, double position)
 TriangleParts split_triangle(const Float3 (&corners)[3], int axis, float position, const Box& box)
 {
     TriangleParts parts;
-    for (std::size_t i = 0; i < 3; i++) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const Float3 from = corners[i];
         const Float3 to = corners[(i + 1) % 3];
         if (from[axis] <= position) parts.below = merged(parts.below, {from, from});

@@ -59,7 +59,7 @@ private:
             plan.is_leaf = true;
             plan.cost[1] = leaf_cost(node);
         }
-        for (std::size_t i = 2; i < wide_children; i++) {
+        for (std::size_t i = 2; i < wide_children; ++i) {
             plan.cost[i] = share_out(plan, left, right, i);
             if (plan.cost[i] < plan.cost[i - 1] || collapse_ == Collapse::shallow) continue;
             plan.cost[i] = plan.cost[i - 1];
@@ -71,7 +71,7 @@ private:
     double share_out(SubtreePlan& plan, const SubtreePlan& left, const SubtreePlan& right, std::size_t children) const
     {
         double least = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 1; k < children; k++) {
+        for (std::size_t k = 1; k < children; ++k) {
             if (collapse_ == Collapse::shallow && k != children / 2) continue;
             const double cost = left.cost[k] + right.cost[children - k];
             if (cost < least) {
@@ -93,7 +93,7 @@ private:
     void add_children(std::uint32_t node, std::size_t budget, std::vector<std::uint32_t>& children) const
     {
         while (budget > 1 && plans_[node].share[budget] == 0)
-            budget--;
+            --budget;
         if (budget == 1)
             children.push_back(node);
         else
@@ -137,7 +137,7 @@ std::uint32_t levels_of(const WideBvh& bvh)
 {
     std::vector<std::uint32_t> levels(bvh.nodes.size(), 1);
     std::uint32_t most = 0;
-    for (std::size_t i = 0; i < bvh.nodes.size(); i++) {
+    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
         most = std::max(most, levels[i]);
         for (const auto& child : bvh.nodes[i])
             if (child.count == 0) levels[child.node] = levels[i] + 1;

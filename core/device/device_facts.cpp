@@ -35,7 +35,7 @@ std::string version_in(std::string_view text, int most_numbers)
 {
     const auto* const begin = std::find_if(text.begin(), text.end(), is_digit);
     const auto* end = begin;
-    for (int numbers = 0; end != text.end(); end++) {
+    for (int numbers = 0; end != text.end(); ++end) {
         if (is_digit(*end)) continue;
         if (*end != '.' || ++numbers == most_numbers) break;
     }

@@ -30,7 +30,7 @@ std::vector<Quad> quads_of_rays(const RaySet& set, const LinkOf& link_of, const 
 {
     const std::size_t count = set.rays.size();
     std::vector<Quad> quads(GIVEN_RAY_QUADS * count);
-    for (std::size_t i = 0; i < count; i++) {
+    for (std::size_t i = 0; i < count; ++i) {
         const GivenRay& ray = set.rays[i];
         quads[i] = given_quad(ray.direction, link_of(ray));
         quads[count + i] = given_quad(origin_of(ray), std::bit_cast<std::uint32_t>(ray.end));

@@ -83,7 +83,7 @@ TetParts tet_parts(const PackedScene& scene, std::uint64_t max_buffer_bytes)
     if (max_buffer_bytes == 0) return {};
     const auto buffers = scene_buffers(scene);
     const bool can_be_cut = structure_of(scene.layout) == Structure::cdt; // the tets, binding 0
-    for (std::size_t binding = can_be_cut ? 1 : 0; binding < buffers.size(); binding++)
+    for (std::size_t binding = can_be_cut ? 1 : 0; binding < buffers.size(); ++binding)
         if (buffers[binding].bytes.size() > max_buffer_bytes)
             reject(buffers[binding].name, buffers[binding].bytes.size(), max_buffer_bytes, "");
     const std::uint64_t bytes = buffers[0].bytes.size();

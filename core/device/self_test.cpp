@@ -48,7 +48,7 @@ std::vector<Quad> make_operations()
 {
     std::vector<Quad> quads;
     Numbers numbers;
-    for (int i = 0; i < 64; i++) {
+    for (int i = 0; i < 64; ++i) {
         const float a = numbers.next(), b = numbers.next(), c = numbers.next();
         // The rounded product taken away again: 0 in two roundings, its error in one.
         quads.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(-(a * b))});
@@ -193,7 +193,7 @@ SelfTest judge_self_test(std::span<const std::uint32_t> results)
         throw Error(ErrorKind::internal, "self-test: " + std::to_string(results.size()) + " results of " +
                                              std::to_string(operations.size()) + " operations");
     SelfTest test;
-    for (std::size_t i = 0; i < results.size(); i++)
+    for (std::size_t i = 0; i < results.size(); ++i)
         judge(test, operations[i], results[i]);
     return test;
 }

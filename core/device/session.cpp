@@ -35,7 +35,7 @@ void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std:
     job.start_tet = tet == NO_TET ? NO_TET : packed.packed_of_mesh.at(tet);
     job.start = {};
     if (tet == NO_TET || !is_compact(packed.layout)) return;
-    for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t i = 0; i < 4; ++i)
         job.start.vertices[i] = packed.number_of_vertex.at(scene.tets.tets.at(tet).vertices[i]);
     job.start.neighbour = packed.last_neighbours.at(job.start_tet);
 }

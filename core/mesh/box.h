@@ -36,7 +36,7 @@ struct Box {
 
 [[nodiscard]] inline bool contains(const Box& outer, const Box& inner)
 {
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         if (inner.low[axis] < outer.low[axis] || inner.high[axis] > outer.high[axis]) return false;
     return true;
 }

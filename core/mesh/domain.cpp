@@ -19,7 +19,7 @@ std::vector<float> make_lines(double low, double high, std::uint32_t divisions, 
     const double first = std::floor(low / line_grid);
     const double last = std::ceil(high / line_grid);
     std::vector<float> lines(divisions + 1);
-    for (std::uint32_t i = 0; i <= divisions; i++)
+    for (std::uint32_t i = 0; i <= divisions; ++i)
         lines[i] = static_cast<float>(std::nearbyint(first + (last - first) * i / divisions) * line_grid);
     if (std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) != lines.end())
         throw Error(ErrorKind::invalid_input,
@@ -45,7 +45,7 @@ public:
     {
         std::array<std::uint32_t, 4> corner{};
         constexpr std::uint32_t steps[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-        for (std::size_t k = 0; k < 4; k++) {
+        for (std::size_t k = 0; k < 4; ++k) {
             std::array<std::uint32_t, 3> line{};
             line[axis] = high ? domain_.divisions : 0;
             line[(axis + 1) % 3] = i + steps[k][0];
@@ -81,11 +81,11 @@ struct BoundaryFace {
 std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh)
 {
     std::vector<BoundaryFace> faces;
-    for (std::uint32_t index = 0; index < mesh.tets.size(); index++) {
-        for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t index = 0; index < mesh.tets.size(); ++index) {
+        for (std::uint32_t face = 0; face < 4; ++face) {
             if (mesh.tets[index].links[face] != NO_LINK) continue;
             BoundaryFace found{make_link(index, face), {}};
-            for (std::uint32_t i = 0, n = 0; i < 4; i++)
+            for (std::uint32_t i = 0, n = 0; i < 4; ++i)
                 if (i != face) found.corners[n++] = mesh.vertices[mesh.tets[index].vertices[i]];
             faces.push_back(found);
         }
@@ -98,7 +98,7 @@ std::uint32_t side_of(const Domain& domain, const BoundaryFace& face)
 {
     for (const Float3 corner : face.corners)
         if (!domain.contains(corner)) return 6;
-    for (std::uint32_t side = 0; side < 6; side++) {
+    for (std::uint32_t side = 0; side < 6; ++side) {
         const auto axis = side / 2;
         const float plane = side % 2 == 0 ? domain.lines[axis].front() : domain.lines[axis].back();
         const auto on_plane = [&](Float3 p) { return p[static_cast<int>(axis)] == plane; };
@@ -112,13 +112,13 @@ void for_each_square(const Domain& domain, const BoundaryFace& face, std::uint32
 {
     const std::uint32_t n = domain.divisions;
     std::pair<std::uint32_t, std::uint32_t> range[2];
-    for (std::uint32_t k = 0; k < 2; k++) {
+    for (std::uint32_t k = 0; k < 2; ++k) {
         const auto axis = static_cast<int>((side / 2 + 1 + k) % 3);
         const auto [low, high] = std::minmax({face.corners[0][axis], face.corners[1][axis], face.corners[2][axis]});
         range[k] = overlapped(domain.lines[static_cast<std::size_t>(axis)], low, high);
     }
-    for (std::uint32_t j = range[1].first; j < range[1].second; j++)
-        for (std::uint32_t i = range[0].first; i < range[0].second; i++)
+    for (std::uint32_t j = range[1].first; j < range[1].second; ++j)
+        for (std::uint32_t i = range[0].first; i < range[0].second; ++i)
             visit((side * n + j) * n + i);
 }
 
@@ -131,7 +131,7 @@ std::string_view name_of(DomainKind kind)
 
 bool Domain::contains(Float3 p) const
 {
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const auto& line = lines[static_cast<std::size_t>(axis)];
         if (!(p[axis] >= line.front() && p[axis] <= line.back())) return false;
     }
@@ -143,7 +143,7 @@ Domain make_domain(const TriangleMesh& mesh, DomainKind kind, std::uint32_t divi
     const BoundingSphere sphere = bounding_sphere(mesh);
     Domain domain{kind, divisions, {}};
     double low[3], high[3], extent = 0;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         low[axis] = high[axis] = static_cast<double>(mesh.vertices.front()[axis]);
         for (const Float3 v : mesh.vertices) {
             low[axis] = std::min(low[axis], static_cast<double>(v[axis]));
@@ -152,7 +152,7 @@ Domain make_domain(const TriangleMesh& mesh, DomainKind kind, std::uint32_t divi
         extent = std::max(extent, high[axis] - low[axis]);
     }
     const double centre[3] = {sphere.centre.x, sphere.centre.y, sphere.centre.z};
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const double margin = tight_margin * extent;
         const double half = wide_half_size * sphere.radius;
         const bool tight = kind == DomainKind::tight;
@@ -166,10 +166,10 @@ Domain make_domain(const TriangleMesh& mesh, DomainKind kind, std::uint32_t divi
 TriangleMesh domain_surface(const Domain& domain)
 {
     SurfaceBuilder builder(domain);
-    for (std::size_t axis = 0; axis < 3; axis++)
+    for (std::size_t axis = 0; axis < 3; ++axis)
         for (const bool high : {false, true})
-            for (std::uint32_t j = 0; j < domain.divisions; j++)
-                for (std::uint32_t i = 0; i < domain.divisions; i++)
+            for (std::uint32_t j = 0; j < domain.divisions; ++j)
+                for (std::uint32_t i = 0; i < domain.divisions; ++i)
                     builder.add_square(axis, high, i, j);
     return builder.take();
 }
@@ -192,11 +192,11 @@ EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh)
         throw Error(ErrorKind::invalid_input, "making the entry grid: square " +
                                                   std::to_string(empty - grid.ranges.begin() - 1) +
                                                   " of the domain has no boundary face");
-    for (std::size_t i = 1; i < grid.ranges.size(); i++)
+    for (std::size_t i = 1; i < grid.ranges.size(); ++i)
         grid.ranges[i] += grid.ranges[i - 1];
     grid.links.resize(grid.ranges.back());
     auto next = grid.ranges;
-    for (std::size_t i = 0; i < faces.size(); i++)
+    for (std::size_t i = 0; i < faces.size(); ++i)
         for_each_square(domain, faces[i], sides[i],
                         [&](std::uint32_t square) { grid.links[next[square]++] = faces[i].link; });
     return grid;

@@ -25,14 +25,14 @@ int side_of_face(std::array<Float3, 4> corners, std::size_t face, Float3 point)
 bool holds(const TetMesh& mesh, const Tet& tet, Float3 point)
 {
     const auto corners = corners_of(mesh, tet);
-    for (std::size_t face = 0; face < 4; face++)
+    for (std::size_t face = 0; face < 4; ++face)
         if (side_of_face(corners, face, point) > 0) return false;
     return true;
 }
 
 std::uint32_t search_all(const TetMesh& mesh, Float3 point)
 {
-    for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
+    for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
         if (holds(mesh, mesh.tets[i], point)) return i;
     return NO_TET;
 }
@@ -49,7 +49,7 @@ double clearance(const TetMesh& mesh, std::uint32_t tet, Float3 point)
 {
     const auto corners = corners_of(mesh, mesh.tets[tet]);
     double least = HUGE_VAL;
-    for (std::size_t face = 0; face < 4; face++) {
+    for (std::size_t face = 0; face < 4; ++face) {
         if (side_of_face(corners, face, point) == 0) return 0;
         least = std::min(least, distance_to_face(corners, face, point));
     }
@@ -63,7 +63,7 @@ Float3 nudged(Float3 point, int choice, float by)
 {
     // 26 neighbours in a cube, as digits of base 3.
     const int digit[3] = {choice % 3 - 1, choice / 3 % 3 - 1, choice / 9 - 1};
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         point[axis] += static_cast<float>(digit[axis]) * by;
     return snap_to_grid(point);
 }
@@ -74,11 +74,11 @@ std::uint32_t locate(const TetMesh& mesh, Float3 point)
 {
     std::uint32_t tet = 0;
     std::uint32_t turn = 0; // which face is asked first changes from tet to tet, so that no cycle repeats for ever
-    for (std::size_t step = 0; step < 2 * mesh.tets.size() + 16; step++) {
+    for (std::size_t step = 0; step < 2 * mesh.tets.size() + 16; ++step) {
         const auto corners = corners_of(mesh, mesh.tets[tet]);
         turn = turn * 1664525u + 1013904223u;
         std::uint32_t beyond = 4;
-        for (std::uint32_t k = 0; k < 4 && beyond == 4; k++) {
+        for (std::uint32_t k = 0; k < 4 && beyond == 4; ++k) {
             const std::uint32_t face = (k + (turn >> 30)) & 3u;
             if (side_of_face(corners, face, point) > 0) beyond = face;
         }
@@ -98,7 +98,7 @@ Start find_start(const Scene& scene, Float3 origin)
     double most = tet == NO_TET ? 0 : clearance(scene.tets, tet, origin);
     for (const float by : nudges) {
         if (most >= enough) break;
-        for (int choice = 0; choice < 27; choice++) {
+        for (int choice = 0; choice < 27; ++choice) {
             const Float3 candidate = nudged(origin, choice, by);
             if (!scene.domain.contains(candidate)) continue;
             const std::uint32_t at = locate(scene.tets, candidate);

@@ -27,7 +27,7 @@ struct Finding {
 
 bool indices_exist(const TetMesh& mesh, const Tet& tet, std::size_t triangle_count)
 {
-    for (std::size_t i = 0; i < 4; i++) {
+    for (std::size_t i = 0; i < 4; ++i) {
         if (tet.vertices[i] >= mesh.vertices.size()) return false;
         if (tet.links[i] != NO_LINK && link_tet(tet.links[i]) >= mesh.tets.size()) return false;
         if (tet.faces[i] != FREE_FACE && tet.faces[i] >= triangle_count) return false;
@@ -38,7 +38,7 @@ bool indices_exist(const TetMesh& mesh, const Tet& tet, std::size_t triangle_cou
 std::array<std::uint32_t, 3> sorted_face(const Tet& tet, std::uint32_t face)
 {
     std::array<std::uint32_t, 3> vertices{};
-    for (std::uint32_t i = 0, n = 0; i < 4; i++)
+    for (std::uint32_t i = 0, n = 0; i < 4; ++i)
         if (i != face) vertices[n++] = tet.vertices[i];
     std::sort(vertices.begin(), vertices.end());
     return vertices;
@@ -47,7 +47,7 @@ std::array<std::uint32_t, 3> sorted_face(const Tet& tet, std::uint32_t face)
 bool links_are_symmetric(const TetMesh& mesh, std::uint32_t index)
 {
     const Tet& tet = mesh.tets[index];
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         const std::uint32_t link = tet.links[face];
         if (link == NO_LINK) continue;
         const Tet& other = mesh.tets[link_tet(link)];
@@ -59,7 +59,7 @@ bool links_are_symmetric(const TetMesh& mesh, std::uint32_t index)
 
 bool faces_are_symmetric(const TetMesh& mesh, const Tet& tet)
 {
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         const std::uint32_t link = tet.links[face];
         if (link != NO_LINK && mesh.tets[link_tet(link)].faces[link_face(link)] != tet.faces[face]) return false;
     }
@@ -90,9 +90,9 @@ double volume(const TetMesh& mesh, const Tet& tet)
 std::vector<double> covered_areas(const TetMesh& mesh, std::size_t triangle_count)
 {
     std::vector<double> covered(triangle_count, 0.0);
-    for (std::uint32_t index = 0; index < mesh.tets.size(); index++) {
+    for (std::uint32_t index = 0; index < mesh.tets.size(); ++index) {
         const Tet& tet = mesh.tets[index];
-        for (std::uint32_t face = 0; face < 4; face++) {
+        for (std::uint32_t face = 0; face < 4; ++face) {
             const bool counted_here = tet.links[face] == NO_LINK || make_link(index, face) < tet.links[face];
             if (tet.faces[face] == FREE_FACE || !counted_here) continue;
             const auto v = sorted_face(tet, face);
@@ -117,12 +117,12 @@ std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triang
     if (mesh.tets.empty()) return TetMeshDefect{Kind::bad_index, 0, 0, "the mesh has no tets"};
     if (mesh.tets.size() > MAX_TETS)
         return TetMeshDefect{Kind::bad_index, MAX_TETS, 1, "more tets than a link of 30 bits can name"};
-    for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
+    for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
         if (!indices_exist(mesh, mesh.tets[i], triangle_count)) bad_index.add(i);
     if (bad_index.count > 0)
         return bad_index.defect(Kind::bad_index, "a tet names a vertex, tet or triangle that is not there");
 
-    for (std::uint32_t i = 0; i < mesh.tets.size(); i++) {
+    for (std::uint32_t i = 0; i < mesh.tets.size(); ++i) {
         if (!links_are_symmetric(mesh, i)) asymmetric_link.add(i);
         if (!faces_are_symmetric(mesh, mesh.tets[i])) asymmetric_face.add(i);
         const int sign = orientation_of(mesh, mesh.tets[i]);
@@ -144,7 +144,7 @@ std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& t
     const double box_area = 2 * (box_size.x * box_size.y + box_size.y * box_size.z + box_size.z * box_size.x);
     const auto covered = covered_areas(mesh, triangles.triangles.size());
     Finding uncovered;
-    for (std::size_t i = 0; i < covered.size(); i++) {
+    for (std::size_t i = 0; i < covered.size(); ++i) {
         const auto& [a, b, c] = triangles.triangles[i];
         const double wanted = area(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c]);
         // A Steiner point on an edge is rounded by up to 2^-21, which in a needle is much of the area.
@@ -173,11 +173,11 @@ TetMeshCounts count_faces(const TetMesh& mesh)
     std::uint64_t occlusive_sides = 0;
     counts.tets = mesh.tets.size();
     for (const Tet& tet : mesh.tets) {
-        for (std::size_t face = 0; face < 4; face++) {
+        for (std::size_t face = 0; face < 4; ++face) {
             const bool occlusive = tet.faces[face] != FREE_FACE;
             const bool boundary = tet.links[face] == NO_LINK;
-            if (boundary) counts.boundary_faces++;
-            if (boundary && occlusive) counts.occlusive_faces++;
+            if (boundary) ++counts.boundary_faces;
+            if (boundary && occlusive) ++counts.occlusive_faces;
             if (!boundary) (occlusive ? occlusive_sides : inner_sides)++;
         }
     }

@@ -13,7 +13,7 @@ int line_below(const BoxGrid& grid, int axis, float x)
     int line = static_cast<int>(std::floor((double{x} - grid.origin[axis]) / grid.width(axis)));
     line = std::clamp(line, 0, last_line);
     while (line > 0 && line_at(grid, axis, static_cast<std::uint8_t>(line)) > x)
-        line--;
+        --line;
     return line;
 }
 
@@ -24,7 +24,7 @@ int line_above(const BoxGrid& grid, int axis, float x)
     if (line > last_line) return last_line + 1;
     int above = std::max(0, static_cast<int>(line));
     while (above <= last_line && line_at(grid, axis, static_cast<std::uint8_t>(above)) < x)
-        above++;
+        ++above;
     return above;
 }
 
@@ -43,12 +43,12 @@ double line_at(const BoxGrid& grid, int axis, std::uint8_t line)
 BoxGrid make_box_grid(const Box& box)
 {
     BoxGrid grid{box.low, {}};
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         auto& exponent = grid.exponent[static_cast<std::size_t>(axis)];
         const double width = (double{box.high[axis]} - box.low[axis]) / last_line;
         exponent = static_cast<std::uint8_t>(std::clamp(width > 0 ? std::ilogb(width) + 127 : 1, 1, 254));
         while (exponent < 254 && line_above(grid, axis, box.high[axis]) > last_line)
-            exponent++;
+            ++exponent;
     }
     return grid;
 }
@@ -56,7 +56,7 @@ BoxGrid make_box_grid(const Box& box)
 GridBox to_grid(const BoxGrid& grid, const Box& box)
 {
     GridBox lines;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<std::size_t>(axis);
         lines.low[i] = static_cast<std::uint8_t>(line_below(grid, axis, box.low[axis]));
         lines.high[i] = static_cast<std::uint8_t>(std::min(last_line, line_above(grid, axis, box.high[axis])));

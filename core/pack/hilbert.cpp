@@ -42,7 +42,7 @@ std::uint64_t hilbert_index(Double3 unit_point)
         axis ^= gray;
 
     std::uint64_t index = 0;
-    for (int bit = bits - 1; bit >= 0; bit--)
+    for (int bit = bits - 1; bit >= 0; --bit)
         for (const auto axis : x)
             index = index << 1 | (axis >> bit & 1u);
     return index;

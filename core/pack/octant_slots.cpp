@@ -18,11 +18,11 @@ std::vector<std::uint8_t> octant_slots(std::span<const Double3> offsets)
     constexpr std::uint32_t sets = 256;
     std::array<double, sets> least = {};
     std::array<std::uint8_t, sets> last_slot = {};
-    for (std::uint32_t taken = 1; taken < sets; taken++) {
+    for (std::uint32_t taken = 1; taken < sets; ++taken) {
         const auto child = static_cast<std::size_t>(std::popcount(taken)) - 1;
         if (child >= offsets.size()) continue;
         least[taken] = std::numeric_limits<double>::infinity();
-        for (std::uint32_t slot = 0; slot < 8; slot++) {
+        for (std::uint32_t slot = 0; slot < 8; ++slot) {
             if ((taken >> slot & 1) == 0) continue;
             const double cost = least[taken & ~(1u << slot)] + slot_cost(offsets[child], slot);
             if (cost < least[taken]) {
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> octant_slots(std::span<const Double3> offsets)
     }
 
     std::uint32_t best = sets;
-    for (std::uint32_t taken = 0; taken < sets; taken++)
+    for (std::uint32_t taken = 0; taken < sets; ++taken)
         if (static_cast<std::size_t>(std::popcount(taken)) == offsets.size() &&
             (best == sets || least[taken] < least[best]))
             best = taken;

@@ -47,14 +47,14 @@ SlottedChildren place_children(const WideNode& node, Double3 node_centre)
         offsets.push_back(centre(child.box) - node_centre);
     const auto slots = octant_slots(offsets);
     SlottedChildren placed = {};
-    for (std::size_t i = 0; i < node.size(); i++)
+    for (std::size_t i = 0; i < node.size(); ++i)
         placed[slots[i]] = &node[i];
     return placed;
 }
 
 void set_grid(CwbvhNode& node, const BoxGrid& grid)
 {
-    for (std::size_t axis = 0; axis < 3; axis++) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         node.words[axis] = std::bit_cast<std::uint32_t>(grid.origin[static_cast<int>(axis)]);
         node.set_byte(CwbvhNode::grid_word, axis, grid.exponent[axis]);
     }
@@ -63,10 +63,10 @@ void set_grid(CwbvhNode& node, const BoxGrid& grid)
 // An empty slot has the box that no ray meets.
 void set_boxes(CwbvhNode& node, const BoxGrid& grid, const SlottedChildren& children)
 {
-    for (std::size_t slot = 0; slot < wide_children; slot++) {
+    for (std::size_t slot = 0; slot < wide_children; ++slot) {
         const GridBox box =
             children[slot] != nullptr ? to_grid(grid, grown_box(*children[slot])) : GridBox{{255, 255, 255}, {0, 0, 0}};
-        for (std::size_t axis = 0; axis < 3; axis++) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
             node.set_byte(CwbvhNode::low + 2 * axis, slot, box.low[axis]);
             node.set_byte(CwbvhNode::high + 2 * axis, slot, box.high[axis]);
         }
@@ -111,11 +111,11 @@ private:
     static std::uint32_t set_inner(CwbvhNode& node, const SlottedChildren& children)
     {
         std::uint32_t inner = 0;
-        for (std::uint32_t slot = 0; slot < wide_children; slot++) {
+        for (std::uint32_t slot = 0; slot < wide_children; ++slot) {
             if (children[slot] == nullptr || children[slot]->count > 0) continue;
             node.words[CwbvhNode::grid_word] |= 1u << (24 + slot);
             node.set_byte(CwbvhNode::meta, slot, 0x20 | (24 + slot));
-            inner++;
+            ++inner;
         }
         return inner;
     }
@@ -124,7 +124,7 @@ private:
     {
         const std::uint32_t first = add_leaf_triangles(packed_, mesh_, {});
         node.words[CwbvhNode::triangle_base] = first;
-        for (std::uint32_t slot = 0; slot < wide_children; slot++) {
+        for (std::uint32_t slot = 0; slot < wide_children; ++slot) {
             if (children[slot] == nullptr || children[slot]->count == 0) continue;
             const auto triangles = triangles_of(*children[slot]);
             const std::uint32_t offset = add_leaf_triangles(packed_, mesh_, triangles) - first;

@@ -59,7 +59,7 @@ std::vector<Camera> orbit(const BoundingSphere& sphere)
 {
     Turning turning(-0x1.798869e0de833p-1, 0x1.59d9dd253cc13p-1); // the golden angle
     std::vector<Camera> cameras;
-    for (std::size_t i = 0; i < lattice_views; i++, turning.advance()) {
+    for (std::size_t i = 0; i < lattice_views; ++i, turning.advance()) {
         const double y = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(lattice_views);
         cameras.push_back(look_at(sphere, turning.at(y), 2.0));
     }
@@ -71,7 +71,7 @@ std::vector<Camera> flight(const BoundingSphere& sphere)
     constexpr double sweeps = 7;                                 // near to far to near
     Turning turning(0x1.fd8ad1927d417p-1, 0x1.90da982df13d1p-4); // 20 turns in 1,282 views
     std::vector<Camera> cameras;
-    for (std::size_t i = 0; i < lattice_views; i++, turning.advance()) {
+    for (std::size_t i = 0; i < lattice_views; ++i, turning.advance()) {
         const double along = static_cast<double>(i) / static_cast<double>(lattice_views - 1);
         const double phase = sweeps * along - std::floor(sweeps * along);
         const double swing = std::abs(2 * phase - 1);

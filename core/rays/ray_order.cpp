@@ -22,7 +22,7 @@ OriginBox box_of_origins(const std::vector<GivenRay>& rays)
 {
     OriginBox box;
     for (const GivenRay& ray : rays)
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             box.low[axis] = std::min(box.low[axis], ray.origin[axis]);
             box.high[axis] = std::max(box.high[axis], ray.origin[axis]);
         }
@@ -49,7 +49,7 @@ std::uint64_t morton_key(const GivenRay& ray, const OriginBox& box)
 {
     const Double3 direction = normalized(to_double(ray.direction));
     std::uint32_t at[3], towards[3];
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const double low = static_cast<double>(box.low[axis]), high = static_cast<double>(box.high[axis]);
         const double along = static_cast<double>(ray.origin[axis]) - low;
         at[axis] = cell_of(high > low ? along / (high - low) : 0.0, origin_bits);
@@ -71,7 +71,7 @@ std::vector<std::uint64_t> morton_keys(const RaySet& set)
 std::vector<std::uint64_t> random_keys(const RaySet& set)
 {
     std::vector<std::uint64_t> keys;
-    for (std::uint32_t i = 0; i < set.rays.size(); i++) {
+    for (std::uint32_t i = 0; i < set.rays.size(); ++i) {
         const RandomWords words = random_words({set.view, i, static_cast<std::uint32_t>(set.kind), 0}, shuffle_stream);
         keys.push_back(std::uint64_t{words[0]} << 32 | words[1]);
     }

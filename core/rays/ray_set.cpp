@@ -108,7 +108,7 @@ std::optional<GivenRay> leaving(const RayStart& start, Float3 direction, float e
 std::optional<GivenRay> cosine_given(RayKind kind, const RaySource& source, const RayStart& start, float end,
                                      std::uint32_t triangle, std::uint32_t pixel)
 {
-    for (std::uint32_t draw = 0; draw < most_draws; draw++) {
+    for (std::uint32_t draw = 0; draw < most_draws; ++draw) {
         const Double3 sum = start.inward + random_direction({stream_of(kind), source.view_number, pixel, draw});
         if (length(sum) < 0x1p-10) continue; // its direction would be rounding's
         if (const auto ray = leaving(start, clean_direction(normalized(sum)), end, triangle, pixel)) return ray;
@@ -165,8 +165,8 @@ std::vector<std::uint32_t> pixels_by_tile(std::uint32_t width, std::uint32_t hei
     pixels.reserve(std::size_t{width} * height);
     for (std::uint32_t y0 = 0; y0 < height; y0 += image_tile)
         for (std::uint32_t x0 = 0; x0 < width; x0 += image_tile)
-            for (std::uint32_t y = y0; y < std::min(y0 + image_tile, height); y++)
-                for (std::uint32_t x = x0; x < std::min(x0 + image_tile, width); x++)
+            for (std::uint32_t y = y0; y < std::min(y0 + image_tile, height); ++y)
+                for (std::uint32_t x = x0; x < std::min(x0 + image_tile, width); ++x)
                     pixels.push_back(y * width + x);
     return pixels;
 }
@@ -176,7 +176,7 @@ std::vector<std::uint32_t> pixels_by_tile(std::uint32_t width, std::uint32_t hei
 std::vector<std::uint32_t> inverse_of(std::span<const std::uint32_t> packed_of_mesh)
 {
     std::vector<std::uint32_t> mesh_of_packed(packed_of_mesh.size());
-    for (std::uint32_t tet = 0; tet < packed_of_mesh.size(); tet++)
+    for (std::uint32_t tet = 0; tet < packed_of_mesh.size(); ++tet)
         mesh_of_packed.at(packed_of_mesh[tet]) = tet;
     return mesh_of_packed;
 }
@@ -207,10 +207,10 @@ Float3 light_of(const Domain& domain, Float3 camera)
     const Double3 away = to_double(camera) - centre;
     const double offset[3] = {away.x, away.y, away.z};
     int least = 0;
-    for (int axis = 1; axis < 3; axis++)
+    for (int axis = 1; axis < 3; ++axis)
         if (std::abs(offset[axis]) < std::abs(offset[least])) least = axis;
     Float3 corner;
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         corner[axis] = (offset[axis] < 0) == (axis == least) ? high[axis] : low[axis];
     return snap_to_grid(to_float(to_double(corner) + (centre - to_double(corner)) * 0x1p-7));
 }

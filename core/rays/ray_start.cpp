@@ -17,7 +17,7 @@ using FaceCorners = std::array<Double3, 3>;
 FaceCorners corners_of_face(const TetMesh& mesh, std::uint32_t tet, std::uint32_t face)
 {
     FaceCorners corners;
-    for (std::size_t i = 0; i < 3; i++)
+    for (std::size_t i = 0; i < 3; ++i)
         corners[i] = to_double(mesh.vertices[mesh.tets[tet].vertices[face_corners[face][i]]]);
     return corners;
 }
@@ -31,7 +31,7 @@ Double3 normal_of(const FaceCorners& corners)
 double depth_in(const FaceCorners& corners, Double3 normal, Double3 point)
 {
     double least = HUGE_VAL;
-    for (std::size_t i = 0; i < 3; i++) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const Double3 inwards = cross(normal, normalized(corners[(i + 1) % 3] - corners[i]));
         least = std::min(least, dot(inwards, point - corners[i]));
     }
@@ -78,7 +78,7 @@ RayStart ray_start(const Scene& scene, const Hit& hit)
     const Tet& tet = scene.tets.tets.at(hit.tet);
     RayStart start{{}, NO_LINK, {}, {}};
     double most = -HUGE_VAL;
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         if (tet.faces[face] != hit.face_id) continue; // a triangle has two pieces in a tet where one is nearly flat
         const FaceCorners corners = corners_of_face(scene.tets, hit.tet, face);
         const Double3 inward = normal_of(corners);
@@ -109,7 +109,7 @@ std::uint32_t face_behind(const TetMesh& mesh, std::uint32_t tet, Float3 origin,
     const Double3 along = to_double(direction);
     std::uint32_t best = 0;
     double most = -HUGE_VAL;
-    for (std::uint32_t face = 0; face < 4; face++) {
+    for (std::uint32_t face = 0; face < 4; ++face) {
         const FaceCorners corners = corners_of_face(mesh, tet, face);
         const Double3 inward = normal_of(corners);
         const double rise = dot(inward, along);

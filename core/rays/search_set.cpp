@@ -70,9 +70,9 @@ std::int64_t random_coordinate(std::uint32_t word)
 
 Corners tet_of(std::uint32_t number)
 {
-    for (std::uint32_t attempt = 0;; attempt++) {
+    for (std::uint32_t attempt = 0;; ++attempt) {
         Corners corners;
-        for (std::uint32_t i = 0; i < 4; i++) {
+        for (std::uint32_t i = 0; i < 4; ++i) {
             const RandomWords words = random_words(number, no_ray, attempt, i);
             corners[i] = {random_coordinate(words[0]), random_coordinate(words[1]), random_coordinate(words[2])};
         }
@@ -113,12 +113,12 @@ std::uint8_t exits_of(const Corners& corners, std::uint32_t entry, const IntRay&
     const auto& face = face_corners[entry];
     const Int3 apex = corners[entry];
     std::array<std::int64_t, 3> at_apex;
-    for (std::size_t i = 0; i < 3; i++) {
+    for (std::size_t i = 0; i < 3; ++i) {
         if (side(ray, corners[face[i]], corners[face[(i + 1) % 3]]) <= 0) return 0;
         at_apex[i] = side(ray, corners[face[i]], apex);
     }
     unsigned exits = 0;
-    for (std::size_t i = 0; i < 3; i++)
+    for (std::size_t i = 0; i < 3; ++i)
         if (at_apex[i] <= 0 && at_apex[(i + 1) % 3] >= 0) exits |= 1u << face[(i + 2) % 3];
     return static_cast<std::uint8_t>(exits);
 }
@@ -131,7 +131,7 @@ struct StabbingRay {
 
 StabbingRay ray_of(const Corners& corners, std::uint32_t tet, std::uint32_t number)
 {
-    for (std::uint32_t attempt = 0;; attempt++) {
+    for (std::uint32_t attempt = 0;; ++attempt) {
         const RandomWords words = random_words(tet, number, attempt, 0);
         const std::uint32_t entry = words[2] & 3u;
         const std::uint32_t other = (entry + 1 + (words[2] >> 2 & 0xFFFF) % 3) & 3u;
@@ -203,9 +203,9 @@ SearchRays search_rays(std::uint32_t first_tet, std::uint32_t tets, std::uint32_
     rays.quads.resize(RAY_QUADS * count);
     rays.exits.resize(count);
     std::size_t i = 0;
-    for (std::uint32_t tet = first_tet; tet < first_tet + tets; tet++) {
+    for (std::uint32_t tet = first_tet; tet < first_tet + tets; ++tet) {
         const Corners corners = tet_of(tet);
-        for (std::uint32_t number = 0; number < rays_per_tet; number++, i++) {
+        for (std::uint32_t number = 0; number < rays_per_tet; ++number, ++i) {
             const StabbingRay stab = ray_of(corners, tet, number);
             const Float3 origin = to_float(stab.ray.origin), direction = to_float(stab.ray.direction);
             rays.quads[i] = quad_of(direction, make_link(tet, stab.entry));
@@ -226,7 +226,7 @@ SearchVerdict judge(const SearchRays& rays, std::size_t number, std::uint32_t fa
     const IntRay ray = {to_int(rays.quads[rays.count() + number]), to_int(rays.quads[number])};
     const double bound = tie_bound(to_float(ray.origin));
     const Corners corners = tet_of(link_tet(link));
-    for (std::size_t i = 0; i < 3; i++) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const Int3 from = corners[face_corners[face][i]], to = corners[face_corners[face][(i + 1) % 3]];
         if (side(ray, from, to) > 0 && distance_of_lines(ray, from, to) > bound) return SearchVerdict::wrong;
     }

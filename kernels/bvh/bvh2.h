@@ -53,11 +53,11 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
             if (at < behind) {
                 do {
                     nearest = nearer_triangle(scene, frame, nearest, at);
-                    at++;
+                    ++at;
                 } while (at < behind);
             }
             do {
-                waiting--;
+                --waiting;
             } while (depths[waiting] > with_slack(nearest.depth));
             child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : stack[waiting];
         }

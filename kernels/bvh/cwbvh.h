@@ -90,7 +90,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
         if (hits > 0x00FFFFFFu) {
             stack_base[waiting] = base;
             stack_hits[waiting] = hits;
-            waiting++;
+            ++waiting;
         }
         COUNT_NODE();
         uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node);
@@ -108,7 +108,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
         base = r1.x;
         hits = (node_hits & CWBVH_INNER_HITS) | r0.w >> 24u;
         if (hits <= 0x00FFFFFFu && waiting != 0u) {
-            waiting--;
+            --waiting;
             base = stack_base[waiting];
             hits = stack_hits[waiting];
         }

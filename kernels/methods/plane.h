@@ -66,7 +66,7 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 KERNEL_FN uint start_face(SceneView scene, uint tet, Ray ray)
 {
     Crossing nearest = no_crossing();
-    for (uint face = 0u; face < 4u; face++) {
+    for (uint face = 0u; face < 4u; ++face) {
         Vec3 c0 = vertex(scene, tet, corner(face, 0u));
         Vec3 a = sub3(vertex(scene, tet, corner(face, 2u)), c0);
         Vec3 b = sub3(vertex(scene, tet, corner(face, 1u)), c0);

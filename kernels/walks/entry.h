@@ -107,7 +107,7 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
     uint n = scene.divisions;
     DomainBox box = domain_box(scene);
     uint across = 3u;
-    for (uint axis = 0u; axis < 3u; axis++)
+    for (uint axis = 0u; axis < 3u; ++axis)
         across = enters_across(box, ray, axis) ? axis : across;
     if (across == 3u) return 6u * n * n;
     SideCrossing a = side_crossing(box, ray, across, first_axis(across));

@@ -9,7 +9,7 @@ KERNEL_FN uint entry_index(SceneView scene, Ray ray)
     uint last = FETCH(scene, entry_ranges, square + 1u);
     uint best = FETCH(scene, entry_ranges, square);
     real depth = depth_in(entry_face(scene, best), ray);
-    for (uint index = best + 1u; index < last && depth < real(0.0f); index++) {
+    for (uint index = best + 1u; index < last && depth < real(0.0f); ++index) {
         real candidate = depth_in(entry_face(scene, index), ray);
         best = candidate > depth ? index : best;
         depth = candidate > depth ? candidate : depth;

@@ -15,7 +15,7 @@ KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
     uint in_square = last - first;
     uint faces = in_square + FETCH(scene, entry_ranges, 6u * scene.divisions * scene.divisions);
     uint found = NO_ENTRY;
-    for (uint i = 0u; i < faces && found == NO_ENTRY; i++) {
+    for (uint i = 0u; i < faces && found == NO_ENTRY; ++i) {
         uint index = i < in_square ? first + i : i - in_square;
         found = depth_in(entry_face(scene, index), ray) < real(0.0f) ? NO_ENTRY : index;
     }
@@ -33,7 +33,7 @@ KERNEL_FN uint entry_index(SceneView scene, Ray ray)
     uint last = FETCH(scene, entry_ranges, square + 1u);
     Shear shear = shear_of(ray);
     uint found = NO_ENTRY;
-    for (uint index = first;; index++) {
+    for (uint index = first;; ++index) {
         EntryFace face = entry_face(scene, index);
         uint held = roughly_held(ray, shear, face.a, face.b, face.c);
         if (held == HELD) {

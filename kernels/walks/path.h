@@ -21,7 +21,7 @@ KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint sta
     bool ahead = false;
     bool to_end = start != FREE_FACE || lost != NO_LINK;
     bool is_on_path = false;
-    for (uint steps = 0u; (!ahead || to_end) && link != NO_LINK && steps < params.max_steps; steps++) {
+    for (uint steps = 0u; (!ahead || to_end) && link != NO_LINK && steps < params.max_steps; ++steps) {
         uint tet = link >> 2u;
         uint face = exit_face(scene, tet, link & 3u, ray);
         bool on_start = start != FREE_FACE && face_triangle(scene, tet, face) == start;

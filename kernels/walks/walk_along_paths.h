@@ -26,7 +26,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
                 face = rough_exit_face(scene, tet, link & 3u, ray);
                 link = link_beyond(scene, tet, face);
                 triangle = face_triangle(scene, tet, face & 3u);
-                steps++;
+                ++steps;
             }
             if (face < TIE_AT) break;
             face = exit_face(scene, tet, face & 3u, ray);

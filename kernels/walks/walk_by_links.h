@@ -18,7 +18,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
         face = exit_face(scene, tet, link & 3u, ray);
         link = link_beyond(scene, tet, face);
         triangle = face_triangle(scene, tet, face & 3u);
-        steps++;
+        ++steps;
     }
     if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
     return hit_at_end(scene, params, ray, tet, face, steps, end);

@@ -136,7 +136,7 @@ KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear sh
     Gate found = gate;
     bool done = entry == NO_ENTRY;
     bool ahead = false;
-    for (uint steps = 0u; !done && steps < params.max_steps; steps++) {
+    for (uint steps = 0u; !done && steps < params.max_steps; ++steps) {
         gate = next_gate(scene, ray, shear, opened(scene, gate));
         if (!ahead) found = gate;
         ahead = ahead || is_gate_ahead(scene, ray, gate);
@@ -165,12 +165,12 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
                     uint replaced = roughly_replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, apex.seen);
                     if (replaced == UNDECIDED) break;
                     gate = gate_beyond(scene, gate, tet, vertex, apex, replaced);
-                    steps++;
+                    ++steps;
                     if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
                 }
                 if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
                 gate = next_gate(scene, ray, shear, gate);
-                steps++;
+                ++steps;
                 if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
             }
         }

@@ -49,7 +49,7 @@ void place_in_domain(Scene& scene, const BuilderOptions& options, const BuilderT
     }
     scene.domain = make_domain(scene.mesh, options.domain, options.divisions);
     const Float3 low = scene.domain.low(), high = scene.domain.high();
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         if (low[axis] < -1 || high[axis] > 1)
             throw Error(ErrorKind::internal,
                         "placing the mesh: its domain does not fit [-1, 1]^3; please report this mesh");

@@ -25,7 +25,7 @@ std::uint64_t merge_vertices(TriangleMesh& mesh)
     std::unordered_map<Triple, std::uint32_t, TripleHash> first;
     std::vector<std::uint32_t> merged(mesh.vertices.size());
     first.reserve(mesh.vertices.size());
-    for (std::uint32_t i = 0; i < mesh.vertices.size(); i++) {
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
         Float3& v = mesh.vertices[i];
         v = {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f}; // -0 becomes 0
         merged[i] = first.try_emplace(bits_of(v), i).first->second;
@@ -72,7 +72,7 @@ std::uint64_t remove_unused(TriangleMesh& mesh)
         for (const std::uint32_t vertex : triangle)
             place[vertex] = 0;
     std::uint32_t kept = 0;
-    for (std::size_t i = 0; i < place.size(); i++) {
+    for (std::size_t i = 0; i < place.size(); ++i) {
         if (place[i] == unused) continue;
         mesh.vertices[kept] = mesh.vertices[i];
         place[i] = kept++;

@@ -36,7 +36,7 @@ Triple sorted(Triple corners)
 Triple face_of(const std::array<std::int32_t, 4>& tet, std::size_t face)
 {
     Triple corners{};
-    for (std::size_t i = 0, n = 0; i < 4; i++)
+    for (std::size_t i = 0, n = 0; i < 4; ++i)
         if (i != face) corners[n++] = tet[i];
     return sorted(corners);
 }
@@ -51,8 +51,8 @@ void require_indices(const TetgenOutput& output)
         for (const std::int32_t corner : face.corners)
             if (corner < 0 || corner >= points)
                 absurd(fmt::format("a face of triangle {} names a vertex that is not there", face.triangle));
-    for (std::size_t i = 0; i < output.tets.size(); i++)
-        for (std::size_t k = 0; k < 4; k++)
+    for (std::size_t i = 0; i < output.tets.size(); ++i)
+        for (std::size_t k = 0; k < 4; ++k)
             if (output.tets[i][k] < 0 || output.tets[i][k] >= points || output.neighbours[i][k] < -1 ||
                 output.neighbours[i][k] >= tets)
                 absurd(fmt::format("tet {} names a vertex or a neighbour that is not there", i));
@@ -63,7 +63,7 @@ std::uint32_t link_across(const TetgenOutput& output, std::size_t tet, std::size
     const std::int32_t neighbour = output.neighbours[tet][face];
     if (neighbour < 0) return NO_LINK;
     const auto other = static_cast<std::size_t>(neighbour);
-    for (std::uint32_t i = 0; i < 4; i++)
+    for (std::uint32_t i = 0; i < 4; ++i)
         if (output.neighbours[other][i] == static_cast<std::int32_t>(tet) &&
             face_of(output.tets[other], i) == face_of(output.tets[tet], face))
             return make_link(static_cast<std::uint32_t>(neighbour), i);
@@ -74,9 +74,9 @@ std::uint32_t link_across(const TetgenOutput& output, std::size_t tet, std::size
 std::vector<Tet> connect(const TetgenOutput& output)
 {
     std::vector<Tet> tets(output.tets.size());
-    for (std::size_t i = 0; i < tets.size(); i++) {
+    for (std::size_t i = 0; i < tets.size(); ++i) {
         tets[i].faces.fill(FREE_FACE);
-        for (std::size_t k = 0; k < 4; k++) {
+        for (std::size_t k = 0; k < 4; ++k) {
             tets[i].vertices[k] = static_cast<std::uint32_t>(output.tets[i][k]);
             tets[i].links[k] = link_across(output, i, k);
         }
@@ -91,12 +91,12 @@ void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
     for (const auto& face : output.surface_faces)
         if (face.triangle >= 0) triangles.emplace(sorted(face.corners), face.triangle);
     std::uint64_t sides = 0;
-    for (std::size_t i = 0; i < tets.size(); i++) {
-        for (std::size_t k = 0; k < 4; k++) {
+    for (std::size_t i = 0; i < tets.size(); ++i) {
+        for (std::size_t k = 0; k < 4; ++k) {
             const auto found = triangles.find(face_of(output.tets[i], k));
             if (found == triangles.end()) continue;
             tets[i].faces[k] = static_cast<std::uint32_t>(found->second);
-            sides++;
+            ++sides;
         }
     }
     if (sides != 2 * triangles.size())
@@ -123,7 +123,7 @@ void require_coverage(const TetgenOutput& output, const TriangleMesh& triangles)
         const double wanted =
             area(output, {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
         if (covered[i] > 0 && std::abs(covered[i] - wanted) <= 1e-6 * wanted + 1e-15) continue;
-        count++;
+        ++count;
         first = i;
     }
     if (count > 0)
@@ -156,11 +156,11 @@ public:
     {
         for (const Double3 point : output.points)
             rounded.push_back(snap_to_grid(to_float(point)));
-        for (std::size_t i = output.input_points; i < rounded.size(); i++)
+        for (std::size_t i = output.input_points; i < rounded.size(); ++i)
             freedom[i] = {{true, true, true}, interior_steps};
         for (const Tet& tet : tets)
-            for (std::size_t face = 0; face < 4; face++)
-                for (std::size_t corner = 0; corner < 4; corner++)
+            for (std::size_t face = 0; face < 4; ++face)
+                for (std::size_t corner = 0; corner < 4; ++corner)
                     if (corner != face) restrict_vertex(domain, tet, face, tet.vertices[corner]);
     }
 
@@ -173,7 +173,7 @@ private:
         if (freedom[vertex].steps == 0) return;
         if (tet.faces[face] != FREE_FACE) freedom[vertex].steps = surface_steps;
         if (tet.links[face] != NO_LINK) return;
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             for (const float plane : {domain.low()[axis], domain.high()[axis]})
                 hold_on_side(vertex, axis, plane);
     }
@@ -194,7 +194,7 @@ void drop_unused(TetMesh& mesh)
         for (const std::uint32_t vertex : tet.vertices)
             place[vertex] = 1;
     std::uint32_t kept = 0;
-    for (std::size_t i = 0; i < place.size(); i++) {
+    for (std::size_t i = 0; i < place.size(); ++i) {
         if (place[i] == 0) continue;
         mesh.vertices[kept] = mesh.vertices[i];
         place[i] = kept++;

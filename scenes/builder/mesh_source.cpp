@@ -30,7 +30,7 @@ void MeshSource::require_room(const std::string& elements, std::int64_t count, s
 
 void MeshSource::add_vertex(Float3 position, const std::string& place)
 {
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const float value = position[axis];
         if (std::isfinite(value)) continue;
         fail(place,
@@ -49,9 +49,9 @@ void MeshSource::add_face(const std::vector<std::int64_t>& corners, std::size_t 
         if (corner < 0 || static_cast<std::uint64_t>(corner) >= vertex_count)
             fail(place, fmt::format("vertex index {} is out of range (the mesh has {} vertices, counted from 0)",
                                     corner, vertex_count));
-    if (corners.size() < 3) soup_.skipped_faces++;
+    if (corners.size() < 3) ++soup_.skipped_faces;
     const auto index = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
-    for (std::size_t i = 2; i < corners.size(); i++)
+    for (std::size_t i = 2; i < corners.size(); ++i)
         soup_.mesh.triangles.push_back({index(0), index(i - 1), index(i)});
 }
 
@@ -62,7 +62,7 @@ bool LineReader::next_raw(std::string_view& line)
     line = text_.substr(at_, end - at_);
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     at_ = std::min(end + 1, text_.size());
-    line_++;
+    ++line_;
     return true;
 }
 
@@ -132,7 +132,7 @@ Float3 parse_position(const MeshSource& source, const std::vector<std::string_vi
                       const std::string& place)
 {
     Float3 position;
-    for (std::size_t axis = 0; axis < 3; axis++) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
         if (words.size() <= first + axis) source.fail(place, "fewer than three coordinates");
         const auto value = parse_float(words[first + axis]);
         if (!value) source.fail(place, fmt::format("'{:.40}' is not a number", words[first + axis]));

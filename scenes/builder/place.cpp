@@ -13,10 +13,10 @@ TriangleMesh scaled(const TriangleMesh& mesh, int exponent, std::uint64_t& snapp
     TriangleMesh result = mesh;
     snapped = 0;
     for (Float3& vertex : result.vertices) {
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             const double wanted = std::ldexp(static_cast<double>(vertex[axis]), exponent);
             vertex[axis] = snap_to_grid(static_cast<float>(wanted));
-            if (static_cast<double>(vertex[axis]) != wanted) snapped++;
+            if (static_cast<double>(vertex[axis]) != wanted) ++snapped;
         }
     }
     return result;
@@ -25,7 +25,7 @@ TriangleMesh scaled(const TriangleMesh& mesh, int exponent, std::uint64_t& snapp
 float reach(const Domain& domain)
 {
     float most = 0;
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         most = std::max({most, -domain.low()[axis], domain.high()[axis]});
     return most;
 }

@@ -64,7 +64,7 @@ void read_obj(MeshSource& source)
         } else if (words.front() == "f" || words.front() == "fo") {
             Face face{{}, lines.place(fmt::format("face {}", faces.size() + 1))};
             if (words.size() < 4) source.fail(face.place, "it has fewer than three corners");
-            for (std::size_t i = 1; i < words.size(); i++)
+            for (std::size_t i = 1; i < words.size(); ++i)
                 face.corners.push_back(parse_corner(source, words[i], vertices.size(), face.place));
             faces.push_back(std::move(face));
         } else if (std::find(ignored_keywords.begin(), ignored_keywords.end(), words.front()) ==

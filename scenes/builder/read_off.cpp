@@ -48,7 +48,7 @@ std::vector<std::int64_t> read_corners(MeshSource& source, LineReader& lines, Wo
         const auto corner = parse_integer(words[word]);
         if (!corner) source.fail(lines.place(face), fmt::format("'{:.40}' is not a vertex index", words[word]));
         corners.push_back(*corner);
-        word++;
+        ++word;
     }
     return corners;
 }
@@ -65,13 +65,13 @@ void read_off(MeshSource& source)
     source.require_room("vertices", vertex_count, 6);
     source.require_room("faces", face_count, 2);
 
-    for (std::int64_t i = 0; i < vertex_count; i++) {
+    for (std::int64_t i = 0; i < vertex_count; ++i) {
         const auto vertex = fmt::format("vertex {}", i);
         if (!lines.next(words))
             source.fail(lines.place(vertex), fmt::format("the file ends before it; {} announced", vertex_count));
         source.add_vertex(parse_position(source, words, 0, lines.place(vertex)), lines.place(vertex));
     }
-    for (std::int64_t i = 0; i < face_count; i++) {
+    for (std::int64_t i = 0; i < face_count; ++i) {
         const auto face = fmt::format("face {}", i);
         if (!lines.next(words))
             source.fail(lines.place(face), fmt::format("the file ends before it; {} announced", face_count));

@@ -48,7 +48,7 @@ Scalar parse_type(const MeshSource& source, std::string_view word, const std::st
                                                            "int",  "uint",  "float", "double"};
     constexpr std::array<std::string_view, 8> new_names = {"int8",  "uint8",  "int16",   "uint16",
                                                            "int32", "uint32", "float32", "float64"};
-    for (std::size_t i = 0; i < old_names.size(); i++)
+    for (std::size_t i = 0; i < old_names.size(); ++i)
         if (word == old_names[i] || word == new_names[i]) return static_cast<Scalar>(i);
     source.fail(place, fmt::format("'{:.40}' is no type of PLY", word));
 }
@@ -175,7 +175,7 @@ private:
         const std::size_t size = size_of(type);
         if (source_.bytes().size() - at_ < size) source_.fail(place(), "the file ends inside it");
         std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < size; i++) {
+        for (std::size_t i = 0; i < size; ++i) {
             const auto byte =
                 static_cast<unsigned char>(source_.bytes()[at_ + (encoding_ == Encoding::little ? size - 1 - i : i)]);
             bits = bits << 8 | byte;
@@ -207,7 +207,7 @@ private:
 void skip_property(ValueReader& values, const Property& property)
 {
     const std::int64_t count = property.list_size ? values.list_length(property) : 1;
-    for (std::int64_t i = 0; i < count; i++)
+    for (std::int64_t i = 0; i < count; ++i)
         values.skip(property.type);
 }
 
@@ -236,7 +236,7 @@ void read_face(MeshSource& source, ValueReader& values, const Element& element, 
             continue;
         }
         const std::int64_t count = values.list_length(property);
-        for (std::int64_t i = 0; i < count; i++)
+        for (std::int64_t i = 0; i < count; ++i)
             corners.push_back(values.integer(property.type));
     }
     source.add_face(corners, vertex_count, values.place());
@@ -277,7 +277,7 @@ void read_ply(MeshSource& source)
     }
     ValueReader values(source, header, lines);
     for (const Element& element : header.elements) {
-        for (std::int64_t i = 0; i < element.count; i++) {
+        for (std::int64_t i = 0; i < element.count; ++i) {
             values.begin_element(fmt::format("{} {}", element.name, i));
             if (element.name == "vertex")
                 read_vertex(source, values, element);

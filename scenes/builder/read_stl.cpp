@@ -13,7 +13,7 @@ constexpr std::size_t facet_bytes = 50;
 std::uint32_t little_endian_word(std::string_view bytes, std::size_t at)
 {
     std::uint32_t word = 0;
-    for (std::size_t i = 0; i < 4; i++)
+    for (std::size_t i = 0; i < 4; ++i)
         word |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
     return word;
 }
@@ -36,8 +36,8 @@ void read_binary(MeshSource& source)
 {
     const std::string_view bytes = source.bytes();
     const std::size_t facets = (bytes.size() - header_bytes) / facet_bytes;
-    for (std::size_t facet = 0; facet < facets; facet++) {
-        for (std::size_t corner = 0; corner < 3; corner++) {
+    for (std::size_t facet = 0; facet < facets; ++facet) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::size_t at =
                 header_bytes + facet * facet_bytes + 12 * (corner + 1); // the first 12 bytes are the normal
             const auto place = fmt::format("facet {}, vertex {}", facet, corner);
@@ -73,14 +73,14 @@ void read_ascii(MeshSource& source)
         inside = keyword != "endsolid";
         if (keyword != "facet") continue;
         expect_line(source, lines, words, "outer", facet);
-        for (int corner = 0; corner < 3; corner++) {
+        for (int corner = 0; corner < 3; ++corner) {
             expect_line(source, lines, words, "vertex", facet);
             source.add_vertex(parse_position(source, words, 1, lines.place(facet)), lines.place(facet));
         }
         expect_line(source, lines, words, "endloop", facet);
         expect_line(source, lines, words, "endfacet", facet);
         add_last_three(source);
-        facets++;
+        ++facets;
     }
     if (inside) source.fail(lines.place("end"), "the file ends before 'endsolid'");
 }

@@ -25,7 +25,7 @@ constexpr const char* our_switches = "znJQ";
 void add_points(tetgenio& input, const std::vector<Float3>& vertices, int& next)
 {
     for (const Float3 vertex : vertices)
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             input.pointlist[next++] = static_cast<double>(vertex[axis]);
 }
 
@@ -40,7 +40,7 @@ void add_facet(tetgenio& input, int index, const std::array<std::uint32_t, 3>& t
     tetgenio::init(facet.polygonlist);
     facet.polygonlist->numberofvertices = 3;
     facet.polygonlist->vertexlist = new int[3];
-    for (std::size_t i = 0; i < 3; i++)
+    for (std::size_t i = 0; i < 3; ++i)
         facet.polygonlist->vertexlist[i] = static_cast<int>(first_vertex + triangle[i]);
     input.facetmarkerlist[index] = marker;
 }
@@ -59,7 +59,7 @@ void fill(tetgenio& input, const TriangleMesh& mesh, const TriangleMesh& surface
     int facet = 0;
     for (const auto& triangle : mesh.triangles) {
         add_facet(input, facet, triangle, 0, facet + 1);
-        facet++;
+        ++facet;
     }
     // Unlike markers on the domain's sides too: each square stays two triangles unless TetGen must split it.
     int marker = domain_marker;
@@ -81,11 +81,11 @@ std::vector<std::array<std::int32_t, size>> rows(const int* from, int count)
 std::uint64_t count_flat(tetgenio& output)
 {
     std::uint64_t flat = 0;
-    for (int i = 0; i < output.numberoftetrahedra; i++) {
+    for (int i = 0; i < output.numberoftetrahedra; ++i) {
         double* corner[4];
-        for (int k = 0; k < 4; k++)
+        for (int k = 0; k < 4; ++k)
             corner[k] = output.pointlist + 3 * output.tetrahedronlist[4 * i + k];
-        if (orient3d(corner[0], corner[1], corner[2], corner[3]) >= 0) flat++;
+        if (orient3d(corner[0], corner[1], corner[2], corner[3]) >= 0) ++flat;
     }
     return flat;
 }
@@ -94,12 +94,12 @@ TetgenOutput take(tetgenio& output, std::size_t input_points)
 {
     TetgenOutput result;
     result.input_points = input_points;
-    for (int i = 0; i < output.numberofpoints; i++)
+    for (int i = 0; i < output.numberofpoints; ++i)
         result.points.push_back({output.pointlist[3 * i], output.pointlist[3 * i + 1], output.pointlist[3 * i + 2]});
     result.tets = rows<4>(output.tetrahedronlist, output.numberoftetrahedra);
     result.neighbours = rows<4>(output.neighborlist, output.numberoftetrahedra);
     const auto corners = rows<3>(output.trifacelist, output.numberoftrifaces);
-    for (std::size_t i = 0; i < corners.size(); i++) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
         const int marker = output.trifacemarkerlist[i];
         result.surface_faces.push_back({corners[i], marker > 0 ? marker - 1 : domain_marker});
     }

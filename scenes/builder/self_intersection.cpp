@@ -59,7 +59,7 @@ public:
     {
         std::vector<Box> boxes;
         boxes.reserve(mesh_.triangles.size());
-        for (std::uint32_t i = 0; i < mesh_.triangles.size(); i++)
+        for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
             boxes.emplace_back(triangle(mesh_.triangles[i]).bbox(), i);
         return boxes;
     }
@@ -101,7 +101,7 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t 
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
         const auto [low, high] = std::minmax({a.info(), b.info()});
         if (!test.meet_elsewhere(low, high)) return;
-        found.count++;
+        ++found.count;
         const std::pair<std::uint32_t, std::uint32_t> pair{low, high};
         found.first.insert(std::upper_bound(found.first.begin(), found.first.end(), pair), pair);
         if (found.first.size() > listed) found.first.pop_back();

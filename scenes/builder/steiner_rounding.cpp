@@ -25,10 +25,10 @@ public:
         for (const Tet& tet : mesh.tets)
             for (const std::uint32_t vertex : tet.vertices)
                 ranges_[vertex + 1]++;
-        for (std::size_t i = 1; i < ranges_.size(); i++)
+        for (std::size_t i = 1; i < ranges_.size(); ++i)
             ranges_[i] += ranges_[i - 1];
         auto next = ranges_;
-        for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
+        for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
             for (const std::uint32_t vertex : mesh.tets[i].vertices)
                 tets_[next[vertex]++] = i;
     }
@@ -36,7 +36,7 @@ public:
     [[nodiscard]] std::size_t count_bad(const TetMesh& mesh, std::uint32_t vertex, std::size_t limit)
     {
         std::size_t bad = 0;
-        for (auto i = ranges_[vertex]; i < ranges_[vertex + 1] && bad < limit; i++) {
+        for (auto i = ranges_[vertex]; i < ranges_[vertex + 1] && bad < limit; ++i) {
             bad += is_bad(mesh, mesh.tets[tets_[i]]) ? 1 : 0;
             budget_ -= budget_ > 0 ? 1 : 0;
         }
@@ -54,7 +54,7 @@ private:
 std::vector<std::array<int, 3>> directions()
 {
     std::vector<std::array<int, 3>> result;
-    for (int i = 0; i < 27; i++)
+    for (int i = 0; i < 27; ++i)
         if (i != 13) result.push_back({i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1});
     const auto axes = [](const std::array<int, 3>& d) { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; };
     std::stable_sort(result.begin(), result.end(), [&](const auto& a, const auto& b) { return axes(a) < axes(b); });
@@ -63,7 +63,7 @@ std::vector<std::array<int, 3>> directions()
 
 bool allowed(const Freedom& freedom, const std::array<int, 3>& direction)
 {
-    for (std::size_t axis = 0; axis < 3; axis++)
+    for (std::size_t axis = 0; axis < 3; ++axis)
         if (direction[axis] != 0 && !freedom.axes[axis]) return false;
     return true;
 }
@@ -76,7 +76,7 @@ bool move_vertex(TetMesh& mesh, Stars& stars, std::uint32_t vertex, const Freedo
     for (std::uint32_t steps = 1; steps <= freedom.steps && !stars.exhausted(); steps *= 2) {
         for (const auto& direction : all_directions) {
             if (!allowed(freedom, direction)) continue;
-            for (int axis = 0; axis < 3; axis++)
+            for (int axis = 0; axis < 3; ++axis)
                 mesh.vertices[vertex][axis] =
                     snap_to_grid(home[axis] + static_cast<float>(direction[static_cast<std::size_t>(axis)]) *
                                                   static_cast<float>(steps) * step_size);
@@ -90,7 +90,7 @@ bool move_vertex(TetMesh& mesh, Stars& stars, std::uint32_t vertex, const Freedo
 std::vector<std::uint32_t> bad_tets(const TetMesh& mesh)
 {
     std::vector<std::uint32_t> bad;
-    for (std::uint32_t i = 0; i < mesh.tets.size(); i++)
+    for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
         if (is_bad(mesh, mesh.tets[i])) bad.push_back(i);
     return bad;
 }
@@ -105,13 +105,13 @@ std::array<std::uint64_t, 3> mend_tets(TetMesh& mesh, const std::vector<Freedom>
     std::uint64_t moved = 0;
     if (bad.empty()) return {0, 0, 0};
     Stars stars(mesh);
-    for (int pass = 0; pass < most_passes && !bad.empty(); pass++) {
+    for (int pass = 0; pass < most_passes && !bad.empty(); ++pass) {
         const std::uint64_t moved_before = moved;
         for (const std::uint32_t tet : bad)
             for (const std::uint32_t vertex : mesh.tets[tet].vertices)
                 if (freedom[vertex].steps > 0 && is_bad(mesh, mesh.tets[tet]) &&
                     move_vertex(mesh, stars, vertex, freedom[vertex]))
-                    moved++;
+                    ++moved;
         bad = bad_tets(mesh);
         if (moved == moved_before) break;
     }

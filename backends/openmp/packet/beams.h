@@ -41,7 +41,7 @@ LANE_FN Eye eye_of(const PacketJob& job)
     Eye eye;
     const Place rows[3] = {scaled(normals[0], volume), scaled(normals[1], scale), scaled(normals[2], scale)};
     double distance = 0, extent = 0;
-    for (uint i = 0; i < 3; i++) {
+    for (uint i = 0; i < 3; ++i) {
         eye.rows[i] = {all(static_cast<float>(rows[i].x)), all(static_cast<float>(rows[i].y)),
                        all(static_cast<float>(rows[i].z))};
         const float* const planes = job.lines + i * (job.divisions + 1);
@@ -112,7 +112,7 @@ LANE_FN SureSides sure_sides(const Imaged& p, const Imaged& q)
 // The corners of the faces that lanes' links name.
 LANE_FN void see_corners(const PacketJob& job, const Eye& eye, const BeamWalk& walk, Words links, Imaged* corners)
 {
-    for (uint i = 0; i < 3; i++)
+    for (uint i = 0; i < 3; ++i)
         corners[i] = imaged(job, eye, walk, corners_of(job, links, i).of);
 }
 
@@ -147,7 +147,7 @@ LANE_FN void enter_domain(const PacketJob& job, const Eye& eye, BeamWalk& walk, 
 // Lets beams leave the tet that they start in by a face that all their rays leave by.
 LANE_FN void leave_start(const PacketJob& job, const Eye& eye, BeamWalk& walk, uint lanes)
 {
-    for (uint face = 0; face < 4; face++) {
+    for (uint face = 0; face < 4; ++face) {
         Imaged corners[3];
         see_corners(job, eye, walk, all(job.start_tet << 2 | face), corners);
         const Mask leaving = mask_of(lanes) & sure_sides(corners[0], corners[1]).right &
@@ -195,7 +195,7 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
 {
     const uint count = packets.count - first < LANES ? packets.count - first : LANES;
     Ints columns{}, rows{};
-    for (uint lane = 0; lane < count; lane++) {
+    for (uint lane = 0; lane < count; ++lane) {
         columns[lane] = static_cast<int>(packets.x[first + lane]);
         rows[lane] = static_cast<int>(packets.y[first + lane]);
     }
@@ -259,18 +259,18 @@ void walk_beams(const PacketJob& job, Packets& packets)
     for (uint first = 0; first < packets.count; first += batches_in_turns * LANES) {
         BeamWalk walks[batches_in_turns];
         uint batches = 0;
-        for (; batches < batches_in_turns && first + batches * LANES < packets.count; batches++)
+        for (; batches < batches_in_turns && first + batches * LANES < packets.count; ++batches)
             begin(job, eye, packets, first + batches * LANES, walks[batches]);
         bool goes_on = true;
-        for (uint steps = 0; goes_on && steps < job.max_steps; steps++) {
+        for (uint steps = 0; goes_on && steps < job.max_steps; ++steps) {
             goes_on = false;
-            for (uint i = 0; i < batches; i++) {
+            for (uint i = 0; i < batches; ++i) {
                 if (static_cast<uint>(__builtin_popcount(walks[i].live)) <= few) continue;
                 step(job, eye, walks[i]);
                 goes_on = true;
             }
         }
-        for (uint i = 0; i < batches; i++)
+        for (uint i = 0; i < batches; ++i)
             end(packets, first + i * LANES, walks[i]);
     }
 }

@@ -45,7 +45,7 @@ template <int z, uint count>
                                    const ByAxis* lanes)
 {
     Walk<z> walks[count];
-    for (uint i = 0; i < count; i++) {
+    for (uint i = 0; i < count; ++i) {
         walks[i].shear = shear_of<z>(packets[i].direction);
         walks[i].turn = walks[i].record = Words{};
         for (Seen& seen : walks[i].carried)
@@ -106,7 +106,7 @@ void write_ended(const PacketJob& job, const Packets& block, uint number)
 // Asks for the lines that a packet's hits are written to, while there is other work.
 LANE_FN void prefetch_hits(const PacketJob& job, uint x, uint y)
 {
-    for (uint row = y; row < y + packet_height && row < job.height; row++) {
+    for (uint row = y; row < y + packet_height && row < job.height; ++row) {
         const uint* const to = job.hits + HIT_WORDS * (std::size_t{row} * job.width + x);
         __builtin_prefetch(to, 1);
         __builtin_prefetch(to + HIT_WORDS * packet_width - 1, 1);
@@ -117,7 +117,7 @@ void trace_block(const PacketJob& job, Packets& block)
 {
     walk_beams(job, block);
     uint waiting[packets_at_once], count = 0;
-    for (uint i = 0; i < block.count; i++) {
+    for (uint i = 0; i < block.count; ++i) {
         if (block.has_ended[i]) {
             write_ended(job, block, i);
             continue;
@@ -128,7 +128,7 @@ void trace_block(const PacketJob& job, Packets& block)
         trace_packets<packets_at_once>(job, block, waiting);
         count = 0;
     }
-    for (uint i = 0; i < count; i++)
+    for (uint i = 0; i < count; ++i)
         trace_packets<1>(job, block, waiting + i);
 }
 
@@ -149,7 +149,7 @@ void collect(const PacketJob& job, uint x, uint y, Packets& block)
             }
     } else {
         constexpr uint half = size / 2;
-        for (uint i = 0; i < 4; i++)
+        for (uint i = 0; i < 4; ++i)
             collect<half>(job, x + i % 2 * half, y + i / 2 * half, block);
     }
 }

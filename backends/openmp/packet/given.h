@@ -41,7 +41,7 @@ LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
     LaneWords offsets;
     store(offsets, *reinterpret_cast<const Words*>(packet.numbers.of) * 4);
     const Quad direction = load_quads(job.directions, offsets), origin = load_quads(job.origins, offsets);
-    for (uint axis = 0; axis < 3; axis++) {
+    for (uint axis = 0; axis < 3; ++axis) {
         packet.direction[axis] = select(mask, as_floats(direction.of[axis]), packet.direction[axis]);
         packet.origin[axis] = select(mask, as_floats(origin.of[axis]), packet.origin[axis]);
     }
@@ -71,7 +71,7 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     const Quad apexes[4] = {first.apex, second.apex, load_quads(job.records + 2 * record_words, offsets),
                             load_quads(job.records + 3 * record_words, offsets)};
     Seen v[4];
-    for (uint i = 0; i < 4; i++)
+    for (uint i = 0; i < 4; ++i)
         v[i] = seen_at(packet, walk.shear, apexes[i].of);
     const ByFace left = by_face_left(v);
     const Mask by_face[4] = {mask_of(left.of[0]), mask_of(left.of[1]), mask_of(left.of[2]), mask_of(left.of[3])};
@@ -84,13 +84,13 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
 
     Words exit = by(second.exits.of[0], first.exits.of[0], first.exits.of[1], first.exits.of[2]);
     Mask is_end = equal(exit & 3u, all(HALF32_END));
-    for (uint i = 0; i < 3; i++)
+    for (uint i = 0; i < 3; ++i)
         walk.carried[i] = select(mask, carried_behind(by_face, v, i), walk.carried[i]);
     if constexpr (has_ends) {
         Floats depths[4];
-        for (uint i = 0; i < 4; i++)
+        for (uint i = 0; i < 4; ++i)
             depths[i] = depth_at(packet, apexes[i].of);
-        for (uint i = 0; i < 3; i++)
+        for (uint i = 0; i < 3; ++i)
             walk.depths[i] = select(mask, carried_behind(by_face, depths, i), walk.depths[i]);
         walk.reach = depth_of_end(packet);
         is_end = end_behind(walk, is_end, exit);
@@ -143,14 +143,14 @@ template <bool has_ends>
     Packet packets[packets_in_turns];
     GivenWalk walks[packets_in_turns];
     uint checked[packets_in_turns] = {};
-    for (uint i = 0; i < packets_in_turns; i++) {
+    for (uint i = 0; i < packets_in_turns; ++i) {
         __builtin_memset(&packets[i], 0, sizeof(Packet));
         __builtin_memset(&walks[i], 0, sizeof(GivenWalk));
     }
     bool goes_on = true;
-    for (uint steps = 0; goes_on; steps++) {
+    for (uint steps = 0; goes_on; ++steps) {
         goes_on = false;
-        for (uint i = 0; i < packets_in_turns; i++) {
+        for (uint i = 0; i < packets_in_turns; ++i) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
             const bool takes = live < lanes_wanted && has_rays(job, queue);
             const bool has_ended = live == 0 && packets[i].lanes != 0;

@@ -36,7 +36,7 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
 {
     const Quad first = transposed(hits.of[0], hits.of[1], hits.of[2], hits.of[3]);
     LaneWords firsts[4], lasts[2];
-    for (uint i = 0; i < 4; i++)
+    for (uint i = 0; i < 4; ++i)
         store(firsts[i], first.of[i]);
     store(lasts[0], __builtin_shufflevector(hits.of[4], hits.of[5], LOW_WORDS));
     store(lasts[1], __builtin_shufflevector(hits.of[4], hits.of[5], HIGH_WORDS));
@@ -65,8 +65,8 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
 // The hits of rays that miss the domain, of pixels [x, x_end) x [y, y_end).
 LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint x_end, uint y_end)
 {
-    for (; y < y_end; y++)
-        for (uint i = x; i < x_end; i++) {
+    for (; y < y_end; ++y)
+        for (uint i = x; i < x_end; ++i) {
             uint* const to = job.hits + HIT_WORDS * (std::size_t{y} * job.width + i);
             to[0] = NO_HIT;
             to[1] = NO_TET;

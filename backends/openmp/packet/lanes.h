@@ -260,7 +260,7 @@ LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
 #else
     using Record = uint __attribute__((vector_size(32), aligned(16)));
     Quad half[2];
-    for (uint i = 0; i < 2; i++) {
+    for (uint i = 0; i < 2; ++i) {
         const auto record = [&](uint lane) {
             return *reinterpret_cast<const Record*>(base + offsets.of[i * (LANES / 2) + lane]);
         };
@@ -275,7 +275,7 @@ LANE_FN Records load_records(const uint* base, const LaneWords& offsets)
         half[i] = transposed(records(0), records(1), records(2), records(3));
     }
     Records result;
-    for (uint i = 0; i < 4; i++) {
+    for (uint i = 0; i < 4; ++i) {
         result.apex.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], EVEN_QUADS);
         result.exits.of[i] = __builtin_shufflevector(half[0].of[i], half[1].of[i], ODD_QUADS);
     }

@@ -33,7 +33,7 @@ struct Packet {
 // Rays through these places of the image, in pixels; which lanes have one is left open.
 LANE_FN void make_rays_through(const PacketJob& job, Floats column, Floats row, Packet& packet)
 {
-    for (uint axis = 0; axis < 3; axis++) {
+    for (uint axis = 0; axis < 3; ++axis) {
         const Floats d = all(job.corner[axis]) + all(job.step_x[axis]) * column + all(job.step_y[axis]) * row;
         packet.direction[axis] = select(greater(all(0x1p-20f), magnitude(d)), Floats{}, d);
         packet.origin[axis] = all(job.origin[axis]);
@@ -48,7 +48,7 @@ LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
 {
     Ints column{}, row{};
     packet.lanes = 0;
-    for (uint lane = 0; lane < LANES; lane++) {
+    for (uint lane = 0; lane < LANES; ++lane) {
         const uint at_x = x + lane % packet_width, at_y = y + lane / packet_width;
         column[lane] = static_cast<int>(at_x);
         row[lane] = static_cast<int>(at_y);

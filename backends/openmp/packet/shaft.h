@@ -66,8 +66,8 @@ LANE_FN int side_of_all(const Square& square, Place p, Place q)
 {
     const uint n = job.divisions;
     const auto edge = [&](uint axis, uint end) { return job.lines[axis * (n + 1) + (end != 0 ? n : 0)]; };
-    for (uint axis = 0; axis < 3; axis++)
-        for (uint which = 0; which < 4; which++) { // an edge along `axis`, at these ends of the two other axes
+    for (uint axis = 0; axis < 3; ++axis)
+        for (uint which = 0; which < 4; ++which) { // an edge along `axis`, at these ends of the two other axes
             const uint a = axis == 2 ? 0 : axis + 1, b = axis == 0 ? 2 : axis - 1;
             const uint end_a = which & 1u, end_b = which >> 1;
             const auto is_seen = [&](uint of, uint end) {

@@ -5,7 +5,7 @@ LANE_FN Words entry_squares(const PacketJob& job, const Packet& packet)
 {
     const uint n = job.divisions;
     Words squares = all(6 * n * n);
-    for (uint axis = 0; axis < 3; axis++) {
+    for (uint axis = 0; axis < 3; ++axis) {
         const uint across[2] = {axis == 2 ? 0 : axis + 1, axis == 0 ? 2 : axis - 1};
         const float* const planes = job.lines + axis * (n + 1);
         const Floats origin = packet.origin[axis], direction = packet.direction[axis], slope = magnitude(direction);
@@ -14,14 +14,14 @@ LANE_FN Words entry_squares(const PacketJob& job, const Packet& packet)
         Mask met = (from_high & greater(Floats{}, direction)) |
                    (greater(all(planes[0]), origin) & greater(direction, Floats{}));
         Words index[2]{};
-        for (uint i = 0; i < 2; i++) {
+        for (uint i = 0; i < 2; ++i) {
             const float* const lines = job.lines + across[i] * (n + 1);
             const Floats start = packet.origin[across[i]], along = packet.direction[across[i]], reach = gap * along;
             const Floats first = (all(lines[0]) - start) * slope, last = (all(lines[n]) - start) * slope;
             met = met & (greater(reach, first) | (equal(reach, first) & greater(along, Floats{})));
             met = met & (greater(last, reach) | (equal(last, reach) & greater(Floats{}, along)));
             if (lanes_of(met) == 0) break;
-            for (uint line = 1; line < n; line++)
+            for (uint line = 1; line < n; ++line)
                 index[i] = select(greater((all(lines[line]) - start) * slope, reach), index[i], index[i] + all(1u));
         }
         const Words side = all(2 * axis) + select(from_high, all(1u), Words{});
@@ -54,10 +54,10 @@ template <int z>
         const uint here = square.of[first_of(lanes)];
         uint waiting = lanes & lanes_of(equal(squares, all(here)));
         lanes &= ~waiting;
-        for (uint i = job.entry_ranges[here]; waiting != 0 && i < job.entry_ranges[here + 1]; i++) {
+        for (uint i = job.entry_ranges[here]; waiting != 0 && i < job.entry_ranges[here + 1]; ++i) {
             const uint link = job.entry_links[i];
             Seen corners[3];
-            for (uint corner_i = 0; corner_i < 3; corner_i++)
+            for (uint corner_i = 0; corner_i < 3; ++corner_i)
                 corners[corner_i] = apex_seen(job, packet, walk.shear, record_of_corner(link, corner_i));
             const uint entering = lanes_entering(packet, waiting, corners);
             if (entering != 0) enter_record(job, packet, walk, entering, link);
@@ -83,7 +83,7 @@ LANE_FN uint ask_faces(const PacketJob& job, Words squares, uint lanes, const As
     LaneWords square, link{};
     store(square, select(mask_of(lanes), squares, Words{}));
     uint unanswered = 0;
-    for (uint face = 0; lanes != 0; face++) {
+    for (uint face = 0; lanes != 0; ++face) {
         for (uint left = lanes; left != 0; left &= left - 1) {
             const uint lane = first_of(left), index = job.entry_ranges[square.of[lane]] + face;
             if (index < job.entry_ranges[square.of[lane] + 1])
@@ -107,7 +107,7 @@ LANE_FN Words entry_links(const PacketJob& job, Packet& packet, const Walk<z>& w
     Words links = all(NO_LINK);
     packet.left_to_scalar |= ask_faces(job, squares, lanes, [&](Words candidates, uint asking) { // entry_anywhere()
         Seen corners[3];
-        for (uint i = 0; i < 3; i++)
+        for (uint i = 0; i < 3; ++i)
             corners[i] = seen_at(packet, walk.shear, corners_of(job, candidates, i).of);
         const uint entering = lanes_entering(packet, asking, corners);
         links = select(mask_of(entering), candidates, links);
@@ -154,11 +154,11 @@ template <int z>
 [[gnu::noinline]] void leave_start(const PacketJob& job, Packet& packet, Walk<z>& walk, uint lanes)
 {
     Seen v[4];
-    for (uint i = 0; i < 4; i++)
+    for (uint i = 0; i < 4; ++i)
         v[i] = apex_seen(job, packet, walk.shear, job.start_tet << 2 | i);
     const ByFace left = by_face_left(v);
     uint waiting = lanes & ~left.ties;
-    for (uint face = 0; face < 4; face++) {
+    for (uint face = 0; face < 4; ++face) {
         leave_first(job, packet, walk, waiting & left.of[face], face);
         waiting &= ~left.of[face];
     }

@@ -122,14 +122,14 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     // alone; there as here the third vertex then goes.
     const Mask first = without(s2.left, s1.left), second = without(s0.left, s2.left);
     const Mask replaced[3] = {first, second, neither(first, second)};
-    for (uint i = 0; i < 3; i++)
+    for (uint i = 0; i < 3; ++i)
         walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
     Words exit = exits_of(walk, replaced, at.exits.of);
     const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
     Mask is_end = equal(exit & all(3u), all(HALF32_END));
     if constexpr (has_ends) {
         const Floats depth = depth_at(packet, at.apex.of);
-        for (uint i = 0; i < 3; i++)
+        for (uint i = 0; i < 3; ++i)
             walk.depths[i] = select(replaced[i], depth, walk.depths[i]);
         is_end = end_behind(walk, is_end, exit);
     }
@@ -145,19 +145,19 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
 template <int z, uint count>
 LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint steps)
 {
-    for (uint i = 0; i < count; i++)
+    for (uint i = 0; i < count; ++i)
         store(walks[i].offsets, walks[i].record * (4 * HALF32_QUADS));
     uint live = every_lane;
     while (live != 0 && steps < job.max_steps) {
-        steps++;
+        ++steps;
         live = 0;
 #pragma GCC unroll 4
-        for (uint i = 0; i < count; i++) {
+        for (uint i = 0; i < count; ++i) {
             if (walks[i].live == 0) continue;
             step<z, false>(job, packets[i], walks[i], steps);
             live |= walks[i].live;
         }
     }
-    for (uint i = 0; i < count; i++)
+    for (uint i = 0; i < count; ++i)
         packets[i].left_to_scalar |= walks[i].live; // lost, which is the scalar kernel's to say
 }

@@ -168,7 +168,7 @@ Acceleration::Level Acceleration::compacted(const Level& level)
 Acceleration::Level Acceleration::build_top()
 {
     VkAccelerationStructureInstanceKHR instance{}; // the bindings' type of its flags differs between their versions
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         instance.transform.matrix[axis][axis] = 1;
     instance.mask = 0xFF;
     instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
