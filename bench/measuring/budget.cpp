@@ -17,6 +17,7 @@ namespace {
 
 constexpr double slack = 0.25;    // of the budget, see the class
 constexpr double telling_s = 0.1; // a probe that takes this long is not mostly a launch's overhead
+constexpr double patience = 0.02; // of what is left of the budget: a probe that takes this long is not repeated
 constexpr unsigned coarsest_step = 16;
 
 std::size_t first_view_with_rays(const RowRun& row)
@@ -54,7 +55,7 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
 
 /// Estimates the seconds of a view from ever more of its rays, until there are enough of them to tell. The first
 /// launch, in which devices may compile, does not count; it becomes a part of the row's first pass.
-double estimated_view_s(RowRun& row, const Clock& clock)
+double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
 {
     const std::size_t view = first_view_with_rays(row);
     if (view == row.scene->views().size()) return 0;
@@ -63,17 +64,15 @@ double estimated_view_s(RowRun& row, const Clock& clock)
         step /= 2;
     const auto launch = [&] {
         const TraceJob job = prepare_probe(row, view, step);
-        const double start_s = clock();
-        row.session->launch(job);
-        static_cast<void>(row.session->wait());
-        return std::pair(clock() - start_s, static_cast<double>(job.width) * job.height);
+        return std::pair(timed_launch(*row.session, job, clock).wall_s, static_cast<double>(job.width) * job.height);
     };
     std::get<Traced>(row.outcome).wall_s += launch().first;
+    const double patience_s = patience * left_s;
     for (;; step /= 2) {
         // The quickest of three, where the first is slow: on a busy machine a thread may wait longer than its work
         // takes.
         auto [seconds, rays] = launch();
-        for (int again = 0; again < 2 && seconds >= telling_s; ++again)
+        for (int again = 0; again < 2 && seconds >= telling_s && seconds < patience_s; ++again)
             seconds = std::min(seconds, launch().first);
         if (seconds >= telling_s || step == 1) return seconds / rays * static_cast<double>(ray_count(row, view));
     }
@@ -106,7 +105,7 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples)
         progress_line().show("estimating", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
                              row_label(row.key));
         Entry entry{&row};
-        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_); });
+        if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
         if (!is_alive(row)) continue;
         const auto views = static_cast<double>(row.scene->views().size());
         entry.views_left = views + 1 + views + views * std::min(samples, fewest_samples);
