@@ -16,7 +16,7 @@ namespace tetrace {
 namespace {
 
 constexpr double slack = 0.25;    // of the budget, see the class
-constexpr double telling_s = 0.1; // a probe that takes this long is not mostly a launch's overhead
+constexpr double telling_s = 0.1; // launch overhead is a small part of a probe that takes this long
 constexpr double patience = 0.02; // of what is left of the budget: a probe that takes this long is not repeated
 constexpr unsigned coarsest_step = 16;
 
@@ -39,7 +39,7 @@ TraceJob coarse_job(TraceJob job, unsigned step)
     return job;
 }
 
-/// The job that traces 1 of step * step of the view's rays, the first ones where they are given.
+/// The job that traces 1 of step * step of the view's rays; of given rays, the first ones.
 TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
 {
     const TraceJob job = prepare_view(row, view);
@@ -53,8 +53,8 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
     return given_job(rays, job.max_steps, job.any_hit);
 }
 
-/// Estimates the seconds of a view from ever more of its rays, until there are enough of them to tell. The first
-/// launch, in which devices may compile, does not count; it becomes a part of the row's first pass.
+/// Estimates the seconds of a view by tracing more and more of its rays, until there are enough for an estimate. The
+/// first launch, in which devices may compile, does not count; its time goes into the row's first pass.
 double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
 {
     const std::size_t view = first_view_with_rays(row);
@@ -69,8 +69,7 @@ double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
     std::get<Traced>(row.outcome).wall_s += launch().first;
     const double patience_s = patience * left_s;
     for (;; step /= 2) {
-        // The quickest of three, where the first is slow: on a busy machine a thread may wait longer than its work
-        // takes.
+        // The quickest of three where the first is slow: on a busy machine a thread may wait longer than it works.
         auto [seconds, rays] = launch();
         for (int again = 0; again < 2 && seconds >= telling_s && seconds < patience_s; ++again)
             seconds = std::min(seconds, launch().first);
@@ -78,7 +77,7 @@ double estimated_view_s(RowRun& row, const Clock& clock, double left_s)
     }
 }
 
-/// Whether the row still goes on.
+/// Whether the row is still in the run.
 bool is_alive(const RowRun& row)
 {
     return row.session != nullptr && traced(row) != nullptr;
@@ -186,7 +185,7 @@ Budget::Entry* Budget::slowest(bool among_references)
 void Budget::skip(Entry& entry, double affordable_s)
 {
     RowRun& row = *entry.row;
-    if (!fails(row, true)) // an answer that is known to be wrong is reported
+    if (!fails(row, true)) // an answer that is known to be wrong is always reported
         row.outcome =
             Skipped{Status::skipped,
                     fmt::format("would take about {}; --budget leaves {} for all rows; with --budget {} it is "
@@ -205,7 +204,7 @@ void Budget::reject(const std::string& who, double need_s) const
                             sufficient()));
 }
 
-/// A budget that all rows fit in, those included that have been skipped: a quarter more than they are expected to take.
+/// A budget that fits all rows, including the skipped ones: a quarter more than their expected time.
 std::string Budget::sufficient() const
 {
     return budget_text(1.25 * (now() - start_s_ + needed_s() + skipped_s_));

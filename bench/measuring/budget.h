@@ -9,39 +9,41 @@
 
 namespace tetrace {
 
-/// The fewest samples of a row: with fewer, intervals of ratios are too narrow (results/README.md).
+/// The least number of samples of a row: with fewer, intervals of ratios are too wide to trust (results/README.md).
 inline constexpr unsigned fewest_samples = 5;
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
-/// more, a pass to warm up, and its fewest samples. Where the rows need more than is left, the slowest end as skipped,
-/// with their cost and the --budget that runs them. The others get all that they need, whatever the order of the rows.
-/// openmp's rows that others are compared with are skipped last, and only once rows are timed.
+/// more, a warm-up pass, and its least number of samples. Where the rows need more than is left, the slowest end as
+/// skipped; their text gives their cost and the --budget that runs them. The others get all the time that they need,
+/// whatever the order of the rows. openmp's rows that others are compared with are skipped last, and only once rows are
+/// being timed.
 ///
-/// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself; later reviews allow a
-/// quarter more, so that noise skips no row. A run takes at most 1.25 budgets, and the pass that is under way then.
+/// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
+/// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
+/// moment.
 class Budget {
 public:
-    /// Starts the clock. seconds: infinity: there is no limit, and all below does nothing.
+    /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing.
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
     [[nodiscard]] double now() const { return clock_(); }
     [[nodiscard]] double left_s() const { return seconds_ - (now() - start_s_); }
 
-    /// Starts the clock again, estimates the rows by tracing a part of their rays, and skips those that do not fit.
-    /// Rows that cannot be traced end with their reason. rows: opened; they keep their addresses as long as the budget
-    /// is used. samples: asked for. Throws Error{usage} where no row fits, or not all of openmp's rows that others are
-    /// compared with.
+    /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
+    /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
+    /// samples: the number asked for. Throws Error{usage} where no row fits, or not all of openmp's rows that others
+    /// are compared with.
     void plan(std::vector<RowRun>& rows, unsigned samples);
 
-    /// Some views of a row were traced in so many seconds.
+    /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);
-    /// All rows of a view were judged; seconds: without the tracing.
+    /// Records that all rows of a view were judged; seconds: without the tracing.
     void judged(double seconds);
 
-    /// Skips the slowest rows until the others fit. Throws as plan().
+    /// Skips the slowest rows until the others fit. Throws as plan() does.
     void review();
-    /// The same while rows are timed: openmp's rows are skipped too, and nothing is thrown.
+    /// The same while rows are timed: may also skip openmp's rows, and throws nothing.
     void review_timed();
 
 private:
@@ -49,7 +51,7 @@ private:
         RowRun* row = nullptr;
         bool is_reference = false; ///< others are compared with it
         double view_s = 0;         ///< expected
-        double views_left = 0;     ///< all that the row still needs
+        double views_left = 0;     ///< total that the row still needs
         double seen_s = 0, seen_views = 0;
 
         [[nodiscard]] double need_s() const { return views_left * view_s; }
@@ -68,12 +70,12 @@ private:
     Clock clock_;
     double start_s_;
     std::vector<Entry> entries_;
-    double skipped_s_ = 0; ///< what the skipped rows would have needed
+    double skipped_s_ = 0; ///< time that the skipped rows would have needed
     double judged_s_ = 0, judged_views_ = 0;
     double views_to_judge_ = 0; ///< of all scenes
 };
 
-/// Of runs without a limit.
+/// For runs without a limit.
 [[nodiscard]] Budget& no_budget();
 
 } // namespace tetrace

@@ -7,7 +7,7 @@ namespace tetrace {
 
 namespace {
 
-/// The API that a GPU's others are compared with, where it has the row.
+/// The API that a GPU's other APIs are compared with, where it has the row.
 constexpr const char* preferred_on_gpus = "cuda";
 
 std::vector<std::size_t> hardware_of(const std::vector<RowRun>& rows)
@@ -18,7 +18,7 @@ std::vector<std::size_t> hardware_of(const std::vector<RowRun>& rows)
     return physical_devices(devices);
 }
 
-/// The row's reference, which may be itself; null where there is none.
+/// The row's reference, which may be the row itself; null where there is none.
 const RowRun* find_reference(const std::vector<RowRun>& rows, const std::vector<std::size_t>& hardware,
                              std::size_t index)
 {

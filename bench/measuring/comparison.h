@@ -8,16 +8,16 @@
 
 namespace tetrace {
 
-/// How fast a row is beside its reference.
+/// The speed of a row compared with its reference.
 struct Comparison {
     const RowRun* reference = nullptr;
-    MedianRatio rate; ///< the row's over the reference's, of the medians of device seconds; above 1 the row is faster
+    MedianRatio rate; ///< row's rate over reference's, from medians of device seconds; above 1 the row is faster
 };
 
-/// What each row compares with, row by row: the same kernel on the same scene and the same hardware (see
-/// physical_devices()), with schedule tiles, under openmp on the host, and under cuda, else the first API that has it,
-/// on a GPU. So a GPU's rows and the host's, emulations among them, are never compared. Empty for references
-/// themselves, Embree's rows, and rows without a rate.
+/// The reference of each row, row by row: the same kernel on the same scene and the same hardware (see
+/// physical_devices()), with schedule tiles. On the host the reference runs under openmp; on a GPU under cuda, else
+/// under the first API that has it. A GPU's rows and the host's, which include emulations, are therefore never
+/// compared. Empty for references themselves, Embree's rows, and rows without a rate.
 [[nodiscard]] std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& rows);
 
 } // namespace tetrace

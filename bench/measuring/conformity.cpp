@@ -15,7 +15,7 @@ Conformity compared_conformity(const RowRun& row, const Traced& result)
     return result.inexact == 0 ? Conformity::bit_exact : Conformity::within_ulps;
 }
 
-/// Of rows that are no device's answer to openmp's.
+/// For rows that are not compared with openmp's answer.
 Conformity own_conformity(const RowRun& row)
 {
     const KernelId& kernel = row.key.kernel;

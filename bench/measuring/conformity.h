@@ -7,13 +7,13 @@
 
 namespace tetrace {
 
-/// How a row's answers stand to openmp's: what a cell of `tetrace check` says.
+/// How a row's answers compare with openmp's; a cell of `tetrace check`.
 enum class Conformity {
     reference,   ///< openmp's own, in exact mode
     bit_exact,   ///< every bit of every hit is openmp's
-    within_ulps, ///< but for t, u and v, within what the device's self-test allows
-    uncompared,  ///< there is nothing to compare with: math mode fast, and Embree
-    not_exact,   ///< openmp's answers here, but the self-test shows that the device computes otherwise
+    within_ulps, ///< the same except for t, u and v, which are within what the device's self-test allows
+    uncompared,  ///< nothing to compare with: math mode fast, and Embree
+    not_exact,   ///< openmp's answers here, but the self-test shows that the device computes differently
     wrong,
     unsupported,
     skipped,
@@ -22,11 +22,11 @@ enum class Conformity {
 
 [[nodiscard]] Conformity conformity_of(const RowRun& row);
 
-/// The kind alone, as tests/expected/ records it: "bit-exact", "within ulps".
+/// The kind only, as tests/expected/ records it: "bit-exact", "within ulps".
 [[nodiscard]] std::string_view name_of(Conformity conformity);
 
-/// The cell, numbers and what the self-test found included: "within 2 ulp", "wrong: 12 rays", "not exact: contracts".
-/// Rows that have nothing to be compared with show the oracle's status.
+/// The cell with numbers and self-test findings: "within 2 ulp", "wrong: 12 rays", "not exact: contracts".
+/// Rows without anything to compare with show the oracle's status.
 [[nodiscard]] std::string conformity_text(const RowRun& row);
 
 } // namespace tetrace

@@ -8,32 +8,32 @@
 
 namespace tetrace {
 
-/// What a timed row comes to; there is none for a row without a rate.
+/// Figures of a timed row; rows without a rate have none.
 struct Figures {
     Statistics kernel_s; ///< device seconds for all selected views
     double mrays_per_s = 0;
     std::optional<double> msteps_per_s; ///< structure cdt only
     std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
-    std::optional<double> wall_s;       ///< from launch to the end of wait on the host's clock, all views; median
+    std::optional<double> wall_s;       ///< from launch to the end of wait by the host's clock, all views; median
     std::optional<double> overhead_s;   ///< launching and waiting: median of the samples' wall minus device seconds
 };
 
 /// Empty unless the row is ok or flawed and has samples.
 [[nodiscard]] std::optional<Figures> figures_of(const RowRun& row);
 
-/// Bytes that a step of the walk loads from the record of its tet, on average (docs/spec/devices.md, W7): three or four
-/// vertices and a face. An estimate of what moves: memory moves whole lines, and caches keep some. 0 for Embree's
-/// layout, which has no steps.
+/// Bytes that a step of the walk loads from its tet's record, on average (docs/spec/devices.md, W7): three or four
+/// vertices and a face. An estimate of the memory traffic: memory transfers whole lines, and caches hold some of them.
+/// 0 for Embree's layout, which has no steps.
 [[nodiscard]] double bytes_per_step(const KernelId& kernel);
 
-/// Steps a ray; empty where there is no such ray, or the structure has no steps.
+/// Steps per ray; empty where there are no rays, or the structure has no steps.
 struct MeanSteps {
     std::optional<double> all, hit, miss;
 };
 [[nodiscard]] MeanSteps mean_steps(const RayTotals& totals);
 
 /// The row's Mrays/s over those of Embree's single rays on the same scene; empty where either has none, and for rows
-/// that do not run on the host as Embree does.
+/// that do not run on the host, as Embree does.
 [[nodiscard]] std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows);
 
 } // namespace tetrace

@@ -22,7 +22,7 @@ bool is_timed(const RowRun& row)
     return row.session != nullptr && (status == Status::ok || status == Status::flawed);
 }
 
-/// The same counters for every row: Google Benchmark's CSV ends the program otherwise. Steps are in our own section.
+/// The same counters for every row: otherwise Google Benchmark's CSV ends the program. Steps are in our own section.
 void set_counters(benchmark::State& state, const RowRun& row)
 {
     state.counters["Mrays/s"] =
@@ -40,17 +40,17 @@ struct Pass {
     double kernel_s = 0, wall_s = 0, download_s = 0;
 };
 
-/// hits: where to read each view's back to, if at all.
+/// hits: receives each view's hits; may be null.
 Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
                  const std::function<void(double)>& tell_progress)
 {
     const std::size_t views = row.scene->views().size();
     Pass pass;
     for (std::size_t view = 0; view < views; ++view) {
-        // Between the clocks: a sample may take minutes, and what is drawn costs no row anything.
+        // Not inside a timed interval: a sample may take minutes, and drawing adds nothing to a row's time.
         tell_progress(static_cast<double>(view) / static_cast<double>(views));
         const std::size_t rays = ray_count(row, view);
-        if (rays == 0) continue; // rays that are given, and none is
+        if (rays == 0) continue; // given rays, of which this view has none
         const TraceJob job = prepare_view(row, view);
         const auto [kernel_s, wall_s] = timed_launch(*row.session, job, budget.clock());
         pass.kernel_s += kernel_s;
@@ -63,8 +63,8 @@ Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
     return pass;
 }
 
-/// What a row's first passes pay once, its verification has paid: compiling at the first launch, finding the size of
-/// launches, touching memory. One more pass just before the samples wakes the device up, tells what a sample costs, and
+/// Verification has already paid the costs of a row's first passes: compiling at the first launch, finding the launch
+/// size, touching memory. One more pass just before the samples wakes the device up, shows what a sample costs, and
 /// times the download.
 void warm_up(RowRun& row, Budget& budget)
 {
@@ -113,7 +113,7 @@ void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
             return;
         }
         state.SetIterationTime(seconds);
-        // Taken here: reporters see aggregates only, where Google Benchmark is asked for them.
+        // Recorded here: reporters see only aggregates if Google Benchmark is asked for them.
         row.samples_s.push_back(seconds);
         sweep.done += 1;
     }
@@ -141,8 +141,8 @@ std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostr
     return std::make_unique<RowReporter>(std::move(receivers));
 }
 
-/// Google Benchmark opens --benchmark_out itself and gives its stream to the file reporter alone: the inner reporter
-/// writes to a text first.
+/// Google Benchmark opens --benchmark_out itself and gives its stream only to the file reporter: the inner reporter
+/// writes to a string first.
 class FileReporter : public RowReporter {
 public:
     explicit FileReporter(const std::string& format) : FileReporter(format, std::make_unique<std::ostringstream>()) {}
@@ -177,7 +177,7 @@ std::size_t last_view_with_rays(const RowRun& row)
     return view;
 }
 
-/// A device that answers differently under repetition must not keep its rate.
+/// A device that answers differently under repetition must lose its rate.
 void check_last_view(RowRun& row)
 {
     std::vector<Hit> hits(ray_count(row, last_view_with_rays(row)), Hit{POISON, POISON, 0, 0, 0, 0});
@@ -219,7 +219,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     std::ostringstream json;
     const auto display = make_display(flags, json);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
-    // The filter was applied to the rows themselves, under the names that are reported.
+    // The filter was applied to the rows themselves, under the reported names.
     benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
     progress_line().clear();
     check_rows_after(rows);

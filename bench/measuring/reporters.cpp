@@ -36,7 +36,7 @@ std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& f
     if (format == "console") reporter = std::make_unique<benchmark::ConsoleReporter>();
     if (format == "json") reporter = std::make_unique<benchmark::JSONReporter>();
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations" // of the console's CSV; its flag still offers it
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations" // of the console's CSV; the flag still accepts it
     if (format == "csv") reporter = std::make_unique<benchmark::CSVReporter>();
 #pragma GCC diagnostic pop
     if (reporter == nullptr)

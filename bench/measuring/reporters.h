@@ -8,8 +8,9 @@
 
 namespace tetrace {
 
-/// Hands on what Google Benchmark reports to several reporters, under row names alone: without the suffixes
-/// "/iterations:1/manual_time", which are the same for all, and would make names depend on how often was measured.
+/// Passes Google Benchmark's reports on to several reporters, under the bare row names. It removes the suffixes
+/// "/iterations:1/manual_time", which are the same for all rows and would make names depend on the number of
+/// measurements.
 class RowReporter : public benchmark::BenchmarkReporter {
 public:
     explicit RowReporter(std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers)
@@ -25,7 +26,7 @@ private:
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers_;
 };
 
-/// Google Benchmark's own reporter of a format: "console", "json" or "csv".
+/// Google Benchmark's own reporter for a format: "console", "json" or "csv".
 [[nodiscard]] std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& format,
                                                                           std::ostream& stream);
 

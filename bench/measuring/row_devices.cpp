@@ -27,7 +27,7 @@ void add_problem(RowDevice& device, const char* what, const std::exception& erro
     device.problem += fmt::format("{}{}: {}", device.problem.empty() ? "" : "; ", what, error.what());
 }
 
-/// Does a part of the work on a device; a failure becomes its problem.
+/// Does a part of the work on a device; a failure becomes the device's problem.
 template <class Work>
 void attempt(RowDevice& device, const char* what, const Work& work)
 {
@@ -36,7 +36,7 @@ void attempt(RowDevice& device, const char* what, const Work& work)
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
         add_problem(device, what, error);
-    } catch (const std::exception& error) { // out of memory: the samples of all rows must not be lost for it
+    } catch (const std::exception& error) { // out of memory: must not lose the samples of all rows
         add_problem(device, what, error);
     }
 }

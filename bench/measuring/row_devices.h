@@ -10,27 +10,27 @@
 
 namespace tetrace {
 
-/// A device that rows of a run were opened on, and what it can do.
+/// A device that rows of a run were opened on, and its abilities.
 struct RowDevice {
     Backend* backend = nullptr;
     std::size_t index = 0; ///< in the backend's devices()
     Device device;
-    std::size_t hardware = 0;   ///< equal numbers are one piece of hardware, see physical_devices()
+    std::size_t hardware = 0;   ///< equal numbers mean the same hardware, see physical_devices()
     std::vector<MathMode> math; ///< of its rows
     std::optional<Yardstick> yardstick;
     std::map<MathMode, SelfTest> self_tests;
-    std::string problem; ///< why a yardstick or a self-test is missing; empty where all went well, or nothing applies
+    std::string problem; ///< why a yardstick or a self-test is missing; empty where nothing failed, or nothing applies
 };
 
-/// The devices of all rows that were opened, each once: by hardware, on one piece of hardware emulations last.
+/// The devices of all opened rows, each once: grouped by hardware, emulations last within each group.
 [[nodiscard]] std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows);
 
 /// Measures yardstick and self-test of each device (see device_abilities.h). Where an API on the host has no yardstick
-/// of its own, openmp's stands for it; a yardstick that a device already has is kept. A device that fails keeps the
-/// reason as its problem; only Error{interrupted} is thrown.
+/// of its own, openmp's is used; a yardstick that a device already has is kept. A device that fails keeps the reason as
+/// its problem; only Error{interrupted} is thrown.
 void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options);
 
-/// The place of the row's device in the list; empty where the row was not opened.
+/// The index of the row's device in the list; empty where the row was not opened.
 [[nodiscard]] std::optional<std::size_t> device_of(const RowRun& row, const std::vector<RowDevice>& devices);
 
 /// The row's estimated bandwidth over the copy bandwidth of its device; empty where either is unknown.

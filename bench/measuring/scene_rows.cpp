@@ -17,7 +17,7 @@ std::vector<RowKey> rows_of(const std::string& label, const std::vector<RowKey>&
     return rows;
 }
 
-/// Whether an error ends the rows of a scene, and not the run.
+/// Whether an error ends only the rows of a scene, not the run.
 bool ends_rows(const Error& error)
 {
     return error.kind() != ErrorKind::usage && error.kind() != ErrorKind::interrupted;
@@ -54,7 +54,7 @@ void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& op
     }
 }
 
-/// Two files of one stem would give two rows of one name.
+/// Two files with the same stem would give two rows the same name.
 void check_labels(const std::vector<SceneRequest>& requests)
 {
     for (std::size_t i = 0; i < requests.size(); ++i)

@@ -8,24 +8,24 @@
 
 namespace tetrace {
 
-/// The scenes of a run, and its rows, scene after scene. Scenes keep their addresses.
+/// The scenes of a run and its rows, scene after scene. Scenes keep their addresses.
 struct SceneRows {
     std::vector<std::unique_ptr<SceneWork>> scenes;
     std::vector<RowRun> rows;
 };
 
-/// The rows that the options select among all scenes asked for; --filter and the given predicate on names apply.
-/// Throws Error{usage} where nothing is left.
+/// The rows that the options select among all scenes asked for; --filter and the given predicate on names apply. Throws
+/// Error{usage} where no row is left.
 [[nodiscard]] std::vector<RowKey> selected_rows(const Options& options,
                                                 const std::function<bool(const std::string&)>& keeps);
 
 /// Loads all scenes, opens their rows, skips those that do not fit the budget, and verifies the others (see verify.h).
-/// A scene that cannot be loaded ends its rows with the reason; a name that means no scene throws Error{usage}, and so
-/// does Budget::plan().
+/// A scene that cannot be loaded ends its rows with the reason. Throws Error{usage} for a name that means no scene, and
+/// as Budget::plan() does.
 [[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
                                         const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 
-/// What the verification of all rows came to.
+/// Result of verifying all rows.
 [[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);
 
 } // namespace tetrace

@@ -19,7 +19,7 @@ void poison(std::vector<Hit>& hits)
     std::fill(hits.begin(), hits.end(), Hit{POISON, POISON, 0, 0, 0, 0});
 }
 
-/// openmp's hits for the kernels of other backends' rows, traced for the comparison alone.
+/// openmp's hits for the kernels of other backends' rows, traced only for the comparison.
 class References {
 public:
     References(SceneWork& scene, const Options& options) : scene_(&scene), options_(&options) {}
@@ -83,7 +83,7 @@ public:
         reference = {};
         hits.resize(ray_count(row, view));
         image.hit_hash = hash_of(hits);
-        if (hits.empty()) return image; // rays that are given, and none is
+        if (hits.empty()) return image; // given rays, of which this view has none
         trace_timed(row, image, view);
         image.totals = checked_totals(row, view);
         image.visits = count_visits(row, view, hits, threads_);
@@ -102,7 +102,7 @@ public:
     }
 
 private:
-    /// The first row that had hits of this hash, and what the oracle said.
+    /// The first row that had hits with this hash, and the oracle's verdict.
     struct Judged {
         RowKey key;
         std::uint64_t hash;
@@ -137,8 +137,8 @@ private:
         return totals;
     }
 
-    /// The oracle's verdict on hits. Hits of one hash are the same bytes but with a probability of 2^-64 a pair: what
-    /// was judged once in a view holds for all rows that trace the same rays from the same points.
+    /// The oracle's verdicts on hits. Hits with the same hash are the same bytes, except with a probability of 2^-64 a
+    /// pair. A verdict in a view therefore holds for all rows that trace the same rays from the same points.
     Verdicts judge(const RowKey& key, std::size_t view, std::uint64_t hash)
     {
         if (judged_view_ != view) judged_.clear();
@@ -174,7 +174,7 @@ private:
                                              pixel / scene_->width(), hits[ray], reference[ray]};
     }
 
-    /// Made where a row needs it: it has a BVH of its own.
+    /// Made only where a row needs it: it builds its own BVH.
     GivenOracle& given_oracle()
     {
         if (!given_oracle_) given_oracle_.emplace(scene_->loaded().scene.mesh, threads_);
@@ -224,7 +224,7 @@ std::span<const Hit> Verifier::reference() const
 
 namespace {
 
-/// Returns the seconds of the tracing.
+/// Returns the seconds spent tracing.
 double verify_view(Verifier& verifier, RowRun& row, std::size_t view)
 {
     const ImageVerdict image = verifier.verify(row, view);
@@ -236,7 +236,7 @@ double verify_view(Verifier& verifier, RowRun& row, std::size_t view)
     return image.wall_s;
 }
 
-/// A device that answers differently under repetition is caught here, after everything else that it was given.
+/// Catches a device that answers differently under repetition, after everything else that it was given.
 void verify_again(Verifier& verifier, RowRun& row)
 {
     if (traced(row)->totals.rays == 0)
@@ -253,14 +253,14 @@ Allowance allowance_of(const RowRun& row)
 {
     const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
     const bool any_hit = row.key.rays == RayKind::shadow || row.key.rays == RayKind::ao;
-    // Boxes are culled by quotients: where these differ, another of several triangles may be found first.
+    // Boxes are culled by quotients. Where these differ, another of several triangles may be found first.
     return {ulps, ulps > 0 && any_hit && row.key.kernel.structure == Structure::bvh};
 }
 
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
                  const ImageSeen& image_seen, Budget& budget)
 {
-    // Views outside, rows inside: the oracle traces each view once for all rows.
+    // Views in the outer loop, rows in the inner one: the oracle traces each view once for all rows.
     Verifier verifier(scene, options, budget);
     const std::string stage = "verifying " + scene.label();
     const std::size_t views = scene.views().size();

@@ -9,31 +9,31 @@
 
 namespace tetrace {
 
-/// An image that was verified.
+/// A verified image.
 struct SeenImage {
     const RowRun& row;
     std::size_t view; ///< index in SceneWork::views()
     std::span<const Hit> hits;
     std::span<const Hit> reference; ///< openmp's; empty where there was nothing to compare
 };
-/// Told after each image.
+/// Called after each image.
 using ImageSeen = std::function<void(const SeenImage&)>;
 
-/// How far the row's answers may be from openmp's: what its device's self-test allows.
+/// How much the row's answers may differ from openmp's: what its device's self-test allows.
 [[nodiscard]] Allowance allowance_of(const RowRun& row);
 
 /// openmp's row that the row must agree with; empty where there is nothing to compare with.
 [[nodiscard]] std::optional<RowKey> reference_of(const RowKey& key);
 
-/// One scene's verification, image by image, for whoever goes through them in an order of its own.
+/// One scene's verification, image by image, for callers that visit the images in their own order.
 class Verifier {
 public:
-    /// budget: whose clock is read; it outlives the verifier.
+    /// budget: whose clock is read; must outlive the verifier.
     Verifier(SceneWork& scene, const Options& options, const Budget& budget = no_budget());
     ~Verifier();
 
     /// Traces a view (an index in SceneWork::views()) with an opened row and judges each ray, as verify_rows() does;
-    /// changes nothing of the row. Goes fastest where all rows of a view come before the next view.
+    /// leaves the row unchanged. Fastest where all rows of a view come before the next view.
     /// Throws what the session throws, and Error{wrong_result} where a ray was never written.
     [[nodiscard]] ImageVerdict verify(RowRun& row, std::size_t view);
     /// Traces a view without judging; returns the hash of its hits.
@@ -47,11 +47,11 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-/// Traces every view of a scene once with each of its rows, and judges each ray in two questions: does the device
-/// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then the
-/// first view once more: its hits must be the same. Rows that cannot be traced end with their reason.
-/// rows: all of one scene, opened. budget: is told what everything takes, and may skip rows. Throws what
-/// Budget::review() throws.
+/// Traces every view of a scene once with each of its rows, and judges each ray by two questions: does the device
+/// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then traces the first
+/// view again: its hits must be the same. Rows that cannot be traced end with their reason.
+/// rows: all of one scene, opened. budget: gets the time of each step, and may skip rows. Throws what Budget::review()
+/// throws.
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
                  const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 

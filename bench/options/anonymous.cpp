@@ -17,7 +17,7 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
         text.replace(at, what.size(), by);
 }
 
-/// The home folder where it is the whole of a path or its beginning, and no part of a longer name, becomes "~".
+/// Replaces the home folder by "~" where it is a whole path or its beginning, but not part of a longer name.
 void shorten_home(std::string& text, const std::string& home)
 {
     for (std::size_t at = text.find(home); at != std::string::npos; at = text.find(home, at + 1)) {
@@ -27,7 +27,7 @@ void shorten_home(std::string& text, const std::string& home)
     }
 }
 
-/// What stays of a path: its last part; nothing that could be a person's folder, as of /home/name.
+/// What remains of a path: its last part; nothing where that could be a person's folder, as in /home/name.
 std::string last_part(std::string path)
 {
     path.erase(path.find_last_not_of('/') + 1);
@@ -45,7 +45,7 @@ bool starts_path(const std::string& text, std::size_t at)
            after_path.find(text[slash + 1]) == std::string_view::npos;
 }
 
-/// One past the path's last character: in quotes it may have blanks.
+/// One past the path's last character. A quoted path may contain blanks.
 std::size_t path_end(const std::string& text, std::size_t at)
 {
     const char before = at > 0 ? text[at - 1] : ' ';

@@ -7,11 +7,11 @@
 
 namespace tetrace {
 
-/// The text without what tells whose machine it comes from: of each file name with an absolute path, of each path that
-/// the options name, and of what lies below the home folder, only the last part stays; a home folder becomes "~".
+/// The text without anything that identifies the machine. Three kinds of path keep only their last part: file names
+/// with an absolute path, paths that the options name, and paths below the home folder. A home folder becomes "~".
 [[nodiscard]] std::string anonymous_text(const std::string& text, const Options& options);
 
-/// The result with anonymous_text() of all its texts, and without Google Benchmark's `context.host_name`.
+/// The result with anonymous_text() applied to all its texts, and without Google Benchmark's `context.host_name`.
 [[nodiscard]] nlohmann::json anonymous_json(nlohmann::json result, const Options& options);
 
 } // namespace tetrace

@@ -25,7 +25,7 @@ std::string checked_format(const std::string& flag, const std::string& text)
     return text;
 }
 
-/// Takes a flag that tetrace reacts to itself; false: it is to be handed on.
+/// Takes a flag that tetrace itself uses; false: the flag is for Google Benchmark.
 bool take_flag(BenchmarkFlags& flags, const std::string& name, const std::string& value)
 {
     if (name == "--benchmark_filter")
@@ -43,12 +43,12 @@ bool take_flag(BenchmarkFlags& flags, const std::string& name, const std::string
     return true;
 }
 
-/// Calls benchmark::Initialize, once only: each call would add the flags' context again.
+/// Calls benchmark::Initialize, only once: each call would add the flags' context again.
 void initialize_benchmark(const std::vector<std::string>& flags)
 {
-    static char program[] = "tetrace"; // Google Benchmark keeps this pointer to the end
+    static char program[] = "tetrace"; // Google Benchmark keeps this pointer until the program ends
     std::vector<std::string> texts = {"--benchmark_enable_random_interleaving=true"};
-    texts.insert(texts.end(), flags.begin(), flags.end()); // the user's come last: they win
+    texts.insert(texts.end(), flags.begin(), flags.end()); // the user's come last, so they take precedence
     std::vector<char*> arguments = {program};
     for (std::string& text : texts)
         arguments.push_back(text.data());
@@ -79,7 +79,7 @@ BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments)
         if (name == "--benchmark_out") flags.out = value;
         handed_on.push_back(argument);
     }
-    static_cast<void>(benchmark_filter_keeps(flags.filter, "")); // is it an expression?
+    static_cast<void>(benchmark_filter_keeps(flags.filter, "")); // checks that it is an expression
     initialize_benchmark(handed_on);
     return flags;
 }

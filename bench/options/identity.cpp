@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-/// The value of the first line that starts with `key`, what stands before it and quotes around it left out.
+/// The value on the first line that starts with `key`, without the key and surrounding quotes.
 std::string value_in(const char* file, const std::string& key, char separator)
 {
     std::ifstream lines(file);

@@ -4,7 +4,7 @@
 
 namespace tetrace {
 
-/// What this program was made from and with; recorded with every result.
+/// How this program was built; recorded with every result.
 struct BuildIdentity {
     std::string version;
     std::string commit; ///< git describe at build time; "unknown" outside a repository
@@ -13,7 +13,7 @@ struct BuildIdentity {
 };
 [[nodiscard]] BuildIdentity build_identity();
 
-/// What it runs on.
+/// The machine that it runs on.
 struct HostIdentity {
     std::string cpu;
     std::string system;   ///< the distribution's name and the kernel's release

@@ -22,7 +22,7 @@ constexpr unsigned building = bit(Verb::build) | reproducing;
 constexpr unsigned reporting =
     measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) | bit(Verb::reproduce) | bit(Verb::compare);
 
-/// What all kernels have at one place of their id, each once: the accepted values of an option.
+/// The distinct values that all kernels have in one part of their id: the accepted values of an option.
 template <class T>
 std::vector<T> kernels_have(T KernelId::*member)
 {
@@ -32,7 +32,7 @@ std::vector<T> kernels_have(T KernelId::*member)
     return values;
 }
 
-/// "plane, plucker or stp": of the structure's kernels alone.
+/// "plane, plucker or stp": the methods of the structure's kernels only.
 template <class T>
 std::string names_of(Structure structure, T KernelId::*member)
 {

@@ -8,20 +8,20 @@
 
 namespace tetrace {
 
-/// One option of the program: what parsing, every --help and the README's table are made from.
+/// One option of the program. Parsing, every --help and the README's table are generated from it.
 struct OptionRow {
     std::string group; ///< heading in help
     std::string name;  ///< with its dashes
     std::string value; ///< placeholder of its value; empty for a flag
-    std::string help;  ///< sentences, the default in the last
+    std::string help;  ///< sentences; the last one gives the default
     unsigned verbs;    ///< bit 1 << verb for each verb that takes it
-    bool list;         ///< may be repeated, and takes several values with commas between
+    bool list;         ///< may be repeated, and takes several values separated by commas
     std::function<void(Options&, const std::string&)> apply; ///< takes one value; throws Error{usage}
 };
 
 [[nodiscard]] const std::vector<OptionRow>& option_table();
 
-/// The files that a verb reads, named without an option: how help writes them, and how many there may be.
+/// The files that a verb reads, given without an option: how help writes them, and how many are allowed.
 struct FileArguments {
     std::string_view names = "";
     std::size_t least = 0, most = 0;

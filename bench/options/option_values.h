@@ -17,10 +17,10 @@ namespace tetrace {
 /// Splits at commas. Throws Error{usage} naming the option where a part is empty.
 [[nodiscard]] std::vector<std::string> split_list(const std::string& option, const std::string& text);
 
-/// Throws Error{usage}: the value is not accepted, these are.
+/// Throws Error{usage}: the value is not accepted; lists the accepted ones.
 [[noreturn]] void reject_value(const std::string& option, const std::string& value, const std::string& accepted);
 
-/// The value of that name. Throws Error{usage} listing the names otherwise.
+/// The value with that name. Throws Error{usage} listing the names where there is none.
 template <class T>
 [[nodiscard]] T choose(const std::string& option, const std::string& text, const std::vector<T>& values)
 {
@@ -48,11 +48,11 @@ template <class T>
 /// "WxH", or "N" for N x N; each from 1 to 16384. Throws Error{usage}.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, const std::string& text);
 
-/// "TETSxRAYS" for --searches: at most 1,000,000 tets of 1,048,576 rays, a multiple of 8. Throws Error{usage}.
+/// "TETSxRAYS" for --searches: at most 1,000,000 tets with 1,048,576 rays each, a multiple of 8. Throws Error{usage}.
 [[nodiscard]] SearchSize parse_searches(const std::string& text);
 
-/// View numbers: commas between numbers, ranges "10-20" and strides "0-1281:64"; empty is all. Ascending, each once.
-/// Throws Error{usage} naming the part that cannot be read, or the number that is not below view_count.
+/// View numbers: numbers separated by commas, ranges "10-20" and strides "0-1281:64"; empty is all. Ascending, each
+/// once. Throws Error{usage} naming the part that cannot be read, or the number that is not below view_count.
 [[nodiscard]] std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count);
 
 } // namespace tetrace

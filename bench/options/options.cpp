@@ -22,7 +22,7 @@ bool is_google_benchmark_flag(const std::string& argument)
     return argument.rfind("--benchmark_", 0) == 0;
 }
 
-/// Google Benchmark reads its own flags; all else is ours.
+/// Google Benchmark reads its own flags; tetrace reads all others.
 std::vector<std::string> without_benchmark_flags(const std::vector<std::string>& arguments, Options& options)
 {
     std::vector<std::string> ours;
@@ -59,7 +59,7 @@ void add_row(CLI::App& app, const OptionRow& row)
         app.add_flag(row.name);
         return;
     }
-    // Each occurrence takes one value; how many occurrences there may be is checked after parsing, in our own words.
+    // Each occurrence takes one value. The number of occurrences is checked after parsing, with our own error text.
     app.add_option(row.name, [](const CLI::results_t&) { return true; })
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -75,7 +75,7 @@ void apply_values(Options& options, const OptionRow& row, const std::vector<std:
             row.apply(options, value);
 }
 
-/// Lists that start with a default: the first value given replaces it.
+/// Lists that start with a default; the first value given replaces it.
 void clear_default(Options& options, const std::string& name)
 {
     if (name == "--domain") options.domains.clear();
@@ -119,13 +119,13 @@ void check_together(const Options& options)
     static_cast<void>(selected_views(options));
 }
 
-/// What a verb does unless it is told otherwise.
+/// A verb's defaults.
 Options defaults_of(Verb verb)
 {
     Options options;
     options.verb = verb;
     if (verb != Verb::reproduce) return options;
-    options.camera_set = CameraSet::flight; // as many views as the paper has, over its range of steps
+    options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};
     options.samples = 5;
     return options;
@@ -141,7 +141,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     std::vector<std::string> files;
     if (file_arguments(verb).most > 0) app.add_option("FILE", files);
     auto ours = without_benchmark_flags(arguments, options);
-    std::reverse(ours.begin(), ours.end()); // CLI11 takes them from the back
+    std::reverse(ours.begin(), ours.end()); // CLI11 takes the arguments from the back
     try {
         app.parse(std::move(ours));
     } catch (const CLI::CallForHelp&) {

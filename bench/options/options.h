@@ -19,23 +19,23 @@ enum class Verb { devices, scenes, build, bench, check, render, reproduce, compa
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
 
-/// A picture that `render` makes.
+/// A picture that `render` writes.
 enum class Picture { normals, steps };
 
-/// A table or a figure of the paper that `reproduce` makes anew.
-/// Growth, how cost grows with the mesh, is not in the paper.
+/// A table or a figure of the paper that `reproduce` measures again. Growth, how cost grows with the mesh, is not in
+/// the paper.
 enum class PaperTarget { table3, table4, table5, table6, figure6, growth };
 
-/// How many exit searches Table 5 is made from. Default: the paper's.
+/// The number of exit searches behind Table 5. Default: the paper's.
 struct SearchSize {
     std::uint32_t tets = 10'000;
-    std::uint32_t rays = 16'384; ///< of each tet; a multiple of TILE_WIDTH
+    std::uint32_t rays = 16'384; ///< for each tet; a multiple of TILE_WIDTH
 
     [[nodiscard]] std::uint64_t count() const { return std::uint64_t{tets} * rays; }
     friend bool operator==(const SearchSize&, const SearchSize&) = default;
 };
 
-/// A command line, checked. Empty lists select by default (see rows.h); all else holds its default.
+/// A checked command line. Empty lists select by default (see rows.h); all other members hold their default.
 struct Options {
     Verb verb = Verb::help;
     std::string help_topic; ///< verb that help is about; empty: the program
@@ -55,11 +55,11 @@ struct Options {
     std::vector<Layout> layouts;
     std::vector<std::string> backends;
     std::vector<RayKind> rays;
-    std::vector<RayOrder> ray_orders; ///< of rays that are given
+    std::vector<RayOrder> ray_orders; ///< of given rays
     std::vector<MathMode> math;
     std::vector<TetOrder> orders;
     std::vector<Schedule> schedules;
-    std::vector<std::string> devices; ///< texts, one of which a device's name, driver, type or id holds; empty: all
+    std::vector<std::string> devices; ///< texts; a device's name, driver, type or id must contain one; empty: all
     std::string filter;               ///< ECMAScript regular expression on row names; empty: all
     bool list = false;
 
@@ -69,30 +69,30 @@ struct Options {
 
     unsigned threads = 0;           ///< 0: all that the process may use
     unsigned tile_height = 0;       ///< 4 or 8; 0: see tile_height_of()
-    unsigned packet_lanes = 0;      ///< one of packet_widths; 0: the widest there is
-    std::uint64_t buffer_limit = 0; ///< every device's largest buffer, in bytes; 0: as it is
+    unsigned packet_lanes = 0;      ///< one of packet_widths; 0: the widest available
+    std::uint64_t buffer_limit = 0; ///< largest buffer of every device, in bytes; 0: unchanged
     unsigned samples = 10;
     double budget_s = 240; ///< for verifying and timing all rows
 
     std::vector<PaperTarget> targets; ///< of `reproduce`; empty: those of the paper
     SearchSize searches;              ///< of `reproduce`
     std::vector<std::uint32_t> sizes; ///< of `reproduce growth`; empty: growth_sizes()
-    bool resume = false;              ///< of `reproduce`: go on from the journal
+    bool resume = false;              ///< of `reproduce`: continue from the journal
 
     std::vector<std::string> required; ///< backends that must have a usable device
     bool allow_flawed = false;
-    double tolerance = 0.03;    ///< of `compare`, a share: slower by more is a regression
+    double tolerance = 0.03;    ///< of `compare`, a fraction: a row that is slower by more is a regression
     bool allow_missing = false; ///< of `compare`
     bool clear = false;
     std::vector<Picture> pictures;
     std::optional<std::filesystem::path> junit;          ///< of `check`
-    std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of what differs
+    std::optional<std::filesystem::path> picture_folder; ///< of `check`: pictures of the differences
 
     std::vector<std::filesystem::path> report_pictures; ///< of `report`: PNG files
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;
-    bool anonymous = false;                   ///< no host's name and no folders in results
+    bool anonymous = false;                   ///< no host name and no folders in results
     std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
 };
 
@@ -102,15 +102,15 @@ struct Options {
 [[nodiscard]] std::string_view name_of(PaperTarget target);
 [[nodiscard]] const std::vector<PaperTarget>& all_targets();
 
-/// Reads a command line, the program's name left out.
-/// Throws Error{usage} naming what is not accepted, and what is.
+/// Reads a command line, without the program's name.
+/// Throws Error{usage} naming what is not accepted, and the accepted values.
 [[nodiscard]] Options parse_options(const std::vector<std::string>& arguments);
 
-/// The scenes asked for with their one set of build options; the default scenes where none was named.
-/// Precondition: one domain, one number of divisions, one set of switches (parse_options sees to it but for `build`).
+/// The scenes asked for with their one set of build options; the default scenes where none was named. Precondition: one
+/// domain, one number of divisions, one set of switches (parse_options ensures it, except for `build`).
 [[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
 
-/// The numbers of the views asked for, ascending. Throws Error{usage} as parse_views() does.
+/// The view numbers asked for, ascending. Throws Error{usage} as parse_views() does.
 [[nodiscard]] std::vector<std::uint32_t> selected_views(const Options& options);
 
 } // namespace tetrace

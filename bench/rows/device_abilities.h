@@ -7,8 +7,8 @@
 
 namespace tetrace {
 
-/// The self-test of a device in a math mode, run at the first call and kept; empty where the API runs none of our
-/// kernels. Throws Error where the device fails.
+/// The device's self-test in a math mode, run at the first call and kept; empty where the API runs none of our kernels.
+/// Throws Error where the device fails.
 [[nodiscard]] const std::optional<SelfTest>& self_test_of(Backend& backend, std::size_t device, MathMode math);
 
 /// The device's yardstick, measured at the first call and kept; empty where the API has none of its own.

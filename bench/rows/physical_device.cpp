@@ -10,7 +10,7 @@ namespace {
 bool are_one(const Device& a, const Device& b)
 {
     if (runs_on_host(a) || runs_on_host(b)) return runs_on_host(a) && runs_on_host(b) && a.usable && b.usable;
-    // Instances of one divided GPU have one PCI address and UUIDs of their own.
+    // Instances of one divided GPU share its PCI address, but each has its own UUID.
     if (!a.uuid.empty() && !b.uuid.empty()) return a.uuid == b.uuid;
     return !a.pci.empty() && a.pci == b.pci;
 }
@@ -37,7 +37,7 @@ std::vector<std::size_t> physical_devices(std::span<const Device> devices)
     std::vector<std::size_t> numbers;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         numbers.push_back(i);
-        // A device that knows both its UUID and its PCI address can join two that know one each.
+        // A device with both a UUID and a PCI address can join two devices that have one each.
         for (std::size_t j = 0; j < i; ++j) {
             const auto mine = numbers[i], earlier = numbers[j];
             if (are_one(devices[i], devices[j])) std::replace(numbers.begin(), numbers.end(), mine, earlier);

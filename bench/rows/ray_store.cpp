@@ -11,7 +11,7 @@ namespace tetrace {
 
 namespace {
 
-/// The packed form and the kernel whose primary hits other rays are made from.
+/// The packed form and the kernel that trace the primary hits from which other rays are made.
 const PackedScene& reference_scene(SceneWork& scene)
 {
     return scene.packed(KernelId{}.layout, TetOrder::hilbert).data;

@@ -12,15 +12,15 @@ namespace tetrace {
 
 class SceneWork;
 
-/// The rays that are given to the rows of a scene, made when they are first asked for, and kept.
+/// The given rays of a scene's rows, made at the first request and kept.
 class RayStore {
 public:
-    /// The rays of a view (an index in SceneWork::views()); not of kind primary, which kernels make themselves.
+    /// The rays of a view (an index in SceneWork::views()). Not for kind primary: kernels make those rays themselves.
     /// Throws Error{internal} where openmp cannot trace the primary rays that they are made from.
     [[nodiscard]] const RaySet& set(SceneWork& scene, RayKind kind, RayOrder order, std::size_t view);
 
-    /// The same as a kernel's session takes them: from a tet of the packed scene for the cdt; for BVHs, whose rays
-    /// start off the surface, packed may be null.
+    /// The same in the form that a kernel's session takes: from a tet of the packed scene for the cdt. For BVHs, whose
+    /// rays start off the surface, packed may be null.
     [[nodiscard]] const std::vector<Quad>& rows(SceneWork& scene, const RowKey& key, const PackedScene* packed,
                                                 std::size_t view);
 
@@ -31,7 +31,7 @@ private:
 
     std::map<std::size_t, std::vector<Hit>> primary_hits_; ///< by view
     std::map<SetKey, RaySet> sets_;
-    std::map<std::tuple<SetKey, Structure, TetOrder>, std::vector<Quad>> rows_; ///< layouts of a structure share them
+    std::map<std::tuple<SetKey, Structure, TetOrder>, std::vector<Quad>> rows_; ///< shared by a structure's layouts
 };
 
 } // namespace tetrace

@@ -18,7 +18,7 @@ Backend& backend_named(const std::string& name, const std::vector<Backend*>& bac
     throw Error(ErrorKind::internal, "no backend is named " + name);
 }
 
-/// Finds the row's device; whether a session can be opened there.
+/// Finds the row's device; returns whether a session can be opened there.
 bool find_device(RowRun& row, const std::vector<Backend*>& backends)
 {
     row.backend = &backend_named(row.key.backend, backends);
@@ -151,7 +151,7 @@ void guarded(RowRun& row, const std::function<void()>& work)
 
 namespace {
 
-/// Empty, so that no program is kept, where the environment names no folder for caches.
+/// Empty where the environment names no cache folder; then no program is kept.
 std::filesystem::path program_cache()
 {
     try {

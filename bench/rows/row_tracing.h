@@ -8,11 +8,11 @@
 
 namespace tetrace {
 
-/// How many rays the row traces of a view (an index in SceneWork::views()): a ray a pixel, or those that are given,
-/// which are none where no primary ray of the view hits.
+/// Number of rays that the row traces of a view (an index in SceneWork::views()): one for each pixel, or the given
+/// rays. There are no given rays where no primary ray of the view hits.
 [[nodiscard]] std::size_t ray_count(const RowRun& row, std::size_t view);
 
-/// Of the rays that a row is given, view after view.
+/// Hash of a row's given rays, view after view.
 [[nodiscard]] std::uint64_t hash_of_rays(const RowRun& row);
 
 /// The pixel (y * width + x) that a ray of a view was made for.
@@ -21,25 +21,25 @@ namespace tetrace {
 /// The job of a view.
 [[nodiscard]] TraceJob job_of(const RowRun& row, std::size_t view);
 
-/// The same, for the row's open session; gives it the view's rays first, where it has others.
+/// The same for the row's open session. Where the session has another view's rays, gives it this view's first.
 /// Throws what Session::set_rays() throws.
 [[nodiscard]] TraceJob prepare_view(RowRun& row, std::size_t view);
 
-/// Traces a view and waits; returns device seconds. hits: ray_count() of them are read back.
+/// Traces a view and waits; returns device seconds. hits: receives ray_count() hits.
 [[nodiscard]] double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits);
 
-/// What a launch took until the end of wait(): seconds of the device's kernel, and of the host's clock.
+/// Duration of a launch until the end of wait(), in seconds: of the device's kernel, and by the host's clock.
 struct LaunchTimes {
     double kernel_s, wall_s;
 };
 
-/// A wall clock, in seconds from some start.
+/// A wall clock, in seconds from an arbitrary start.
 using Clock = std::function<double()>;
 
-/// The steady clock, from now on.
+/// The steady clock, starting now.
 [[nodiscard]] Clock host_clock();
 
-/// Launches a job and waits; nothing is read back. clock: the host's; tests of budgets bring their own.
+/// Launches a job and waits; reads nothing back. clock: the host's; tests of budgets pass their own.
 [[nodiscard]] LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock = host_clock());
 
 } // namespace tetrace

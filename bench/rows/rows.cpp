@@ -18,8 +18,8 @@ bool wanted(const std::vector<T>& list, const T& value)
     return list.empty() || std::find(list.begin(), list.end(), value) != list.end();
 }
 
-/// Where no method is named, the kernel list says which stand for all: two of the cdt, the paper's and the fastest.
-/// Many more rows are for those who compare methods.
+/// Where no method is named, the kernel list says which methods represent all: two of the cdt, the paper's and the
+/// fastest. The many other rows are for comparing methods.
 bool wanted_method(const Options& options, const KernelId& kernel)
 {
     return options.methods.empty() ? is_default(kernel) : wanted(options.methods, kernel.method);
@@ -35,7 +35,7 @@ bool wanted_schedule(const Options& options, const KernelId& kernel)
 {
     if (!is_portable(kernel)) return true;
     if (!options.schedules.empty()) return wanted(options.schedules, kernel.schedule);
-    const bool has_packets = options.verb != Verb::reproduce; // the paper's tables are of one ray at a time
+    const bool has_packets = options.verb != Verb::reproduce; // the paper's tables are for one ray at a time
     return kernel.schedule == Schedule::tiles || (has_packets && kernel.schedule == Schedule::packets);
 }
 
@@ -108,8 +108,8 @@ bool names_rt(const Options& options)
            });
 }
 
-/// Rows of layout rt that nobody named are those of real GPUs that have it. An emulated device takes a hundred times as
-/// long for them as for its other rows.
+/// Rows of layout rt are selected by default only on real GPUs that support it. An emulated device takes a hundred
+/// times as long for them as for its other rows.
 bool wanted_there(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
 {
     if (kernel.layout != Layout::rt || names_rt(options)) return true;
@@ -146,7 +146,7 @@ std::vector<RowKey> rows_of_scene(const Options& options, const std::string& sce
     return rows;
 }
 
-/// Rows of primary rays, and of those that are given in each order that is wanted, kind after kind.
+/// Rows of primary rays, and rows of given rays in each order asked for, kind after kind.
 std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& scene,
                                   const std::vector<Backend*>& backends)
 {
@@ -176,7 +176,7 @@ std::string device_names(const Options& options, const Backend& backend)
     return text;
 }
 
-/// Reasons of the backends asked for, so that an empty selection explains itself.
+/// The reasons of the backends asked for, to explain an empty selection.
 std::string reasons(const Options& options)
 {
     std::string text;
@@ -213,7 +213,7 @@ std::string numbered_backend(const RowKey& key)
 
 } // namespace
 
-// Copies of whole keys are compared, so that a field that is added later counts as a difference.
+// Compares copies of whole keys, so that a field added later counts as a difference.
 RowKey reference_row(RowKey key)
 {
     key.backend = reference_backend().name();

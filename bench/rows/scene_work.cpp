@@ -13,7 +13,8 @@ namespace tetrace {
 
 namespace {
 
-/// Some devices end loops silently at 65,535 iterations (lavapipe of Mesa 22.3): the cap stays below, everywhere alike.
+/// Some devices end loops silently at 65,535 iterations (lavapipe of Mesa 22.3). The cap stays below that on all
+/// devices.
 constexpr std::uint32_t largest_step_cap = 60'000;
 
 } // namespace
@@ -27,7 +28,7 @@ SceneWork::SceneWork(LoadedScene loaded, const Options& options)
     for (const std::uint32_t number : view_numbers_) {
         View view = make_view(cameras.at(number), width_, height_);
         const Start start = find_start(loaded_.scene, view.origin);
-        view.origin = start.origin; // every structure traces from there
+        view.origin = start.origin; // rays of every structure start there
         views_.push_back(view);
         start_tets_.push_back(start.tet);
     }

@@ -13,17 +13,17 @@
 
 namespace tetrace {
 
-/// A scene in packed form, and what packing it took.
+/// A scene in packed form, and the cost of packing it.
 struct Packed {
     PackedScene data;
     double pack_s = 0;
-    std::optional<double> bvh_build_s; ///< of a BVH, which is built for all its layouts once
+    std::optional<double> bvh_build_s; ///< of a BVH, which is built once for all its layouts
 };
 
-/// A loaded scene with all that its rows share: packed forms, views, start tets.
+/// A loaded scene with everything that its rows share: packed forms, views, start tets.
 class SceneWork {
 public:
-    /// Takes the views that the options select, and finds where their rays start.
+    /// Takes the views that the options select, and finds the tets where their rays start.
     SceneWork(LoadedScene loaded, const Options& options);
 
     [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
@@ -34,25 +34,26 @@ public:
     [[nodiscard]] std::uint32_t width() const { return width_; }
     [[nodiscard]] std::uint32_t height() const { return height_; }
     [[nodiscard]] std::size_t rays_per_view() const { return std::size_t{width_} * height_; }
-    /// Seconds that locating the origins of all views took.
+    /// Seconds for locating the origins of all views.
     [[nodiscard]] double locate_s() const { return locate_s_; }
 
-    /// Packs at the first call; later calls return the same. Throws Error{unsupported} as pack() and pack_bvh() do.
+    /// Packs at the first call; later calls return the same object. Throws Error{unsupported} as pack() and pack_bvh()
+    /// do.
     [[nodiscard]] const Packed& packed(Layout layout, TetOrder order);
 
     /// The BVH of the scene's mesh, built at the first call.
     [[nodiscard]] const BuiltBvh& bvh();
 
-    /// The rays that rows of other kinds than primary are given.
+    /// The given rays, for rows of other kinds than primary.
     [[nodiscard]] RayStore& given_rays() { return given_rays_; }
 
-    /// The tet of the scene that holds a view's origin, NO_TET where it lies outside the domain.
+    /// The tet of the scene that contains a view's origin; NO_TET where the origin is outside the domain.
     [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
 
-    /// A walk that long is lost.
+    /// A walk of this many steps is lost.
     [[nodiscard]] std::uint32_t max_steps() const;
 
-    /// Host threads that all work uses.
+    /// Host threads used for all work.
     [[nodiscard]] unsigned threads() const { return threads_; }
 
     /// The job of the view at `index` of views(). packed: null for kernels that are not portable.
@@ -72,15 +73,15 @@ private:
     RayStore given_rays_;
 };
 
-/// Loads a scene, says its messages, and makes it ready. label: what rows call it; empty: its scene_label().
+/// Loads a scene, prints its messages, and prepares it. label: its name in rows; empty: its scene_label().
 /// Throws what load_scene() throws.
 [[nodiscard]] SceneWork load_work(const SceneRequest& request, const Options& options, const std::string& label = {});
 
-/// Which defaults cannot be had here, and how to get them, a sentence each; empty where scenes were named.
+/// Default scenes that are not available here, and how to get them, one sentence each; empty where scenes were named.
 [[nodiscard]] std::vector<std::string> missing_default_scenes(const Options& options);
 
-/// Host threads that all work uses: those asked for, else OpenMP's number (OMP_NUM_THREADS, else all that the process
-/// may use).
+/// Host threads used for all work: the number asked for, else OpenMP's (OMP_NUM_THREADS, else all that the process may
+/// use).
 [[nodiscard]] unsigned resolved_threads(const Options& options);
 
 } // namespace tetrace

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double quiet_s = 2.0;
 constexpr double redraw_s = 0.1;
-constexpr double rename_s = 0.005; // soon: work of minutes must not bear the name of the work before it
+constexpr double rename_s = 0.005; // soon: a stage that takes minutes must not show the previous stage's name
 
 std::size_t terminal_width()
 {
@@ -34,10 +34,10 @@ bool draws_here()
     return isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
 }
 
-/// Columns that the process's line takes, for the signal handler.
+/// Columns that the process's line takes up, for the signal handler.
 std::atomic<std::size_t> columns_to_clear{0};
 
-/// Takes the line away, then lets the signal end the process as it would have: only async-signal-safe calls.
+/// Clears the line, then lets the signal end the process as usual. Makes only async-signal-safe calls.
 void clear_and_end(int signal)
 {
     char blanks[256];
@@ -50,7 +50,7 @@ void clear_and_end(int signal)
     std::raise(signal);
 }
 
-/// Signals that are ignored, or handled by others, stay so.
+/// Leaves signals alone that are ignored or that others handle.
 void clear_when_interrupted()
 {
     static_assert(decltype(columns_to_clear)::is_always_lock_free, "read by a signal handler");

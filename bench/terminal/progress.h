@@ -7,8 +7,8 @@
 
 namespace tetrace {
 
-/// The one line on a terminal's standard error that tells what long work is doing: stage, elapsed time, percentage
-/// where it is known. Nothing is drawn without a terminal, nor in the first 2 seconds.
+/// The progress line on a terminal's standard error: stage, elapsed time, and the percentage where it is known. Nothing
+/// is drawn without a terminal, or in the first 2 seconds.
 class ProgressLine {
 public:
     /// draws: whether to draw at all. colour: whether escape sequences may be written.
@@ -17,17 +17,17 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// fraction: done so far in [0, 1]; left_s: seconds that it will still take. Negative where it cannot be known.
-    /// detail: what the stage is working on; the time that is shown is the stage's.
+    /// fraction: done so far in [0, 1]; left_s: expected remaining seconds. Negative where unknown.
+    /// detail: what the stage is working on; the time shown is the stage's.
     void show(const std::string& stage, double fraction, double left_s = -1, const std::string& detail = {});
-    /// Takes the line away, before anything else is written, and when the work is done.
+    /// Clears the line. Called before anything else is written, and when the work is done.
     void clear();
     [[nodiscard]] Progress callback();
 
 private:
     bool draws_;
     bool colour_;
-    std::size_t drawn_ = 0; ///< columns that the line takes now
+    std::size_t drawn_ = 0; ///< columns that the line takes up now
     bool has_drawn_ = false;
     std::string stage_, detail_;
     Stopwatch in_stage_, since_draw_;
@@ -37,14 +37,14 @@ private:
 [[nodiscard]] std::string progress_text(const std::string& stage, double elapsed_s, double fraction, std::size_t width,
                                         double left_s = -1);
 
-/// The program's one line: draws where standard error is a terminal that is not dumb, in colour unless NO_COLOR is set.
-/// SIGINT and SIGTERM then take the line away before they end the program.
+/// The program's progress line. Draws where standard error is a terminal that is not dumb, in colour unless NO_COLOR is
+/// set. SIGINT and SIGTERM then clear the line before they end the program.
 [[nodiscard]] ProgressLine& progress_line();
 
-/// Writes a message and a line end to standard error, the progress line out of the way.
+/// Clears the progress line, then writes a message and a line end to standard error.
 void say(const std::string& message);
 
-/// Writes a result to standard output, the progress line out of the way. Throws Error{invalid_input} where it cannot.
+/// Clears the progress line, then writes a result to standard output. Throws Error{invalid_input} where writing fails.
 void print(const std::string& text);
 
 } // namespace tetrace

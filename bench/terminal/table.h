@@ -10,7 +10,7 @@
 
 namespace tetrace {
 
-/// A cell: nothing (printed as a dash), text, a whole number or a real one.
+/// A cell: empty (printed as a dash), text, a whole number or a real number.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 [[nodiscard]] inline bool is_empty(const Cell& cell)
@@ -25,7 +25,7 @@ template <class T>
     return value ? Cell(*value) : Cell();
 }
 
-/// A column: `key` names it in CSV and JSON, unit included (`build_s`); people read title and unit.
+/// A column. `key` names it in CSV and JSON and includes the unit (`build_s`); text and Markdown show title and unit.
 struct Column {
     std::string key;
     std::string title;
@@ -33,28 +33,28 @@ struct Column {
     int decimals = 2; ///< of real numbers, in text and Markdown; CSV keeps all digits
 };
 
-/// A table that prints itself as aligned text, CSV or Markdown. Numbers stand right-aligned, texts left.
+/// A table that prints itself as aligned text, CSV or Markdown. Numbers are right-aligned, texts left-aligned.
 class Table {
 public:
     explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
-    /// Throws Error{internal} where the number of cells is not that of the columns.
+    /// Throws Error{internal} where the number of cells differs from the number of columns.
     void add(std::vector<Cell> cells);
-    /// A line of text in front of the rows that are added next; in text() alone.
+    /// A line of text above the rows that are added next; only text() shows it.
     void add_heading(const std::string& text);
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
     [[nodiscard]] const std::vector<std::vector<Cell>>& rows() const { return rows_; }
 
-    /// Lines indented by `indent` blanks: titles, units where a column has one, rows. Columns without a cell are left
-    /// out.
+    /// Lines indented by `indent` blanks: titles, units where a column has one, rows. Columns with only empty cells are
+    /// left out.
     [[nodiscard]] std::string text(std::size_t indent = 0) const;
-    /// RFC 4180 but for line ends, which are \n: keys, then rows; an empty cell is empty.
+    /// RFC 4180, except that lines end in \n: keys, then rows; an empty cell is empty.
     [[nodiscard]] std::string csv() const;
-    /// A GitHub table; units stand in the header behind the title.
+    /// A GitHub table; the header shows each unit after its title.
     [[nodiscard]] std::string markdown() const;
 
-    /// Whether no cell of the column is a text.
+    /// Whether no cell of the column holds text.
     [[nodiscard]] bool is_number(std::size_t column) const;
 
 private:
@@ -62,10 +62,10 @@ private:
 
     std::vector<Column> columns_;
     std::vector<std::vector<Cell>> rows_;
-    std::multimap<std::size_t, std::string> headings_; ///< by the row that they stand in front of
+    std::multimap<std::size_t, std::string> headings_; ///< by the row that they precede
 };
 
-/// A cell as people read it; a dash where it is empty, or a real number that is not finite.
+/// A cell as text shows it; a dash where it is empty or a real number that is not finite.
 [[nodiscard]] std::string cell_text(const Cell& cell, const Column& column);
 
 } // namespace tetrace

@@ -16,7 +16,7 @@ std::size_t display_width(const std::string& text)
 
 namespace {
 
-/// The words of a paragraph in lines of at most `width` columns.
+/// Breaks a paragraph's words into lines of at most `width` columns.
 std::vector<std::string> lines_of(const std::string& paragraph, std::size_t width)
 {
     std::istringstream words(paragraph);
@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& paragraph, std::size_t widt
     return lines;
 }
 
-/// Moves a word down where the last line is one short word.
+/// Moves a word down where the last line would be one short word.
 void move_to_orphan(std::vector<std::string>& lines)
 {
     constexpr std::size_t short_word = 12;
@@ -58,7 +58,7 @@ std::string filled(const std::string& text, std::size_t width, std::size_t inden
     return result;
 }
 
-/// Bytes of the UTF-8 character at `i` that XML can hold; 0 where there is none.
+/// Length in bytes of the UTF-8 character at `i`; 0 where there is none that XML can hold.
 std::size_t character_length(const std::string& text, std::size_t i)
 {
     const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };

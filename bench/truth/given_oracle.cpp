@@ -18,15 +18,15 @@ namespace {
 
 static_assert(FREE_FACE == NO_HIT, "a ray that starts on no triangle starts on none that could be hit");
 
-constexpr std::size_t rays_at_once = 1024; // judged by one thread, one after the other
+constexpr std::size_t rays_at_once = 1024; // one thread judges these, one after the other
 
 struct Reference {
     std::uint32_t face = NO_HIT;
     float t = 0;
 };
 
-// The nearest triangle but the one that the ray starts on. A filter would ask for another kind of scene; and what else
-// lies at the very place where that triangle was found is settled by exact arithmetic.
+// The nearest triangle except the one that the ray starts on. A filter would need another kind of scene. Other
+// triangles at the place where that triangle was found are settled by exact arithmetic.
 Reference embree_nearest(const embree::Accelerator& accelerator, const ExactRay& ray, const RayPart& part)
 {
     float near = 0;
@@ -88,7 +88,7 @@ void GivenOracle::Parts::trace_reference(const RaySet& set)
     }
 }
 
-// What is wrong with a hit whatever other triangles there are; null: nothing.
+// What is wrong with a hit, regardless of other triangles; null: nothing.
 const char* GivenOracle::Parts::flaw_of(const Judged& judged, Origins origins) const
 {
     const auto& [given, part, ours, theirs] = judged;
@@ -110,8 +110,8 @@ Settlement GivenOracle::Parts::settle(const Judged& judged, Origins origins) con
     return settler.settle(ray, judged.part, judged.ours.face_id, theirs.face, tie_bound(ray.origin));
 }
 
-// The triangle that an answer may mean which tells only that there is one: met by the ray, or by it moved by the bound
-// in one of four directions, or a little behind its end. Exact arithmetic then says whether it will do.
+// The triangle that an any-hit answer may stand for: one that the ray meets, or meets when moved by the bound in one of
+// four directions, or slightly past its end. Exact arithmetic then decides whether it is acceptable.
 std::uint32_t GivenOracle::Parts::some_face(const Judged& judged, Origins origins) const
 {
     if (judged.theirs.face != NO_HIT) return judged.theirs.face;

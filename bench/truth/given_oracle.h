@@ -8,13 +8,12 @@
 
 namespace tetrace {
 
-/// Where the rays that were traced started: where the set has them (given_quads), or offset, as BVHs get them
-/// (given_quads_offset).
+/// Where the traced rays started: at the set's origins (given_quads), or offset, as BVHs get them (given_quads_offset).
 enum class Origins { own, offset };
 
-/// Judges the answers to rays that were given, as Oracle does those to primary ones. Embree gets the set's own origins
-/// and is asked on behind the triangle that a ray starts on. Of kinds that take any hit, whether there is one is
-/// compared, and a triangle that was named must be met before the ray's end.
+/// Judges the answers to given rays, as Oracle judges those to primary rays. Embree gets the set's own origins, and is
+/// asked again past the triangle that a ray starts on. For any-hit kinds, the comparison is whether there is a hit, and
+/// the triangle in the answer must be met before the ray's end.
 class GivenOracle {
 public:
     /// mesh: the scene's, kept by reference. threads: 0 is all.
@@ -22,7 +21,7 @@ public:
     ~GivenOracle();
 
     /// hits: by ray, in the set's order. Verdicts::flawed has pixels as in an image of the set's width. Keeps Embree's
-    /// answers to the last set for the next row.
+    /// answers for the last set, for the next row.
     [[nodiscard]] Verdicts judge(const RaySet& set, std::span<const Hit> hits, Origins origins);
 
 private:

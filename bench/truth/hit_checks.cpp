@@ -10,7 +10,7 @@ namespace tetrace {
 
 namespace {
 
-/// Unlike ==, tells 0 from -0.
+/// Unlike ==, distinguishes 0 from -0.
 bool has_same_bits(const Hit& a, const Hit& b)
 {
     return std::memcmp(&a, &b, sizeof(Hit)) == 0;

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// What became of the rays, counted.
+/// Counts of what happened to the rays.
 struct RayTotals {
     std::uint64_t rays = 0;
     std::uint64_t hits = 0;
@@ -24,25 +24,25 @@ struct RayTotals {
 };
 [[nodiscard]] RayTotals count_rays(std::span<const Hit> hits);
 
-/// How far two answers may be apart that are one.
+/// How far two answers may differ and still count as equal.
 struct Allowance {
     std::uint32_t ulps = 0;    ///< of t, u and v, in units in the last place; 0: the same bits
-    bool any_triangle = false; ///< any hit answers: whether there is one counts, not which
+    bool any_triangle = false; ///< any-hit answers: compares whether there is a hit, not which
 };
 
 /// Rays on which two backends disagree.
 struct Differences {
-    std::uint64_t count = 0;          ///< further apart than allowed
+    std::uint64_t count = 0;          ///< differ by more than allowed
     std::optional<std::size_t> first; ///< index of the first of those
-    std::uint64_t inexact = 0;        ///< not the same bits, allowed or not
+    std::uint64_t inexact = 0;        ///< differ in some bit, allowed or not
     std::uint64_t largest_ulps = 0;   ///< of t, u and v where allowed
 };
 
-/// Whether two hits may be one answer: face, tet and steps in every bit, t, u and v as near as is allowed (see
-/// SelfTest::allowed_ulps); or whether both or neither is a hit, where that is all that is asked.
+/// Whether two hits count as one answer: the same bits in face, tet and steps, and t, u and v within the allowed
+/// distance (see SelfTest::allowed_ulps). Any-hit answers: both hit or both miss.
 [[nodiscard]] bool is_same_hit(const Hit& a, const Hit& b, Allowance allowed);
 
-/// Compares a device's hits with openmp's. Throws Error{internal} where their numbers differ.
+/// Compares a device's hits with openmp's. Throws Error{internal} where the numbers of hits differ.
 [[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed);
 
 } // namespace tetrace

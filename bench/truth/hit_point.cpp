@@ -31,7 +31,7 @@ bool names_one_point(const TriangleMesh& mesh, const ExactRay& ray, const Hit& h
     const double t = static_cast<double>(hit.t);
     const Double3 on_triangle = v0 + e1 * static_cast<double>(hit.u) + e2 * static_cast<double>(hit.v);
     const double apart = length(to_double(ray.origin) + to_double(ray.direction) * t - on_triangle);
-    return apart <= bound * hit_condition(mesh, ray, hit.face_id); // false for nan
+    return apart <= bound * hit_condition(mesh, ray, hit.face_id); // false for NaN
 }
 
 } // namespace tetrace

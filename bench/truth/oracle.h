@@ -13,7 +13,7 @@
 
 namespace tetrace {
 
-/// A ray whose answer is wrong, with all that is needed to look at it.
+/// A ray with a wrong answer, and everything needed to examine it.
 struct WrongRay {
     std::uint32_t view = 0, x = 0, y = 0;
     Hit ours{};
@@ -22,7 +22,7 @@ struct WrongRay {
     std::string reason;
 };
 
-/// How the rays of an image were judged; each is in exactly one of agreed, ties, settled, offset, wrong, lost.
+/// Verdicts on the rays of an image; each ray is in exactly one of agreed, ties, settled, offset, wrong, lost.
 struct Verdicts {
     std::uint64_t rays = 0;
     std::uint64_t agreed = 0;  ///< same triangle as Embree in robust mode, or both miss
@@ -35,20 +35,20 @@ struct Verdicts {
     std::optional<WrongRay> first_wrong; ///< the first wrong or lost ray
     std::vector<std::uint32_t> flawed;   ///< of one image: pixels (y * width + x) of its wrong and lost rays, ascending
 
-    /// Sums; `flawed` stays as it is, for pixels of different images do not belong together.
+    /// Adds the counts; leaves `flawed` unchanged, because pixels of different images cannot be merged.
     void add(const Verdicts& other);
     [[nodiscard]] bool clean() const { return wrong == 0 && lost == 0; }
 };
 
-/// Judges hits. Shares no code with the kernels but the making of primary rays: every ray is compared with Embree in
-/// robust mode, and each disagreement is settled by exact arithmetic on the original triangles.
+/// Judges hits. Shares only the making of primary rays with the kernels: every ray is compared with Embree in robust
+/// mode, and each disagreement is settled by exact arithmetic on the original triangles.
 class Oracle {
 public:
     /// mesh: the scene's, kept by reference. threads: 0 is all.
     Oracle(const TriangleMesh& mesh, unsigned threads);
     ~Oracle();
 
-    /// Judges every ray of one image; hits row after row. Keeps Embree's answers of the last view for the next row.
+    /// Judges every ray of one image; hits: row after row. Keeps Embree's answers for the last view, for the next row.
     [[nodiscard]] Verdicts judge(std::uint32_t view_number, const View& view, std::uint32_t width, std::uint32_t height,
                                  std::span<const Hit> hits);
 

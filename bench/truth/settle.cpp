@@ -11,11 +11,11 @@ namespace {
 
 constexpr double never = HUGE_VAL;
 
-// Distance between the line of the ray and the segment ab.
+// Distance between the ray's line and the segment ab.
 double line_to_segment(const ExactRay& ray, Double3 a, Double3 b)
 {
     const Double3 d = normalized(to_double(ray.direction));
-    const auto across = [&](Double3 p) { return p - d * dot(p, d); }; // drop what is along the ray
+    const auto across = [&](Double3 p) { return p - d * dot(p, d); }; // remove the component along the ray
     const Double3 pa = across(a - to_double(ray.origin));
     const Double3 ab = across(b - a);
     const double square = dot(ab, ab);
@@ -74,8 +74,8 @@ bool Settler::meets(const ExactRay& ray, const RayPart& part, std::uint32_t tria
     return crossing.met && (part.end >= NO_END || crossing.t <= static_cast<double>(part.end));
 }
 
-// How far a triangle that the part does not meet is from it: from the ray's line, or beyond its start or its end;
-// `never` beyond what is allowed.
+// Distance from the part of the ray to a triangle that it does not meet: from the ray's line, or beyond its start or
+// end; `never` where it exceeds the allowed distance.
 double Settler::excess(const ExactRay& ray, const RayPart& part, std::uint32_t triangle, double bound) const
 {
     const auto [a, b, c] = corners(triangle);
@@ -87,7 +87,8 @@ double Settler::excess(const ExactRay& ray, const RayPart& part, std::uint32_t t
     return distance <= bound ? distance : never;
 }
 
-// How far the ray's crossing of a triangle's plane is from its start or its end; `never` beyond what each allows.
+// Distance from the ray's crossing of a triangle's plane to its start or end; `never` where neither is within its
+// limit.
 double Settler::distance_to_limits(const ExactRay& ray, const RayPart& part, std::uint32_t triangle, double bound) const
 {
     if (part.is_whole()) return never;
@@ -137,14 +138,14 @@ bool Settler::is_silhouette(const ExactRay& ray, std::uint32_t a, std::uint32_t 
     return !(left && right);
 }
 
-// How far the ray is from the nearest edge over which it escapes `triangle`: shared with ours, or a silhouette.
+// Distance from the ray to the nearest edge over which it escapes `triangle`: one shared with ours, or a silhouette.
 double Settler::escape_distance(const ExactRay& ray, std::uint32_t triangle, std::uint32_t ours, double bound) const
 {
     double nearest = never;
     for (const auto a : mesh_.triangles[triangle]) {
         const bool at_vertex = distance_to_edge(ray, a, a) <= bound;
         for (const auto neighbour : triangles_at(a)) {
-            if (neighbour != triangle && !at_vertex) continue; // edges of other triangles count only round a vertex
+            if (neighbour != triangle && !at_vertex) continue; // edges of other triangles count only around a vertex
             for (const auto b : mesh_.triangles[neighbour]) {
                 if (b == a) continue;
                 const double distance = distance_to_edge(ray, a, b);

@@ -9,40 +9,40 @@
 
 namespace tetrace {
 
-/// A ray as exact arithmetic sees it: its float coordinates, taken literally.
+/// A ray for exact arithmetic: its float coordinates, taken literally.
 struct ExactRay {
     Float3 origin, direction;
 };
 
-/// What of a ray counts, and what is asked of it.
+/// Which part of a ray counts, and which answer is wanted.
 struct RayPart {
-    std::uint32_t start = NO_HIT; ///< the triangle that it starts on, which it does not meet again; NO_HIT: on none
+    std::uint32_t start = NO_HIT; ///< the triangle that it starts on and does not meet again; NO_HIT: none
     float end = NO_END;           ///< ray parameter of its end
     bool any_hit = false;         ///< ours need not be nearest
 
     [[nodiscard]] bool is_whole() const { return start == NO_HIT && end >= NO_END; }
 };
 
-/// What became of a disagreement between two answers.
+/// Verdict on a disagreement between two answers.
 struct Settlement {
     enum class Kind {
-        ours,  ///< exact arithmetic has our answer as the nearest of the candidates
+        ours,  ///< exact arithmetic finds our answer the nearest of the candidates
         tie,   ///< the ray passes an edge so closely that float32 may decide either way
         wrong, ///< neither
     } kind = Kind::wrong;
-    double distance = 0; ///< of a tie: how far the ray, or its start or end, is from what explains it
+    double distance = 0; ///< of a tie: distance from the ray, or its start or end, to what explains it
     const char* reason = "";
 };
 
 /// Settles disagreements about which triangle a ray meets first, by exact arithmetic on the triangles concerned.
 ///
-/// The candidates are the triangles of both answers and all that share a vertex with them. Our answer stands if it is
-/// the nearest candidate that the exact ray meets. It is a tie if the ray is within the bound of our triangle, and
-/// every candidate that the exact ray meets before it can be escaped within the bound: over an edge or vertex that it
-/// shares with our triangle, or over a silhouette (an edge whose triangles all lie on one side as seen along the ray,
-/// or that has only one). Between two triangles that continue each other there is no gap to slip through: that is
-/// wrong. A ray that starts on a triangle, or ends, is also a tie where a triangle is within the bound of its start, or
-/// within the bound times hit_condition() of its end, which is compared with a rounded t.
+/// The candidates are the triangles of both answers and all triangles that share a vertex with them. Our answer stands
+/// if it is the nearest candidate that the exact ray meets. It is a tie if the ray is within the bound of our triangle,
+/// and the ray can escape, within the bound, every candidate that it exactly meets before ours. It can escape over an
+/// edge or vertex shared with our triangle, or over a silhouette (an edge whose triangles all lie on one side as seen
+/// along the ray, or that has only one triangle). Two triangles that continue each other leave no gap to slip through:
+/// that answer is wrong. A ray that starts or ends on a triangle is also a tie where a triangle is within the bound of
+/// its start, or within the bound times hit_condition() of its end, which is compared with a rounded t.
 class Settler {
 public:
     explicit Settler(const TriangleMesh& mesh);

@@ -5,7 +5,7 @@
 namespace tetrace {
 namespace {
 
-// The same direction, bit for bit, as the kernels make for the pixel: the sums in the same order, in float.
+// The direction that the kernels make for the pixel, bit for bit: the same sums in the same order, in float.
 float direction_component(float corner, float step_x, float step_y, std::uint32_t x, std::uint32_t y)
 {
     return corner + step_x * static_cast<float>(x) + step_y * static_cast<float>(y);
@@ -32,10 +32,10 @@ std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std:
         static_cast<void>(session.trace(pixel, {&hit, 1}));
         return hit;
     };
-    // A walk that is cut off after k steps says in which tet it stood.
+    // A walk that is cut off after k steps reports the tet that it was in.
     std::vector<std::uint32_t> path;
     const Hit last = trace(job.max_steps);
-    const std::uint32_t steps = std::min(last.steps, job.max_steps); // a broken device may claim any number
+    const std::uint32_t steps = std::min(last.steps, job.max_steps); // a faulty device may report any number
     for (std::uint32_t cap = 1; cap < steps && path.size() < most; ++cap)
         path.push_back(trace(cap).tet);
     if (last.tet != NO_TET && path.size() < most) path.push_back(last.tet);

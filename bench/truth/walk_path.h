@@ -7,12 +7,12 @@
 
 namespace tetrace {
 
-/// The tets that the walk of one pixel leaves, in order, as positions in the packed scene, at most so many; traced by
-/// the device that the session is on. Throws what the session throws.
+/// The first tets that one pixel's walk leaves, in order, as positions in the packed scene, up to the given number. The
+/// session's device traces the walk. Throws what the session throws.
 [[nodiscard]] std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std::uint32_t x,
                                                    std::uint32_t y, std::uint32_t most);
 
-/// The same, all of it, traced by the openmp backend.
+/// The whole path, traced by the openmp backend.
 [[nodiscard]] std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel,
                                                    const TraceJob& job, std::uint32_t x, std::uint32_t y);
 
