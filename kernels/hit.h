@@ -1,4 +1,6 @@
-// A ray's answer, for all structures alike.
+// kernels/: the kernels, one source for every language; here what all structures share.
+
+// A ray's answer, the same for all structures.
 
 // t, u, v on the input triangle with corners v0, v0 + edge_1, v0 + edge_2 (Moeller and Trumbore 1997). A ray within
 // rounding of the triangle's plane gets the centroid.
@@ -31,7 +33,7 @@ KERNEL_FN Hit make_hit(Ray ray, uint triangle, Vec3 v0, Vec3 edge_1, Vec3 edge_2
     return hit;
 }
 
-// Whether a ray ends before it meets the plane of a triangle, by products alone. One that lies in the plane does not.
+// Whether a ray ends before it meets a triangle's plane, by products alone; false for a ray that lies in the plane.
 KERNEL_FN bool is_beyond(Ray ray, Vec3 v0, Vec3 edge_1, Vec3 edge_2, real end)
 {
     if (end >= real(NO_END)) return false;

@@ -1,6 +1,6 @@
-// A whole kernel, after a dialect header and its SceneView. KERNEL_STRUCTURE_HEADER says which structure, cdt.h or
-// bvh.h, and that one which of KERNEL_LAYOUT_HEADER and KERNEL_METHOD_HEADER it needs. The order matters: kernel
-// headers include nothing themselves but by these names, because not every language that reads them can.
+// A whole kernel; include it after a dialect header and its SceneView. KERNEL_STRUCTURE_HEADER names the structure,
+// kernels/*/structure_*.h, which includes KERNEL_LAYOUT_HEADER and, if it needs one, KERNEL_METHOD_HEADER. The order
+// matters: kernel headers include others only by these names, because not every language can include files.
 #include "kernels/language/vector.h"
 
 #include "kernels/ray.h"

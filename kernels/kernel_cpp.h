@@ -1,4 +1,4 @@
-// A whole kernel in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h): the including file says which
+// A whole kernel in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h). The including file defines
 // layout and method, see kernel.h.
 #include "kernels/language/dialect_cpp.h"
 

@@ -1,5 +1,5 @@
-// The self-test: one operation a work item, so that a device shows how it computes. core/device/self_test.h makes the
-// inputs and judges the outputs. A dialect brings as_real, as_bits, to_real and square_root.
+// The self-test: one operation per work item, which shows how a device computes. core/device/self_test.h makes the
+// inputs and judges the outputs. A dialect defines as_real, as_bits, to_real and square_root.
 KERNEL_FN uint probe(uint operation, uint a, uint b, uint c)
 {
     real x = as_real(a);
@@ -8,7 +8,7 @@ KERNEL_FN uint probe(uint operation, uint a, uint b, uint c)
     PRECISE real multiply_add = x * y + z;
     PRECISE real quotient = x / y;
     PRECISE real sum = x + y;
-    PRECISE real product = x * z; // not x * y, which multiply_add would share instead of fusing it
+    PRECISE real product = x * z; // not x * y: multiply_add would share that product instead of fusing it
     PRECISE real root = square_root(x);
     real converted = to_real(a);
     uint result = a;

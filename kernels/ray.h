@@ -1,4 +1,4 @@
-// What a launch gets, what a ray is, and how a pixel becomes one.
+// The parameters of a launch, a ray, and how a pixel becomes a ray.
 STRUCT(TraceParams)
 {
     Vec3 origin;
@@ -9,12 +9,12 @@ STRUCT(TraceParams)
     uint height;
     uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
     uint max_steps;
-    uint any_hit;  // != 0: whether there is a hit is asked, and the first one found will do
-    uint start_v0; // vertices of start_tet, where tets cannot name theirs (walk_compact.h)
+    uint any_hit;  // != 0: any hit will do, so the first one found is the answer
+    uint start_v0; // vertices of start_tet, for tets that do not store their vertices (walk_compact.h)
     uint start_v1;
     uint start_v2;
     uint start_v3;
-    uint start_neighbour; // what is behind the face opposite that of them with the highest number
+    uint start_neighbour; // what is behind the face opposite the one with the highest number
 };
 
 STRUCT(Ray)
@@ -34,7 +34,7 @@ STRUCT(Hit)
     uint steps;
 };
 
-// Components below 2^-20 of the optical axis become zero: no product on the way is then denormal
+// Components below 2^-20 of the optical axis become zero: then no intermediate product is denormal
 // (docs/spec/numbers.md, N1).
 KERNEL_FN real without_dust(real a)
 {
@@ -60,7 +60,7 @@ KERNEL_FN Ray primary_ray(TraceParams params, uint x, uint y)
     return make_ray(params.origin, VEC3(without_dust(dx), without_dust(dy), without_dust(dz)));
 }
 
-// A ray that is given, by its quads (layout.h).
+// A given ray, from its quads (layout.h).
 KERNEL_FN Ray given_ray(uint4 direction, uint4 origin)
 {
     return make_ray(VEC3(as_real(origin.x), as_real(origin.y), as_real(origin.z)),

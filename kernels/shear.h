@@ -1,11 +1,11 @@
-// A vertex as a ray sees it: at a point of the plane across the ray, whose origin is the ray; and the sides of the ray
-// at edges there. Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; here without a
-// division.
+// A vertex as a ray sees it: projected to a plane across the ray, with the ray as the plane's origin; and the sides of
+// the ray at edges in that plane. Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013;
+// here without a division.
 STRUCT(Shear)
 {
-    Vec3 across;  // seen along the ray, x and y of a point times 2^20 are its products with these: no product of two
+    Vec3 across;  // a point's products with these are its x and y in the plane times 2^20: no product of two
     Vec3 upwards; // such coordinates is denormal
-    Vec3 along;   // and its depth times 2^40 is that with this
+    Vec3 along;   // and its product with this is its depth times 2^40
 };
 
 KERNEL_FN uint deepest_axis(Vec3 direction)
@@ -17,7 +17,7 @@ KERNEL_FN uint deepest_axis(Vec3 direction)
     return z > maximum(x, y) ? 2u : of_xy;
 }
 
-// The axes in cyclic order, so that the third becomes `axis`.
+// The axes in cyclic order, such that `axis` is the third.
 KERNEL_FN Vec3 turned_to(Vec3 a, uint axis)
 {
     real x = axis == 0u ? a.z : axis == 1u ? a.y : a.x;
@@ -44,14 +44,15 @@ KERNEL_FN Shear shear_along(Vec3 direction)
     return shear;
 }
 
-// Seen along the ray: the ray is the origin.
+// A point projected along the ray; the ray is the origin.
 STRUCT(Sheared)
 {
     real x;
     real y;
 };
 
-// A vertex, its difference from the ray's origin, whichever face asks; of three products one is zero.
+// Projects a vertex, given by its difference from the ray's origin; the same for every face. One of the three products
+// is zero.
 KERNEL_FN Sheared sheared(Shear shear, Vec3 seen)
 {
     Sheared result;
@@ -60,14 +61,14 @@ KERNEL_FN Sheared sheared(Shear shear, Vec3 seen)
     return result;
 }
 
-// Side of the ray at the edge from a to b: right or zero, since rounding is monotone.
+// Side of the ray at the edge from a to b: the right sign or zero, since rounding is monotone.
 KERNEL_FN real rough_side(Sheared a, Sheared b)
 {
     PRECISE real side = a.x * b.y - a.y * b.x;
     return side;
 }
 
-// What a product lost by rounding, exactly (Dekker 1971; Veltkamp's split: 12 bits and 12).
+// The exact rounding error of a product (Dekker 1971; Veltkamp's split: 12 bits and 12).
 KERNEL_FN real lost_by(real a, real b, real product)
 {
     PRECISE real a_large = a * real(4097.0f);
@@ -80,7 +81,7 @@ KERNEL_FN real lost_by(real a, real b, real product)
     return lost;
 }
 
-// The same side to some units in the last place, where rough_side() has cancelled too.
+// The same side with an error of some units in the last place, also where rough_side() cancels.
 KERNEL_FN real fine_side(Sheared a, Sheared b)
 {
     PRECISE real plus = a.x * b.y;

@@ -1,7 +1,9 @@
+// bvh/: the BVH layouts with their traversals, and what these share.
+
 // What the BVHs share: a ray as their tests take it, boxes, and the triangle test (docs/spec/bvhs.md, B4).
 #include "kernels/shear.h"
 
-// For a build that counts what a ray fetches; it is never a timed one.
+// For a build that counts what a ray fetches. That build is never timed.
 #ifndef COUNT_NODE
 #define COUNT_NODE()
 #define COUNT_TRIANGLE()
@@ -12,7 +14,7 @@
 STRUCT(RayFrame)
 {
     Vec3 origin;
-    Vec3 inverse; // what depth a unit of each axis is
+    Vec3 inverse; // the depth of one unit along each axis
     Vec3 offset;  // origin * inverse
     Shear shear;
 };
@@ -21,19 +23,19 @@ STRUCT(RayFrame)
 STRUCT(Nearest)
 {
     real depth;
-    uint triangle; // of the input, or NO_HIT: depth is the ray's end then
+    uint triangle; // of the input, or NO_HIT: then depth is the ray's end
     uint at;       // one of the leaf triangles that refer to it
 };
 
-// No box is entered there.
+// Depth of a box that the ray does not enter.
 #define NEVER real(3.0e38f)
-// Rounding may change a depth in a box test by less; only that relates the bounds of different axes.
+// More than rounding can change a depth in a box test; needed only where bounds of different axes are compared.
 #define BOX_SLACK real(1.000003814697265625f) // 1 + 2^-18
-// A hit is nearer than a ray's origin where its depth is not at least 2^-100.
+// A hit lies before the ray's origin unless its depth is at least 2^-100.
 #define LEAST_DEPTH real(8.67361737988403547e-19f) // 2^-60, in depth times 2^40
 
-// A function, because glslang does not come to an end with a precise local that depends on a struct which its loop
-// replaces as a whole.
+// A function, because glslang does not terminate on a precise local that depends on a struct which the loop assigns as
+// a whole.
 KERNEL_FN real with_slack(real depth)
 {
     PRECISE real result = depth * BOX_SLACK;
@@ -63,7 +65,7 @@ KERNEL_FN RayFrame frame_of(Ray ray)
     return frame;
 }
 
-// end: ray parameter. What exceeds 2^64 is no end, what is below 2^-60 is the origin.
+// end: ray parameter. A value above 2^64 means no end; a value below 2^-60 means the origin.
 KERNEL_FN Nearest nothing_before(Ray ray, real end)
 {
     Nearest nearest;
@@ -80,7 +82,8 @@ KERNEL_FN Vec3 seen_from(Vec3 origin, uint4 quad)
     return sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), origin);
 }
 
-// Quotients that are compared must be the same bits everywhere, which division is not. a: normal, 2^-126 to 2^124.
+// Quotients that are compared must have the same bits everywhere; division does not guarantee that. a: normal, 2^-126
+// to 2^124.
 KERNEL_FN real reciprocal(real a)
 {
     real guess = as_real(0x7EF311C3u - as_bits(a));
@@ -95,7 +98,7 @@ KERNEL_FN bool has_two_signs(real a, real b, real c)
     return minimum(minimum(a, b), c) < real(0.0f) && maximum(maximum(a, b), c) > real(0.0f);
 }
 
-// Tests leaf triangle `at`; of equally near ones the first of the input wins, whatever the order of the tests.
+// Tests leaf triangle `at`. Of equally near triangles the first in the input wins, in any order of the tests.
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; here without a division.
 KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
 {

@@ -2,7 +2,7 @@
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, and its addendum with
 // Karras, 2012: the node and the loop, first through nodes, then through a leaf's triangles.
 
-// On the bottom of the stack: a leaf, where there is nothing left.
+// The bottom of the stack: a leaf that ends the loop.
 #define BVH2_END 0xFFFFFFFFu
 
 // Depth at which the ray enters a box, 0 inside, or NEVER.
@@ -24,8 +24,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    uint stack[BVH2_STACK + 2u];  // with the end, and a word that is written but not kept
-    real depths[BVH2_STACK + 2u]; // of what waits
+    uint stack[BVH2_STACK + 2u];  // room for BVH2_END, and for a word that is written but not kept
+    real depths[BVH2_STACK + 2u]; // of the waiting children
     stack[0] = BVH2_END;
     depths[0] = real(0.0f);
     uint waiting = 1u;
@@ -41,7 +41,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
                 real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
                 real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
                 bool b_first = b < a;
-                child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x; // neither: empty
+                // BVH2_LEAF alone is an empty leaf: the ray enters neither box.
+                child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x;
                 stack[waiting] = b_first ? children.x : children.y;
                 depths[waiting] = maximum(a, b);
                 waiting += maximum(a, b) < NEVER ? 1u : 0u;

@@ -1,8 +1,9 @@
-// Layout cwbvh: a tree of eight children a node, whose boxes are bytes on a grid of the node's own.
+// Layout cwbvh: a tree with eight children per node, whose boxes are bytes on the node's own grid.
 // Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017;
-// without its exchange of work between lanes.
+// without the paper's exchange of work between lanes.
 
-// A node's hits: in bits 24 to 31 inner children, the highest first to be visited; below them leaf triangles.
+// A node's hits: bits 24 to 31 are inner children, visited from the highest bit down; the bits below are leaf
+// triangles.
 #define CWBVH_INNER_HITS 0xFF000000u
 
 // Depth of the node's grid: plane q of an axis lies at q * step + start.
@@ -32,8 +33,8 @@ KERNEL_FN real plane_depth(real step, real start, uint planes, uint shift)
     return depth;
 }
 
-// Hits of four children, whose planes are bytes of the words. turn: the ray's octant, inverted: a child's slot differs
-// from it in the axes along which its siblings come later.
+// Hits of four children, whose planes are the bytes of the words. turn: the ray's octant, inverted. slot xor turn is a
+// child's rank in the order of visits: the highest is visited first.
 KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, uint near_x, uint near_y, uint near_z,
                             uint far_x, uint far_y, uint far_z)
 {
@@ -65,7 +66,7 @@ KERNEL_FN uint hits_of_node(RayFrame frame, real limit, uint turn, uint4 r0, uin
     return first | last;
 }
 
-// The octant that the ray comes from, with the bits of x, y, z in 2, 1, 0.
+// The octant that the ray comes from: x is bit 2, y bit 1, z bit 0.
 KERNEL_FN uint turn_of(RayFrame frame)
 {
     return (frame.inverse.x < real(0.0f) ? 0u : 4u) | (frame.inverse.y < real(0.0f) ? 0u : 2u) |
@@ -81,7 +82,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
     uint stack_hits[CWBVH_STACK];
     uint waiting = 0u;
     uint base = 0u;
-    uint hits = 0x80000000u; // the root; bits 0 to 7 say which of a group's slots are inner children
+    uint hits = 0x80000000u; // the root; bits 0 to 7 mark the slots of a group that are inner children
     while (hits > 0x00FFFFFFu) {
         uint bit = highest_bit(hits);
         hits ^= 1u << bit;

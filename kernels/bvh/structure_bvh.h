@@ -1,5 +1,5 @@
-// The kernels of a BVH: what its layouts share, and a layout with its traversal. They trace given rays as they trace
-// those of an image.
+// The kernels of a BVH: what its layouts share, and a layout with its traversal. They trace given rays in the same way
+// as the rays of an image.
 #define TAKES_RAYS
 
 #include "kernels/bvh/bvh.h"

@@ -1,6 +1,8 @@
+// language/: what each language needs to read the kernels: dialects, views of a scene, vectors.
+
 // The kernels' language as host C++. Include it, and the kernel headers after it, inside an unnamed namespace: every
-// kernel is compiled once per layout and math mode, and none of these names may meet another's.
-// The including file has <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/device/backend.h before it.
+// kernel is compiled once per layout and math mode, and their names must not collide.
+// Include <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/device/backend.h before it.
 #define KERNEL_FN [[maybe_unused]] inline
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
@@ -9,7 +11,7 @@
 
 using uint = std::uint32_t;
 using uint4 = tetrace::Quad;
-#ifndef KERNEL_REAL // the test that counts operations brings its own number type
+#ifndef KERNEL_REAL // the test that counts operations defines its own number type
 #define KERNEL_REAL float
 #endif
 using real = KERNEL_REAL;
@@ -33,7 +35,7 @@ KERNEL_FN real to_real(uint value)
     return real(static_cast<float>(value));
 }
 
-// Of numbers: never NaN.
+// Operands are never NaN.
 KERNEL_FN real minimum(real a, real b)
 {
     return a < b ? a : b;
@@ -42,7 +44,7 @@ KERNEL_FN real maximum(real a, real b)
 {
     return a > b ? a : b;
 }
-// Index of the highest bit that is set. value: not 0.
+// Index of the highest set bit. value: not 0.
 KERNEL_FN uint highest_bit(uint value)
 {
     return 31u - static_cast<uint>(std::countl_zero(value));

@@ -1,5 +1,5 @@
-// The kernels' language as CUDA C++, for nvcc and for NVRTC, which has no header of its own: nothing is included here.
-// Contraction, division and square root are said by the compiler's options (backends/cuda/CMakeLists.txt).
+// The kernels' language as CUDA C++, for nvcc and for NVRTC. NVRTC has no headers, so nothing is included here.
+// Compiler options set contraction, division and square root (backends/cuda/CMakeLists.txt).
 #define KERNEL_FN [[maybe_unused]] static __device__ inline
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name

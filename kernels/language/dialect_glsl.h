@@ -1,6 +1,6 @@
 // The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
-// Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, where comparing two
-// numbers and selecting one is faster than their minimum (of NaNs, which nothing compares, it is another).
+// Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, true where comparing
+// and selecting is faster than the built-in minimum (the two differ only for NaNs, which never occur).
 #include "kernels/layouts/layout.h"
 
 #ifndef SELECTS_MINIMA
@@ -14,7 +14,7 @@
 #ifdef MATH_FAST
 #define PRECISE
 #else
-#define PRECISE precise // works on locals alone: a function's parameters and result say nothing about what is inside
+#define PRECISE precise // works on locals only: on parameters or a result it does not reach into the function
 #endif
 
 KERNEL_FN real as_real(uint bits)

@@ -1,7 +1,7 @@
 // The kernels' language as OpenCL C 1.2; include it before kernel.h or probe.h.
-// Math mode fast contracts and approximates by the compiler's options; exact says so here and by its options.
-// CALLS_FUNCTIONS, from outside: for a device that must not inline them. PoCL leaves large ones as calls by itself, at
-// half the speed.
+// Compiler options make math mode fast contract and approximate; exact is set here and by options. CALLS_FUNCTIONS,
+// from outside: for a device that must not inline functions. By default PoCL does not inline large functions, which
+// halves the speed.
 #ifndef MATH_FAST
 #pragma OPENCL FP_CONTRACT OFF
 #endif
@@ -18,7 +18,7 @@
     struct name
 #define VEC3(x, y, z) ((Vec3){(x), (y), (z)})
 typedef float real;
-#define real(value) ((real)(value)) // only where a parenthesis follows
+#define real(value) ((real)(value)) // replaced only where a parenthesis follows
 
 KERNEL_FN real as_real(uint bits)
 {
@@ -38,7 +38,7 @@ KERNEL_FN real square_root(real value)
 }
 KERNEL_FN real minimum(real a, real b)
 {
-    return min(a, b); // fmin cares for NaN, which costs processors several instructions
+    return min(a, b); // fmin handles NaN, which takes several instructions on processors
 }
 KERNEL_FN real maximum(real a, real b)
 {

@@ -1,4 +1,4 @@
-// From a job to what a kernel gets, in host C++; after view_cpp.h.
+// From a job to a kernel's parameters, in host C++; include after view_cpp.h.
 [[maybe_unused]] inline TraceParams params_of(const tetrace::TraceJob& job)
 {
     TraceParams params = params_of(job.view);

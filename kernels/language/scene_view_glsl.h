@@ -1,5 +1,5 @@
-// How kernels reach a scene's arrays in GLSL: storage buffers by name, and FETCH(). A buffer that is read as words and
-// as quads is declared twice with one binding.
+// How kernels reach a scene's arrays in GLSL: storage buffers by name, and FETCH(). A buffer that is read both as words
+// and as quads is declared twice with one binding.
 #define SCENE_ARRAY(element, name, member, number)                                                                     \
     layout(std430, set = 0, binding = number) readonly buffer Buffer_##name                                            \
     {                                                                                                                  \
@@ -11,7 +11,7 @@
 STRUCT(SceneView)
 {
     uint divisions;
-    uint part_log2; // tets in several buffers: bytes of each but the last
+    uint part_log2; // tets in several buffers: log2 of the bytes of each but the last
 };
 
 #ifndef TETS_IN_PARTS
@@ -19,7 +19,7 @@ STRUCT(SceneView)
 #else
 #define FETCH(scene, array, index) fetch_##array(scene, index)
 
-// The parts of the tets but the first, which is the scene's array itself.
+// The parts of the tets after the first, which is the scene's array itself.
 #define TET_PART(part)                                                                                                 \
     layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_words_##part         \
     {                                                                                                                  \
@@ -38,7 +38,7 @@ TET_PART(6)
 TET_PART(7)
 #undef TET_PART
 
-// element_log2: bytes of an element.
+// element_log2: log2 of an element's bytes.
 #define FETCH_FROM_PARTS(element, array, element_log2)                                                                 \
     KERNEL_FN element fetch_##array(SceneView scene, uint index)                                                       \
     {                                                                                                                  \

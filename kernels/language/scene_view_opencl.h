@@ -1,7 +1,7 @@
-// How kernels reach a scene's arrays in OpenCL C: by name and index through FETCH. Build option TETS_IN_PARTS where the
-// tets come in several buffers.
+// How kernels reach a scene's arrays in OpenCL C: by name and index through FETCH. Build option TETS_IN_PARTS: the tets
+// are in several buffers.
 
-// The parts of the tets but the first, which is the scene's array itself.
+// The parts of the tets after the first, which is the scene's array itself.
 #define MORE_TET_PARTS(DO) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)
 
 STRUCT(SceneView)
@@ -22,7 +22,7 @@ STRUCT(SceneView)
 #else
 #define FETCH(scene, array, index) fetch_##array((scene), (index))
 
-// Selected, not indexed: an array of pointers would live in memory on some devices.
+// Selected, not indexed: some devices would keep an array of pointers in memory.
 KERNEL_FN __global const uint4* tet_part(SceneView scene, uint part)
 {
     __global const uint4* of_01 = (part & 1u) == 0u ? scene.tet_quads : scene.part_1;
@@ -34,7 +34,7 @@ KERNEL_FN __global const uint4* tet_part(SceneView scene, uint part)
     return (part & 4u) == 0u ? of_0123 : of_4567;
 }
 
-// fetch_<array>() for each: only the tets, binding 0, come in parts, and which these are is known when it is compiled.
+// fetch_<array>() for each array. Only the tets, binding 0, come in parts; the compiler knows the binding.
 #define SCENE_ARRAY(element, name, member, binding)                                                                    \
     KERNEL_FN element fetch_##name(SceneView scene, uint index)                                                        \
     {                                                                                                                  \

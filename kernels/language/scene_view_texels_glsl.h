@@ -1,6 +1,6 @@
 // How kernels reach a scene's arrays in GLSL on devices that read storage buffers slowly: as texels of one or four
-// unsigned words, by name through FETCH(). Same bytes, same answers; scene_view_glsl.h is the other way. Arrays of
-// quads stand FIRST_QUADS_BINDING behind their binding: the tets are bound twice.
+// unsigned words, by name through FETCH(). Same bytes and same answers as by scene_view_glsl.h. An array of quads is
+// bound at its binding + FIRST_QUADS_BINDING: the tets are bound twice.
 #define TEXELS_BINDING_uint 0
 #define TEXELS_BINDING_uint4 FIRST_QUADS_BINDING
 #define SCENE_ARRAY(element, name, member, number)                                                                     \

@@ -1,4 +1,4 @@
-// Vectors without operators: every operation is a named local, so that a dialect can forbid its contraction.
+// Vectors without operators: the result of every operation is a named local, so that a dialect can forbid contraction.
 STRUCT(Vec3)
 {
     real x;

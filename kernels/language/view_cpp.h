@@ -1,10 +1,10 @@
-// A camera's view as a kernel gets it, in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h).
+// A camera's view as kernel parameters, in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h).
 inline Vec3 to_vec3(tetrace::Float3 a)
 {
     return VEC3(real(a.x), real(a.y), real(a.z));
 }
 
-// What primary rays are made from; the rest is 0.
+// The parameters that primary rays are made from; the others are 0.
 [[maybe_unused]] inline TraceParams params_of(const tetrace::View& view)
 {
     TraceParams params{};

@@ -1,7 +1,9 @@
-// Every array that a CDT brings to a device: element type, name, member of the packed scene, binding. A dialect defines
-// SCENE_ARRAY, includes KERNEL_ARRAYS_HEADER, this file or bvh_arrays.h, as often as it needs, and undefines it. The
-// tets are read as words or as quads, whichever a layout wants; both names are the same bytes. The bindings behind
-// these are in layout.h.
+// layouts/: the packed forms of tets, one file each, and the layout of all packed data.
+
+// Every array that a CDT has on a device: element type, name, member of the packed scene, binding. A dialect defines
+// SCENE_ARRAY, includes KERNEL_ARRAYS_HEADER (this file, compact_arrays.h or bvh_arrays.h) as often as it needs, and
+// undefines it. A layout reads the tets as words or as quads; both names are the same bytes. The bindings after these
+// are in layout.h.
 SCENE_ARRAY(uint, tet_words, tets, 0)
 SCENE_ARRAY(uint4, tet_quads, tets, 0)
 SCENE_ARRAY(uint4, triangles, triangles, 1)

@@ -1,5 +1,5 @@
-// Every array that a CDT brings to a device whose tets share their vertices, as cdt_arrays.h has those of one whose
-// tets hold them.
+// Every array that a CDT with shared vertices has on a device; cdt_arrays.h lists those of a CDT whose tets hold their
+// vertices.
 SCENE_ARRAY(uint, tet_words, tets, 0)
 SCENE_ARRAY(uint4, tet_quads, tets, 0)
 SCENE_ARRAY(uint4, triangles, triangles, 1)

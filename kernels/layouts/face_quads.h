@@ -1,5 +1,5 @@
-// Faces of a tet that is read by quads, two {link, triangle} a quad. The layout, which includes this, brings
-// FACE_QUAD(tet, face), the number of a face's quad.
+// Faces of a tet that is read by quads, two {link, triangle} per quad. The including layout defines FACE_QUAD(tet,
+// face), the number of a face's quad.
 KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
 {
     uint4 quad = FETCH(scene, tet_quads, FACE_QUAD(tet, face));

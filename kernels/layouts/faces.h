@@ -1,5 +1,5 @@
-// The corners of a tet's faces, for tets with det(V1-V0, V2-V0, V3-V0) < 0, as 2-bit entries of one word:
-// an array that is indexed at run time would live in memory on some devices.
+// The corners of a tet's faces, for tets with det(V1-V0, V2-V0, V3-V0) < 0, as 2-bit entries of one word: some devices
+// would keep an array that is indexed at run time in memory.
 //   face 0: 1 2 3    face 1: 0 3 2    face 2: 0 1 3    face 3: 0 2 1
 // A line that enters through the face has side(c0, c1), side(c1, c2), side(c2, c0) >= 0.
 KERNEL_FN uint corner(uint face, uint index)
@@ -7,8 +7,8 @@ KERNEL_FN uint corner(uint face, uint index)
     return (0x634B39u >> (6u * face + 2u * index)) & 3u;
 }
 
-// Table of exits: face that a ray which entered by `entry` leaves by, where the two tests of maria or project have
-// outcome 0, 1, 2; 2-bit entries as in corner().
+// Table of exits: the face by which a ray that entered by `entry` leaves, for outcomes 0, 1, 2 of the two tests of
+// maria or project; 2-bit entries as in corner().
 //   entry 0: 2 3 1    entry 1: 3 2 0    entry 2: 1 3 0    entry 3: 2 1 0
 KERNEL_FN uint other_face(uint entry, uint outcome)
 {
@@ -23,7 +23,7 @@ KERNEL_FN real side_of_edge(Ray ray, Vec3 from, Vec3 to)
 }
 
 // The same as the permuted inner product of Pluecker coordinates, {direction, moment} of the ray and {to - from, from x
-// to} of the edge. Exactly negated where from and to change places.
+// to} of the edge. Swapping from and to negates it exactly.
 KERNEL_FN real edge_product(Ray ray, Vec3 from, Vec3 to)
 {
     PRECISE real product = dot3(ray.moment, sub3(to, from)) + dot3(ray.direction, cross3(from, to));

@@ -1,5 +1,6 @@
-// Layout half32: for each tet and face that a ray may enter it by, one aligned record of 32 bytes with all that a step
-// needs: the new vertex, and what lies behind each of the three other faces (layout.h). A link is its record's number.
+// Layout half32: for each tet and each face by which a ray may enter it, one aligned record of 32 bytes with everything
+// that a step needs: the new vertex, and what lies behind each of the three other faces (layout.h). A link is its
+// record's number.
 #define HAS_RECORDS
 
 KERNEL_FN uint4 record_apex(SceneView scene, uint record)
@@ -29,8 +30,8 @@ KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
     return record_exits(scene, (tet << 2u) | face).w;
 }
 
-// The exit through `face`, as the record of another face of its tet has it: corner 2 of face 0 is vertex 3, corner 0 of
-// face 0 vertex 1, corner 1 of face 0 vertex 2; corner 0 of face 1 is vertex 0.
+// The exit through `face`, from the record of another face of its tet. Corners 0, 1, 2 of face 0 are vertices 1, 2, 3;
+// corner 0 of face 1 is vertex 0.
 KERNEL_FN uint exit_through(SceneView scene, uint tet, uint face)
 {
     uint4 exits = record_exits(scene, (tet << 2u) | (face == 0u ? 1u : 0u));

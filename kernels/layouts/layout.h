@@ -1,18 +1,18 @@
-// The packed data that crosses to a device, stated once, for every language: constants and the hit record.
+// The packed data that is copied to a device, stated once for every language: constants and the hit record.
 // Plain C: no include, no type that a shading language lacks. Array names and bindings: cdt_arrays.h,
 // compact_arrays.h and bvh_arrays.h.
 #ifndef TETRACE_KERNELS_LAYOUT_H
 #define TETRACE_KERNELS_LAYOUT_H
 
-// Hit.face_id beyond the input triangles.
+// Values of Hit.face_id that are not input triangles.
 #define NO_HIT 0xFFFFFFFFu // the ray left the domain, or never met it
 #define LOST 0xFFFFFFFEu   // the walk found no exit face, or reached its cap of steps: always a failure
-#define POISON 0xFFFFFFFDu // nothing was written: buffers are filled with it before a launch
+#define POISON 0xFFFFFFFDu // nothing was written: outputs are filled with this before a launch
 
-// A launch's output: guard words, six words a hit row after row, guard words; all of it is POISON before.
+// A launch's output: guard words, six words per hit row after row, guard words; filled with POISON before the launch.
 #define HIT_WORDS 6u
 #define GUARD_WORDS 64u
-// A ray that is given: its quads stand a whole list of rays apart, all first quads before all second ones. Task search:
+// A given ray. The first quads of all rays come before all second quads. Task search:
 //   {direction, link of its entry face}  {origin, 0}  {moment, 0}
 #define RAY_QUADS 3u
 // Task rays, with the link of the face that the ray starts on or enters by, NO_LINK where it comes from outside the
@@ -39,38 +39,38 @@
 #define NO_TET 0x3FFFFFFFu
 #define MAX_TETS 0x3FFFFFFFu
 #define FREE_FACE 0xFFFFFFFFu // a face that belongs to no input triangle
-#define NO_EXIT 4u            // instead of a face: the method found none to leave the tet by
+#define NO_EXIT 4u            // instead of a face: the method found no exit
 
 // Bindings: those of the arrays are 0 to 6; then the output, the counter of persistent threads, and the parts of the
-// array of tets beyond its first, where one buffer cannot hold it.
+// array of tets after the first, where one buffer cannot hold it.
 #define SCENE_ARRAYS 7u
 #define OUTPUT_BINDING 7u
 #define COUNTER_BINDING 8u
 #define SECOND_PART_BINDING 9u
 #define MAX_TET_PARTS 8u
 #define RAYS_BINDING (SECOND_PART_BINDING + MAX_TET_PARTS - 1u)
-#define FIRST_QUADS_BINDING 32u // of quads, where words and quads of one array are bound apart
+#define FIRST_QUADS_BINDING 32u // of quads, where words and quads of one array have separate bindings
 
 // tet80: quads of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
 #define TET80_QUADS 5u
 // tet96: 4 vertices of 16 bytes (w is 0), then 4 faces of 8 bytes {link, input triangle}.
 #define TET96_QUADS 6u
-// The rank of a vertex: how many are before it, by x, then y, then z, and FIRST_RANK. It lies beside the vertex's
-// coordinates, and compilers compute with all four words at once: as a float it must not be denormal, since some
-// processors multiply those a hundred times slower.
+// The rank of a vertex: the number of vertices before it, by x, then y, then z, plus FIRST_RANK. It is stored next to
+// the vertex's coordinates, and compilers compute with all four words at once. As a float it must not be denormal: some
+// processors multiply denormals a hundred times slower.
 #define FIRST_RANK 0x3F800000u
-// half32: a record of 32 bytes for each tet and face that a ray may enter it by, at its link (tet << 2 | face):
+// half32: a record of 32 bytes for each tet and each face by which a ray may enter it, at its link (tet << 2 | face):
 //   {apex.xyz, its rank}  {exit 0, exit 1, exit 2, link of the entry face}
-// Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows, the
-// corners of whose entry face are the ray's three vertices turned by so many; else triangle << 2 | HALF32_END for the
-// input triangle that is hit there, or NO_LINK at the domain's boundary.
+// Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows: the
+// corners of its entry face are the ray's three vertices, rotated by `rotation`. Else triangle << 2 | HALF32_END for
+// the input triangle that is hit there, or NO_LINK at the domain's boundary.
 #define HALF32_QUADS 2u // of a record; a tet has four
 #define HALF32_END 3u
 #define HALF32_MAX_TETS 0x0FFFFFFFu
 #define HALF32_MAX_TRIANGLES 0x3FFFFFFFu
 // tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
 #define TET20_WORDS 5u
-// tet16: a quad, the same words but the last one, and those of neighbours xor that one.
+// tet16: a quad: tet20's words without the last, and each neighbour xor that last one.
 // vertices of both: {x, y, z, rank}
 // What is behind a face: a tet, OCCLUSIVE | 2 * occlusive face + side, or NO_LINK.
 #define OCCLUSIVE 0x80000000u
@@ -82,18 +82,18 @@
 
 // leaf triangles of a BVH: {v0, input triangle}, {v1, 0}, {v2, 0}, as the mesh has them.
 #define LEAF_TRIANGLE_QUADS 3u
-// Boxes of BVHs are that much larger on every side than what is in them: the triangle test decides on rounded
+// Boxes of BVHs are larger than their content by this much on every side, because the triangle test decides on rounded
 // projections (docs/spec/bvhs.md, B7).
 #define BOX_MARGIN 7.62939453125e-6f // 2^-17
 // bvh2: both children's boxes and the children.
 //   {a.low.x, a.high.x, a.low.y, a.high.y} {b.low.x, b.high.x, b.low.y, b.high.y}
 //   {a.low.z, a.high.z, b.low.z, b.high.z} {a, b, 0, 0}
-// A child is a node, or BVH2_LEAF | first << 4 | count for so many leaf triangles from `first` on; an empty leaf has
+// A child is a node, or BVH2_LEAF | first << 4 | count for `count` leaf triangles from `first` on; an empty leaf has
 // its sibling's box.
 #define BVH2_NODE_QUADS 4u
 #define BVH2_LEAF 0x80000000u
-#define BVH2_STACK 32u // children that wait on a ray's stack at most: packing refuses deeper trees
-// cwbvh: eight children, boxes as bytes on a grid of the node's own.
+#define BVH2_STACK 32u // the most children that wait on a ray's stack: packing refuses deeper trees
+// cwbvh: eight children, boxes as bytes on the node's own grid.
 //   {origin.xyz, exponents of the grid in bytes 0 to 2, bits of the inner children in byte 3}
 //   {first inner child, first leaf triangle, meta 0..3, meta 4..7}
 //   {low.x 0..3, low.x 4..7, low.y 0..3, low.y 4..7} {low.z 0..3, low.z 4..7, high.x 0..3, high.x 4..7}
@@ -101,6 +101,6 @@
 // meta: 0 of an empty slot; 0x20 | 24 + slot of an inner child; count in unary << 5 | offset of a leaf's triangles.
 #define CWBVH_NODE_QUADS 5u
 #define CWBVH_LEAF_TRIANGLES 3u
-#define CWBVH_STACK 16u // pairs of words that wait on a ray's stack at most
+#define CWBVH_STACK 16u // the most pairs of words that wait on a ray's stack
 
 #endif

@@ -1,9 +1,10 @@
 // Layout tet16 (Aman, Demirci, Guedukbay 2022): a quad of the xor of a tet's four vertices, and the xor of each of
-// three neighbours with the fourth: who knows one of the four, as a walk does that comes from it, knows all.
+// three neighbours with the fourth. Any one neighbour determines the other three; a walk knows the one that it comes
+// from.
 STRUCT(CompactTet)
 {
-    uint vertices; // their xor
-    uint n0;       // neighbours in the order of the vertices that they are opposite to, xor the last one
+    uint vertices; // xor of the four vertices
+    uint n0;       // neighbours, each xor the last one, in the order of their opposite vertices
     uint n1;
     uint n2;
 };
@@ -26,7 +27,8 @@ KERNEL_FN uint neighbour_code(CompactTet tet, uint rank)
     return rank < 2u ? of_first : of_last;
 }
 
-// What is behind the face opposite the vertex of that rank among the four. known: what is behind that of `known_rank`.
+// What is behind the face opposite the vertex of that rank among the four. known: the same for the vertex of
+// `known_rank`.
 KERNEL_FN uint neighbour(CompactTet tet, uint rank, uint known_rank, uint known)
 {
     return neighbour_code(tet, rank) ^ neighbour_code(tet, known_rank) ^ known;

@@ -1,9 +1,9 @@
 // Layout tet20 (Aman, Demirci, Guedukbay 2022): the xor of a tet's four vertices, then its four neighbours in the order
-// of the vertices that they are opposite to.
+// of their opposite vertices.
 STRUCT(CompactTet)
 {
     uint first_word;
-    uint vertices; // their xor
+    uint vertices; // xor of the four vertices
 };
 
 KERNEL_FN CompactTet compact_tet(SceneView scene, uint tet)

@@ -1,5 +1,5 @@
-// Layout tet80 on devices where a quad costs as much to read as a word: a vertex by the three quads that hold all four
-// of them, whatever the corner, which a tet then reads once.
+// Layout tet80 on devices where reading a quad costs as much as reading a word: every vertex is taken from the three
+// quads that hold all four vertices, so the quads are read once per tet.
 KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
 {
     uint4 a = FETCH(scene, tet_quads, TET80_QUADS * tet);

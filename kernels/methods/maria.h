@@ -1,3 +1,5 @@
+// methods/: the exit-face searches, one file each, and what several of them share.
+
 // Method maria: exit face by two side products in the frame of the complement vertex.
 // Source: Maria, Horna, Aveneau, "Efficient Ray Traversal of Constrained Delaunay Tetrahedralization", GRAPP 2017,
 // sections 3.1 to 3.4. 28 operations a step: 9 + 3 for the moment, twice 3 + 5 for a side product.

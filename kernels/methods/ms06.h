@@ -1,9 +1,8 @@
-// Method ms06: exit face by two or three side products; the entry face's edges are known and not asked.
+// Method ms06: exit face by two or three side products; the sides at the entry face's edges are known.
 // Source: Marmitt and Slusallek, "Fast Ray Traversal of Tetrahedral and Hexahedral Meshes for Direct Volume Rendering",
 // EuroVis 2006. 23 operations a product, as in plucker; (2 + 3 + 3) / 3 products on average.
 
-// Two edges to the apex bound the first candidate; where it is not the exit, the third edge tells which of the others
-// is.
+// Two edges to the apex bound the first candidate. If it is not the exit, the third edge decides between the other two.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
     Vec3 apex = vertex(scene, tet, entry);

@@ -1,7 +1,7 @@
-// Method plane: exit face by the nearest of the intersections with the planes of the faces that the ray can leave by.
-// Sources: Garrity, "Raytracing Irregular Volume Data", Computer Graphics 24(5), 1990; Lagae and Dutre, "Accelerating
-// Ray Tracing using Constrained Tetrahedralizations", EGSR 2008. Three planes a step, the entry face's is left out;
-// four at the start.
+// Method plane: exit face by the nearest intersection with the planes of the faces by which the ray can leave. Sources:
+// Garrity, "Raytracing Irregular Volume Data", Computer Graphics 24(5), 1990; Lagae and Dutre, "Accelerating Ray
+// Tracing using Constrained Tetrahedralizations", EGSR 2008. Three planes per step, without the entry face's; four at
+// the start.
 
 // A face's plane is met at distance / approach along the ray; approach is positive where the ray leaves the tet there.
 STRUCT(Crossing)
@@ -11,12 +11,12 @@ STRUCT(Crossing)
     real approach;
 };
 
-// Larger than every denormal and smaller than what any product of a tet's own size leaves behind: a product that one
-// device flushes and another keeps rounds away beside it.
+// Larger than every denormal, and smaller than the rounding of any product of a tet's own size. Added to this, a
+// denormal product that one device flushes and another keeps is rounded away.
 #define CROSSING_DUST real(7.88860905e-31f) // 2^-100
 
-// Quotients compared by products, since not every API divides alike. Both approaches are positive; one face alone is
-// nearest.
+// Quotients compared by products, since APIs divide differently. Approaches that are compared are positive; a face
+// without a competitor is nearest.
 KERNEL_FN Crossing nearer(Crossing nearest, Crossing next)
 {
     if (next.approach <= real(0.0f)) return nearest;

@@ -1,15 +1,15 @@
-// Method project: exit face by the signs of two 2D cross products of projected vertices. A vertex has one position
-// across the ray, whichever tet asks, and a sign is never wrong and never zero, so that no two tets disagree and no
-// walk gets lost (docs/spec/project.md, P6). Sources: the walk, Aman, Demirci, Guedukbay, "Compact
-// Tetrahedralization-Based Acceleration Structures for Ray Tracing", Journal of Visualization 25, 2022; the projection,
-// see shear.h; ties, Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9(1), 1990. 46
-// operations a step: 3 for the shear, 13 a vertex (3 + 5 + 5), 2 a sign; a sign at a tie 32 more.
+// Method project: exit face by the signs of two 2D cross products of projected vertices. A vertex has the same position
+// across the ray in every tet, and a sign is never wrong and never zero, so that no two tets disagree and no walk gets
+// lost (docs/spec/project.md, P6). Sources: the walk, Aman, Demirci, Guedukbay, "Compact Tetrahedralization-Based
+// Acceleration Structures for Ray Tracing", Journal of Visualization 25, 2022; the projection, see shear.h; ties,
+// Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9(1), 1990. 46 operations a step: 3
+// for the shear, 13 a vertex (3 + 5 + 5), 2 a sign; a sign at a tie 32 more.
 #define TAKES_RAYS
-#define WALKS_PATHS // its walk follows a path, which begins at a boundary face that holds the ray, or there is none
+#define WALKS_PATHS // its walk follows a path that begins at a boundary face that holds the ray, if there is one
 
 #include "kernels/methods/signs.h"
 
-// The two tests of maria: of the edges that end in the apex, that from c2, then that from c0 or c1.
+// The two tests of maria, at edges that end in the apex: the edge from c2, then the edge from c0 or c1.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
     Shear shear = shear_of(ray);

@@ -1,23 +1,23 @@
 // The signs of method project: vertices projected across the ray, and the side of the ray at an edge between two of
-// them, which is never wrong and never undecided (docs/spec/project.md, P2 and P3). For walks that ask tets for their
-// corners (project.h) and for those that carry them.
+// them, which is never wrong and never undecided (docs/spec/project.md, P2 and P3). For walks that read corners from
+// tets (project.h) and for walks that carry them.
 
 // For a build that counts which level decides a sign: 0 float products, 1 what they lost, 2 the order of the vertices;
-// it is never a timed one.
+// that build is never timed.
 #ifndef COUNT_SIGN
 #define COUNT_SIGN(level)
 #endif
 
 #include "kernels/shear.h"
 
-// The order that decides ties needs to know which vertex is where.
+// The order that decides ties compares the vertices' positions.
 STRUCT(Projected)
 {
     Vec3 position;
     Sheared seen;
 };
 
-// The shear with its plane turned so that sides have the sign that they have in space.
+// The shear with its plane oriented so that sides have the same sign as in space.
 KERNEL_FN Shear shear_of(Ray ray)
 {
     Shear shear = shear_along(ray.direction);
@@ -45,7 +45,8 @@ KERNEL_FN bool is_before(Vec3 a, Vec3 b)
     return a.z < b.z;
 }
 
-// Whether p x q is positive, where it is zero and p is the earlier vertex: both moved by infinitesimals.
+// Whether p x q, which is zero, becomes positive when both vertices are moved by infinitesimals; p is the earlier
+// vertex.
 KERNEL_FN bool is_left_when_moved(Sheared p, Sheared q)
 {
     real zero = real(0.0f);
@@ -68,13 +69,13 @@ KERNEL_FN bool is_left_at_tie(Sheared p, Sheared q, bool p_is_first, real produc
     return p_is_first ? is_left_when_moved(p, q) : !is_left_when_moved(q, p);
 }
 
-// A test replaces the rule for ties to see that it is needed.
+// A test replaces the rule for ties, to show that the rule is needed.
 #ifndef SIDE_AT_TIE
 #define SIDE_AT_TIE(p, q, p_is_first, product) is_left_at_tie(p, q, p_is_first, product)
 #endif
 
-// Whether the ray's side at the edge from p to q is positive, else it is negative: what rounds to different products
-// was as different before, since rounding is monotone.
+// Whether the ray's side at the edge from p to q is positive; else it is negative. Rounding is monotone: products that
+// differ after rounding differed in the same sense before.
 KERNEL_FN bool is_left(Projected p, Projected q)
 {
     PRECISE real plus = p.seen.x * q.seen.y;
@@ -104,7 +105,7 @@ KERNEL_FN uint roughly_held(Ray ray, Shear shear, Vec3 a, Vec3 b, Vec3 c)
     return is_outside ? NOT_HELD : is_inside ? HELD : HELD_OR_TIE;
 }
 
-// The face of a tet whose edges all have the ray on their negative side; NO_EXIT where the ray crosses none.
+// The face of a tet all of whose edges have the ray on their negative side; NO_EXIT where the ray crosses no face.
 KERNEL_FN uint face_left_by(Ray ray, Vec3 a, Vec3 b, Vec3 c, Vec3 d)
 {
     Shear shear = shear_of(ray);
@@ -131,9 +132,9 @@ KERNEL_FN real side_at_entry(Ray ray, Vec3 from, Vec3 to)
     return left ? real(1.0f) : real(-1.0f);
 }
 
-// Whether the ray crosses a face that holds it in front of its origin: the depths of its vertices weighed by the sides,
-// as in nearer_triangle() of bvh.h; all alike where it is seen from its edge. Rounding does not depend on how the
-// corners are listed: they are summed in the order of the vertices.
+// Whether the ray crosses a face in front of its origin, for a face that holds the ray. The depths of the vertices are
+// weighted by the sides, as in nearer_triangle() of bvh.h, and equally where the face is seen edge-on. The sum is in
+// the order of the vertices, so rounding does not depend on the order of the corners.
 KERNEL_FN bool is_face_ahead(Ray ray, Vec3 a, Vec3 b, Vec3 c)
 {
     bool ab = is_before(a, b);

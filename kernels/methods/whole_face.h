@@ -1,9 +1,9 @@
-// Exit face for methods that ask a face for the sides of all its edges. The method, which includes this, brings
-// AS_SEEN(ray, point), a vertex as its products take it, and side_of(ray, from, to) for two of those, which must be
-// exactly negated where they change places: an edge then has one side, whichever tet asks.
+// Exit face for methods that test the ray's side at all edges of a face. The including method defines AS_SEEN(ray,
+// point), a vertex in the form that its products need, and side_of(ray, from, to) for two such vertices. Swapping the
+// two must negate it exactly: an edge then has the same side in every tet.
 
-// A face is the exit where none of its three edges has the ray on its entering side. The three candidates are asked one
-// after the other, each until an edge says no, and no edge is asked twice.
+// A face is the exit if none of its three edges has the ray on its entering side. The three candidates are tested in
+// turn, each until an edge rejects it. No edge is tested twice.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
     Vec3 apex = AS_SEEN(ray, vertex(scene, tet, entry));

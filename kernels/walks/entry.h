@@ -1,8 +1,8 @@
-// From outside: where a ray meets the domain's box, and the boundary face that it enters by.
-// Only products are compared, never a quotient: position <= line is |direction| (line - origin) <= |gap| direction_a,
-// whose left side is monotone in the line, so that the squares of one side never contradict each other.
-// After this: entry_links.h or entry_faces.h, the boundary faces that a square lists, then entry_nearest.h or
-// entry_on_path.h, which of them a ray enters by.
+// For rays from outside: where a ray meets the domain's box, and the boundary face by which it enters.
+// Only products are compared, never quotients: position <= line is |direction| (line - origin) <= |gap| direction_a.
+// The left side is monotone in the line, so that the squares of one side never contradict each other.
+// Include after this: entry_links.h or entry_faces.h (the boundary faces that a square lists), then entry_nearest.h or
+// entry_on_path.h (by which of them a ray enters).
 #define NO_ENTRY 0xFFFFFFFFu // instead of a boundary face's number
 
 // The corners of a boundary face, in the order of faces.h.
@@ -13,7 +13,7 @@ STRUCT(EntryFace)
     Vec3 c;
 };
 
-// Index of the domain's line `index` along `axis`.
+// Place in the array of the domain's line `index` along `axis`.
 KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
 {
     return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
@@ -34,7 +34,7 @@ KERNEL_FN DomainBox domain_box(SceneView scene)
     return box;
 }
 
-// The axes of the sides across another one.
+// The two axes other than this one, in cyclic order.
 KERNEL_FN uint first_axis(uint across)
 {
     return across == 2u ? 0u : across + 1u;
@@ -45,7 +45,7 @@ KERNEL_FN uint second_axis(uint across)
     return across == 0u ? 2u : across - 1u;
 }
 
-// How far the ray is from the plane of the side that it enters by if by one across this axis.
+// The distance from the ray's origin to the plane of the side across this axis by which the ray could enter.
 KERNEL_FN real gap_to_side(DomainBox box, Ray ray, uint across)
 {
     bool from_high = component(ray.direction, across) < real(0.0f);
@@ -53,7 +53,7 @@ KERNEL_FN real gap_to_side(DomainBox box, Ray ray, uint across)
     return gap;
 }
 
-// Where the ray meets that plane, along an axis: beyond a line where slope (line - origin) <= reach.
+// Where the ray meets that plane, along an axis. It is beyond a line if slope (line - origin) <= reach.
 STRUCT(SideCrossing)
 {
     uint axis;
@@ -81,8 +81,8 @@ KERNEL_FN bool is_beyond_line(SceneView scene, SideCrossing at, uint index)
     return product <= at.reach;
 }
 
-// Whether the ray meets the plane between the side's borders. On a border it must be moving inwards: a ray that only
-// grazes the box, in the plane of a side, has missed it.
+// Whether the ray meets the plane between the side's borders. On a border it must be moving inwards: a ray that runs in
+// the plane of a side (a grazing ray) misses the box.
 KERNEL_FN bool is_on_side(DomainBox box, SideCrossing at)
 {
     PRECISE real first = (component(box.low, at.axis) - at.origin) * at.slope;
@@ -101,7 +101,7 @@ KERNEL_FN bool enters_across(DomainBox box, Ray ray, uint across)
            is_on_side(box, side_crossing(box, ray, across, second_axis(across)));
 }
 
-// The square of the box that the ray enters by, or 6 divisions^2 where it misses the box. The origin is not inside.
+// The square of the box by which the ray enters, or 6 divisions^2 where it misses the box. The origin is not inside.
 KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 {
     uint n = scene.divisions;
@@ -112,7 +112,7 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
     if (across == 3u) return 6u * n * n;
     SideCrossing a = side_crossing(box, ray, across, first_axis(across));
     SideCrossing b = side_crossing(box, ray, across, second_axis(across));
-    uint i = 0u; // the last line that the ray is beyond is one of so many from here on
+    uint i = 0u; // the last line that the ray is beyond is one of `count` lines from here on
     uint j = 0u;
     for (uint count = n; count > 1u; count -= count >> 1u) {
         uint middle = count >> 1u;
@@ -124,7 +124,7 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 }
 
 // How deep the ray is inside a boundary face: the smallest of its three side products, negative outside. They are the
-// method's own, so that no walk begins by a face that its method would not have left by.
+// method's own products, so that a walk never begins at a face by which its method would not have left.
 KERNEL_FN real depth_in(EntryFace face, Ray ray)
 {
     real ab = side_at_entry(ray, face.a, face.b);

@@ -1,4 +1,4 @@
-// Boundary faces with their vertices, into tets that cannot name theirs; after entry.h.
+// Boundary faces that hold their vertices, for tets that do not store theirs; include after entry.h.
 KERNEL_FN Vec3 position_of(SceneView scene, uint vertex)
 {
     uint4 quad = FETCH(scene, vertices, vertex);

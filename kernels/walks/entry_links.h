@@ -1,4 +1,4 @@
-// Boundary faces as links into tets that hold their corners; after entry.h.
+// Boundary faces as links to tets that hold their corners; include after entry.h.
 KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
 {
     uint link = FETCH(scene, entry_links, index);
@@ -9,7 +9,7 @@ KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
     return face;
 }
 
-// The link of a boundary face, or NO_LINK of NO_ENTRY.
+// The link of a boundary face; NO_LINK for NO_ENTRY.
 KERNEL_FN uint entry_link(SceneView scene, uint index)
 {
     return index == NO_ENTRY ? NO_LINK : FETCH(scene, entry_links, index);

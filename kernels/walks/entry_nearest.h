@@ -1,7 +1,7 @@
 // The boundary face by which a ray enters the domain, for walks by links.
 
-// The number of the first of the square's faces that the ray is inside of, or of the one that it is nearest to where it
-// is inside of none; NO_ENTRY where it misses the domain.
+// The number of the first of the square's faces that the ray is inside; if it is inside none, of the nearest one;
+// NO_ENTRY where the ray misses the domain.
 KERNEL_FN uint entry_index(SceneView scene, Ray ray)
 {
     uint square = entry_square(scene, ray);

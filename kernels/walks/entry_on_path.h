@@ -1,14 +1,14 @@
-// The boundary face by which a ray's path enters the domain, for walks along paths: they begin by the end of a path or
-// not at all.
+// The boundary face by which a ray's path enters the domain. For walks along paths, which begin only at the end of a
+// path.
 
-// For a build that counts how often a path is sought from its beginning, and is never timed: 0 entry_anywhere(),
-// 1 exit_ahead(), 2 a ray that goes on beyond the face that it starts on.
+// For a build that counts how often a path is searched from its beginning: 0 entry_anywhere(), 1 exit_ahead(), 2 a ray
+// that goes on beyond the face that it starts on. That build is never timed.
 #ifndef COUNT_SEARCH
 #define COUNT_SEARCH(where)
 #endif
 
-// The number of the first boundary face that the ray enters by, or NO_ENTRY. Faces first to last - 1, those of the
-// square, are asked before all others.
+// The number of the first boundary face by which the ray enters, or NO_ENTRY. Faces first to last - 1, those of the
+// square, are tested first.
 KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
 {
     COUNT_SEARCH(0);
@@ -22,9 +22,9 @@ KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
     return found;
 }
 
-// The number of the boundary face that the ray enters by, or NO_ENTRY where it misses the domain. Float products settle
-// nearly all; ties are decided after the loop, since some devices execute what is behind a condition whether a lane
-// meets it or not.
+// The number of the boundary face by which the ray enters, or NO_ENTRY where it misses the domain. Float products
+// decide nearly all cases. Ties are decided after the loop, since some devices execute a conditional block even if no
+// lane needs it.
 KERNEL_FN uint entry_index(SceneView scene, Ray ray)
 {
     uint square = entry_square(scene, ray);

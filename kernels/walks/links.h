@@ -1,16 +1,16 @@
-// What walks by the links of faces share: the link beyond a face, whether the ray ends before that, and the hit at the
-// end.
+// Shared by the walks that follow links: the link of a face, whether the ray ends before the next tet, and the hit at
+// the end.
 
-// The link of a face; NO_LINK where the face is NO_EXIT or not decided yet. Face 0 to 3 is read all the same: all lanes
-// then load alike, and none loads beyond the last tet.
+// The link of a face; NO_LINK where the face is NO_EXIT or not decided yet. A face from 0 to 3 is read in any case: all
+// lanes then load alike, and none loads beyond the last tet.
 KERNEL_FN uint link_beyond(SceneView scene, uint tet, uint face)
 {
     uint link = face_link(scene, tet, face & 3u);
     return face >= NO_EXIT ? NO_LINK : link;
 }
 
-// Whether the ray has ended before it enters the tet that the link names: all three vertices of the face lie beyond
-// its end along its direction. Rounding decides little: hits beyond the end are none anyway.
+// Whether the ray ends before it enters the tet that the link names: all three vertices of the face lie beyond its end
+// along its direction. Rounding does not matter here: hits beyond the end are discarded later.
 KERNEL_FN bool ends_before(SceneView scene, uint link, Ray ray, real end)
 {
     PRECISE real reach = end * dot3(ray.direction, ray.direction);

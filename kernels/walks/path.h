@@ -1,18 +1,18 @@
-// Where a path begins that does not begin at the domain's boundary: for methods that define WALKS_PATHS, whose signs
-// make the faces that a ray crosses one path from boundary to boundary (docs/spec/project.md, P5). Such a method brings
-// is_ahead(scene, tet, face, ray).
+// Where a walk begins that does not begin at the domain's boundary. For methods that define WALKS_PATHS: by their
+// signs, the faces that a ray crosses form one path from boundary to boundary (docs/spec/project.md, P5). Such a method
+// defines is_ahead(scene, tet, face, ray).
 
-// Instead of the triangle that a ray starts on: its walk began at the domain's boundary and is never begun anew.
+// Instead of the triangle that a ray starts on: the walk began at the domain's boundary and is never restarted.
 #define FROM_OUTSIDE 0xFFFFFFFEu
 
-// The face of the ray's path that it leaves its start by, as tet << 2 | face of the tet that it leaves there; NO_LINK
-// where it has no path, or none is left. For an origin in a tet none of whose faces hold the ray.
-// start: the triangle that the ray starts on: what comes behind the last of its faces on the path. Where none of them
-// is on the path, and with FREE_FACE: the first face that is crossed in front of the origin, else the path's last one.
-// lost: the exit by which a walk began that was lost, or NO_LINK. The path is then followed to its end, and `lost` is
-// returned where it is on it, or where the end is too far: only a walk that goes in circles is begun anew. That is
-// asked here since a loop of its own would cost devices that execute what is behind a condition whether a lane meets it
-// or not.
+// The face of its path by which the ray leaves its start, as tet << 2 | face of the tet that it leaves; NO_LINK where
+// the ray has no path, or no face of it is left. For an origin in a tet none of whose faces hold the ray.
+// start: the triangle that the ray starts on. The result is the face after the last face of this triangle on the path.
+// If the triangle has no face on the path, and for FREE_FACE, it is the first face crossed in front of the origin, else
+// the path's last face. lost: the first exit of a walk that was lost, or NO_LINK. The path is then followed to its end.
+// `lost` is returned if it is on the path, or if the end is too far: only a walk that goes in circles is restarted.
+// This is tested here because a separate loop would be slow on devices that execute a conditional block even if no lane
+// needs it.
 KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint lost)
 {
     COUNT_SEARCH(1);
@@ -34,16 +34,17 @@ KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint sta
     return lost != NO_LINK && (is_on_path || link != NO_LINK) ? lost : exit;
 }
 
-// A tet, or NO_TET, and the face that the ray leaves it by, or NO_EXIT.
+// A tet, or NO_TET, and the face by which the ray leaves it, or NO_EXIT.
 STRUCT(Exit)
 {
     uint tet;
     uint face;
 };
 
-// The same for a ray that starts on the face that a link names. The tet's own exit, where the ray crosses the tet: it
-// is the one that follows the named face, where the rounded ray enters by that. Where the ray leaves by the named face,
-// it goes on beyond it. NO_EXIT where exit_ahead() has to find its path, NO_TET where that is at its end.
+// The same for a ray that starts on the face that a link names. Where the ray crosses the tet, the result is the tet's
+// own exit, which follows the named face if the rounded ray enters by it. Where the ray leaves the tet by the named
+// face, the result is in the tet beyond that face. NO_EXIT where exit_ahead() has to find the path, NO_TET where the
+// path has ended.
 KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint link)
 {
     Exit exit;
@@ -52,7 +53,7 @@ KERNEL_FN Exit exit_from_face(SceneView scene, Ray ray, uint link)
     if (exit.face != (link & 3u)) return exit;
     COUNT_SEARCH(2);
     uint beyond = face_link(scene, exit.tet, exit.face);
-    exit.tet = beyond >> 2u; // NO_TET of NO_LINK
+    exit.tet = beyond >> 2u; // NO_TET if beyond is NO_LINK
     if (beyond != NO_LINK) exit.face = exit_face(scene, exit.tet, beyond & 3u, ray);
     return exit;
 }

@@ -1,6 +1,6 @@
-// The exit search alone, without the walk around it: the paper's Table 5. A given ray enters a tet by a known face; a
-// method says by which face it leaves, or NO_EXIT. Methods get the moment as in a walk, made once a ray; a quad that a
-// method has no use for is not loaded.
+// The exit search alone, without the walk around it: the paper's Table 5. A given ray enters a tet by a known face, and
+// a method returns the face by which it leaves, or NO_EXIT. Methods get the moment as in a walk, computed once per ray.
+// A quad that a method does not use is not loaded.
 #define SEARCHES_EXITS
 
 KERNEL_FN Ray stabbing_ray(uint4 direction, uint4 origin, uint4 moment)

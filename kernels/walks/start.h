@@ -1,4 +1,4 @@
-// The exit face of the tet that a ray starts in, for the methods that know only how to go on from an entry face.
+// The exit face of the tet that a ray starts in, for the methods that need an entry face.
 // In the tet that holds the origin there is no entry face; three side products decide among four faces. Each edge
 // excludes one of its two faces; edges 23 and 01 leave one face of {0, 1} and one of {2, 3}, and the edge that those
 // two share decides.

@@ -1,6 +1,6 @@
-// The kernels of a CDT: a layout of tets, a method that finds the face a ray leaves a tet by, and a walk. The method
-// says which: one that defines WALKS_PATHS walks along paths, which on layouts with records (half32.h) carries
-// vertices; any other walks by links.
+// The kernels of a CDT: a layout of tets, a method that finds the face by which a ray leaves a tet, and a walk. The
+// method selects the walk: a method that defines WALKS_PATHS walks along paths, and carries vertices on layouts with
+// records (half32.h). Any other method walks by links.
 #include "kernels/layouts/faces.h"
 
 #include KERNEL_LAYOUT_HEADER

@@ -1,5 +1,5 @@
-// The kernels of a CDT whose tets share their vertices, and name no corner: a layout and the walk of method project,
-// which carries the vertices of the face that it is at.
+// The kernels of a CDT whose tets share their vertices and do not name their corners: a layout, and the walk of method
+// project, which carries the vertices of the current face.
 #include "kernels/layouts/faces.h"
 
 #include KERNEL_LAYOUT_HEADER

@@ -1,4 +1,4 @@
-// From a ray to its walk along its path. What stands before this brings walk(), and FACE_AT_ENTRY(scene, tet, entry,
+// From a ray to its walk along its path. Include after a file that defines walk() and FACE_AT_ENTRY(scene, tet, entry,
 // ray): the face by which walk() begins for a ray that enters the domain by face `entry` of the tet.
 KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
@@ -17,7 +17,7 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     return walk(scene, params, ray, tet, face, start, real(NO_END));
 }
 
-// A given ray starts on the face that its link names, on the side of that tet. exit_from_face() asks whether that face
+// A given ray starts on the face that its link names, on the side of that tet. exit_from_face() tests whether that face
 // is on the ray's path, so the surface that a ray starts on is not hit again.
 KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
 {

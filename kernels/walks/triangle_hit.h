@@ -1,5 +1,5 @@
-// The hit at the end of a walk, on the input triangle whose part has been met.
-// The hit on an input triangle; none where the ray ends before it.
+// The hit at the end of a walk, on an input triangle.
+// The hit on an input triangle; NO_HIT where the ray ends before it.
 KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint triangle, uint tet, uint steps, real end)
 {
     uint4 r0 = FETCH(scene, triangles, TRIANGLE_QUADS * triangle);

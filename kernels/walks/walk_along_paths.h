@@ -1,12 +1,14 @@
-// The walk from tet to tet along a ray's path, for methods that define WALKS_PATHS: one always finds a face to go on
-// by. It brings rough_exit_face(), which returns TIE_AT | entry at a tie: exit_face() then decides after the loop. The
-// rare tie then costs nothing where there is none, nor on devices that execute what is behind a condition whether a
-// lane meets it or not.
+// The walk from tet to tet along a ray's path, for methods that define WALKS_PATHS, which always find an exit. Such a
+// method defines rough_exit_face(), which returns TIE_AT | entry at a tie; exit_face() then decides after the loop.
+// Ties are rare, and steps without one pay nothing for them, even on devices that execute a conditional block although
+// no lane needs it.
 
-// From a tet and the face by which the ray leaves it to the ray's hit. end: ray parameter that a hit has at most;
-// NO_END of a ray without one. start: the triangle that a ray from inside starts on, or FREE_FACE; FROM_OUTSIDE of
-// others. A ray from inside begins by exit_ahead() where first_face is NO_EXIT, and where it is lost in circles.
-// Only the loops' own variables live on after them; everything else is loaded again (some compilers lose the rest).
+// From a tet and the face by which the ray leaves it to the ray's hit. end: the largest ray parameter of a hit; NO_END
+// for a ray without an end. start: the triangle that a ray from inside starts on, or FREE_FACE; FROM_OUTSIDE for a ray
+// from outside. A ray from inside begins with exit_ahead() if first_face is NO_EXIT, and again if its walk goes in
+// circles.
+// Only the loops' own variables are used after the loops; everything else is loaded again, because some compilers lose
+// it.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, uint start, real end)
 {
     bool is_endless = end >= real(NO_END);

@@ -1,9 +1,10 @@
 // The walk from tet to tet by the links of faces. A method's exit_face() and start_face() return a face of the tet, or
 // NO_EXIT: the walk is then lost.
 
-// From a tet and the face by which the ray leaves it to the ray's hit. end: ray parameter that a hit has at most;
-// NO_END of a ray without one.
-// Only the loop's own variables live on after it; everything else is loaded again (some compilers lose the rest).
+// From a tet and the face by which the ray leaves it to the ray's hit. end: the largest ray parameter of a hit; NO_END
+// for a ray without an end.
+// Only the loop's own variables are used after the loop; everything else is loaded again, because some compilers lose
+// it.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, real end)
 {
     bool is_endless = end >= real(NO_END);
@@ -39,8 +40,8 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     return walk(scene, params, ray, tet, face, real(NO_END));
 }
 
-// A given ray starts on the face that its link names, on the side of that tet. A method never leaves by the face that
-// it entered by, so the surface that a ray starts on is not hit again.
+// A given ray starts on the face that its link names, on the side of that tet. A method never leaves a tet by the face
+// by which it entered, so the surface that a ray starts on is not hit again.
 KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, uint4 origin)
 {
     Ray ray = given_ray(direction, origin);

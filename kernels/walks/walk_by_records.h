@@ -1,29 +1,29 @@
-// The walk of project through records (half32.h): the vertices of the face that the ray is at are carried. Decisions,
-// and so the bits of the hits, are those of walk_along_paths.h on tets that hold their vertices (docs/spec/layouts.md,
-// L4).
+// The walk of project through records (half32.h): it carries the vertices of the current face. Decisions, and so the
+// bits of the hits, are the same as in walk_along_paths.h on tets that hold their vertices (docs/spec/layouts.md, L4).
 
-// What lies behind a face of the tet that a walk begins in, as an exit of a record that fetches its corners anew.
+// What lies behind a face of the tet in which a walk begins, as a record's exit without a rotation: the corners are
+// then fetched from memory.
 KERNEL_FN uint first_exit(SceneView scene, uint tet, uint face)
 {
     uint exit = exit_through(scene, tet, face);
     return (exit & 3u) == HALF32_END ? exit : exit & ~3u;
 }
 
-// Record of a face's corner: that which has it as its apex.
+// Record of a face's corner: the record whose apex it is.
 KERNEL_FN uint record_of_corner(uint link, uint index)
 {
     return (link & ~3u) | corner(link & 3u, index);
 }
 
-// How far a ray has come: the face that it is at, and what is behind it.
+// The state of a walk: the current face, and what is behind it.
 STRUCT(Walker)
 {
     Carried p0;
     Carried p1;
     Carried p2;
-    uint turn;   // corner i of the face, as the record before it has them, is the carried vertex (i + turn) % 3
+    uint turn;   // corner i of the previous record's entry face is the carried vertex (i + turn) % 3
     uint exit;   // of that record
-    uint record; // whichever of its tet's
+    uint record; // any record of the tet that was left
     uint steps;
 };
 
@@ -34,7 +34,7 @@ KERNEL_FN bool goes_on(Walker at, TraceParams params, bool is_endless, real reac
            (is_endless || at.p0.along <= reach || at.p1.along <= reach || at.p2.along <= reach);
 }
 
-// The face by which the ray leaves the tet behind this one.
+// The face by which the ray leaves the tet behind the current face.
 KERNEL_FN Walker next_face(Walker at, Carried apex, uint4 exits, uint replaced)
 {
     Walker next;
@@ -50,7 +50,7 @@ KERNEL_FN Walker next_face(Walker at, Carried apex, uint4 exits, uint replaced)
     return next;
 }
 
-// At an exit of `tet`, the last of `steps` tets that were left.
+// The walk at an exit of `tet`, after it has left `steps` tets.
 KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint exit, uint steps)
 {
     uint first = (exit & 3u) == HALF32_END ? tet << 2u : exit >> 2u;
@@ -65,10 +65,9 @@ KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint
     return at;
 }
 
-// From a face of a tet to the ray's hit: that by which the ray leaves it, or enters it where start is FROM_OUTSIDE.
-// start, end, and where a walk begins by exit_ahead(): as in walk_along_paths.h. Loops ask at their end, and ties are
-// decided after the inner one: some devices execute what is behind a condition whether a lane meets it or not
-// (docs/spec/devices.md, W1).
+// From a face of a tet to the ray's hit. face: the ray leaves the tet by it, or enters by it if start is FROM_OUTSIDE.
+// start, end and the use of exit_ahead(): as in walk_along_paths.h. Loops test at their end, and ties are decided after
+// the inner loop: some devices execute a conditional block even if no lane needs it (docs/spec/devices.md, W1).
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint face, uint start, real end)
 {
     bool is_endless = end >= real(NO_END);

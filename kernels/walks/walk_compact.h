@@ -1,11 +1,11 @@
-// The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; docs/spec/layouts.md, L8). The
-// vertices of the face that the ray is at are carried, with their numbers: those and the xor give the tet's fourth.
-// Decisions, and so the bits of the hits, are those of walk_along_paths.h.
-// A layout brings CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank, known_rank, known): what is behind the face
-// opposite the vertex of that rank among the four, where `known` is behind that of known_rank.
+// The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; docs/spec/layouts.md, L8). It
+// carries the vertices of the current face and their numbers; the numbers and the xor give the tet's fourth vertex.
+// Decisions, and so the bits of the hits, are the same as in walk_along_paths.h.
+// A layout defines CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank, known_rank, known): what is behind the
+// face opposite the vertex of that rank among the four; `known` is the same for known_rank.
 
-// The face that the ray is at, by which it leaves a tet. Seen by the tet behind, its edges from p0 to p1, p1 to p2, p2
-// to p0 have the ray on their positive side.
+// The current face, by which the ray leaves a tet. Seen from the tet behind, the edges from p0 to p1, p1 to p2, p2 to
+// p0 have the ray on their positive side.
 STRUCT(Gate)
 {
     Carried p0;
@@ -16,7 +16,7 @@ STRUCT(Gate)
     uint v2;
     uint tet;    // the tet that is left; NO_TET where the ray enters the domain
     uint behind; // what the tet names behind the face: a tet, or an end of the walk (layout.h)
-    uint before; // what the one behind names here
+    uint before; // what the tet behind names on this side of the face
 };
 
 // How many of four vertices come before one of them.
@@ -69,7 +69,7 @@ KERNEL_FN uint replaced_unless_tie(Sheared p0, Sheared p1, Sheared p2, Sheared a
     return other_plus > other_minus ? (left ? 2u : 1u) : (left ? 0u : 2u);
 }
 
-// From a face through the tet behind it to the next.
+// From a face through the tet behind it to the next face.
 KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
 {
     CompactTet tet = compact_tet(scene, gate.behind);
@@ -118,14 +118,14 @@ KERNEL_FN Gate start_gate(SceneView scene, TraceParams params, Ray ray, Shear sh
     uint v0 = start_vertex(params, corner(face, 0u));
     uint v1 = start_vertex(params, corner(face, 1u));
     uint v2 = start_vertex(params, corner(face, 2u));
-    Gate gate = gate_of(scene, ray, shear, v0, v2, v1); // turned round: corners are listed for the tet itself
+    Gate gate = gate_of(scene, ray, shear, v0, v2, v1); // reversed: corners are listed for the tet itself
     gate.tet = params.start_tet;
     gate.behind = NEIGHBOUR(scene, compact_tet(scene, params.start_tet), rank, 3u, params.start_neighbour);
     gate.before = params.start_tet;
     return gate;
 }
 
-// The same face, with the tet behind it where it is occlusive: the ray goes on.
+// The same face, but if it is occlusive, with the tet behind it: the ray goes on.
 KERNEL_FN Gate opened(SceneView scene, Gate gate)
 {
     Gate result = gate;
@@ -142,9 +142,9 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
     return is_face_ahead(ray, position_of(scene, gate.v0), position_of(scene, gate.v1), position_of(scene, gate.v2));
 }
 
-// The first face of the ray's path that it crosses in front of its origin, as path.h finds it; tet is NO_TET where the
-// ray has no path. lost: the tet in which a walk began that was lost, or NO_TET; tet is `lost` where that is on the
-// path, or where the path's end is too far.
+// The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET where the ray has
+// no path. lost: the first tet of a walk that was lost, or NO_TET. The result's tet is `lost` if that is on the path,
+// or if the path's end is too far.
 KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint lost)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
@@ -162,9 +162,9 @@ KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear sh
     return found;
 }
 
-// From a face by which the ray leaves a tet to the ray's hit. first_steps: tets that it has left by then. has_exit: for
-// a ray that starts in a tet, whether any face of that tet holds it. Loops ask at their end, and ties are decided after
-// the inner one, as in walk_by_records.h; where a walk begins by gate_ahead(): as in walk_along_paths.h.
+// From a face by which the ray leaves a tet to the ray's hit. first_steps: the number of tets left before. has_exit:
+// for a ray that starts in a tet, whether a face of that tet holds the ray. Loops test at their end, and ties are
+// decided after the inner loop, as in walk_by_records.h. gate_ahead() is used as exit_ahead() in walk_along_paths.h.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps,
                    bool has_exit)
 {
