@@ -4,7 +4,8 @@
 
 namespace tetrace {
 
-/// A backend that this build was made without: it has no kernel, and one device that says why it cannot be used.
+/// A backend that this build was made without: it has no kernel, and one device whose reason says why it cannot be
+/// used.
 class AbsentBackend : public Backend {
 public:
     /// reason: what was missing and which package brings it.

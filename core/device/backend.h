@@ -17,24 +17,24 @@
 
 namespace tetrace {
 
-/// What a device computes on. Emulated: an API of GPUs that runs on the processor here.
+/// What a device computes on. Emulated: a GPU's API that runs on this machine's processor.
 enum class DeviceKind { cpu, gpu, emulated };
 inline constexpr std::array device_kinds{DeviceKind::cpu, DeviceKind::gpu, DeviceKind::emulated};
-/// As results have it: "cpu", "gpu", "emulated".
+/// As in results: "cpu", "gpu", "emulated".
 [[nodiscard]] std::string_view name_of(DeviceKind kind);
 
-/// A device as its API describes it; usable, or with the reason why not and what would bring it.
+/// A device as its API describes it; usable, or with the reason why not and what to install.
 struct Device {
     std::string name;
     DeviceKind kind = DeviceKind::cpu;
     std::string driver;         ///< driver or library, with version
-    std::string implementation; ///< of the API, in short, as tests/expected/ names it: "pocl-3.1", "lavapipe-22.3"
-    std::string id;             ///< its name for the user: UUID, else PCI id, else the name
+    std::string implementation; ///< of the API, short, as in tests/expected/: "pocl-3.1", "lavapipe-22.3"
+    std::string id;             ///< the name by which the user selects it: UUID, else PCI id, else the name
     std::string uuid;           ///< 32 lower-case hexadecimal digits, the same under every API; empty where unknown
     std::string pci;            ///< domain:bus:device.function, for example "0000:41:00.0"; empty where unknown
     std::uint64_t memory_bytes = 0;
-    std::uint64_t max_buffer_bytes = 0; ///< the largest that a kernel can be given at once; 0: memory is the limit
-    unsigned max_group_items = 0;       ///< work items of a group; 0: does not apply
+    std::uint64_t max_buffer_bytes = 0; ///< the largest buffer that a kernel can be given; 0: memory is the limit
+    unsigned max_group_items = 0;       ///< the most work items of a group; 0: does not apply
     unsigned group_width = 0;           ///< items or rays in lockstep (warp, subgroup, packet); 0: unknown, or none
     double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
     unsigned threads = 1;               ///< hardware threads or compute units
@@ -42,22 +42,22 @@ struct Device {
     std::string reason; ///< why not, where not usable
 };
 
-/// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not
-/// portable, which build a structure of the mesh.
+/// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not portable, which build
+/// a structure from the mesh.
 struct SceneData {
     const TriangleMesh* mesh = nullptr;
     const PackedScene* packed = nullptr;
 };
 
-/// Rays that a packet of schedule packets may have, each in a lane of a vector.
+/// The possible numbers of rays in a packet of schedule packets; each ray has a lane of a vector.
 inline constexpr unsigned packet_widths[] = {4, 8, 16};
 
 struct SessionOptions {
-    unsigned threads = 0;                     ///< host threads; 0 is all that the process may use
+    unsigned threads = 0;                     ///< host threads; 0: all that the process may use
     unsigned tile_height = 0;                 ///< 4 or 8; 0: see tile_height_of()
     unsigned packet_lanes = 0;                ///< of schedule packets, one of packet_widths; 0: the widest there is
-    std::uint64_t max_buffer_bytes = 0;       ///< treat the device's largest buffer as this small; 0: as it is
-    std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: none are kept
+    std::uint64_t max_buffer_bytes = 0;       ///< limit to impose on the device's largest buffer; 0: none
+    std::filesystem::path program_cache = {}; ///< folder for compiled kernels; empty: they are not kept
 };
 
 /// One image's worth of primary rays, or the rays that a session was given: see given_job(), search_job().
@@ -66,23 +66,23 @@ struct TraceJob {
     std::uint32_t width = 0, height = 0;
     std::uint32_t start_tet = NO_TET; ///< tet that holds view.origin, in packed order; NO_TET: rays enter from outside
     StartTet start;                   ///< of start_tet, see start_in()
-    std::uint32_t max_steps = 0;      ///< a walk that long is LOST
-    bool any_hit = false;             ///< whether there is a hit is asked: whichever is found first will do
+    std::uint32_t max_steps = 0;      ///< a walk with this many steps is LOST
+    bool any_hit = false;             ///< any hit will do, so the first one found is the answer
 };
 
 /// Lets the job's rays start in a tet.
 /// tet: of the scene that was packed, as its mesh numbers them; NO_TET: rays enter from outside.
 void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std::uint32_t tet);
 
-/// The job that traces so many rays, all that a session of task rays was given: a column of tiles.
-/// rays: a multiple of TILE_WIDTH.
+/// The job that traces all rays given to a session of task rays: a column of tiles.
+/// rays: their number, a multiple of TILE_WIDTH.
 [[nodiscard]] TraceJob given_job(std::size_t rays, std::uint32_t max_steps, bool any_hit);
 
-/// The job that searches the exits of so many rays, all that a session was given: a column of tiles.
-/// rays: a multiple of TILE_WIDTH.
+/// The job that searches the exits of all rays given to a session: a column of tiles.
+/// rays: their number, a multiple of TILE_WIDTH.
 [[nodiscard]] TraceJob search_job(std::size_t rays);
 
-/// Seconds that are paid once a session, apart from any kernel.
+/// Seconds spent once per session, outside any kernel.
 struct SetupTimes {
     double compile_s = 0;        ///< kernels compiled, or a BVH built
     double upload_s = 0;         ///< data copied to where the kernel reads it
@@ -90,37 +90,38 @@ struct SetupTimes {
     double build_s = 0;          ///< a BVH built by the device's driver, on the device's clock
 };
 
-/// What a device can do at best, the measure of every row on it.
+/// What a device can do at best; every row on the device is compared with it.
 struct Yardstick {
     double copy_bytes_per_s = 0; ///< its memory copied to its memory, bytes read and written
     double launch_s = 0;         ///< an empty kernel, from launch to the end of wait on the host's clock; median
 };
 
 /// One scene on one device with one kernel. Every call throws Error, and only Error: unsupported where memory or a
-/// limit does not suffice (both numbers are told), internal where the device was lost or its driver failed.
+/// limit is too small (reported with both numbers), internal where the device was lost or its driver failed.
 class Session {
 public:
     virtual ~Session() = default;
-    /// Tasks rays and search: gives the device the rays of the launches that follow, in place of those before; before
-    /// any launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a multiple of TILE_WIDTH
-    /// rays. Throws Error{unsupported} with both numbers where they exceed the largest buffer.
+    /// Tasks rays and search: gives the device the rays of the following launches, in place of earlier rays. Call it
+    /// before the first launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a multiple of
+    /// TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest buffer.
     virtual void set_rays(std::span<const Quad> quads);
-    /// Fills the whole output with POISON, untimed, then starts the kernel: in several launches where one would run so
-    /// long that a watchdog fires (core/device/launch.h).
+    /// Fills the whole output with POISON, untimed, then starts the kernel; uses several launches where one would run
+    /// long enough for a watchdog to fire (core/device/launch.h).
     virtual void launch(const TraceJob& job) = 0;
     /// Waits for the launch; returns device seconds of the kernel alone.
     [[nodiscard]] virtual double wait() = 0;
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
-    /// Throws Error{wrong_result} where the kernel wrote elsewhere.
+    /// Throws Error{wrong_result} if the kernel wrote outside its output.
     void read_back(std::span<Hit> hits);
-    /// Task search: copies the faces that were found by the last launch, 0 to 3 or NO_EXIT, in the order of the rays.
-    /// faces.size(): their number. Throws Error{wrong_result} where the kernel wrote elsewhere, or no face.
+    /// Task search: copies the faces that the last launch found, 0 to 3 or NO_EXIT, in the order of the rays.
+    /// faces.size(): the number of rays. Throws Error{wrong_result} if the kernel wrote outside its output, or a word
+    /// that is no face.
     void read_back(std::span<std::uint32_t> faces);
     /// launch(), wait() and read_back() of one job; returns device seconds.
     [[nodiscard]] double trace(const TraceJob& job, std::span<Hit> hits);
-    /// The same of task search.
+    /// The same for task search.
     [[nodiscard]] double search(const TraceJob& job, std::span<std::uint32_t> faces);
-    /// Seconds that copying the output took in the last read_back(), its checks left out.
+    /// Seconds that copying the output took in the last read_back(), without its checks.
     [[nodiscard]] double download_s() const { return download_s_; }
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;
     /// Device bytes that the structure and its scene data occupy.
@@ -128,7 +129,7 @@ public:
 
 private:
     [[nodiscard]] std::vector<std::uint32_t> checked_output(std::size_t words);
-    /// Copies the whole output: GUARD_WORDS, words_per_ray() a ray row after row, GUARD_WORDS.
+    /// Copies the whole output: GUARD_WORDS, words_per_ray() per ray row after row, GUARD_WORDS.
     virtual void read_output(std::span<std::uint32_t> words) = 0;
 
     double download_s_ = 0;
@@ -140,17 +141,17 @@ public:
     virtual ~Backend() = default;
     [[nodiscard]] virtual std::string name() const = 0;
     [[nodiscard]] virtual std::string clock() const = 0; ///< which clock Session::wait reads
-    /// What there is, found once a process; never empty: an API without any has one that is not usable, with the reason
-    /// and the package that would bring it.
+    /// The devices, found once per process. Never empty: an API without devices has one that is not usable, with the
+    /// reason and the package to install.
     [[nodiscard]] virtual const std::vector<Device>& devices() const = 0;
-    /// Whether this build has the kernel for this API, whatever the host and its devices can run.
+    /// Whether this build has the kernel for this API, regardless of what the host and its devices can run.
     [[nodiscard]] virtual bool has_kernel(const KernelId& kernel) const = 0;
     /// Empty where the kernel can run on the device (its index in devices()), else the reason.
     [[nodiscard]] virtual std::string why_not(std::size_t device, const KernelId& kernel) const = 0;
     [[nodiscard]] virtual std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel,
                                                         const SceneData& scene, const SessionOptions& options) = 0;
-    /// Runs kernels/probe.h, a work item a quad of {operation, a, b, c}; a result word each (core/device/self_test.h).
-    /// Empty where the API runs none of our kernels.
+    /// Runs kernels/probe.h, one work item per quad of {operation, a, b, c}; returns one word per quad
+    /// (core/device/self_test.h). Empty where the API runs none of our kernels.
     [[nodiscard]] virtual std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                            std::span<const Quad> operations) = 0;
     /// Measures the device, in about a second; empty where the API has no memory and no launches of its own.
@@ -160,7 +161,7 @@ public:
 /// Every backend of this build, in CMake's order; those that cannot run here say so in their devices.
 [[nodiscard]] const std::vector<Backend*>& all_backends();
 
-/// The one of them whose answers all others' are compared with; it runs on the host, on one device.
+/// The backend with whose answers all others' are compared; it runs on the host, on one device.
 [[nodiscard]] Backend& reference_backend();
 
 } // namespace tetrace

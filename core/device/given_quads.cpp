@@ -24,7 +24,7 @@ std::uint32_t packed_link(std::uint32_t link, const PackedScene& packed)
     return make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
 }
 
-// link_of and origin_of: what the quads have of a ray.
+// link_of and origin_of: the link and the origin that the quads hold for a ray.
 template <class LinkOf, class OriginOf>
 std::vector<Quad> quads_of_rays(const RaySet& set, const LinkOf& link_of, const OriginOf& origin_of)
 {

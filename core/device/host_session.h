@@ -6,8 +6,8 @@
 
 namespace tetrace {
 
-/// A session on the host's own processor and memory: launch() runs to the end, wait() tells how long that took.
-/// A backend brings run(), and what was set up.
+/// A session on the host's own processor and memory: launch() runs to the end, and wait() returns how long that took. A
+/// backend implements run() and the set-up.
 class HostSession : public Session {
 public:
     explicit HostSession(Task task) : task_(task) {}
@@ -16,7 +16,7 @@ public:
 
 private:
     void read_output(std::span<std::uint32_t> words) final;
-    /// Does the whole image. output: words_per_ray() a ray, row after row.
+    /// Traces the whole image. output: words_per_ray() per ray, row after row.
     virtual void run(const TraceJob& job, std::span<std::uint32_t> output) = 0;
 
     Task task_;
@@ -24,7 +24,7 @@ private:
     double kernel_s_ = 0;
 };
 
-/// A hit is six words without padding: an output of task trace holds hits as every device's does.
+/// A hit is six words without padding: an output of task trace holds hits, as on every device.
 [[nodiscard]] inline std::span<Hit> as_hits(std::span<std::uint32_t> output)
 {
     return {reinterpret_cast<Hit*>(output.data()), output.size() / HIT_WORDS};

@@ -71,7 +71,7 @@ void LaunchSize::took(std::uint32_t tiles, double seconds)
 {
     if (tiles == 0) return;
     const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : most_tiles_;
-    // A launch shorter than the limit says little about longer ones: growth is by steps, shrinking at once.
+    // A launch shorter than the limit says little about longer ones, so the size grows in steps but shrinks at once.
     const double largest = std::min<double>(most_tiles_, std::max<double>(tiles_, tiles * largest_growth));
     tiles_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, largest));
 }

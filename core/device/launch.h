@@ -7,7 +7,7 @@
 
 namespace tetrace {
 
-/// What a device gets with each launch: LaunchParams of kernels/launch.h, word for word.
+/// The parameters of a launch: LaunchParams of kernels/launch.h, word for word.
 struct LaunchParams {
     Float3 origin, corner, step_x, step_y;
     std::uint32_t width, height, start_tet, max_steps, any_hit;
@@ -23,31 +23,31 @@ static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; se
 /// Tiles of an image, row after row.
 [[nodiscard]] std::uint32_t tile_count(const LaunchParams& image);
 
-/// Words that a kernel writes a ray: a hit, or a face.
+/// Words that a kernel writes per ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 
 /// Words of an image's output, guards included.
 [[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
 
-/// Throws Error{unsupported} with both numbers where an image's output of so many words exceeds the largest buffer;
-/// max_buffer_bytes: 0 is no limit.
+/// Throws Error{unsupported} with both numbers where an image's output exceeds the largest buffer. max_buffer_bytes: 0
+/// is no limit.
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
 
 /// The same for a session's rays.
 void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes);
 
-/// Throws Error{internal} where other hits are read back than those of the last launch.
+/// Throws Error{internal} if the hits to read back are not those of the last launch.
 void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words);
 
-/// How many tiles a launch may hold so that it ends long before any watchdog fires (2 s is the shortest known): few at
-/// first, then as many as fit into a tenth of a second at the speed that the last launches had.
+/// How many tiles a launch may have so that it ends long before any watchdog fires (2 s is the shortest known): few at
+/// first, then as many as fit into a tenth of a second at the speed of the last launches.
 class LaunchSize {
 public:
     static constexpr std::uint32_t no_limit = 1u << 20; ///< 2^26 rays at most: far below most APIs' limit on groups
 
     explicit LaunchSize(unsigned tile_height, std::uint32_t most_tiles = no_limit);
     [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
-    /// Tells how long a launch of that many tiles took.
+    /// Reports how long a launch of that many tiles took.
     void took(std::uint32_t tiles, double seconds);
 
 private:
@@ -55,7 +55,7 @@ private:
     std::uint32_t tiles_;
 };
 
-/// Cuts a session's images into launches, and adds up what an image's launches take.
+/// Cuts a session's images into launches, and adds up the seconds of an image's launches.
 class Launches {
 public:
     /// most_tiles: of a launch, where the API has a limit.
@@ -63,14 +63,14 @@ public:
         : size_(tile_height, most_tiles)
     {
     }
-    /// Calls enqueue with the params and the tiles of launch after launch. image: params of the first one.
-    /// During the session's first image take_times, which tells took(), is called after each: nothing is known yet of
-    /// how long a launch takes.
+    /// Calls enqueue for each launch with its params and its number of tiles. image: params of the first launch.
+    /// take_times must call took(). During the session's first image it is called after each launch, because nothing is
+    /// known yet about how long a launch takes.
     void start(const LaunchParams& image, const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
                const std::function<void()>& take_times);
-    /// Tells how long a launch of that many tiles took on the device.
+    /// Reports how long a launch of that many tiles took on the device.
     void took(std::uint32_t tiles, double seconds);
-    /// Of those launches of the image that took() was told of.
+    /// Of the image's launches that were reported to took().
     [[nodiscard]] double seconds() const { return seconds_; }
 
 private:

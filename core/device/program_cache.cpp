@@ -31,7 +31,7 @@ std::optional<std::vector<unsigned char>> ProgramCache::find(std::uint64_t key) 
 void ProgramCache::keep(std::uint64_t key, std::span<const unsigned char> program) const
 {
     if (folder_.empty()) return;
-    std::error_code failure; // what cannot be made cannot be written to either
+    std::error_code failure; // if this fails, writing fails too
     std::filesystem::create_directories(folder_, failure);
     try {
         const std::uint64_t hash = hash_of(program);
@@ -40,7 +40,7 @@ void ProgramCache::keep(std::uint64_t key, std::span<const unsigned char> progra
         file.write(std::as_bytes(program));
         file.commit();
     } catch (const Error&) {
-        return; // the next run compiles again
+        return; // on failure the next run compiles again
     }
 }
 

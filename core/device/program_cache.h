@@ -9,15 +9,15 @@
 
 namespace tetrace {
 
-/// Compiled programs in a folder, a file each: `<16 digits>.bin`, the digits being the key; first 8 bytes of hash
-/// (core/base/hash.h), then what was compiled, so that a damaged file never reaches a driver. Nothing here throws: a
-/// cache that cannot be read or written is none.
+/// Compiled programs in a folder, one file each, `<16 digits>.bin`; the digits are the key. A file is 8 bytes of hash
+/// (core/base/hash.h), then the program, so that a damaged file never reaches a driver. Nothing here throws: a cache
+/// that cannot be read or written counts as empty.
 class ProgramCache {
 public:
-    /// folder: empty keeps nothing; it is made when first written to.
+    /// folder: created when first written to; empty: nothing is kept.
     explicit ProgramCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// What was kept under a key; empty where nothing was, or where it is damaged.
+    /// The program kept under a key; empty where there is none, or it is damaged.
     [[nodiscard]] std::optional<std::vector<unsigned char>> find(std::uint64_t key) const;
     void keep(std::uint64_t key, std::span<const unsigned char> program) const;
 

@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// An array as a layout's kernels read it. One that they read both as words and as quads has two entries.
+/// An array as a layout's kernels read it. An array that they read both as words and as quads has two entries.
 struct SceneArray {
     const char* name;
     std::uint32_t binding;
@@ -18,7 +18,7 @@ struct SceneArray {
 /// In the order of kernels/layouts/cdt_arrays.h, compact_arrays.h or bvh_arrays.h.
 [[nodiscard]] std::span<const SceneArray> scene_arrays(Layout layout);
 
-/// An array of a packed scene as the bytes that a device is given.
+/// An array of a packed scene as the bytes that are copied to a device.
 struct SceneBuffer {
     const char* name;
     std::span<const std::byte> bytes;
@@ -34,8 +34,8 @@ struct TetParts {
     [[nodiscard]] std::span<const std::byte> part(std::span<const std::byte> tets, unsigned index) const;
 };
 /// max_buffer_bytes: of the device; 0 is no limit. One part where the array fits.
-/// Throws Error{unsupported} naming the array and both numbers where another array exceeds it, any of a BVH, or
-/// MAX_TET_PARTS do.
+/// Throws Error{unsupported} naming the array and both numbers where any other array exceeds it, any array of a BVH
+/// does, or the tets need more than MAX_TET_PARTS parts.
 [[nodiscard]] TetParts tet_parts(const PackedScene& scene, std::uint64_t max_buffer_bytes);
 
 } // namespace tetrace

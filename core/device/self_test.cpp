@@ -29,7 +29,7 @@ bool is_denormal(float value)
     return std::fpclassify(value) == FP_SUBNORMAL;
 }
 
-/// Numbers of either sign between 2^-20 and 2^20: nothing made of three of them is denormal or infinite.
+/// Numbers of either sign between 2^-20 and 2^20: no operation on three of them gives a denormal or infinite result.
 class Numbers {
 public:
     float next()
@@ -41,7 +41,7 @@ public:
     std::uint32_t word() { return static_cast<std::uint32_t>(engine_()); }
 
 private:
-    std::mt19937_64 engine_{20170401}; // fixed: every device is asked the same
+    std::mt19937_64 engine_{20170401}; // fixed: every device runs the same operations
 };
 
 std::vector<Quad> make_operations()
@@ -50,7 +50,7 @@ std::vector<Quad> make_operations()
     Numbers numbers;
     for (int i = 0; i < 64; ++i) {
         const float a = numbers.next(), b = numbers.next(), c = numbers.next();
-        // The rounded product taken away again: 0 in two roundings, its error in one.
+        // Subtracts the rounded product: 0 with two roundings, the product's error with one.
         quads.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(-(a * b))});
         quads.push_back({PROBE_MULTIPLY_ADD, bits(a), bits(b), bits(c)});
         quads.push_back({PROBE_DIVIDE, bits(a), bits(b), 0});
@@ -111,7 +111,7 @@ void judge(SelfTest& test, const Quad& quad, std::uint32_t result)
     const bool same = result == right;
     switch (quad.x) {
     case PROBE_MULTIPLY_ADD:
-        // A sum that cancels may be a zero of either sign; any other difference is a contraction.
+        // A sum that cancels may give a zero of either sign; any other difference is a contraction.
         if (!same && number(result) != number(right)) test.contracts = true;
         break;
     case PROBE_DIVIDE: raise_to(test.division_ulps, result, right); break;
@@ -130,7 +130,7 @@ void judge(SelfTest& test, const Quad& quad, std::uint32_t result)
     }
 }
 
-/// What makes decisions other than on the host; empty of an exact device.
+/// What makes decisions differ from the host's; empty for an exact device.
 std::string inexact_text(const SelfTest& test)
 {
     std::string text;
@@ -161,7 +161,7 @@ bool SelfTest::is_exact() const
 
 std::uint32_t SelfTest::allowed_ulps() const
 {
-    constexpr std::uint32_t promised = 3; // 2.5 by Vulkan and OpenCL, and a half of openmp's own
+    constexpr std::uint32_t promised = 3; // Vulkan and OpenCL allow 2.5; openmp itself adds 0.5
     return division_ulps == 0 ? 0 : promised;
 }
 

@@ -58,7 +58,7 @@ void Session::set_rays(std::span<const Quad>)
     throw Error(ErrorKind::internal, "rays are given to a session that makes its own");
 }
 
-/// Not kept: many sessions are open at a time.
+/// Not kept in the session, because many sessions are open at a time.
 std::vector<std::uint32_t> Session::checked_output(std::size_t words)
 {
     std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + words);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int last_line = 255;
 
-// Rounding of the division and of line_at() must not move a line into the box.
+// Rounding in the division and in line_at() must not move a line into the box.
 int line_below(const BoxGrid& grid, int axis, float x)
 {
     int line = static_cast<int>(std::floor((double{x} - grid.origin[axis]) / grid.width(axis)));

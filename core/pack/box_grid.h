@@ -20,10 +20,10 @@ struct GridBox {
     std::array<std::uint8_t, 3> low = {}, high = {};
 };
 
-/// The finest grid from the box's low corner on that covers it. box: not empty, at most 2^100 in size.
+/// The finest grid that starts at the box's low corner and covers the box. box: not empty, at most 2^100 in size.
 [[nodiscard]] BoxGrid make_box_grid(const Box& box);
 
-/// The smallest box of grid lines round this one. box: within what the grid covers.
+/// The smallest box of grid lines around this box. box: inside the grid.
 [[nodiscard]] GridBox to_grid(const BoxGrid& grid, const Box& box);
 
 /// The coordinate of a grid line.

@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-/// A row of kernels/kernel_list.inc; its words are the constants below.
+/// A row of kernels/kernel_list.inc; the list's words are the constants below.
 struct KernelRow {
     Method method;
     Layout layout;
@@ -35,7 +35,7 @@ const std::vector<KernelRow>& kernel_rows()
     return rows;
 }
 
-/// Null where the list has no such kernel.
+/// Null if the list has no such kernel.
 const KernelRow* row_of(const KernelId& kernel)
 {
     const auto& rows = kernel_rows();
@@ -46,7 +46,8 @@ const KernelRow* row_of(const KernelId& kernel)
     return row == rows.end() ? nullptr : &*row;
 }
 
-/// Foreign kernels compute as they like, packets as exactly as what they are compared with.
+/// Foreign kernels have math mode fast, since we do not control how they compute; packets have exact, as the kernels
+/// that they are compared with.
 bool has_math(const KernelId& kernel)
 {
     if (!is_portable(kernel)) return kernel.math == MathMode::fast;

@@ -8,36 +8,36 @@
 namespace tetrace {
 
 enum class Structure { cdt, bvh };
-/// How a structure is traversed: an exit-face search of the CDT (kernels/methods/<name>.h), or how many rays at once
-/// are traced through a BVH.
+/// How a structure is traversed: an exit-face search of the CDT (kernels/methods/<name>.h), or how many rays are traced
+/// together through a BVH.
 enum class Method {
 #define METHOD(name, ...) name,
 #include "kernels/kernel_list.inc"
 };
-/// A packed form of the mesh: tets (half32: a record for each way into one; tet20 and tet16: tets that share their
-/// vertices), a BVH of our own, or what Embree, or a GPU's driver (rt), builds for itself.
+/// A packed form of the mesh: tets (half32: a record for each tet and entry face; tet20 and tet16: tets that share
+/// their vertices), a BVH of our own, or a BVH that Embree or a GPU's driver (rt) builds itself.
 enum class Layout {
 #define LAYOUT(name, ...) name,
 #define FOREIGN_LAYOUT(name) name,
 #include "kernels/kernel_list.inc"
 };
 enum class MathMode { exact, fast };
-/// What rays are for (core/rays/ray_set.h); all but primary ones are given to a session. The values choose streams of
+/// What rays are for (core/rays/ray_set.h). All but primary rays are given to a session. The values select streams of
 /// random numbers.
 enum class RayKind { primary = 0, shadow = 1, ao = 2, diffuse = 3, random = 4 };
-/// The order of rays that are given: as their pixels lie in tiles, along a space-filling curve, at random.
+/// The order of given rays: by their pixels' tiles, along a space-filling curve, at random.
 enum class RayOrder { tiles, morton, shuffled };
-/// How rays come to work items: a ray an item in a tile a group, or items that stay and fetch rays until none is left
-/// (Aila, Laine, Karras 2012), or as many rays at once as a processor's vectors have lanes.
+/// How rays are assigned to work items: one ray per item and one tile per group; or items that stay and fetch rays
+/// until none is left (Aila, Laine, Karras 2012); or packets with as many rays as a processor's vectors have lanes.
 enum class Schedule { tiles, persistent, packets };
-/// What a kernel does: traces the primary rays of an image, traces rays that it is given, or searches for the exit face
-/// of one tet alone for each ray that it is given.
+/// What a kernel does: it traces the primary rays of an image, traces given rays, or searches the exit face of a single
+/// tet for each given ray.
 enum class Task { trace, rays, search };
-/// The order of the tets in memory: along a space-filling curve; the same, with those that no ray from outside reaches
-/// (inside closed surfaces) behind all others; as the tetrahedralization wrote them.
+/// The order of the tets in memory: along a space-filling curve; the same, with the tets that no ray from outside
+/// reaches (inside closed surfaces) after all others; as the tetrahedralization wrote them.
 enum class TetOrder { hilbert, reached, input };
 
-/// A kernel is data: backends map it to code, or say that they have none.
+/// A kernel's name as data: backends map it to code, or say that they have none.
 struct KernelId {
     Structure structure = Structure::cdt;
     Method method = Method::maria;
@@ -49,32 +49,31 @@ struct KernelId {
     friend bool operator==(const KernelId&, const KernelId&) = default;
 };
 
-/// Every kernel of task trace that some backend can run, from kernels/kernel_list.inc and in its order: of the CDT, of
-/// our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
+/// Every kernel of task trace that some backend can run, from kernels/kernel_list.inc and in its order: first those of
+/// the CDT, then of our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the list has the kernel, whatever its math mode and schedule, with that task.
+/// Whether the list has the kernel with that task, in any math mode and schedule.
 [[nodiscard]] bool has_task(const KernelId& kernel);
 
-/// Whether the kernel, of whatever schedule, has packets: one walk is written for them, in exact mode.
+/// Whether the kernel has packets; its schedule is ignored. Only one walk is written for packets, in exact mode.
 [[nodiscard]] bool has_packets(const KernelId& kernel);
 
-/// The kernels that do a task, in the same order; those that are given rays have no schedule persistent.
+/// The kernels for a task, in the same order; for given rays there is no schedule persistent.
 [[nodiscard]] std::vector<KernelId> kernels_of(Task task);
 
 /// The structure that a layout packs.
 [[nodiscard]] Structure structure_of(Layout layout);
-/// Whether a layout's tets share their vertices and name no corner: method project alone walks them.
+/// Whether a layout's tets share their vertices and do not name their corners: only method project walks them.
 [[nodiscard]] bool is_compact(Layout layout);
-/// Whether the kernel is one of kernels/, the same source on every backend; Embree's own and
-/// those of drivers are not.
+/// Whether the kernel is one of kernels/, the same source on every backend; those of Embree and of drivers are not.
 [[nodiscard]] bool is_portable(const KernelId& kernel);
 
-/// Whether the kernel should lose no ray and mistake none (kernels/kernel_list.inc). Wrong and lost rays then fail a
-/// run. Those of other kernels are counted and shown with the rate, and fail nothing.
+/// Whether the kernel should lose no ray and get none wrong (kernels/kernel_list.inc). Wrong and lost rays then fail a
+/// run. Those of other kernels are counted and shown with the rate, but fail nothing.
 [[nodiscard]] bool claims_robustness(const KernelId& kernel);
 
-/// Whether the kernel has rows where no method is named.
+/// Whether the kernel has rows when no method is named.
 [[nodiscard]] bool is_default(const KernelId& kernel);
 
 [[nodiscard]] std::string_view name_of(Structure value);
@@ -87,8 +86,8 @@ struct KernelId {
 [[nodiscard]] std::string_view name_of(Task value);
 [[nodiscard]] std::string_view name_of(TetOrder value);
 
-/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" of task search; of task rays as of
-/// trace.
+/// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" for task search; for task rays the same
+/// as for trace.
 [[nodiscard]] std::string name_of(const KernelId& kernel);
 
 } // namespace tetrace

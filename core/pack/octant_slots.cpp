@@ -12,7 +12,8 @@ double slot_cost(Double3 offset, std::uint32_t slot)
            ((slot & 1) != 0 ? -offset.z : offset.z);
 }
 
-// The first n children have some set of n slots: the best way to that set extends the best way to a set of n - 1.
+// The first n children occupy a set of n slots. The best assignment to that set extends the best assignment to a subset
+// of n - 1 slots.
 std::vector<std::uint8_t> octant_slots(std::span<const Double3> offsets)
 {
     constexpr std::uint32_t sets = 256;

@@ -8,14 +8,13 @@
 
 namespace tetrace {
 
-/// Slots of a node's children, one of 8 each, such that a ray that visits the slots in the order of slot xor octant,
-/// ascending, meets near children early, whatever the octant of its direction. An octant has bit 2 where the
-/// direction's x is negative, bit 1 y, bit 0 z. offsets: of the children's centres from the node's, at most 8. The sum
-/// of their distances along the octants' directions is the least of all assignments. Source: Ylitie, Karras, Laine
-/// 2017, section 3 (child node order).
+/// Slots of a node's children, one of 8 each. A ray visits the slots by ascending slot xor octant, and so meets near
+/// children early for every octant of its direction. An octant has bit 2 where the direction's x is negative, bit 1 y,
+/// bit 0 z. offsets: of the children's centres from the node's centre, at most 8. The assignment has the least sum of
+/// distances along the octants' directions. Source: Ylitie, Karras, Laine 2017, section 3 (child node order).
 [[nodiscard]] std::vector<std::uint8_t> octant_slots(std::span<const Double3> offsets);
 
-/// Of a child in that slot: its distance from the node's centre along the octant's direction.
+/// For a child in that slot: its distance from the node's centre along the octant's direction.
 [[nodiscard]] double slot_cost(Double3 offset, std::uint32_t slot);
 
 } // namespace tetrace

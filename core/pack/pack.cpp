@@ -21,7 +21,7 @@ Double3 unit_centroid(const Scene& scene, const Tet& tet)
     return {offset.x / size.x, offset.y / size.y, offset.z / size.z};
 }
 
-// Which tets are joined to the domain's boundary by free faces: rays from there cross no others.
+// Which tets are connected to the domain's boundary by free faces: rays from the boundary cross no other tets.
 std::vector<bool> reached_tets(const TetMesh& mesh)
 {
     std::vector<bool> reached(mesh.tets.size());
@@ -41,7 +41,7 @@ std::vector<bool> reached_tets(const TetMesh& mesh)
     return reached;
 }
 
-// Tets of the scene in the order in which they are packed.
+// The scene's tets in packed order.
 std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
 {
     std::vector<std::uint32_t> tets(scene.tets.tets.size());
@@ -63,7 +63,7 @@ std::uint32_t renumbered(std::uint32_t link, const std::vector<std::uint32_t>& p
     return link == NO_LINK ? NO_LINK : make_link(packed_of_mesh[link_tet(link)], link_face(link));
 }
 
-// The scene's tets in packed order, linked by it.
+// The scene's tets in packed order, with links in that numbering.
 TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& tets,
                         const std::vector<std::uint32_t>& packed_of_mesh)
 {

@@ -8,13 +8,13 @@
 
 namespace tetrace {
 
-/// Of one leaf of a binary BVH that is packed: bvh2 has four bits for them.
+/// The most references in a leaf of a binary BVH: bvh2 has four bits for their number.
 inline constexpr std::uint32_t most_leaf_references = 15;
 
-/// Packs a BVH in a layout of BVHs (kernels/layouts/layout.h); its boxes grow by BOX_MARGIN.
-/// bvh: of this mesh, valid (see find_defect). Nodes stand depth first, and leaf triangles in the order of their
+/// Packs a BVH in a layout of BVHs (kernels/layouts/layout.h); its boxes are enlarged by BOX_MARGIN.
+/// bvh: of this mesh, valid (see find_defect). Nodes are in depth-first order, leaf triangles in the order of their
 /// leaves. Throws Error{unsupported} with both numbers where the layout cannot number the references, a leaf has too
-/// many, or more would wait on a ray's stack than the kernels have room for.
+/// many, or a ray's stack would need more entries than the kernels have.
 [[nodiscard]] PackedScene pack_bvh(const TriangleMesh& mesh, const Bvh& bvh, Layout layout);
 
 /// Appends a leaf's triangles; returns the number of the first, counted in triangles.

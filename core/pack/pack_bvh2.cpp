@@ -26,7 +26,7 @@ public:
     }
 
 private:
-    /// The child that rays meet more often comes next in memory.
+    /// The child that more rays meet comes next in memory.
     std::uint32_t add_node(std::uint32_t index)
     {
         const auto& child = bvh_.nodes[index].child;

@@ -25,7 +25,7 @@ bool has_vertex(const Tet& tet, std::uint32_t vertex)
     return std::find(tet.vertices.begin(), tet.vertices.end(), vertex) != tet.vertices.end();
 }
 
-/// Whether a walk that comes from the tet through the face knows three vertices of the next one.
+/// Whether a walk that leaves the tet by the face knows three vertices of the next tet.
 bool is_named_back(const TetMesh& mesh, std::uint32_t tet, std::uint32_t face)
 {
     const std::uint32_t link = mesh.tets[tet].links[face];
@@ -49,7 +49,7 @@ void require_walkable(const TetMesh& mesh, Layout layout)
         }
 }
 
-/// The number of each vertex of the mesh: in the order in which the tets first name them.
+/// The number of each vertex of the mesh, in the order in which the tets first name them.
 std::vector<std::uint32_t> number_vertices(const TetMesh& mesh)
 {
     std::vector<std::uint32_t> number(mesh.vertices.size(), not_numbered);
@@ -86,7 +86,7 @@ FourWords numbered(const Tet& tet, const std::vector<std::uint32_t>& number)
     return vertices;
 }
 
-/// What is behind each face of each tet, as layout.h has it; fills the table of occlusive faces.
+/// What is behind each face of each tet, in the form of layout.h; fills the table of occlusive faces.
 std::vector<FourWords> words_behind(const TetMesh& mesh, std::vector<std::uint32_t>& occlusive_faces, Layout layout)
 {
     std::vector<FourWords> behind(mesh.tets.size());
@@ -107,7 +107,7 @@ std::vector<FourWords> words_behind(const TetMesh& mesh, std::vector<std::uint32
     return behind;
 }
 
-/// What is behind the faces, by the numbers of the vertices opposite to them.
+/// What is behind the faces, sorted by the numbers of their opposite vertices.
 FourWords sorted_by(const FourWords& vertices, const FourWords& behind)
 {
     std::array<std::uint32_t, 4> order{0, 1, 2, 3};

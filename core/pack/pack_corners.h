@@ -4,12 +4,12 @@
 
 namespace tetrace {
 
-/// Packs tets that hold their corners: of each vertex its coordinates and 0 up to vertex_words words, then {link, input
-/// triangle} of each face.
+/// Packs tets that hold their corners: each vertex's coordinates, padded with 0 to vertex_words words, then each face's
+/// {link, input triangle}.
 /// mesh: see PackTets in core/pack/traits.h.
 void pack_corners(PackedScene& packed, const TetMesh& mesh, std::uint32_t vertex_words);
 
-/// Quads of a tet that is packed so.
+/// Quads of a tet packed in this way.
 constexpr std::uint32_t corner_quads(std::uint32_t vertex_words)
 {
     return vertex_words + 2;

@@ -20,7 +20,7 @@ struct CwbvhNode {
 
     static constexpr std::size_t grid_word = 3, child_base = 4, triangle_base = 5, meta = 6, low = 8, high = 14;
 
-    /// Byte `slot` of eight that begin at a word.
+    /// Byte `slot` of the eight bytes that begin at a word.
     void set_byte(std::size_t word, std::size_t slot, std::uint32_t value)
     {
         words[word + slot / 4] |= value << 8 * (slot % 4);
@@ -32,7 +32,7 @@ struct CwbvhNode {
     }
 };
 
-/// A node's children where they stand: by slot, null where none does.
+/// A node's children by slot; null in an empty slot.
 using SlottedChildren = std::array<const WideChild*, wide_children>;
 
 Box grown_box(const WideChild& child)
@@ -85,7 +85,7 @@ public:
     }
 
 private:
-    // Children of a node stand together; below them come, one child after the other, what is below each.
+    // Children of a node are stored together; their subtrees follow, one child after the other.
     void pack_node(const WideNode& wide, std::uint32_t index)
     {
         Box box;
@@ -133,7 +133,7 @@ private:
         }
     }
 
-    // Once where two parts of a triangle came into one leaf.
+    // Only once if a leaf holds two parts of a triangle.
     [[nodiscard]] std::vector<std::uint32_t> triangles_of(const WideChild& leaf) const
     {
         const auto references = std::span(wide_.references).subspan(leaf.first, leaf.count);
@@ -152,7 +152,7 @@ private:
 
 PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh)
 {
-    constexpr std::uint32_t most_depth = 3 * CWBVH_STACK; // three levels of two children make one of eight
+    constexpr std::uint32_t most_depth = 3 * CWBVH_STACK; // three binary levels make one level of eight children
     if (const auto depth = depth_of(bvh); depth > most_depth)
         refuse_to_pack(Layout::cwbvh, depth, "inner nodes above a leaf", most_depth);
     const Bvh binary = with_single_leaves(mesh, bvh);

@@ -35,7 +35,7 @@ std::array<std::uint32_t, 3> corners_of(const Tet& tet, std::uint32_t face)
     return {tet.vertices[corners[0]], tet.vertices[corners[1]], tet.vertices[corners[2]]};
 }
 
-// What a ray that has entered by `entry` finds behind the face opposite the entry face's corner `index`.
+// What is behind the face opposite corner `index` of the entry face, for a ray that entered by `entry`.
 std::uint32_t exit_word(const TetMesh& mesh, const Tet& tet, std::uint32_t entry, std::size_t index)
 {
     const std::uint32_t face = face_corners[entry][index];
@@ -46,7 +46,7 @@ std::uint32_t exit_word(const TetMesh& mesh, const Tet& tet, std::uint32_t entry
     carried[index] = tet.vertices[entry];
     const std::uint32_t first = corners_of(mesh.tets[link_tet(link)], link_face(link))[0];
     const auto turned = std::find(carried.begin(), carried.end(), first);
-    const auto rotation = (turned - carried.begin()) % 3; // 0 where no corner is shared: tests damage links
+    const auto rotation = (turned - carried.begin()) % 3; // 0 if no corner is shared: tests damage links
     return link << 2 | static_cast<std::uint32_t>(rotation);
 }
 

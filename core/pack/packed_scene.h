@@ -18,7 +18,7 @@ struct Quad {
 };
 static_assert(sizeof(Quad) == 16, "quads are uvec4 / uint4 on a device");
 
-/// The tet that rays start in, where tets cannot name their vertices.
+/// The tet that rays start in, for layouts whose tets do not store their vertices.
 struct StartTet {
     std::array<std::uint32_t, 4> vertices{}; ///< numbered as they are packed
     std::uint32_t neighbour = 0;             ///< PackedScene::last_neighbours
@@ -26,7 +26,7 @@ struct StartTet {
     friend bool operator==(const StartTet&, const StartTet&) = default;
 };
 
-/// A scene in the form that crosses to a device: the tets of a CDT, or a BVH; the arrays of the other are empty.
+/// A scene in the form that is copied to a device: the tets of a CDT, or a BVH; the arrays of the other are empty.
 struct PackedScene {
     Layout layout = Layout::tet80;
     std::uint32_t tet_count = 0;
@@ -38,22 +38,22 @@ struct PackedScene {
     std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
     std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
 
-    std::vector<Quad> vertices;                 ///< of tet20 and tet16: position and rank (kernels/layouts/layout.h)
-    std::vector<Quad> entry_faces;              ///< of those, in place of entry_links: three vertices and a tet
-    std::vector<std::uint32_t> occlusive_faces; ///< of those: OCCLUSIVE_WORDS a face
+    std::vector<Quad> vertices;    ///< of tet20 and tet16: position and rank (kernels/layouts/layout.h)
+    std::vector<Quad> entry_faces; ///< of tet20 and tet16, in place of entry_links: three vertices and a tet
+    std::vector<std::uint32_t> occlusive_faces; ///< of tet20 and tet16: OCCLUSIVE_WORDS per face
 
     std::vector<Quad> nodes;          ///< of a BVH: BVH2_NODE_QUADS or CWBVH_NODE_QUADS a node, the root first
     std::vector<Quad> leaf_triangles; ///< LEAF_TRIANGLE_QUADS a reference of a leaf to a triangle
 
     std::vector<std::uint32_t> packed_of_mesh;   ///< stays on the host: position of each tet of the scene in `tets`
-    std::vector<std::uint32_t> number_of_vertex; ///< of tet20 and tet16, stays too: of each vertex of the scene's tets
+    std::vector<std::uint32_t> number_of_vertex; ///< of tet20 and tet16, stays too: by vertex of the scene's tets
     std::vector<std::uint32_t> last_neighbours;  ///< stays too: what is behind the face opposite each tet's last vertex
 
-    [[nodiscard]] std::size_t bytes() const; ///< of all arrays that cross
+    [[nodiscard]] std::size_t bytes() const; ///< of all arrays that are copied to a device
 };
 
 /// Packs a scene's tets.
-/// scene: valid (see find_defect), at most as many tets as the layout's traits say (traits.h). layout: of tets.
+/// scene: valid (see find_defect), with at most as many tets as the layout's traits allow (traits.h). layout: of tets.
 /// Throws Error{unsupported} naming both numbers where the scene has more.
 [[nodiscard]] PackedScene pack(const Scene& scene, Layout layout, TetOrder order);
 

@@ -14,10 +14,10 @@ struct PackedScene;
 struct TetMesh;
 struct TriangleMesh;
 
-/// What is known of a method: its row in kernels/kernel_list.inc.
+/// The properties of a method, from its row in kernels/kernel_list.inc.
 struct MethodTraits {
     std::string_view name;
-    int year;        ///< of its first source; 0 of BVHs
+    int year;        ///< of its first source; 0 for BVHs
     double vertices; ///< that a step loads, on average
 };
 [[nodiscard]] const MethodTraits& traits_of(Method method);
@@ -25,8 +25,9 @@ struct MethodTraits {
 /// Layouts of a family share their arrays and their walk. foreign: not ours, see FOREIGN_LAYOUT of the list.
 enum class Family { cdt, compact, bvh, foreign };
 
-/// Fills `tets` of a packed scene, and what a family has for its own, from tets in packed order.
-/// packed: with its layout, triangles, lines and entry links. mesh: the scene's tets in packed order, linked by it.
+/// Fills `tets` of a packed scene, and the arrays of its family, from tets in packed order.
+/// packed: its layout, triangles, lines and entry links are set. mesh: the scene's tets in packed order, with links in
+/// that numbering.
 using PackTets = void(PackedScene& packed, const TetMesh& mesh);
 /// Packs a BVH of the mesh: nodes and leaf triangles.
 using PackBvh = PackedScene(const TriangleMesh& mesh, const Bvh& bvh);
@@ -35,13 +36,13 @@ using PackBvh = PackedScene(const TriangleMesh& mesh, const Bvh& bvh);
 #define LAYOUT(name, family, ...) std::conditional_t<Family::family == Family::bvh, PackBvh, PackTets> pack_##name;
 #include "kernels/kernel_list.inc"
 
-/// What is known of a layout: its row in kernels/kernel_list.inc.
+/// The properties of a layout, from its row in kernels/kernel_list.inc.
 struct LayoutTraits {
     std::string_view name;
     Family family;
     std::uint32_t most;  ///< tets, or references of a BVH's leaves to triangles
     double vertex_bytes; ///< that a step loads for each vertex that its method asks for
-    double step_bytes;   ///< that a step loads beside them
+    double step_bytes;   ///< of its tet that a step loads in addition
     std::variant<std::monostate, PackTets*, PackBvh*> pack;
 };
 [[nodiscard]] const LayoutTraits& traits_of(Layout layout);

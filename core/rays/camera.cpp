@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t lattice_views = 1282;
 constexpr double tan_half_view = 0.57735026918962576; // 30 degrees
 
-// A point that walks round the y axis by a constant angle: no sine or cosine of the machine's own.
+// A point that turns around the y axis by a constant angle, without the machine's sine or cosine.
 class Turning {
 public:
     Turning(double cosine, double sine) : cosine_(cosine), sine_(sine) {}
@@ -47,7 +47,7 @@ Camera look_at(const BoundingSphere& sphere, Double3 direction, double radii)
 
 std::vector<Camera> smoke(const BoundingSphere& sphere)
 {
-    // A view from the front and above, and three from all round; rational directions of length 1.
+    // A view from the front and above, and three from other sides; rational directions of length 1.
     constexpr Double3 directions[] = {{0.36, 0.48, 0.8}, {-0.8, 0.36, -0.48}, {0.64, -0.48, -0.6}, {-0.6, 0.64, 0.48}};
     std::vector<Camera> cameras;
     for (const Double3 direction : directions)

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// Numbered views round a scene, reproducible bit for bit (only + - * / sqrt in IEEE double).
+/// Numbered views around a scene, reproducible bit for bit (only + - * / sqrt in IEEE double).
 enum class CameraSet {
     smoke,  ///< 4 views at 2 radii
     orbit,  ///< 1,282 views on a spherical Fibonacci lattice at 2 radii
@@ -17,13 +17,13 @@ enum class CameraSet {
 
 /// A pinhole camera, 60 degrees field of view along the image's larger side.
 struct Camera {
-    Float3 origin;              ///< a multiple of 2^-40 per coordinate, so that no product on the way is denormal
+    Float3 origin;              ///< a multiple of 2^-40 per coordinate, so that no intermediate product is denormal
     Double3 forward, right, up; ///< orthonormal
 };
 
-/// What a device gets of a camera at a given image size: the direction of pixel (x, y) is
-/// corner + step_x * x + step_y * y, through the pixel's centre; (0, 0) is the top left. Not normalized: t counts
-/// along the optical axis.
+/// The parameters of a camera at a given image size. The direction of pixel (x, y) is corner + step_x * x + step_y * y,
+/// through the pixel's centre; (0, 0) is the top left. Directions are not normalized: t is the distance along the
+/// optical axis.
 struct View {
     Float3 origin, corner, step_x, step_y;
 

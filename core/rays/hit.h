@@ -10,7 +10,7 @@ namespace tetrace {
 /// One ray's answer, byte for byte the same on every backend.
 struct Hit {
     std::uint32_t face_id; ///< input triangle, or NO_HIT, LOST, POISON
-    std::uint32_t tet;     ///< last tet of the walk, in packed order; NO_TET where there was none
+    std::uint32_t tet;     ///< last tet of the walk, in packed order; NO_TET if there was none
     float t;               ///< ray parameter: origin + t * direction; 0 on a miss
     float u, v;            ///< barycentric coordinates of the second and third vertex; 0 on a miss
     std::uint32_t steps;   ///< tets left

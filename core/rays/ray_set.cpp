@@ -25,7 +25,7 @@ tetrace::Float3 pixel_direction(const View& view, std::uint32_t x, std::uint32_t
     return {direction.x, direction.y, direction.z};
 }
 
-// As the kernels make every direction, so that no product on the way is denormal.
+// As the kernels round every direction, so that no intermediate product is denormal.
 tetrace::Float3 clean_direction(Double3 direction)
 {
     const auto rounded = tetrace::to_float(direction);
@@ -36,12 +36,12 @@ tetrace::Float3 clean_direction(Double3 direction)
 using ray_kernel::clean_direction;
 
 constexpr std::uint32_t image_tile = 8;       // pixels along a side of the tiles that rays are ordered by
-constexpr std::uint32_t most_draws = 64;      // of a direction; a face that lets none of them in makes no ray
+constexpr std::uint32_t most_draws = 64;      // attempts at a direction; a face that accepts none of them makes no ray
 constexpr double shortest_to_light = 0x1p-10; // of a shadow ray, in domain units
 
 std::uint32_t stream_of(RayKind kind)
 {
-    return 1 + static_cast<std::uint32_t>(kind); // 0 is the search set's
+    return 1 + static_cast<std::uint32_t>(kind); // 0 belongs to the search set
 }
 
 GivenRay primary_given(const RaySource& source, std::uint32_t pixel)
@@ -55,8 +55,8 @@ GivenRay primary_given(const RaySource& source, std::uint32_t pixel)
     return {origin, direction, NO_END, link, FREE_FACE, pixel};
 }
 
-// Chords between two uniform points of a sphere are its isotropic uniform lines; those among them that meet the box are
-// the box's.
+// Chords between two uniform points of a sphere are its isotropic uniform lines; those that meet the box are the box's
+// isotropic uniform lines.
 struct LineSphere {
     Double3 centre;
     double radius;
@@ -110,7 +110,7 @@ std::optional<GivenRay> cosine_given(RayKind kind, const RaySource& source, cons
 {
     for (std::uint32_t draw = 0; draw < most_draws; ++draw) {
         const Double3 sum = start.inward + random_direction({stream_of(kind), source.view_number, pixel, draw});
-        if (length(sum) < 0x1p-10) continue; // its direction would be rounding's
+        if (length(sum) < 0x1p-10) continue; // its direction would be mostly rounding error
         if (const auto ray = leaving(start, clean_direction(normalized(sum)), end, triangle, pixel)) return ray;
     }
     return std::nullopt;
@@ -158,7 +158,7 @@ private:
     float end_;
 };
 
-// Pixels as tiles have them: tile after tile, row after row in each.
+// Pixels in the order of tiles: tile after tile, row after row in each.
 std::vector<std::uint32_t> pixels_by_tile(std::uint32_t width, std::uint32_t height)
 {
     std::vector<std::uint32_t> pixels;

@@ -11,13 +11,13 @@
 
 namespace tetrace {
 
-/// Hit::face_id of an answer that tells only that there is a hit, where any will do: Embree's.
+/// Hit::face_id of an answer that says only that there is a hit, for rays where any hit will do: Embree's answers.
 inline constexpr std::uint32_t SOME_HIT = 0xFFFFFFFCu;
 
-/// A ray that is given to a device, instead of made there from a pixel.
+/// A ray that is given to a device instead of being made there from a pixel.
 struct GivenRay {
     Float3 origin;          ///< coordinates on the 2^-40 grid
-    Float3 direction;       ///< components 0 or at least 2^-20 in magnitude, as kernels/ray.h makes them
+    Float3 direction;       ///< components 0 or at least 2^-20 in magnitude, as in kernels/ray.h
     float end;              ///< ray parameter of its end, NO_END where it has none
     std::uint32_t link;     ///< tet << 2 | face that it starts on or enters by, numbered as in the scene; NO_LINK from
                             ///< outside the domain
@@ -32,10 +32,10 @@ static_assert(sizeof(GivenRay) == 40, "ray_hash() reads its bytes");
 struct RaySet {
     RayKind kind = RayKind::primary;
     RayOrder order = RayOrder::tiles;
-    bool any_hit = false;    ///< any triangle before the end answers, not the nearest alone: shadow and ao
+    bool any_hit = false;    ///< any triangle before the end is an answer, not only the nearest: shadow and ao
     std::uint32_t view = 0;  ///< number of the view that it was made for
     std::uint32_t width = 0; ///< of the image
-    /// A multiple of TILE_WIDTH, the last one repeated up to seven times for it; empty where no pixel makes a ray.
+    /// A multiple of TILE_WIDTH: the last ray is repeated up to seven times as padding. Empty if no pixel makes a ray.
     std::vector<GivenRay> rays;
 };
 
@@ -46,7 +46,7 @@ struct RaySource {
     View view; ///< its origin as find_start() has moved it
     std::uint32_t width, height;
     std::uint32_t start_tet; ///< that holds the origin, numbered as in the scene; NO_TET: outside the domain
-    /// Of openmp cdt/maria in math mode exact, row after row; primary and random rays need none.
+    /// Answers of openmp cdt/maria in math mode exact, row after row; primary and random rays need none.
     std::span<const Hit> hits;
     std::span<const std::uint32_t> mesh_of_packed; ///< the scene's number of each tet of `hits`
 };
@@ -57,24 +57,24 @@ struct RaySource {
 
 /// Makes the rays of a kind, in the order of the tiles of 8 x 8 pixels that they are made for, row after row
 /// (docs/spec/given-rays.md, G1):
-/// - primary: the view's own, one a pixel;
-/// - shadow: one a hit, to light_of() at parameter 1, where that is on the viewer's side of the surface;
-/// - ao: one a hit, cosine-distributed on the viewer's side, which ends at ao_reach();
+/// - primary: the view's own, one per pixel;
+/// - shadow: one per hit, to light_of() at parameter 1, where that is on the viewer's side of the surface;
+/// - ao: one per hit, cosine-distributed on the viewer's side, which ends at ao_reach();
 /// - diffuse: the same without an end;
-/// - random: one a pixel, isotropic uniform lines that meet the domain, from outside it.
+/// - random: one per pixel, isotropic uniform lines that meet the domain, from outside it.
 /// Throws Error{internal} where hits are not of this image or scene.
 [[nodiscard]] RaySet make_rays(RayKind kind, const RaySource& source);
 
 /// The point light of a view, near a corner of the domain: on the camera's side along the two axes on which it is
-/// farthest from the domain's centre, on the other side along the third, so that most of what is seen is lit, and not
-/// from the camera's own direction. 1/128 of the way from the corner to the centre: inside the domain, and in a tight
-/// one outside the mesh's bounding box.
+/// farthest from the domain's centre, on the other side along the third, so that most visible surfaces are lit, but not
+/// from the camera's own direction. It is 1/128 of the way from the corner to the centre: inside the domain, and in a
+/// tight domain outside the mesh's bounding box.
 [[nodiscard]] Float3 light_of(const Domain& domain, Float3 camera);
 
 /// How far rays of kind ao reach: a quarter of the radius of the mesh's bounding sphere.
 [[nodiscard]] double ao_reach(const TriangleMesh& mesh);
 
-/// 64-bit hash of all that a set asks: its rays in their order, and whether any hit answers.
+/// 64-bit hash of everything that a set asks for: its rays in their order, and whether any hit is an answer.
 [[nodiscard]] std::uint64_t ray_hash(const RaySet& set);
 
 } // namespace tetrace

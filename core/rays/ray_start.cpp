@@ -27,7 +27,7 @@ Double3 normal_of(const FaceCorners& corners)
     return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
 }
 
-// Distance of a point of the face's plane from the nearest of its edges' lines; negative outside.
+// Distance of a point of the face's plane from the nearest line through an edge; negative outside the face.
 double depth_in(const FaceCorners& corners, Double3 normal, Double3 point)
 {
     double least = HUGE_VAL;
@@ -52,7 +52,7 @@ Circle inscribed_circle(const FaceCorners& corners)
     return {(corners[0] * a + corners[1] * b + corners[2] * c) * (1 / around), twice_area / around};
 }
 
-// Distances from the edges grow linearly on the way to the centre, where all are the circle's radius.
+// Distances from the edges change linearly on the way to the centre, where each is the circle's radius.
 Double3 moved_inside(const FaceCorners& corners, Double3 normal, Double3 point)
 {
     const double depth = depth_in(corners, normal, point);
@@ -79,7 +79,7 @@ RayStart ray_start(const Scene& scene, const Hit& hit)
     RayStart start{{}, NO_LINK, {}, {}};
     double most = -HUGE_VAL;
     for (std::uint32_t face = 0; face < 4; ++face) {
-        if (tet.faces[face] != hit.face_id) continue; // a triangle has two pieces in a tet where one is nearly flat
+        if (tet.faces[face] != hit.face_id) continue; // a triangle may have two pieces in a nearly flat tet
         const FaceCorners corners = corners_of_face(scene.tets, hit.tet, face);
         const Double3 inward = normal_of(corners);
         const double depth = depth_in(corners, inward, point);

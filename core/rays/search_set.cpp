@@ -78,7 +78,7 @@ Corners tet_of(std::uint32_t number)
         }
         const std::int64_t determinant =
             dot(cross(corners[1] - corners[0], corners[2] - corners[0]), corners[3] - corners[0]);
-        if (determinant > 0) std::swap(corners[2], corners[3]); // as packed tets have it: negative
+        if (determinant > 0) std::swap(corners[2], corners[3]); // negative, as for packed tets
         if (std::abs(determinant) >= least_determinant) return corners;
     }
 }
@@ -106,7 +106,7 @@ std::int64_t side(const IntRay& ray, Int3 from, Int3 to)
     return dot(cross(ray.origin - from, ray.direction), to - from);
 }
 
-/// The faces that the ray leaves by, a bit each; none where it does not enter through the inside of the entry face.
+/// The faces by which the ray leaves, a bit each; none if it does not enter through the inside of the entry face.
 /// The table of docs/spec/methods.md, M1.
 std::uint8_t exits_of(const Corners& corners, std::uint32_t entry, const IntRay& ray)
 {
@@ -150,7 +150,7 @@ Quad quad_of(Float3 a, std::uint32_t last)
             last};
 }
 
-/// What quad_of() made of it.
+/// The inverse of quad_of().
 Int3 to_int(const Quad& quad)
 {
     const auto scaled = [](std::uint32_t bits) {
@@ -164,7 +164,7 @@ Double3 to_double(Int3 a)
     return tetrace::to_double(to_float(a));
 }
 
-/// Between the ray's line and the edge's, which do not meet: their side product is not 0.
+/// The distance between the ray's line and the edge's. They do not meet: their side product is not 0.
 double distance_of_lines(const IntRay& ray, Int3 from, Int3 to)
 {
     const Double3 across = tetrace::cross(to_double(ray.direction), to_double(to - from));

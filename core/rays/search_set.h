@@ -8,19 +8,19 @@
 
 namespace tetrace {
 
-// Exit searches alone (the paper, Table 5): random tets, and random rays that stab each, the same on every machine. All
-// coordinates are multiples of 2^-16 and below 2^4 in magnitude: they are floats as they are, and 64-bit integers
+// Exit searches alone (the paper, Table 5): random tets, and random rays through each, the same on every machine. All
+// coordinates are multiples of 2^-16 and below 2^4 in magnitude: floats represent them exactly, and 64-bit integers
 // decide exactly by which face a ray leaves.
 
-/// Random tets, corners uniform in the cube [-1, 1)^3, flatter ones than 2^-20 of its unit cube left out; linked to
-/// none. layout: of tets that hold their corners, as the kernels of task search want them.
+/// Random tets with corners uniform in the cube [-1, 1)^3, without those flatter than 2^-20 of the unit cube, and
+/// without links. layout: of tets that hold their corners, as the kernels of task search need.
 [[nodiscard]] PackedScene search_tets(std::uint32_t count, Layout layout);
 
 /// Rays that each enter a tet through the inside of a known face.
 struct SearchRays {
-    std::vector<Quad> quads;         ///< as Session::set_rays wants them
-    std::vector<std::uint8_t> exits; ///< by ray: the faces that it exactly leaves by, a bit each; several where it
-                                     ///< meets an edge
+    std::vector<Quad> quads;         ///< in the form of Session::set_rays
+    std::vector<std::uint8_t> exits; ///< per ray: the faces by which it leaves in exact arithmetic, a bit each; several
+                                     ///< where it meets an edge
 
     [[nodiscard]] std::size_t count() const { return exits.size(); }
     [[nodiscard]] std::uint32_t link(std::size_t ray) const { return quads[ray].w; } ///< the tet and its entry face
@@ -34,7 +34,7 @@ struct SearchRays {
 /// How the face that was found for ray `number` compares with exact arithmetic.
 enum class SearchVerdict {
     right,
-    tie,   ///< another face, and the ray passes all edges that exclude it within tie_bound (docs/spec/numbers.md, N2)
+    tie,   ///< another face, but the ray passes all edges that exclude it within tie_bound (docs/spec/numbers.md, N2)
     wrong, ///< another face
     lost   ///< NO_EXIT
 };

@@ -53,8 +53,8 @@ KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, uint vert
     return next;
 }
 
-// roughly_replaced_by() of carried.h with a branch for each tie: with its selects, scalar C++ walks tet20 15 % more slowly
-// (tetrace bench --scene bunny --size 384 --method project --layout tet20 --backend openmp --threads 1).
+// roughly_replaced_by() of carried.h with a branch for each tie: with its selects, scalar C++ walks tet20 15 % more
+// slowly (tetrace bench --scene bunny --size 384 --method project --layout tet20 --backend openmp --threads 1).
 KERNEL_FN uint replaced_unless_tie(Sheared p0, Sheared p1, Sheared p2, Sheared apex)
 {
     PRECISE real plus = p2.x * apex.y;
