@@ -26,7 +26,7 @@ std::string timed_sentence(const BenchResult& result, const Options& options)
         name_of(options.camera_set), options.width, options.height, resolved_threads(options));
 }
 
-/// How many steps a ray of each kind takes in the scene, which is the same for all its rows of one method.
+/// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.
 std::string steps_sentences(const std::string& scene, const std::vector<RowRun>& rows)
 {
     std::string text;

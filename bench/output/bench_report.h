@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// All that `tetrace bench` has to tell. Comparisons point into the rows.
+/// Everything that `tetrace bench` reports. Comparisons point into the rows.
 struct BenchResult {
     SceneRows run;
     Measurement measurement;
@@ -19,16 +19,16 @@ struct BenchResult {
 
 [[nodiscard]] Report bench_report(const BenchResult& result, const Options& options);
 
-/// A scene's headline: counts, size, build; shared by bench and check.
+/// A scene's heading: counts, size, build; shared by bench and check.
 [[nodiscard]] std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& rows);
 
-/// A closing line: a label, and text filled beside it.
+/// A closing line: a label, and text filled to its right.
 [[nodiscard]] std::string labelled(const std::string& label, const std::string& text);
 
-/// What the oracle found over all rows, one sentence.
+/// The oracle's findings over all rows, in one sentence.
 [[nodiscard]] std::string verdict_sentence(const std::vector<RowRun>& rows);
 
-/// Rows that have no answer, each with its reason, a line each.
+/// Rows without an answer, each with its reason, one per line.
 [[nodiscard]] std::string failure_lines(const std::vector<RowRun>& rows);
 
 } // namespace tetrace

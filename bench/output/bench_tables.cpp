@@ -14,7 +14,7 @@ Cell text_cell(const std::string& text)
     return text.empty() ? Cell() : Cell(text);
 }
 
-/// The rows' numbers, ordered by device; rows that were not opened come last.
+/// The rows' indices, ordered by device; rows that were not opened come last.
 std::vector<std::size_t> by_device(const BenchResult& result)
 {
     const auto& rows = result.run.rows;
@@ -26,7 +26,7 @@ std::vector<std::size_t> by_device(const BenchResult& result)
     return order;
 }
 
-/// What rows are shown under: those of one heading may be ranked with each other.
+/// The heading of rows: rows under one heading may be ranked with each other.
 std::string heading_of(const RowRun& row, const std::vector<RowDevice>& devices)
 {
     if (!device_of(row, devices)) return "not run";
@@ -34,7 +34,7 @@ std::string heading_of(const RowRun& row, const std::vector<RowDevice>& devices)
     return fmt::format("{} ({})", row.device.name, name_of(row.device.kind));
 }
 
-/// Heads the rows that are added one after the other, where what they run on changes.
+/// Adds a heading where consecutive rows run on different hardware.
 class Headings {
 public:
     Headings(Table& table, const BenchResult& result) : table_(&table), result_(&result)
@@ -59,7 +59,7 @@ private:
     std::string last_;
 };
 
-/// What the rows' rates compare with: "openmp", or "reference" where that is not one for all.
+/// What the rows' rates are compared with: "openmp", or "reference" where the rows have different ones.
 std::string reference_name(const std::vector<RowFacts>& rows)
 {
     std::set<std::string> references;

@@ -10,16 +10,16 @@ namespace tetrace {
 /// What the fields of each row are read from.
 [[nodiscard]] std::vector<RowFacts> facts_of(const BenchResult& result);
 
-/// What the rows of a scene come to, by device, headed by what they run on.
+/// The results of a scene's rows, by device, under headings that name the hardware.
 [[nodiscard]] Table rate_table(const std::string& scene, const BenchResult& result);
 
 /// Where the time of all rows goes, in milliseconds, by scene and device.
 [[nodiscard]] Table time_table(const BenchResult& result);
 
-/// What the rows' devices are, and what they can do at best.
+/// The rows' devices and their peak rates.
 [[nodiscard]] Table device_table(const std::vector<RowDevice>& devices);
 
-/// Every row with every figure, flat.
+/// Every row with all its figures, flat.
 [[nodiscard]] Table flat_table(const BenchResult& result);
 
 } // namespace tetrace

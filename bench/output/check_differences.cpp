@@ -35,8 +35,8 @@ TraceJob job_of(const RowRun& row, std::uint32_t view)
     return row.scene->job(index, &row.packed->data);
 }
 
-/// Whether a ray of the row can be walked again by its pixel: BVHs leave no tets, and rays that are given are not told
-/// by their pixels alone.
+/// Whether a ray of the row can be walked again by its pixel. BVHs leave no tets, and a given ray cannot be identified
+/// by its pixel alone.
 bool leaves_tets(const RowRun& row)
 {
     return row.key.kernel.structure == Structure::cdt && row.key.kernel.task == Task::trace;
@@ -51,7 +51,7 @@ Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32
     return walk_path(row.packed->data, kernel, job_of(row, view), x, y);
 }
 
-/// The device's own walk; empty where the device cannot tell any more.
+/// The device's own walk; empty where the device can no longer trace it.
 Path own_path(const RowRun& row, const DifferingRay& ray)
 {
     if (row.packed == nullptr || row.session == nullptr || !leaves_tets(row)) return {};
@@ -73,7 +73,7 @@ std::string path_text(const char* title, const Path& path)
     return wrapped(text, 110, 2);
 }
 
-/// Where two walks part; empty where they do not.
+/// Where two walks diverge; empty where they do not.
 std::string parting_text(const Path& ours, const Path& openmps)
 {
     if (ours.empty() || openmps.empty()) return {};

@@ -13,7 +13,7 @@ namespace {
 
 using Pointers = std::vector<const RowRun*>;
 
-/// What `name` says of each row, each text once, in the order of their first appearance.
+/// The distinct texts that `name` gives for the rows, in order of first appearance.
 template <class Name>
 std::vector<std::string> names_of(const Pointers& rows, const Name& name)
 {
@@ -54,7 +54,7 @@ std::vector<Answer> answers_of(const Pointers& rows)
     return answers;
 }
 
-/// The devices by name, or their number where all that traced the kernel agree: the line stays short.
+/// The devices' names; their number where all devices that traced the kernel agree, which keeps the line short.
 std::string devices_of(const Answer& answer, const Pointers& rows)
 {
     const auto all = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const RowRun* row) {

@@ -8,16 +8,17 @@
 
 namespace tetrace {
 
-// The parts of `tetrace check`'s result that stand rows against devices. rows: all of a run; those of one scene are
-// picked by its label.
+// The parts of `tetrace check`'s result that show rows against devices. rows: all of a run; a scene's rows are found by
+// its label.
 
-/// What each device's rows came to: a line a kernel, a column a device, cells as conformity_text() says.
+/// Each device's result for each row: one line per kernel, one column per device, cells as conformity_text() gives
+/// them.
 [[nodiscard]] std::string matrix_text(const std::string& scene, const std::vector<RowRun>& rows);
 
-/// The different answers, each once: the hash of its hits, the devices that gave it, and the oracle's counts.
+/// The distinct answers: the hash of each answer's hits, the devices that gave it, and the oracle's counts.
 [[nodiscard]] std::string answers_text(const std::string& scene, const std::vector<RowRun>& rows);
 
-/// The columns of all matrices: what each device is, and its self-test in exact mode; a line each.
+/// Explains the columns of all matrices: each device and its self-test in exact mode, one per line.
 [[nodiscard]] std::string devices_text(const std::vector<RowRun>& rows);
 
 /// {scene: {row: {device: {"cell": ..., "hit_hash": ...}}}}.

@@ -82,7 +82,7 @@ std::string device_text(const ResultRow& row)
     return row.driver.empty() ? row.device : row.device + ", " + row.driver;
 }
 
-/// A sentence for each device that compared rows ran on, in their order.
+/// A sentence for each device that the compared rows ran on, in their order.
 std::vector<std::string> device_sentences(const ResultComparison& comparison)
 {
     std::vector<std::string> sentences;
@@ -105,7 +105,7 @@ nlohmann::json recorded(const ResultFile& file, const char* pointer)
     return section.contains(place) ? section.at(place) : nlohmann::json();
 }
 
-/// What the two results do not share, besides their date: a ratio tells of all of it together.
+/// What differs between the two results, apart from their date: a ratio shows the effect of all of it together.
 std::string differences_text(const ResultComparison& comparison)
 {
     struct Fact {

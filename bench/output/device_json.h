@@ -6,7 +6,7 @@
 
 namespace tetrace {
 
-/// A device as results record it (results/README.md); what is unknown is left out.
+/// A device as results record it (results/README.md); unknown members are left out.
 [[nodiscard]] nlohmann::json device_json(const Device& device);
 
 /// A device that rows ran on, with its yardstick and self-tests.

@@ -21,7 +21,7 @@ std::string file_name(const SeenImage& image)
     return name;
 }
 
-/// Hits of rays that are given, each at the pixel that its ray was made for; misses elsewhere.
+/// Hits of given rays, each at the pixel that its ray was made for; misses elsewhere.
 std::vector<Hit> at_pixels(const SeenImage& image, std::span<const Hit> hits)
 {
     std::vector<Hit> pixels(image.row.scene->rays_per_view(), Hit{NO_HIT, NO_TET, 0, 0, 0, 0});

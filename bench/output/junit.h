@@ -7,10 +7,11 @@
 
 namespace tetrace {
 
-/// The rows of `tetrace check` as JUnit XML, as Jenkins, GitLab and GitHub read it: a test suite a scene, a test case a
-/// row, whose class is the device. failed: whether the row fails the check (a method's own flaws may pass).
-/// Rows that are wrong have a failure, errors an error, unsupported and skipped ones a skipped element, with the
-/// reason; hashes, cells and self-tests are properties.
+/// The rows of `tetrace check` as JUnit XML, as Jenkins, GitLab and GitHub read it: one test suite per scene, one test
+/// case per row; the test case's class is the device. failed: whether the row fails the check (a method's own flaws may
+/// pass).
+/// Wrong rows have a failure element, errors an error element, unsupported and skipped rows a skipped element, each
+/// with its reason. Hashes, cells and self-tests are properties.
 [[nodiscard]] std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed);
 
 } // namespace tetrace

@@ -61,7 +61,7 @@ void check_output(const Options& options)
 void check_not_an_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs)
 {
     for (const std::filesystem::path& input : inputs) {
-        std::error_code not_there; // then they are not the same
+        std::error_code not_there; // then they are different files
         if (std::filesystem::equivalent(out, input, not_there))
             throw Error(ErrorKind::usage, fmt::format("--out: writing '{}' would replace the input '{}'; name another "
                                                       "file",

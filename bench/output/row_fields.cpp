@@ -51,7 +51,7 @@ std::string_view status_name(const RowRun& row)
     return name_of(status_of(row));
 }
 
-/// With what the terminal has no column for: the reason of a flawed row, and that it is noisy.
+/// With facts for which the terminal has no column: the reason of a flawed row, and that a row is noisy.
 std::string status_text(const RowFacts& facts)
 {
     std::string text(status_name(*facts.row));
@@ -81,7 +81,7 @@ double a_ray(std::uint64_t count, const Visits& visits)
     return static_cast<double>(count) / static_cast<double>(visits.rays);
 }
 
-/// What the row is and how it ended.
+/// The row's identity and how it ended.
 std::vector<RowField> identity_fields()
 {
     return {{.key = "name",
@@ -164,7 +164,7 @@ std::vector<RowField> identity_fields()
              .what = "how the device computes in the row's math mode"}};
 }
 
-/// How fast it is, alone and compared with others.
+/// Its speed, alone and compared with others.
 std::vector<RowField> rate_fields()
 {
     return {{.group = "rates",

@@ -9,23 +9,23 @@
 
 namespace tetrace {
 
-/// What the fields of a row are read from. Refers to the row.
+/// The sources of a row's fields. Refers to the row.
 struct RowFacts {
     explicit RowFacts(const RowRun& run);
 
     const RowRun* row;
     SetupTimes setup; ///< all 0 where the row has no session
     std::optional<Figures> figures;
-    // Only `bench` fills these; it knows all rows and devices.
+    // Set only by `bench`, which has all rows and devices.
     std::optional<Comparison> comparison;
     std::optional<double> ratio_to_single, share_of_copy;
-    // Only `check` fills this.
+    // Set only by `check`.
     std::optional<std::string> conformity;
 };
 
-/// Reads a field. It is made of a function of one part of a row, or of a member of that part: RowFacts, RowKey, RowRun,
-/// Traced, Visits, Figures or Comparison. The field has no value (null) where the row lacks the part, and where an
-/// optional result is empty.
+/// Reads a field. It is built from a function of one part of a row, or from a member of that part: RowFacts, RowKey,
+/// RowRun, Traced, Visits, Figures or Comparison. The field has no value (null) where the row lacks the part, and where
+/// an optional result is empty.
 class FieldValue {
 public:
     template <class Read>
@@ -70,7 +70,7 @@ private:
     std::function<nlohmann::json(const RowFacts&)> read_;
 };
 
-/// A value as it is; true is "yes", and false, null and what is no scalar an empty cell.
+/// A value as it is, but true becomes "yes", and false, null and any non-scalar become an empty cell.
 [[nodiscard]] Cell plain_cell(const nlohmann::json& value);
 
 /// How a table shows a field: as a column with this title, or not at all.
@@ -82,14 +82,14 @@ struct Shown {
     const char* key = nullptr; ///< of the column; null: the field's
 };
 
-/// A field of a row: all that any output says of it. A table has its columns in the order of row_fields().
+/// A field of a row, with everything that any output needs. A table has its columns in the order of row_fields().
 struct RowField {
     const char* group = ""; ///< the object of the row's JSON that holds it, such as "times"; empty: the row itself
     const char* key = "";
     FieldValue value;
     const char* schema = nullptr; ///< JSON Schema, or the name of a definition in result.schema.json; null: not in JSON
     bool required = false;        ///< whether each such object has it
-    const char* what = nullptr;   ///< for the schema's reader; null: the key says it all
+    const char* what = nullptr;   ///< for the schema's reader; null: the key explains itself
     Shown csv = {};               ///< column of `bench` as CSV and Markdown
     Shown check = {};             ///< the same of `check`
     Shown rates = {};             ///< column of the first table that `bench` prints
@@ -97,17 +97,17 @@ struct RowField {
     Shown report = {};            ///< column of "Where the time goes" of `report`; the field is in JSON
 };
 
-/// Every field of a row, stated once: tables, CSV, Markdown, JSON, its schema and the page of `report` are made of this
-/// list. After a change, `cmake --build build/release --target result_schema` brings results/result.schema.json up
-/// to date.
+/// Every field of a row, stated once: tables, CSV, Markdown, JSON, its schema and the page of `report` are generated
+/// from this list. After a change, update results/result.schema.json by `cmake --build build/release --target
+/// result_schema`.
 [[nodiscard]] const std::vector<RowField>& row_fields();
 
-/// The group whose fields stand in `tetrace.ratios[]`, not in the row.
+/// The group whose fields are in `tetrace.ratios[]`, not in the row.
 inline constexpr const char* ratio_group = "ratio";
 
 using Place = Shown RowField::*;
 
-/// The columns of the fields that have this place. Where a title holds "{reference}", it is replaced.
+/// The columns of the fields with this place. "{reference}" in a title is replaced.
 [[nodiscard]] std::vector<Column> columns_of(Place place, const std::string& reference = "reference");
 
 /// A row's cells for those columns.

@@ -38,7 +38,7 @@ nlohmann::json row_json(const RowFacts& facts)
     for (const RowField& field : row_fields()) {
         if (field.schema == nullptr || field.group == std::string_view(ratio_group)) continue;
         const bool is_grouped = *field.group != '\0';
-        if (is_grouped && traced(*facts.row) == nullptr) continue; // all groups tell of an answer
+        if (is_grouped && traced(*facts.row) == nullptr) continue; // all groups describe an answer
         nlohmann::json value = field.value(facts);
         if (!value.is_null()) (is_grouped ? object[field.group] : object)[field.key] = std::move(value);
     }

@@ -7,10 +7,10 @@ namespace tetrace {
 /// A scene as results record it: identity, build, counts, views.
 [[nodiscard]] nlohmann::json scene_json(const SceneWork& scene, const Options& options);
 
-/// A row as results record it: the fields of row_fields() that it has a value for.
+/// A row as results record it: those fields of row_fields() for which it has a value.
 [[nodiscard]] nlohmann::json row_json(const RowFacts& facts);
 
-/// How fast a row is compared with its reference. Precondition: facts.comparison.
+/// A row's speed compared with its reference's. Precondition: facts.comparison.
 [[nodiscard]] nlohmann::json ratio_json(const RowFacts& facts);
 
 } // namespace tetrace

@@ -14,7 +14,7 @@ const char* const how_to_read =
     "differ, by no more than the device's own self-test allows. Not exact: the hits are openmp's, but the device "
     "contracts or rounds otherwise.";
 
-/// Devices in order of appearance, those with the reference first.
+/// Devices in order of appearance; those with the reference come first.
 std::vector<std::string> devices_of(const ResultValue& scene)
 {
     std::vector<std::string> devices;
@@ -44,7 +44,7 @@ Html matrix_of(const ResultValue& scene)
     return table.html();
 }
 
-/// Rows of results of `check` that say more than their cell.
+/// Rows of `check` results that have more to report than their cell.
 Html reasons(const ReportInput& input)
 {
     std::vector<const ReportRow*> rows;

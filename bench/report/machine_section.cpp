@@ -61,7 +61,7 @@ Html results_table(const ReportInput& input)
     return table.html();
 }
 
-/// A device as results tell it; several results may.
+/// A device as results record it; several results may record the same one.
 struct ToldDevice {
     std::string host, api, name, driver, self_test, problem;
     DeviceKind kind = DeviceKind::cpu;
@@ -98,7 +98,7 @@ ToldDevice device_of_bench(const ResultValue& device)
     return told;
 }
 
-/// Results of `check`, and of schema version 1, tell devices with their rows alone.
+/// Results of `check`, and of schema version 1, record devices only with their rows.
 std::optional<ToldDevice> device_of_row(const ResultValue& row)
 {
     const auto device = row.find("device");
@@ -118,7 +118,7 @@ std::vector<ToldDevice> devices_of(const ResultFile& file)
     std::vector<ToldDevice> told;
     const ResultValue section = file.section();
     if (const auto devices = section.find("devices")) {
-        if (file.head.verb == "devices") return told; // lists them in another form, and has no rows
+        if (file.head.verb == "devices") return told; // has them in another form, and has no rows
         for (const ResultValue& device : devices->items())
             told.push_back(device_of_bench(device));
     } else if (const auto rows = section.find("rows"); rows && !file.rows.empty()) {
@@ -130,7 +130,8 @@ std::vector<ToldDevice> devices_of(const ResultFile& file)
     return told;
 }
 
-/// Devices of all results; one that several tell alike, but for what only one of them measured, is told once.
+/// Devices of all results. A device is listed once where several results record it alike, apart from what only one of
+/// them measured.
 std::vector<ToldDevice> all_devices(const ReportInput& input)
 {
     std::vector<ToldDevice> all;
@@ -152,7 +153,7 @@ std::vector<ToldDevice> all_devices(const ReportInput& input)
     return all;
 }
 
-/// "exact; division correctly rounded": what stands behind the first semicolon in small letters under the verdict.
+/// "exact; division correctly rounded": the text after the first semicolon is in small letters below the verdict.
 Html verdict_and_rest(const std::string& self_test)
 {
     const std::size_t end = self_test.find("; ");
@@ -228,7 +229,7 @@ Html scene_table(const ReportInput& input)
     return table.empty() ? paragraph("These results name no scene.") : table.html();
 }
 
-/// Sentences about scenes and devices that could not be had.
+/// Sentences about scenes and devices that were not available.
 Html missing_list(const ReportInput& input)
 {
     Html items;

@@ -9,7 +9,7 @@ namespace tetrace {
 
 namespace {
 
-/// Nothing but the page itself: no script, no request; styles of its own, pictures in it.
+/// The page loads nothing: no script, no request, only its own styles and embedded pictures.
 const char* const content_policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
 std::string count_text(std::size_t count, const char* one, const char* several)
@@ -30,7 +30,7 @@ std::string status_summary(const ReportInput& input)
     return text;
 }
 
-/// Claims by verdict over all tables and figures; nothing where there are none.
+/// Claims by verdict over all tables and figures; empty where there are none.
 std::string claim_summary(const ReportInput& input)
 {
     std::vector<std::pair<std::string, std::size_t>> verdicts = {
@@ -101,7 +101,7 @@ ReportInput read_report_input(const std::vector<std::filesystem::path>& results,
     ReportInput input;
     for (const std::filesystem::path& path : results)
         input.files.push_back(read_result(path));
-    for (std::size_t file = 0; file < input.files.size(); ++file) // rows refer to files, which stay where they are now
+    for (std::size_t file = 0; file < input.files.size(); ++file) // rows refer to files, which no longer move
         for (ReportRow& row : report_rows(input.files[file], file))
             input.rows.push_back(std::move(row));
     input.pictures = std::move(pictures);

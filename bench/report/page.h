@@ -4,8 +4,8 @@
 
 namespace tetrace {
 
-/// The whole page, self-contained: no script, nothing loaded from elsewhere, which a content security policy in it
-/// enforces. Throws as the sections do.
+/// The whole page, self-contained: it has no script and loads nothing, which its content security policy enforces.
+/// Throws as the sections do.
 [[nodiscard]] std::string report_page(const ReportInput& input);
 
 /// Reads the results. Throws as read_result() and report_rows() do.

@@ -22,7 +22,7 @@ std::string title_with_source(const ResultValue& part)
     return part.at("title").text() + (source.empty() ? "" : " · " + source);
 }
 
-/// With the column's decimals where the result tells them.
+/// With the column's decimals where the result gives them.
 using Decimals = std::optional<int>;
 
 std::string number_text(const ResultValue& value, Decimals decimals)
@@ -30,7 +30,7 @@ std::string number_text(const ResultValue& value, Decimals decimals)
     return decimals ? fixed_number(value.number(), *decimals) : short_number(value.number());
 }
 
-/// A measured value with what the paper has in its place.
+/// A measured value with the paper's value.
 Html value_with_paper(const ResultValue& cell, Decimals decimals)
 {
     Html content = cell.find("text") ? text(cell.at("text").text()) : Html();
@@ -62,7 +62,7 @@ Decimals decimals_of(const ResultValue& column)
     return static_cast<int>(decimals->count());
 }
 
-/// Whether all that the column holds are numbers.
+/// Whether the column holds only numbers.
 bool is_number_column(const ResultValue& rows, const std::string& key)
 {
     for (const ResultValue& row : rows.items())

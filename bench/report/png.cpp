@@ -19,7 +19,7 @@ namespace {
 constexpr std::uintmax_t largest_file = std::uintmax_t{64} << 20;
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
 
-/// Why a file is no picture.
+/// Why a file is not a picture.
 struct Problem {
     ErrorKind kind;
     std::string why;
@@ -30,7 +30,7 @@ Problem not_valid(const std::string& why)
     return {ErrorKind::invalid_input, why};
 }
 
-/// Four bytes, the highest first.
+/// Four bytes, most significant first.
 std::uint32_t word_at(const std::string& bytes, std::size_t offset)
 {
     std::uint32_t word = 0;

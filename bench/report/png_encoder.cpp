@@ -21,7 +21,7 @@ const Bytef* zlib_bytes(const std::string& bytes)
     return reinterpret_cast<const Bytef*>(bytes.data());
 }
 
-/// Length, type, data, and the checksum of the last two.
+/// Length, type, data, and the checksum of type and data.
 std::string chunk(const std::string& type, const std::string& data)
 {
     const std::string content = type + data;
@@ -49,7 +49,7 @@ std::string png_bytes(std::uint32_t width, std::uint32_t height, std::string_vie
     std::string lines;
     lines.reserve(rgb.size() + height);
     for (std::size_t y = 0; y < height; ++y)
-        lines.append(1, '\0').append(rgb.substr(y * row, row)); // 0: pixels as they are, no filter
+        lines.append(1, '\0').append(rgb.substr(y * row, row)); // 0: unfiltered pixels
     const std::string head = word_bytes(width) + word_bytes(height) + std::string("\x08\x02\0\0\0", 5);
     return "\x89PNG\r\n\x1a\n" + chunk("IHDR", head) + chunk("IDAT", deflated(lines)) + chunk("IEND", {});
 }

@@ -34,7 +34,7 @@ std::string bar_note(const ReportRow& row)
     return text;
 }
 
-/// Which devices of which results a group has.
+/// The devices of a group, with the results that they come from.
 std::set<std::string> devices_in(const RowGroup& group, std::size_t files)
 {
     std::set<std::string> devices;
@@ -43,7 +43,7 @@ std::set<std::string> devices_in(const RowGroup& group, std::size_t files)
     return devices;
 }
 
-/// Whether bars have to name their devices; the APIs tell the emulated ones of one result apart.
+/// Whether bars must name their devices; the APIs distinguish the emulated devices of one result.
 bool needs_devices(const RowGroup& group, std::size_t files)
 {
     const bool one_result = std::all_of(group.rows.begin(), group.rows.end(),
@@ -88,7 +88,7 @@ std::string device_text(const ReportRow& row, std::size_t files)
 
 std::size_t api_series(const std::string& backend)
 {
-    // The styles of all_backends(), in their order; backends after those go on from there.
+    // The styles of all_backends(), in their order; later backends get the styles after those.
     constexpr std::array<std::size_t, 6> styles = {0, 2, 3, 4, 5, 1};
     const auto& known = all_backends();
     const auto found = std::find_if(known.begin(), known.end(), [&](const Backend* b) { return b->name() == backend; });

@@ -13,7 +13,7 @@ const char* const how_to_read =
     "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
     "with the 95 % interval of the ratio. A hollow dot's interval holds 1: no difference can be told.";
 
-/// What one chart shows.
+/// Identifies one chart.
 struct RatioKey {
     std::size_t file;
     std::string scene;

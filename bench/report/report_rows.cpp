@@ -9,7 +9,7 @@ namespace tetrace {
 
 namespace {
 
-/// Products of such numbers stay finite.
+/// A number in [1e-18, 1e18]: products of such numbers stay finite.
 double positive(const ResultValue& value)
 {
     if (value.number() < 1e-18 || value.number() > 1e18) value.reject("is not between 1e-18 and 1e18");
@@ -27,7 +27,7 @@ std::optional<double> launch_share(const ResultValue& times)
     const auto overhead = times.find("overhead_s");
     const auto wall = positive_or_nothing(times, "wall_s");
     if (!overhead || !wall) return std::nullopt;
-    return std::max(0.0, overhead->number()) / *wall; // two clocks: their difference may fall below nothing
+    return std::max(0.0, overhead->number()) / *wall; // from two clocks: their difference may be negative
 }
 
 std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>& samples_s)
@@ -50,7 +50,7 @@ std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>
     return rate;
 }
 
-/// A blank and the value where it is not the usual one. A result of any age may lack the key.
+/// A blank and the value where it is not the default. Old results may lack the key.
 std::string unless_usual(const std::string& value, std::string_view usual)
 {
     return value.empty() || value == usual ? "" : " " + value;
@@ -82,7 +82,7 @@ RowGroup& group_for(std::vector<RowGroup>& groups, const ResultScene& scene, con
     return groups.emplace_back(RowGroup{scene, row.rays, row.kind(), {}});
 }
 
-/// Groups of one scene stand together, in the order in which scenes appear.
+/// Keeps groups of one scene together, in the order in which scenes appear.
 void order_groups(std::vector<RowGroup>& groups)
 {
     std::vector<RowGroup> ordered;

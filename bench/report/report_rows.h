@@ -9,28 +9,28 @@
 
 namespace tetrace {
 
-/// How fast a row is, with its spread; rates of the samples' quartiles.
+/// A row's speed with its spread; rates of the samples' quartiles.
 struct RowRate {
     double mrays_per_s = 0, low = 0, high = 0;
     std::vector<double> samples; ///< Mrays/s of each sample
     std::optional<double> msteps_per_s, bytes_per_step;
-    std::optional<double> launch_share; ///< launching and waiting, as share of the wall time
+    std::optional<double> launch_share; ///< launching and waiting, as a share of the wall time
     bool noisy = false;
 };
 
-/// A row as the page shows it. Refers to its file.
+/// A row on the page. Refers to its file.
 struct ReportRow {
-    std::size_t file = 0; ///< its number in the order of the command line
+    std::size_t file = 0; ///< its index on the command line
     const ResultRow* row = nullptr;
-    std::string kernel;          ///< "cdt maria tet80", with what is not as usual
+    std::string kernel;          ///< "cdt maria tet80", and whatever differs from the defaults
     std::string api;             ///< "vulkan", "vulkan:1"
     std::string rays;            ///< kind
-    std::optional<RowRate> rate; ///< of rows with a device alone
+    std::optional<RowRate> rate; ///< only of rows with a device
 
     [[nodiscard]] const std::string& name() const { return row->name; }
-    /// Of a row with a device. Rows that may be ranked with each other ran on devices of one kind.
+    /// For a row with a device. Rows that may be ranked with each other ran on devices of one kind.
     [[nodiscard]] DeviceKind kind() const { return row->device_kind.value(); }
-    /// With the kind of rays behind it, where these are not primary ones.
+    /// Ends in the kind of rays where they are not primary.
     [[nodiscard]] std::string kernel_and_rays() const { return rays == "primary" ? kernel : kernel + ", " + rays; }
 };
 
@@ -43,14 +43,14 @@ struct RowGroup {
 };
 
 /// All rows of a file. Throws Error{invalid_input} naming file and key where a rate or a time is not as
-/// results/README.md has it.
+/// results/README.md describes.
 [[nodiscard]] std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file);
 
-/// Rows with a rate, grouped; by scene in order of appearance, then processors, GPUs, emulated devices.
+/// Rows with a rate, grouped: by scene in order of appearance, then processors, GPUs, emulated devices.
 [[nodiscard]] std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files,
                                                  const std::vector<ReportRow>& rows);
 
-/// What names a result on the page: A, B, ... Z, then 27, 28, ...; nothing where there is only one.
+/// A result's name on the page: A, B, ... Z, then 27, 28, ...; empty where there is only one.
 [[nodiscard]] std::string file_letter(std::size_t file, std::size_t files);
 
 /// "processors", "GPUs", "emulated".

@@ -29,7 +29,7 @@ std::string without_structure(const std::string& kernel)
     return kernel.rfind("cdt ", 0) == 0 ? kernel.substr(4) : kernel;
 }
 
-/// Scenes of a result have shapes in their order.
+/// Scenes of a result get shapes in their order.
 std::size_t scene_number(const ResultFile& file, const std::string& scene)
 {
     const auto found = std::find_if(file.scenes.begin(), file.scenes.end(),
@@ -55,7 +55,7 @@ std::string device_api(const ResultValue& device)
     return index > 0 ? fmt::format("{}:{}", backend, index) : backend;
 }
 
-/// Nothing for a device without a measured bandwidth, or without a row that has steps.
+/// Empty for a device without a measured bandwidth, or without a row that has steps.
 std::optional<DeviceRoof> roof_of(const ResultValue& device, std::size_t file, const ReportInput& input)
 {
     const auto bandwidth = device.find("copy_bytes_per_s");

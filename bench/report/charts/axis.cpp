@@ -26,7 +26,7 @@ void check_logarithm(double low)
         throw Error(ErrorKind::internal, fmt::format("Axis: {} has no place on a logarithmic one", low));
 }
 
-/// 1, 2 or 5 times a power of ten that is not below `value`, but for rounding.
+/// The least 1, 2 or 5 times a power of ten that is at least `value`, up to rounding.
 double round_step(double value)
 {
     const double power = std::pow(10.0, std::floor(std::log10(value)));
@@ -35,7 +35,7 @@ double round_step(double value)
     return 10 * power;
 }
 
-/// The n-th of the series ..., 0.5, 1, 2, 5, 10, 20, ...: 0 is 1.
+/// The n-th number of the series ..., 0.5, 1, 2, 5, 10, 20, ...; n = 0 gives 1.
 double one_two_five(int n)
 {
     const int decade = static_cast<int>(std::floor(n / 3.0));
@@ -64,7 +64,7 @@ Axis Axis::between(bool logarithmic, std::vector<double> ticks)
 Axis Axis::linear(double low, double high, int intervals)
 {
     check_range(low, high);
-    // Ticks of a range that rounding all but closes could not be counted.
+    // Widens a range that rounding nearly closes: its ticks could not be counted.
     if (const double size = std::max(std::abs(low), std::abs(high)); high - low <= 1e-9 * size) {
         const double room = size == 0 ? 1 : size / 2;
         low -= size == 0 ? 0 : room;
@@ -163,7 +163,7 @@ std::vector<double> spread_apart(const std::vector<double>& positions, double ga
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return positions[a] < positions[b]; });
-    // With each rank's share of the gaps taken off, "at least a gap apart" becomes "not descending".
+    // Each rank's share of the gaps is subtracted; "at least a gap apart" then becomes "not descending".
     std::vector<Block> blocks;
     for (std::size_t rank = 0; rank < order.size(); ++rank) {
         blocks.push_back({positions[order[rank]] - gap * static_cast<double>(rank), 1});

@@ -5,39 +5,39 @@
 
 namespace tetrace {
 
-/// An axis of a chart: from values to places, with round ticks that enclose the values.
+/// An axis of a chart: maps values to positions, with round ticks that enclose the values.
 class Axis {
 public:
     /// Ticks at 1, 2 or 5 times a power of ten, about `intervals` of them between low and high, which are rounded
-    /// outwards to ticks. Equal values, 0 too, still give an axis that has a length.
+    /// outwards to ticks. The axis has a length even where low equals high, also at 0.
     /// Throws Error{internal} where low or high is not finite, or low is above high.
     static Axis linear(double low, double high, int intervals = 5);
 
-    /// Ticks at powers of ten, and at 2 and 5 times them where low and high are within a factor of 1,000; both rounded
-    /// outwards to ticks. Throws Error{internal} also where low is not positive.
+    /// Ticks at powers of ten, and at 2 and 5 times them where low and high are within a factor of 1,000; both are
+    /// rounded outwards to ticks. Also throws Error{internal} where low is not positive.
     static Axis logarithmic(double low, double high);
 
-    /// From zero to `high` itself, with round ticks in between: what bars need, whose ends no tick has to enclose.
+    /// From zero to exactly `high`, with round ticks in between: for bars, whose ends need no enclosing tick.
     /// Throws Error{internal} where high is negative or not finite.
     static Axis from_zero(double high, int intervals = 4);
 
-    /// Logarithmic, with ticks at the given values and at them alone; from the lowest over `room` to the highest times
-    /// it. Throws Error{internal} where a value is not positive and finite, or there is none.
+    /// Logarithmic, with ticks only at the given values; from the lowest over `room` to the highest times `room`.
+    /// Throws Error{internal} where a value is not positive and finite, or there are none.
     static Axis logarithmic_at(std::vector<double> values, double room);
 
     [[nodiscard]] double low() const { return low_; }
     [[nodiscard]] double high() const { return high_; }
     [[nodiscard]] const std::vector<double>& ticks() const { return ticks_; }
 
-    /// Where a value stands when the axis runs from place `begin` to place `end`. Values beyond the axis are placed at
-    /// its ends. Throws Error{internal} where the value is not finite.
+    /// Position of a value when the axis runs from position `begin` to position `end`. Values beyond the axis are
+    /// placed at its ends. Throws Error{internal} where the value is not finite.
     [[nodiscard]] double place(double value, double begin, double end) const;
 
     /// A tick's label, with as many decimals as the step between ticks needs, and commas between thousands.
     [[nodiscard]] std::string label(double tick) const;
 
 private:
-    /// Ticks ascend, and there is one.
+    /// Ticks ascend; there is at least one.
     Axis(bool logarithmic, double low, double high, std::vector<double> ticks)
         : logarithmic_(logarithmic), low_(low), high_(high), ticks_(std::move(ticks))
     {
@@ -50,18 +50,18 @@ private:
 };
 
 /// A number with three significant digits, all digits before the point, and commas between thousands: 0.0123, 5.10,
-/// 23.0, 1,234. Very small and very large ones with an exponent.
+/// 23.0, 1,234. Very small and very large numbers have an exponent.
 [[nodiscard]] std::string short_number(double value);
 
-/// A number with so many decimals (not negative), and commas between thousands; with three significant digits where it
-/// is smaller than the last of them, and from 1e15 on; 0 is 0: no other number is shown so.
+/// A number with the given number of decimals (not negative), and commas between thousands. Numbers smaller than the
+/// last decimal, and numbers from 1e15 on, get three significant digits. Only 0 is shown as 0.
 [[nodiscard]] std::string fixed_number(double value, int decimals);
 
-/// A share as percentage: 8.1 %, 14 %.
+/// A share as a percentage: 8.1 %, 14 %.
 [[nodiscard]] std::string short_percent(double share);
 
-/// Moves positions apart: the result keeps their order and a distance of `gap`, within [low, high] as far as they fit,
-/// and moves each as little as that allows (least squares, by pooling adjacent violators). positions: any order; the
+/// Moves positions apart. The result keeps their order and a distance of `gap`, within [low, high] as far as they fit,
+/// and moves each as little as possible (least squares, by pooling adjacent violators). positions: any order; the
 /// result has the same order of elements.
 [[nodiscard]] std::vector<double> spread_apart(const std::vector<double>& positions, double gap, double low,
                                                double high);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double top = 6, bar_height = 13, gap = 10, axis_room = 38, widest_labels = 230, widest_values = 160;
 
-/// Labels on the left, one under the other; then the plot; then room for what is written behind each value.
+/// Labels on the left, one below the other; then the plot; then room for the text right of each bar.
 struct RowFrame {
     double left = 0, right = 0; ///< of the plot
     double pitch = 22;          ///< from row to row
@@ -62,7 +62,7 @@ double value_width(const Bar& bar)
            (bar.note.empty() ? 0 : before_note + text_width(bar.note, small_size));
 }
 
-/// The value, and its note in small letters as far as there is room.
+/// The value, and its note in small letters as far as it fits.
 Html value_and_note(const Bar& bar, double x, double baseline)
 {
     const std::string value = short_number(bar.value);

@@ -9,24 +9,24 @@ namespace tetrace {
 
 /// A bar of a bar chart: a measured value with its spread.
 struct Bar {
-    std::string id;       ///< what the mark is called (see svg_mark())
+    std::string id;       ///< name of the mark (see svg_mark())
     std::string label;    ///< stands left of the bar
     std::string sublabel; ///< in small letters under it; may be empty
     std::size_t series = 0;
     double value = 0;                 ///< not negative, finite
     std::optional<double> low, high;  ///< the whisker
-    std::vector<double> samples = {}; ///< a dot each
-    std::string note = {};            ///< behind the value
+    std::vector<double> samples = {}; ///< one dot each
+    std::string note = {};            ///< after the value
 };
 
 struct BarChart {
-    std::string label; ///< what it shows, for who cannot see it
+    std::string label; ///< description for readers who cannot see it
     std::string unit;
     std::vector<Bar> bars; ///< from top to bottom
 };
 
-/// Horizontal bars from zero, each with its value written beside it, whisker and samples over it.
-/// Precondition: there is a bar.
+/// Horizontal bars from zero, each with its value to its right, and with whisker and samples drawn over it.
+/// Precondition: there is at least one bar.
 [[nodiscard]] Html draw(const BarChart& chart);
 
 /// A ratio with its interval.
@@ -38,12 +38,12 @@ struct Interval {
 
 struct IntervalChart {
     std::string label;
-    std::string below, above; ///< what a ratio below, above 1 means
+    std::string below, above; ///< what a ratio below 1, and above 1, means
     std::vector<Interval> intervals;
 };
 
-/// Dots with intervals on a logarithmic axis (a linear one where all lie close together), with a line at 1. A dot whose
-/// interval holds 1, which tells no difference, is hollow. Precondition: there is an interval.
+/// Dots with intervals on a logarithmic axis (a linear one where all are close together), with a line at 1. A dot whose
+/// interval contains 1, and so shows no difference, is hollow. Precondition: there is at least one interval.
 [[nodiscard]] Html draw(const IntervalChart& chart);
 
 } // namespace tetrace

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double top = 24, least_bottom = 264, left = 62, axis_room = 40;
 
-/// Between the first and the last label and the plot's ends.
+/// Margin between the first and the last label and the plot's ends.
 constexpr double above_labels = 6, below_labels = 4;
 
-/// Points of a line are marked with their shape up to this number.
+/// Lines with up to this number of points mark each point with their shape.
 constexpr std::size_t most_marked = 24;
 
 struct Range {
@@ -29,7 +29,7 @@ struct Range {
         low = std::min(low, value);
         high = std::max(high, value);
     }
-    /// A range of values that are not negative begins at zero where that leaves them half of it.
+    /// A range of non-negative values begins at zero where the values still fill at least half of it.
     [[nodiscard]] Axis axis(int intervals, bool logarithmic) const
     {
         if (logarithmic) return Axis::logarithmic(low, high);
@@ -45,7 +45,7 @@ struct LineFrame {
     [[nodiscard]] double y(double value) const { return y_axis.place(value, bottom, top); }
 };
 
-/// As low as a column of so many labels reaches.
+/// The bottom of a column of this many labels.
 double bottom_of(std::size_t labels)
 {
     const double column = side_label_pitch * static_cast<double>(std::max<std::size_t>(labels, 1) - 1);

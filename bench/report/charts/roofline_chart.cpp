@@ -32,7 +32,7 @@ std::string roof_text(const Roofline& roofline)
     return fmt::format("copying at {} GB/s", short_number(1e-9 * roofline.copy_bytes_per_s));
 }
 
-/// The plot reaches from half of what the slowest row does to the roof over the row that loads least.
+/// The plot reaches from half of the slowest row's rate to the roof over the row that loads least.
 RooflineFrame frame_of(const Roofline& roofline)
 {
     std::vector<double> loads;

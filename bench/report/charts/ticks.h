@@ -5,8 +5,8 @@
 
 namespace tetrace {
 
-/// Grid lines with their labels: of a horizontal axis under the plot, of a vertical one left of it. A label that its
-/// neighbour leaves no room for is left out.
+/// Grid lines with their labels: below the plot for a horizontal axis, left of it for a vertical one. A label is left
+/// out where its neighbour leaves no room for it.
 [[nodiscard]] Html horizontal_ticks(const Axis& axis, double left, double right, double top, double bottom);
 [[nodiscard]] Html vertical_ticks(const Axis& axis, double left, double right, double top, double bottom);
 

@@ -7,11 +7,10 @@
 
 namespace tetrace {
 
-/// Attributes of an element, by name. Names are the program's own; values are escaped, whatever they hold.
+/// Attributes of an element, by name. Names are the program's own; values are always escaped.
 using Attributes = std::vector<std::pair<std::string_view, std::string>>;
 
-/// Markup of HTML, SVG in it included. text() and element() are the only ways to make it, so that nothing that a result
-/// file holds is ever read as markup.
+/// HTML markup, including SVG. Only text() and element() create it, so text from a result file is never read as markup.
 class Html {
 public:
     Html() = default;
@@ -44,7 +43,7 @@ private:
 /// <name attributes>content</name>; meta and img, which have no content, are not closed.
 [[nodiscard]] Html element(std::string_view name, const Attributes& attributes, const Html& content = {});
 
-/// An element with nothing but text in it, of a class; without the attribute where the class is empty.
+/// An element of a class that contains only text; no class attribute where the class is empty.
 [[nodiscard]] Html text_element(std::string_view name, std::string_view css_class, std::string_view plain);
 
 /// The page's own style sheet, as a style element.

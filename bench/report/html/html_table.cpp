@@ -16,7 +16,7 @@ struct BadgeLook {
 
 constexpr BadgeLook neutral = {"", "neutral", "–"};
 
-/// By what a word begins with: a cell says "wrong: 3 rays".
+/// By a word's beginning: a cell may read "wrong: 3 rays".
 constexpr std::array badge_looks = {
     BadgeLook{"holds", "good", "✓"},
     BadgeLook{"does not hold", "bad", "✗"},

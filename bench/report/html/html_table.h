@@ -7,21 +7,21 @@
 
 namespace tetrace {
 
-/// A column of a table on the page: numbers stand right-aligned.
+/// A column of a table on the page; numbers are right-aligned.
 struct HtmlColumn {
     std::string title, unit = {};
     bool number = false;
 };
 
-/// A table on the page; a column without anything in it is left out.
+/// A table on the page; columns with only empty cells are left out.
 class HtmlTable {
 public:
     explicit HtmlTable(std::vector<HtmlColumn> columns) : columns_(std::move(columns)) {}
 
-    /// Throws Error{internal} where the number of cells is not that of the columns.
+    /// Throws Error{internal} where the number of cells differs from the number of columns.
     void add(std::vector<Html> cells);
     [[nodiscard]] bool empty() const { return rows_.empty(); }
-    /// Nothing where there is no row. It scrolls sideways by itself where the page is too narrow for it.
+    /// Empty where there are no rows. The table scrolls sideways on its own where the page is too narrow for it.
     [[nodiscard]] Html html() const;
 
 private:
@@ -47,10 +47,10 @@ struct Section {
 [[nodiscard]] Html heading(std::string_view plain);
 /// A picture or drawing with its caption under a title; both may be empty.
 [[nodiscard]] Html figure(std::string_view title, const Html& content, std::string_view caption);
-/// Things that stand side by side where there is room.
+/// Elements side by side where there is room.
 [[nodiscard]] Html side_by_side(const Html& content);
 
-/// A status, verdict or conformity with a sign in front of it, so that colour is not all that tells.
+/// A status, verdict or conformity with a sign before it, so that colour is not the only cue.
 [[nodiscard]] Html badge(std::string_view word);
 
 } // namespace tetrace

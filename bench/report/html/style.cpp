@@ -4,8 +4,8 @@ namespace tetrace {
 
 namespace {
 
-// Colours of series are those of Okabe and Ito, "Color Universal Design" (2008); black is grey, and yellow, which white
-// paper swallows, is left out.
+// Series have the colours of Okabe and Ito, "Color Universal Design" (2008). Grey replaces black; yellow is left out
+// because it is hard to see on white.
 const char* const style = R"css(
 :root {
   color-scheme: light dark;

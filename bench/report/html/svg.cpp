@@ -12,7 +12,7 @@ std::string pixels(double value)
     return fmt::format("{:.1f}", value);
 }
 
-/// Of DejaVu Sans, in 1/1000 of its size; characters beyond ASCII count as wide as digits.
+/// Widths in DejaVu Sans, in 1/1000 of the font size; characters beyond ASCII count as wide as digits.
 double character_width(char c)
 {
     static constexpr std::string_view narrow = "iljI.,:;'|!", slim = "frt()[]{}/\\-\" ", wide = "mwMW%@";
@@ -75,7 +75,7 @@ Html svg_text(double x, double y, std::string_view css_class, std::string_view p
 
 Html svg_shape(double x, double y, std::size_t series, std::string_view css_class)
 {
-    // circle, square, triangle, diamond, triangle upside down, plus, cross
+    // circle, square, triangle, diamond, inverted triangle, plus, cross
     static constexpr const char* shapes[] = {
         "m-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
         "m-4 -4h8v8h-8z",

@@ -4,35 +4,36 @@
 
 namespace tetrace {
 
-/// Charts are drawn this wide, in pixels, and their writing is this high: narrow enough that it stays legible where a
-/// telephone shows the drawing smaller, and that two stand side by side elsewhere.
+/// Width of charts and height of their text, in pixels. The width is small enough that text stays legible where a phone
+/// scales the drawing down, and that two charts fit side by side elsewhere.
 inline constexpr double chart_width = 480;
 inline constexpr double label_size = 13;
 inline constexpr double small_size = 11.5;
 
-/// Colours and shapes of series there are before they repeat: CSS classes s0 to s6, whose colours are those of Okabe
-/// and Ito, "Color Universal Design" (2008); a shape goes with each, so that colour alone never tells.
+/// Number of series colours and shapes before they repeat: CSS classes s0 to s6, with the colours of Okabe and Ito,
+/// "Color Universal Design" (2008). Each colour has its own shape, so that colour is never the only cue.
 inline constexpr std::size_t series_styles = 7;
 [[nodiscard]] std::string series_class(std::size_t series);
 
-/// The svg element, chart_width wide; `label` is what a screen reader says in its place.
+/// The svg element, chart_width wide; a screen reader reads `label` instead of it.
 [[nodiscard]] Html svg_drawing(double height, const std::string& label, const Html& content);
 
 [[nodiscard]] Html svg_line(double x1, double y1, double x2, double y2, std::string_view css_class);
 [[nodiscard]] Html svg_rectangle(double x, double y, double width, double height, std::string_view css_class);
 [[nodiscard]] Html svg_path(const std::string& commands, std::string_view css_class);
 
-/// Text with its baseline at y; the class says which of its ends, or its middle, stands at x ("end", "middle").
+/// Text with its baseline at y; the class says which point of the text is at x: "end", "middle", or by default its
+/// start.
 [[nodiscard]] Html svg_text(double x, double y, std::string_view css_class, std::string_view plain);
 
 /// The shape of a series, centred.
 [[nodiscard]] Html svg_shape(double x, double y, std::size_t series, std::string_view css_class);
 
-/// What one row or point is drawn with: tests count these. The tooltip is shown under the pointer.
+/// The group that one row or point is drawn with; tests count these. The tooltip appears under the pointer.
 [[nodiscard]] Html svg_mark(std::string_view css_class, const std::string& id, const std::string& tooltip,
                             const Html& content);
 
-/// Width of a text in pixels, in a wide sans-serif face (DejaVu Sans): others take less.
+/// Width of a text in pixels in a wide sans-serif face (DejaVu Sans); other faces need less.
 [[nodiscard]] double text_width(std::string_view plain, double size);
 
 /// The text, or as much of its beginning as fits, with an ellipsis.
