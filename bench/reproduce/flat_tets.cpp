@@ -47,7 +47,7 @@ FlatWalks FlatTets::walks(const RowRun& row, std::size_t view, std::span<const s
 
 FlatWalks FlatTets::walks_anywhere(const RowRun& row, std::size_t view)
 {
-    // A multiplicative step spreads few pixels over both axes of the image, whatever its width.
+    // A multiplicative step spreads few pixels over both axes of the image, for any width.
     constexpr std::uint64_t golden = 2654435769u; // 2^32 over the golden ratio
     std::vector<std::uint32_t> pixels;
     for (std::uint64_t i = 0; i < rays_looked_at; ++i)

@@ -10,13 +10,13 @@
 
 namespace tetrace {
 
-/// A tet is flat where its flatness is below this.
+/// A tet is flat where its flatness is below this value.
 inline constexpr double flat_below = 1e-3;
 
-/// A tet's shortest altitude over its longest edge: about 0.82 for a regular one, 0 for one without volume.
+/// A tet's shortest altitude over its longest edge: about 0.82 for a regular tet, 0 for one without volume.
 [[nodiscard]] double flatness(const TetMesh& mesh, std::size_t tet);
 
-/// Which tets of a scene are flat, and which walks pass through them.
+/// Finds which tets of a scene are flat, and which walks pass through them.
 class FlatTets {
 public:
     explicit FlatTets(const SceneWork& scene);
@@ -24,11 +24,11 @@ public:
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] bool is_flat(std::size_t tet) const { return flat_[tet]; } ///< as the tet mesh numbers them
 
-    /// Of the rays through these pixels (y * width + x), at most rays_looked_at spread over them, how many pass a flat
-    /// tet in their first steps_looked_at steps. The walks are traced by openmp.
+    /// Counts the rays that pass a flat tet in their first steps_looked_at steps, among the rays through these pixels
+    /// (y * width + x). Looks at no more than rays_looked_at rays, spread over the pixels. openmp traces the walks.
     /// row: of structure cdt, opened.
     [[nodiscard]] FlatWalks walks(const RowRun& row, std::size_t view, std::span<const std::uint32_t> pixels);
-    /// The same for rays all over the image.
+    /// The same for rays over the whole image.
     [[nodiscard]] FlatWalks walks_anywhere(const RowRun& row, std::size_t view);
 
     static constexpr std::size_t rays_looked_at = 32;

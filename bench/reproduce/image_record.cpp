@@ -103,7 +103,7 @@ ImageRecord record_from(const json& object)
             object.at("wall_samples_s")};
 }
 
-/// One of an enumeration's, from the first that can be to the last.
+/// A value of an enumeration, from the first allowed one to the last.
 template <class Enum>
 Enum choice_from(const json& number, Enum first, Enum last)
 {

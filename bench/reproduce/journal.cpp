@@ -22,7 +22,7 @@ using nlohmann::json;
 constexpr const char* head_key = "journal";
 const json finished_line = {{"finished", true}};
 
-/// What differs between two heads, by its keys.
+/// The differences between two heads, by their keys.
 std::string differences(const json& theirs, const json& ours)
 {
     std::string text;
@@ -55,7 +55,7 @@ Journal::~Journal()
 
 void Journal::append(const json& entry)
 {
-    finished_ = false; // what a whole run lacked, a repeated one may have: a device that could not be measured
+    finished_ = false; // a repeated run may add what a whole run lacked: a device that could not be measured
     write_line(entry);
 }
 
@@ -81,14 +81,14 @@ void Journal::open_and_lock()
                                               path_.string()));
 }
 
-/// Whether there are entries to go on from.
+/// Whether there are entries to continue from.
 bool Journal::read(const json& head, bool resume)
 {
     std::ifstream file(path_, std::ios::binary);
     std::ostringstream whole;
     whole << file.rdbuf();
     std::string text = whole.str();
-    text.erase(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1); // the last line was cut off
+    text.erase(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1); // the last line is incomplete
     if (text.empty()) return false;
     std::istringstream lines(text);
     std::vector<json> parsed;

@@ -6,28 +6,28 @@
 
 namespace tetrace {
 
-/// What a long run has finished so far: a file of JSON, a line an entry, each on the disk before append() returns, so
-/// that a run which was killed goes on where it was. The first line, the head, says what the run is; only the same run
-/// goes on from it.
+/// What a long run has finished so far, so that a killed run can continue. It is a JSON file with one entry a line;
+/// each entry is on the disk before append() returns. The first line, the head, identifies the run; only the same run
+/// can continue from it.
 class Journal {
 public:
-    /// Begins a journal, or goes on with one.
-    /// head: an object that names all that decides what the entries are. resume: take the entries of a journal that is
-    /// there; where there is none, begin one.
-    /// A last line that was cut off is dropped. Throws Error{usage} where an unfinished journal is there and resume is
-    /// not asked for, where its head is another one (the text names what differs), or where another process writes it;
+    /// Begins a journal, or continues one.
+    /// head: an object that names everything that determines the entries. resume: use the entries of an existing
+    /// journal; if there is none, begin one.
+    /// An incomplete last line is dropped. Throws Error{usage} where there is an unfinished journal and resume is
+    /// false, where its head differs (the text names the differences), or where another process is writing it;
     /// Error{invalid_input} naming file and line where it cannot be read or written.
     Journal(std::filesystem::path path, const nlohmann::json& head, bool resume);
     ~Journal();
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;
 
-    /// The entries of the run that this one goes on from, in the order in which they were appended.
+    /// The entries of the run that this one continues, in the order in which they were appended.
     [[nodiscard]] const std::vector<nlohmann::json>& entries() const { return entries_; }
     void append(const nlohmann::json& entry);
-    /// Throws Error{usage} with why the entries cannot be gone on from, and what to do.
+    /// Throws Error{usage} that says why the run cannot continue from the entries, and what to do.
     [[noreturn]] void reject(const std::string& why) const;
-    /// The run is whole: a later one begins anew without asking, or with resume repeats its result.
+    /// Marks the run as complete: a later run starts over without asking or, with resume, repeats its result.
     void finish();
 
 private:

@@ -30,7 +30,7 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
     for (const ImageRecord& image : images) {
         sum.add(image.verdict);
         sum.hit_hash = image.chained_hash;
-        // A row that turned out wrong was timed no more; it has no rate.
+        // A row that turned out wrong was no longer timed; it has no rate.
         for (std::size_t s = 0; s < std::min(row.samples_s.size(), image.samples_s.size()); ++s) {
             row.samples_s[s] += image.samples_s[s];
             row.wall_samples_s[s] += image.wall_samples_s[s];
@@ -103,13 +103,13 @@ json RowRecorder::run_part(std::size_t part)
     return entry;
 }
 
-/// Interleaved, so that what drifts hits all rows alike. The first launch after another row's wakes the caches.
+/// Interleaved, so that drift affects all rows alike. The first launch after another row's warms the caches.
 void RowRecorder::time_rows(std::size_t part)
 {
     for (unsigned sample = 0; sample <= samples_; ++sample)
         for (const std::size_t i : begun_)
             if (is_timed(run_->rows[i])) guarded(run_->rows[i], [&] { time_row(i, part, sample > 0); });
-    // A device that answers differently under repetition must not keep its rate.
+    // A device that answers differently under repetition must lose its rate.
     for (const std::size_t i : begun_)
         if (is_timed(run_->rows[i]))
             guarded(run_->rows[i], [&] {
@@ -135,7 +135,7 @@ ImageOutcome RowRecorder::outcome(std::size_t i) const
     return records_[i];
 }
 
-/// Takes the parts that the journal has, and gives back how many.
+/// Takes the parts that the journal has, and returns their number.
 std::size_t RowRecorder::restore_parts()
 {
     std::size_t part = 0, line = 1; // the head's
@@ -181,7 +181,7 @@ void RowRecorder::restore(std::size_t i, std::size_t part, ImageOutcome outcome)
     row.session.reset();
 }
 
-/// Whether the row, its outcome already that of the part, can have come to it. Throws std::domain_error.
+/// Checks that the record is possible for the row, which already has the part's outcome. Throws std::domain_error.
 void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecord& record) const
 {
     const RowRun& row = run_->rows[i];
@@ -197,7 +197,7 @@ void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecor
             throw std::domain_error(fmt::format("{} wants {} samples, all above 0 s", row_name(row.key), samples));
 }
 
-/// Once more, after everything else that the device was given; a part of the journal's, after a resume.
+/// Repeats the first part after everything else that the device was given; after a resume, it is the journal's.
 void RowRecorder::repeat_first_part()
 {
     for (std::size_t i = 0; i < run_->rows.size(); ++i)

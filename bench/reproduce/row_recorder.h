@@ -10,42 +10,42 @@
 
 namespace tetrace {
 
-/// Rows that do the same work part by part, and what came of each part. A part is a view of a scene, or a batch of
-/// searches. Rows end as those of `bench` do: their outcome and samples are those of all parts.
+/// Rows that do the same work part by part, and the result of each part. A part is a view of a scene, or a batch of
+/// searches. Rows end as those of `bench` do: their outcome and samples cover all parts.
 struct RecordedRows {
     std::vector<RowRun> rows;
     std::vector<std::vector<ImageRecord>> images; ///< row by row, part by part; fewer where a row failed
-    Sampling sampling = Sampling::even;           ///< how the parts were taken from all that there are
+    Sampling sampling = Sampling::even;           ///< how the parts were sampled from the whole set
 };
 
-/// Whether the row came through all parts with an answer.
+/// Whether the row completed all parts with an answer.
 [[nodiscard]] bool is_whole(const RowRun& row);
 
-/// Whether the row is one of the CDT, not of a BVH beside it.
+/// Whether the row is one of the CDT, not of a BVH compared with it.
 [[nodiscard]] bool is_cdt(const RowRun& row);
 
-/// How far a run is, for the progress line.
+/// A run's progress, for the progress line.
 struct RunProgress {
-    std::size_t all = 0;  ///< parts of all that is run
-    std::size_t done = 0; ///< those of a journal included
+    std::size_t all = 0;  ///< parts of the whole run
+    std::size_t done = 0; ///< including those of a journal
     std::size_t here = 0; ///< done by this process
     Stopwatch watch;
 
     void show(const std::string& stage) const;
 };
 
-/// Takes rows through their parts: verifies each part with every row, times it, and appends it to the journal; parts
-/// that the journal has are taken from there.
+/// Takes rows through their parts: verifies each part with every row, times it, and appends it to the journal. Parts
+/// that are in the journal are taken from there.
 class RowRecorder {
 public:
-    /// samples: timed launches of each row a part; 0: nothing is timed.
+    /// samples: timed launches of each row for each part; 0: nothing is timed.
     RowRecorder(RecordedRows& run, unsigned samples) : run_(&run), samples_(samples) {}
     virtual ~RowRecorder() = default;
     RowRecorder(const RowRecorder&) = delete;
     RowRecorder& operator=(const RowRecorder&) = delete;
 
     /// stage: for the progress line. journal: may be null.
-    /// Throws Error{usage} where the journal's parts are others, or of other rows, or an entry is damaged.
+    /// Throws Error{usage} where the journal has other parts or other rows, or an entry is damaged.
     void run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress);
 
 protected:
@@ -53,17 +53,17 @@ protected:
     [[noreturn]] void reject_journal(const std::string& why) const { journal_->reject(why); }
 
 private:
-    /// What of a journal's entry names the part; the answers come beside it.
+    /// The members of a journal entry that identify the part; the answers are added to them.
     [[nodiscard]] virtual nlohmann::json head_of(std::size_t part) const = 0;
     [[nodiscard]] virtual bool is_ours(const nlohmann::json& entry) const = 0;
-    /// Throws as reject_journal() does, where the entry is of another part.
+    /// Throws as reject_journal() does where the entry belongs to another part.
     virtual void check_entry(std::size_t part, const nlohmann::json& entry) const = 0;
-    /// Gives the row's session all that its launches of the part need.
+    /// Gives the row's session everything that its launches of the part need.
     virtual void prepare(RowRun& row, std::size_t part) = 0;
     [[nodiscard]] virtual TraceJob job_of(const RowRun& row, std::size_t part) const = 0;
-    /// Does the part once and judges every answer; samples are left empty.
+    /// Does the part once and judges every answer; leaves samples empty.
     [[nodiscard]] virtual ImageRecord examine(std::size_t row, std::size_t part) = 0;
-    /// Of the answers to the last launch, as ImageVerdict::hit_hash.
+    /// Hash of the answers to the last launch, as ImageVerdict::hit_hash.
     [[nodiscard]] virtual std::uint64_t hash_of_answers(RowRun& row, std::size_t part) = 0;
 
     [[nodiscard]] nlohmann::json run_part(std::size_t part);
@@ -79,7 +79,7 @@ private:
     RecordedRows* run_;
     unsigned samples_;
     Journal* journal_ = nullptr;
-    std::vector<ImageRecord> records_; ///< of the part at hand, row by row
+    std::vector<ImageRecord> records_; ///< of the current part, row by row
     std::vector<std::size_t> begun_;   ///< rows that the part began with
 };
 

@@ -77,7 +77,7 @@ private:
     std::vector<Hit> hits_;
 };
 
-/// The options with what selects among the structure's rows alone.
+/// The options, with only those selections that apply to the structure's rows.
 Options options_of(Structure structure, Options options)
 {
     const auto is_other_layout = [&](Layout layout) { return structure_of(layout) != structure; };

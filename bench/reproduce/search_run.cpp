@@ -19,7 +19,8 @@ using Faces = std::vector<std::uint32_t>;
 constexpr std::uint32_t batch_rays = 1'638'400;
 constexpr std::uint32_t fewest_batches = 20;
 
-/// openmp's faces of a batch, for those of other backends: its own row's, else found for the comparison alone.
+/// openmp's faces of a batch, for comparison with other backends' faces: from openmp's own row, else found only for the
+/// comparison.
 class FaceReferences {
 public:
     FaceReferences(const SearchRun& run, const Options& options) : run_(&run), options_(&options) {}
@@ -46,7 +47,7 @@ private:
     const SearchRun* run_;
     const Options* options_;
     std::map<std::string, std::unique_ptr<Session>> sessions_; ///< by the kernel's name
-    std::map<std::string, Faces> faces_;                       ///< of the batch at hand
+    std::map<std::string, Faces> faces_;                       ///< of the current batch
 };
 
 Hit as_hit(std::uint32_t face, std::uint32_t tet)
@@ -131,7 +132,7 @@ private:
         return hash_of(faces_);
     }
 
-    /// Exact mode promises the same faces on every device, and on any number of threads.
+    /// Exact mode guarantees the same faces on every device, and with any number of threads.
     void compare(const RowRun& row, ImageVerdict& verdict)
     {
         if (is_reference(row.key)) {
@@ -151,7 +152,8 @@ private:
         verdict.inexact = verdict.different;
     }
 
-    /// Faces of one hash are the same but with a probability of 2^-64 a pair: what was judged once holds for all rows.
+    /// Faces with the same hash are the same, except with a probability of 2^-64 a pair: one verdict holds for all
+    /// rows.
     const Verdicts& judged(std::uint64_t hash)
     {
         const auto found = judged_.find(hash);
@@ -176,8 +178,8 @@ private:
     SearchRun* run_;
     FaceReferences references_;
     std::optional<std::size_t> loaded_;
-    SearchRays rays_; ///< of the batch loaded
-    Faces faces_;     ///< that were read back last
+    SearchRays rays_; ///< of the loaded batch
+    Faces faces_;     ///< that were last read back
     std::map<std::uint64_t, Verdicts> judged_;
 };
 

@@ -11,26 +11,27 @@
 
 namespace tetrace {
 
-/// What a row pays once, before its first ray, and what it occupies from then on. Compiling kernels and copying to the
-/// device are left out: they are the API's, not the structure's.
+/// What a row pays once, before its first ray, and the memory that it occupies from then on. Compiling kernels and
+/// copying to the device are left out: they are costs of the API, not of the structure.
 struct SetupCost {
     double build_s = 0;      ///< TetGen, the BVH's builder, Embree, or a GPU's driver
-    double pack_s = 0;       ///< from what was built to the bytes that cross; none of Embree
+    double pack_s = 0;       ///< from the built structure to the bytes that are copied; none for Embree
     std::uint64_t bytes = 0; ///< of the session
 
     [[nodiscard]] double once_s() const { return build_s + pack_s; }
 };
 
-/// Of a row whose session is open; empty for another one.
+/// The set-up cost of a row whose session is open; empty for other rows.
 [[nodiscard]] std::optional<SetupCost> setup_cost(const RowRun& row);
 
-/// The set-up costs of a run's rows, kept in its journal: what is repeated from it stands beside the same build times.
+/// The set-up costs of a run's rows, kept in its journal, so that a resumed run reports the same build times.
 class SetupCosts {
 public:
     /// journal: may be null. Throws Error{usage} where one of its costs is damaged.
     explicit SetupCosts(Journal* journal);
 
-    /// Row by row as setup_cost() of rows just opened; what the journal has is taken from there, the rest goes into it.
+    /// Row by row, the setup_cost() of rows just opened. Costs that are in the journal are taken from there; the others
+    /// are added to it.
     [[nodiscard]] std::vector<std::optional<SetupCost>> of(const std::vector<RowRun>& rows);
 
 private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-/// The rated row that is the other but for its method; none where there is none.
+/// The rated row that differs from the given one only in its method; none where there is none.
 std::size_t find_beside(const RecordedRows& run, const RowRun& other, Method method)
 {
     RowKey wanted = other.key;
@@ -23,13 +23,13 @@ std::size_t find_beside(const RecordedRows& run, const RowRun& other, Method met
     return none;
 }
 
-/// One row's time over that of another with the same layout and device.
+/// One row's time over that of another row with the same layout and device.
 struct TimeRatio {
     std::string pair, where; ///< "plane / maria"; "bunny tet80 openmp"
     Estimate estimate;
 };
 
-/// The ratios of one pair: where it is least and where it is most.
+/// The ratios of one pair: where the ratio is least and where it is greatest.
 std::string range_text(const std::string& pair, const std::vector<TimeRatio>& ratios)
 {
     std::vector<TimeRatio> of_pair;
@@ -44,7 +44,7 @@ std::string range_text(const std::string& pair, const std::vector<TimeRatio>& ra
     return pair + ' ' + (of_pair.size() == 1 ? text(*least) : text(*least) + " to " + text(*most));
 }
 
-/// Gathers ratios of rows' times, and the words that tell them.
+/// Collects ratios of rows' times, and the text that describes them.
 struct Ratios {
     std::vector<TimeRatio> ratios;
     std::string missing;
@@ -76,7 +76,7 @@ struct Ratios {
         for (const TimeRatio& ratio : ratios)
             estimates.push_back(ratio.estimate);
         claim.verdict = judge_above(estimates, 1);
-        if (!missing.empty()) { // what is there may refute the claim, and cannot show it
+        if (!missing.empty()) { // the available data may refute the claim, but cannot show it
             claim.evidence += ' ' + missing;
             if (claim.verdict == ClaimVerdict::holds) claim.verdict = ClaimVerdict::not_testable;
         }
@@ -97,7 +97,7 @@ private:
     }
 };
 
-/// Rows of the method that have a rate and are meant.
+/// Rows of the method that have a rate and that the claim is about.
 template <class Visit>
 void for_rows_of(Method method, const RecordedRuns& runs, const IsMeant& is_meant, const Visit& visit)
 {

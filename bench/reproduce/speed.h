@@ -8,43 +8,43 @@
 
 namespace tetrace {
 
-/// The CDT's methods that are older than maria, the paper's, in the order of all_kernels().
+/// The CDT's methods that are older than maria, the paper's own, in the order of all_kernels().
 [[nodiscard]] const std::vector<Method>& older_methods();
 
 /// Device seconds of each view or batch: the medians of its samples. Empty for a row without a rate.
 [[nodiscard]] std::vector<double> view_seconds(const RecordedRows& run, std::size_t row);
 
-/// Tets that a ray leaves on average, view by view.
+/// Mean number of tets that a ray leaves, view by view.
 [[nodiscard]] std::vector<double> view_steps(const RecordedRows& run, std::size_t row);
 
 /// "bunny maria tet80 openmp": a row in a figure.
 [[nodiscard]] std::string series_name(const RowRun& row);
 
-/// Those that a claim is about; rows of several are never set beside each other.
+/// The runs that a claim is about; rows of different runs are never compared.
 using RecordedRuns = std::vector<const RecordedRows*>;
-/// Whether a row of maria is one that a claim is about.
+/// Whether the claim is about this row of maria.
 using IsMeant = std::function<bool(const RowRun&)>;
 
-// Claims of speed: where a row that they are about is noisy, they are not testable.
+// Claims of speed are not testable where one of their rows is noisy.
 
 // claim: its id and text.
 
 [[nodiscard]] bool is_noisy(const RowRun& row);
-/// The interval of views knows nothing of a machine that others use: noisy rows decide nothing.
+/// The interval over views does not cover the load of other users on the machine: noisy rows decide nothing.
 void withdraw_if_noisy(Claim& claim, bool noisy);
 
-/// "maria is the fastest of the five", for each of maria's rows that is meant: the time of each older method over
-/// maria's in the same views and layout, on the same device. Not testable unless all of them have a rate.
+/// "maria is the fastest of the five", for each of maria's rows that the claim is about: the time of each older method
+/// over maria's, in the same views and layout, on the same device. Not testable unless all of them have a rate.
 [[nodiscard]] Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_meant);
 
 /// "Plucker overtakes stp", on every GPU and scene: stp's time over plucker's.
 [[nodiscard]] Claim overtaking_claim(Claim claim, const RecordedRuns& runs);
 
-/// The first of them for the walk through the scenes, on a CPU; and the second.
+/// fastest_claim() for the walk through the scenes, on a CPU; and overtaking_claim().
 [[nodiscard]] std::vector<Claim> speed_claims(const RecordedRuns& runs);
 
-/// "Time is proportional to the tets traversed", for the rows of one kind of device: over the views of each they lie on
-/// a line (correlation), and the line passes near the origin (its part of the mean time at 0 tets).
+/// "Time is proportional to the tets traversed", for the rows of one kind of device: over each row's views, the points
+/// lie on a line (correlation), and the line passes near the origin (its value at 0 tets, as a part of the mean time).
 [[nodiscard]] Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind);
 inline constexpr double proportional_above = 0.9, proportional_intercept = 0.1;
 

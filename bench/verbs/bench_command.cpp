@@ -18,7 +18,7 @@ int list_rows(const std::vector<RowKey>& keys)
     return 0;
 }
 
-/// Google Benchmark's own JSON names the host, whatever it is told.
+/// Google Benchmark's own JSON always names the host.
 void check_anonymous(const Options& options, const BenchmarkFlags& flags)
 {
     const bool prints_json = flags.format == "json", writes_json = !flags.out.empty() && flags.out_format == "json";
@@ -49,7 +49,7 @@ int bench_command(const Options& options)
     measure_devices(result.devices, session_options(options));
     result.comparisons = compare_rows(result.run.rows);
     const Report report = bench_report(result, options);
-    // Google Benchmark has written its own form to standard output already, where it was asked to.
+    // Google Benchmark has already written its own form to standard output, where it was asked to.
     if (!flags.format)
         deliver(options, report);
     else if (options.out)

@@ -12,12 +12,12 @@ namespace tetrace {
 
 namespace {
 
-/// A combination, and what became of it.
+/// A combination and its result.
 struct Built {
     SceneRequest request;
     std::optional<nlohmann::json> scene; ///< empty where it failed
     TetMeshCounts counts;
-    std::string switches; ///< as passed; empty where no TetGen ran
+    std::string switches; ///< as passed; empty where TetGen did not run
     std::uint64_t bytes = 0;
     double build_s = 0;
     bool from_cache = false;
@@ -40,7 +40,7 @@ std::vector<SceneRequest> combinations(const Options& options)
     return requests;
 }
 
-/// The kernel whose walk counts the steps: the first that openmp has. Steps are the mesh's, whatever the method.
+/// The kernel whose walk counts the steps: the first that openmp has. The number of steps depends only on the mesh.
 RowKey counting_row(const Options& options, const std::string& label)
 {
     Options selection = options;
@@ -141,7 +141,7 @@ Table build_table(const std::vector<Built>& all, bool with_reason)
     return table;
 }
 
-/// Reasons are sentences, too long for a column that people read: they stand below the table.
+/// Reasons are sentences, too long for a column on a terminal; they follow the table.
 std::string reasons_text(const std::vector<Built>& all)
 {
     std::string text;

@@ -32,13 +32,13 @@ Table check_table(const std::vector<RowRun>& rows)
     return table;
 }
 
-/// Whether the row fails the check; one without an answer does not by itself (see exit_code and --require).
+/// Whether the row fails the check. A row without an answer does not fail by itself (see exit_code and --require).
 bool fails_check(const RowRun& row, const Options& options)
 {
     return fails(row, options.allow_flawed) || conformity_of(row) == Conformity::not_exact;
 }
 
-/// Without pictures where none are asked for.
+/// Without pictures where none were asked for.
 struct Checked {
     SceneRows run;
     std::vector<std::string> missing;
@@ -66,7 +66,7 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
-/// With an empty line behind it; nothing of nothing.
+/// With an empty line after it; empty input stays empty.
 std::string paragraph(const std::string& text)
 {
     return text.empty() ? text : text + "\n";
@@ -78,7 +78,7 @@ std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
            paragraph(answers_text(scene.label(), rows));
 }
 
-/// Devices that compute otherwise than exact mode promises, each once.
+/// Devices that compute differently from what exact mode guarantees, each once.
 std::string inexact_devices_text(const std::vector<RowRun>& rows)
 {
     std::set<std::string> sentences;
@@ -130,8 +130,7 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options)
     write_text(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
 }
 
-/// Rows of Embree's own BVH and of drivers' are judged only where somebody asks for them: they make no claim that can
-/// be broken.
+/// Rows of Embree's own BVH and of drivers' are judged only where asked for: they make no claim to break.
 Options with_default_layouts(Options options)
 {
     const auto& required = options.required;
@@ -144,7 +143,7 @@ Options with_default_layouts(Options options)
     return options;
 }
 
-/// A required backend without a selected row would pass unseen.
+/// Without this, a required backend without a selected row would pass unnoticed.
 void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
 {
     for (const std::string& name : backends)
@@ -155,7 +154,7 @@ void require_selected(const std::vector<RowKey>& keys, const std::vector<std::st
                                     name));
 }
 
-/// A required backend whose rows were all selected but not judged has not been checked.
+/// A required backend has not been checked where all its rows were selected but none was judged.
 void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
 {
     for (const RowRun& row : rows) {
@@ -167,7 +166,7 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
     }
 }
 
-/// A check without an answer from any device must not pass for one that found all well.
+/// A check without an answer from any device must not look like a check that passed.
 void require_answers(const std::vector<RowRun>& rows)
 {
     const auto unanswered = [](const RowRun& row) {
@@ -185,7 +184,7 @@ void require_answers(const std::vector<RowRun>& rows)
 int check_command(const Options& asked)
 {
     const Options options = with_default_layouts(asked);
-    if (!options.list) require_devices(options.required); // first: it knows better why nothing would be selected
+    if (!options.list) require_devices(options.required); // first: its reason for an empty selection is better
     const auto keys = selected_rows(options, [](const std::string&) { return true; });
     if (options.list) {
         for (const RowKey& key : keys)

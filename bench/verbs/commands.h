@@ -7,7 +7,7 @@
 
 namespace tetrace {
 
-// A verb each: returns the exit code; throws Error for what ends it early.
+// One function for each verb. Returns the exit code; throws Error where the verb ends early.
 int devices_command(const Options& options);
 int scenes_command(const Options& options);
 int build_command(const Options& options);
@@ -21,7 +21,7 @@ int report_command(const Options& options);
 /// Throws Error{missing} naming the first backend of the list that has no usable device.
 void require_devices(const std::vector<std::string>& backends);
 
-/// Runs the program on a command line, its name left out; prints errors; returns the exit code.
+/// Runs the program on a command line without its name; prints errors; returns the exit code.
 int run_program(const std::vector<std::string>& arguments);
 
 } // namespace tetrace

@@ -21,11 +21,11 @@ namespace {
 
 /// A device of one API.
 struct ApiDevice {
-    std::string label; ///< as rows name it: "opencl", "opencl:1"
+    std::string label; ///< name in rows: "opencl", "opencl:1"
     Device device;
-    std::size_t physical = 0; ///< devices of one number are one piece of hardware
+    std::size_t physical = 0; ///< devices with equal numbers are one piece of hardware
     std::optional<SelfTest> self_test;
-    std::string self_test_text; ///< or why it failed; empty where the API runs no kernel of ours
+    std::string self_test_text; ///< or why it failed; empty where the API runs none of our kernels
 };
 
 void run_self_test(ApiDevice& found, Backend& backend, std::size_t index)
@@ -126,7 +126,7 @@ std::string heading(const std::vector<const ApiDevice*>& apis)
             }
     };
     const bool is_host = runs_on_host(apis.front()->device);
-    if (!is_host) { // what drivers make up for the processor identifies the driver
+    if (!is_host) { // the ids that drivers make up for the processor identify only the driver
         add_first("UUID ", &Device::uuid);
         add_first("PCI ", &Device::pci);
     }
@@ -154,7 +154,7 @@ std::string api_text(const ApiDevice& found)
     if (const std::string limits = limits_text(device); !limits.empty()) text += "\n\n" + limits;
     if (!found.self_test_text.empty()) text += "\n\nself-test: " + found.self_test_text;
     std::string lines = wrapped(text, width, margin);
-    for (std::size_t gap; (gap = lines.find("\n\n")) != std::string::npos;) // facts of one device stay together
+    for (std::size_t gap; (gap = lines.find("\n\n")) != std::string::npos;) // keeps the facts of one device together
         lines.erase(gap, 1);
     return fmt::format("  {:<{}}", found.label, margin - 2) + lines.substr(margin);
 }

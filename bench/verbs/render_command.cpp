@@ -17,7 +17,7 @@ std::vector<Picture> wanted_pictures(const Options& options)
     return options.pictures.empty() ? std::vector{Picture::normals} : options.pictures;
 }
 
-/// Writes the pictures of a run, all in one form, and prints the names of their files.
+/// Writes the pictures of a run, all in the same format, and prints the names of their files.
 class PictureFiles {
 public:
     explicit PictureFiles(const Options& options)
@@ -71,7 +71,7 @@ void refuse_steps_without_tets(const RowRun& row, const std::vector<Picture>& pi
                         fmt::format("--picture steps: {} counts no steps; use --structure cdt", row_name(row.key)));
 }
 
-/// Says when rays are lost, which a picture shows only to those who look for a few magenta pixels.
+/// Warns of lost rays, because a picture shows them only as a few magenta pixels.
 void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hits)
 {
     if (const std::uint64_t lost = count_rays(hits).lost; lost > 0)
@@ -101,7 +101,7 @@ void render_scene(SceneWork& scene, const Options& options, const PictureFiles& 
 int render_command(const Options& options)
 {
     check_picture_ending(options.out);
-    const PictureFiles files(options); // first: without it there is nothing to trace for
+    const PictureFiles files(options); // first: without it, tracing is pointless
     for (const std::string& reason : missing_default_scenes(options))
         say(reason);
     const auto requests = scene_requests(options);

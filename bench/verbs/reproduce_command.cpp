@@ -26,11 +26,11 @@ namespace {
 
 using nlohmann::json;
 
-/// All that there is to tell.
+/// All data of the result.
 struct Reproduction {
     std::vector<SceneRun> runs;
     std::optional<SearchRun> searches;
-    json search_records; ///< as results have them; null without searches
+    json search_records; ///< as results record them; null without searches
     RunProgress progress;
 
     [[nodiscard]] SceneRuns of_builds(const std::vector<std::string>& builds) const
@@ -44,7 +44,7 @@ struct Reproduction {
     std::vector<RowDevice> devices;
     std::vector<PaperTable> tables;
     std::vector<PaperFigure> figures;
-    std::vector<std::string> missing_scenes; ///< a sentence each
+    std::vector<std::string> missing_scenes; ///< one sentence each
 };
 
 bool wants(const Options& options, PaperTarget target)
@@ -68,7 +68,8 @@ bool is_method_of(Structure structure, Method method)
     });
 }
 
-/// All methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks its own.
+/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
+/// methods that it needs.
 void add_methods(Options& options)
 {
     const auto& methods = options.methods;
@@ -82,7 +83,7 @@ void add_methods(Options& options)
         if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
 }
 
-/// All methods of the paper, and of its scenes those that can be had here, else the embedded one, where none are named.
+/// Adds what is not named: all methods of the paper, and its scenes that are available here, else the embedded one.
 Options with_defaults(Options options, std::vector<std::string>& missing)
 {
     if (options.targets.empty())
@@ -101,7 +102,7 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
     return options;
 }
 
-/// Whether the paper has the scene, and TetGen makes its tets, with the switches that it is given.
+/// Whether the scene is one of the paper's, and TetGen makes its tets with the given switches.
 bool has_papers_build(const std::string& name)
 {
     if (!paper::nearest_switches(scene_label(name))) return false;
@@ -141,7 +142,7 @@ std::vector<SceneBuild> paper_builds(const Options& options)
     return builds;
 }
 
-/// One scene in several sizes: banana, and cubes where they are asked for.
+/// Scenes in several sizes: banana and cubes where asked for, else banana.
 void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
 {
     static const std::vector<std::uint32_t> cubes_sizes = {4, 8, 16, 32, 64};
@@ -155,7 +156,7 @@ void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
     }
 }
 
-/// The builds that the tables asked for need.
+/// The builds that the requested tables need.
 std::vector<SceneBuild> scene_builds(const Options& options)
 {
     auto builds = paper_builds(options);
@@ -179,7 +180,7 @@ std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& optio
     return parts;
 }
 
-/// Each device once: all run on the same ones, but for scenes that could not be loaded.
+/// Each device once: all scenes run on the same devices, except those that could not be loaded.
 void add_devices(Reproduction& all, const RecordedRows& run, const Options& options, Yardsticks& yardsticks)
 {
     progress_line().show("measuring the devices themselves", -1);
@@ -188,7 +189,7 @@ void add_devices(Reproduction& all, const RecordedRows& run, const Options& opti
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
 
-/// All that decides what the views and searches come to, and how they are timed.
+/// Everything that determines the results of views and searches, and how they are timed.
 json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
 {
     const BuildIdentity program = build_identity();
@@ -231,7 +232,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
     return head;
 }
 
-/// Throws Error{usage} where two scenes would be called the same.
+/// Throws Error{usage} where two scenes would have the same name.
 void check_labels(const std::vector<SceneBuild>& builds)
 {
     for (std::size_t i = 0; i < builds.size(); ++i)
@@ -253,7 +254,7 @@ std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<
     return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
 }
 
-/// Throws Error{usage} where the journal has a line of something else than these.
+/// Throws Error{usage} where the journal has a line that belongs to none of these builds.
 void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds)
 {
     const auto is_of_build = [&](const json& entry) {
@@ -267,7 +268,7 @@ void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds
                 "the journal has a line that is of no view of these scenes, no batch, no build and no yardstick");
 }
 
-/// What is kept beside the result; null where that has no file.
+/// Data kept in files next to the result's; null where the result has no file.
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
         : journal(open_journal(options, builds)), yardsticks(journal.get()), costs(journal.get()),

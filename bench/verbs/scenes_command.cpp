@@ -20,7 +20,7 @@ Table catalogue_table()
     return table;
 }
 
-/// One remedy often serves several scenes.
+/// One remedy often applies to several scenes.
 std::string remedies()
 {
     std::vector<std::string> reasons;

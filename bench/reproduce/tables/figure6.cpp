@@ -81,7 +81,7 @@ std::vector<std::size_t> rated_rows(const SceneRun& run, DeviceKind kind)
     return rows;
 }
 
-/// "maria tet96 opencl", without the layout where all rows have the same, and without the device likewise.
+/// "maria tet96 opencl"; without the layout where all rows have the same one, and likewise without the device.
 std::vector<std::string> distinct_names(const SceneRun& run, const std::vector<std::size_t>& rows)
 {
     std::set<std::string_view> layouts;
@@ -110,8 +110,8 @@ PaperFigure::Series series_of(const SceneRun& run, std::size_t i, const std::str
     return series;
 }
 
-/// The scene's rows on the devices of one kind, none without a kind: emulations of GPUs share no figure with GPUs, nor
-/// either with a CPU.
+/// The scene's rows on the devices of one kind; none where there is no kind. Emulated GPUs share no figure with GPUs,
+/// and neither shares one with a CPU.
 PaperFigure figure_of(const SceneRun& run, std::optional<DeviceKind> kind)
 {
     const std::string kind_text(kind ? name_of(*kind) : "");

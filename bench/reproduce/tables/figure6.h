@@ -8,12 +8,13 @@
 
 namespace tetrace {
 
-/// Figure 6: time and tets traversed, a point a view. One figure a scene and type of device ("figure6-bunny-gpu"), the
-/// scene's pictures in its first; a scene without a rated row has one without points.
+/// Figure 6: time and tets traversed, one point per view. One figure for each scene and type of device
+/// ("figure6-bunny-gpu"); the scene's pictures are in its first figure. A scene without a rated row has one figure
+/// without points.
 /// runs: timed.
 [[nodiscard]] std::vector<PaperFigure> figure6(const SceneRuns& runs);
 
-/// The same as a table: range of tets and of times, correlation and line of each row; and the claims, which are of all
+/// The same as a table: range of tets and of times, correlation and line of each row; and the claims, which cover all
 /// scenes and devices.
 [[nodiscard]] PaperTable figure6_table(const SceneRuns& runs);
 

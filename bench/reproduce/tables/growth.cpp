@@ -12,13 +12,13 @@ namespace tetrace {
 
 namespace {
 
-/// What a row comes to at one size; nothing where it is not known, or does not apply.
+/// A row's results at one size; empty where a value is unknown or does not apply.
 struct Growing {
     double faces = 0;
     std::optional<double> ns_a_ray, steps, nodes, triangles, build_s, memory_mb;
 };
 
-/// A row through all sizes at which it is there.
+/// A row through all sizes at which it ran.
 struct GrowthLine {
     const RowRun* row = nullptr; ///< at the first of them
     std::string family;          ///< the scene's name without its size
@@ -108,7 +108,7 @@ std::vector<PaperCell> size_cells(const SceneRun& run, std::size_t i)
     return cells;
 }
 
-/// The exponent of what a line has at the sizes at which it has it.
+/// The exponent of a line's values, over the sizes at which it has them.
 PaperCell exponent_cell(const GrowthLine& line, std::optional<double> Growing::*member)
 {
     std::vector<double> faces, values;
@@ -133,7 +133,7 @@ std::vector<PaperCell> exponent_cells(const GrowthLine& line)
     return cells;
 }
 
-/// "maria tet80 openmp"; Embree's device goes without saying.
+/// "maria tet80 openmp"; Embree's rows omit the device.
 std::string line_name(const GrowthLine& line)
 {
     const KernelId& kernel = line.row->key.kernel;
@@ -143,7 +143,7 @@ std::string line_name(const GrowthLine& line)
     return name + ' ' + device_label(line.row->key);
 }
 
-/// The series of what a line has; without points where it has nothing.
+/// The series of a line's values; without points where it has none.
 PaperFigure::Series series_of(const GrowthLine& line, const std::string& name, std::optional<double> Growing::*member)
 {
     PaperFigure::Series series{name, {}};
@@ -182,7 +182,7 @@ PaperFigure time_figure(const std::vector<GrowthLine>& lines, const std::string&
     return figure;
 }
 
-/// What rays visit is the same on every device: openmp's rows tell it.
+/// What rays visit is the same on every device, so openmp's rows are enough.
 PaperFigure visits_figure(const std::vector<GrowthLine>& lines, const std::string& family)
 {
     PaperFigure figure = empty_figure(fmt::format("growth-{}-visits", family),

@@ -7,25 +7,26 @@
 
 namespace tetrace {
 
-/// The build of a scene that is there in several sizes.
+/// The build of a scene that is available in several sizes.
 inline constexpr const char* growth_build = "growth";
 
-/// The sizes that are made where none are asked for: triangles of banana.
+/// The default sizes: triangles of banana.
 [[nodiscard]] const std::vector<std::uint32_t>& growth_sizes();
-/// The views that are traced where none are asked for: every 64th of the camera set.
+/// The default views: every 64th of the camera set.
 inline constexpr const char* growth_views = "0-1281:64";
 
-/// A scene in these sizes, ascending and each once: of banana their triangles, of cubes the cubes along an axis.
-/// request: what is built, but for its size; its name is "banana" or "cubes".
+/// A scene in these sizes, ascending and each once. A size is the number of triangles for banana, and of cubes along an
+/// axis for cubes.
+/// request: what is built, except for its size; its name is "banana" or "cubes".
 [[nodiscard]] std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes);
 
-/// What tracing comes to as one scene is refined: a row a size and row of the run.
+/// The cost of tracing as one scene is refined: one row for each size and row of the run.
 [[nodiscard]] PaperTable growth_table(const SceneRuns& runs);
 
-/// The exponents of power laws of the number of occlusive faces that fit it: a row a kernel and device.
+/// The exponents of fitted power laws in the number of occlusive faces: one row for each kernel and device.
 [[nodiscard]] PaperTable growth_exponents(const SceneRuns& runs);
 
-/// Lines over the number of occlusive faces: a ray's time, a figure a type of device, and what a ray visits.
+/// Lines over the number of occlusive faces: a ray's time, one figure for each type of device, and what a ray visits.
 [[nodiscard]] std::vector<PaperFigure> growth_figures(const SceneRuns& runs);
 
 } // namespace tetrace

@@ -99,7 +99,7 @@ bool has_interval(const PaperCell& cell)
     return number != nullptr && number->ours.low && number->ours.high;
 }
 
-/// "1.25 [1.10, 1.40]"; plain where there is no interval.
+/// "1.25 [1.10, 1.40]"; the value alone where there is no interval.
 Cell interval_cell(const PaperCell& cell, const Column& column)
 {
     if (!has_interval(cell)) return plain_cell(cell, column);
@@ -152,7 +152,7 @@ std::string notes_markdown(const std::vector<std::string>& notes)
     return text;
 }
 
-/// What a tidy row tells, behind its labels.
+/// What a tidy row says, after its labels.
 struct Fact {
     std::string quantity, unit = {};
     Cell value = {}, low = {}, high = {}, paper = {}, ratio = {}, x = {};
@@ -211,7 +211,7 @@ void add_points(Table& tidy, const PaperFigure& figure)
                      {.quantity = figure.y.title, .unit = figure.y.unit, .value = y, .x = x, .text = series.name});
 }
 
-/// What tables and figures have alike.
+/// Members that tables and figures share.
 template <class Part>
 void add_sentences(Table& tidy, const Part& part)
 {
@@ -222,7 +222,7 @@ void add_sentences(Table& tidy, const Part& part)
         add_fact(tidy, {part.id}, {.quantity = "note", .text = note});
 }
 
-/// The figure's notes, and where its points are: no text has them.
+/// The figure's notes, and where to find its points, which no text contains.
 std::vector<std::string> notes_of(const PaperFigure& figure)
 {
     std::vector<std::string> notes = figure.notes;

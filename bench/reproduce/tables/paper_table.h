@@ -12,22 +12,22 @@
 
 namespace tetrace {
 
-/// A number of ours, and the paper's where it is known.
+/// One of our numbers, and the paper's where it is known.
 struct Quantity {
     Estimate ours;
     std::optional<double> paper;
 
-    /// Ours over the paper's; empty without one, or where it is 0.
+    /// Ours over the paper's; empty where the paper's is unknown or 0.
     [[nodiscard]] std::optional<double> ratio() const;
 };
-/// A cell: nothing, a text or a number.
+/// A cell: empty, a text or a number.
 using PaperCell = std::variant<std::monostate, std::string, Quantity>;
 
 [[nodiscard]] PaperCell exact_cell(double value, std::optional<double> paper = {});
-/// Nothing where the text is empty.
+/// An empty cell where the text is empty.
 [[nodiscard]] PaperCell known_text(std::string text);
 
-/// A table of the paper, made anew.
+/// A table of the paper, measured again.
 struct PaperTable {
     std::string id, title, source;
     std::vector<Column> columns;
@@ -36,7 +36,7 @@ struct PaperTable {
     std::vector<std::string> notes;
 };
 
-/// A figure of the paper, made anew.
+/// A figure of the paper, measured again.
 struct PaperFigure {
     struct Axis {
         std::string title, unit;
@@ -58,16 +58,16 @@ struct PaperFigure {
 [[nodiscard]] nlohmann::json table_json(const PaperTable& table);
 [[nodiscard]] nlohmann::json figure_json(const PaperFigure& figure);
 
-/// The rows, numbers with their 95 % intervals, where there are any, and columns of their own for the paper's numbers
-/// and ratios.
+/// The rows. Numbers have their 95 % intervals, where there are any; the paper's numbers and the ratios have columns of
+/// their own.
 [[nodiscard]] Table with_paper_columns(const PaperTable& table);
 
-/// All that tables and figures tell, one fact a row: which table and row it is of, and a number with its interval, the
-/// paper's and the ratio; a text, such as a status; a point (x beside the value); a claim, its verdict and evidence; or
-/// a note.
+/// Everything that tables and figures say, one fact a row. Each row names its table and row, and holds one of: a number
+/// with its interval, the paper's number and the ratio; a text, such as a status; a point (x next to the value); a
+/// claim with its verdict and evidence; a note.
 [[nodiscard]] Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperFigure>& figures);
 
-/// Title, rows, claims and notes, for people.
+/// Title, rows, claims and notes as readable text.
 [[nodiscard]] std::string table_text(const PaperTable& table);
 [[nodiscard]] std::string table_markdown(const PaperTable& table);
 [[nodiscard]] std::string figure_text(const PaperFigure& figure);

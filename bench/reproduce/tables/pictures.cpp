@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-/// A pixel of a large picture cannot be seen.
+/// A single pixel of a large picture cannot be seen.
 constexpr std::uint32_t pixels_per_mark = 256;
 
 void mark(Pixmap& picture, std::uint32_t x, std::uint32_t y, Colour colour)

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A search, and what was found instead of the other's face; NO_EXIT is left out.
+/// A search with the face that it found and the other face; a face that is NO_EXIT is left out.
 json search_json(std::uint32_t tet, std::uint32_t ray, std::uint32_t face, const char* other, std::uint32_t other_face)
 {
     json object = {{"tet", tet}, {"ray", ray}};
@@ -34,7 +34,7 @@ json search_verification(const Traced& result)
     return object;
 }
 
-/// What a row of searches shares with a row of a scene; it has no rays that walk.
+/// The fields that a row of searches shares with a row of a scene; its rays do not walk.
 constexpr const char* shared_keys[] = {"name",   "method", "layout",       "backend",   "math",  "status",
                                        "reason", "device", "device_index", "self_test", "bytes", "times"};
 

@@ -4,8 +4,8 @@
 
 namespace tetrace {
 
-/// The searches and their rows as results record them (results/README.md): all that table5 was made from.
-/// Precondition: the rows' sessions are open, where they ended well.
+/// The searches and their rows as results record them (results/README.md): all data behind table5.
+/// Precondition: the sessions of rows without a failure are open.
 [[nodiscard]] nlohmann::json searches_json(const SearchRun& run);
 
 } // namespace tetrace

@@ -11,7 +11,7 @@ namespace tetrace {
 
 namespace {
 
-/// Counts of one mesh move by 0.2 % with the order of its triangles, and more between versions of TetGen.
+/// Counts of one mesh vary by 0.2 % with the order of its triangles, and more between versions of TetGen.
 constexpr double count_tolerance = 0.01;
 
 double megabytes(SceneWork& scene, Layout layout)
@@ -41,7 +41,7 @@ std::vector<PaperCell> scene_cells(const SceneRun& run)
             exact_cell(loaded.build.build_s)};
 }
 
-/// Whether the paper's counts come out where its mesh is built in the nearest way.
+/// Whether we get the paper's counts where its mesh is built in the nearest way.
 Claim counts_claim(const SceneRun& run)
 {
     const auto paper = paper::counts_of(run.build.scene);

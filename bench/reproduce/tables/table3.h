@@ -10,7 +10,7 @@ namespace tetrace {
 /// Table 3: tets, faces and memory of each scene in each build.
 [[nodiscard]] PaperTable table3(const SceneRuns& runs);
 
-/// What those builds come to: rates of every row.
+/// The speed of those builds: rates of every row.
 [[nodiscard]] PaperTable table3_rates(const SceneRuns& runs);
 
 } // namespace tetrace

@@ -14,7 +14,7 @@ namespace {
 
 using Count = std::function<std::uint64_t(const ImageRecord&)>;
 
-/// What a ray counts in an image of the paper's size.
+/// The factor that scales counts to an image of the paper's size.
 double scale_of(const SceneRun& run)
 {
     return static_cast<double>(paper::image_pixels) / static_cast<double>(run.scene->rays_per_view());
@@ -47,7 +47,7 @@ PaperCell share_cell(const std::vector<ImageRecord>& images, FlatWalks ImageReco
     return share ? exact_cell(*share) : PaperCell();
 }
 
-/// In what share of the images the device's hits are openmp's, bit for bit.
+/// How the device's hits compare with openmp's: "bit for bit", "within 2 ulp", "12 rays differ".
 std::string agreement(const RowRun& row)
 {
     const Traced& result = *traced(row);
@@ -105,8 +105,8 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
 /// The counts of a method over all its scenes, image by image.
 struct MethodCounts {
     std::vector<double> counts;
-    std::size_t views = 0;               ///< of the camera set, once a scene
-    Sampling sampling = Sampling::whole; ///< the worst of the scenes'
+    std::size_t views = 0;               ///< of the camera set, once for each scene
+    Sampling sampling = Sampling::whole; ///< of the worst scene
     std::uint64_t rays = 0, flawed = 0;
     std::string scenes;
 
@@ -176,7 +176,7 @@ Claim fewest_claim(const std::vector<MethodRow>& rows, std::size_t population)
     return claim;
 }
 
-/// What the numbers of this kind of sample say of the whole set.
+/// What the numbers of such a sample say about the whole set.
 std::string sampling_note(Sampling sampling, std::size_t population)
 {
     switch (sampling) {
@@ -264,7 +264,7 @@ PaperTable table4(const SceneRuns& runs, std::size_t population)
             if (is_cdt(run->rows[i])) table.rows.push_back(cells_of(*run, i));
     const auto rows = method_rows(runs);
     table.claims.push_back(count_claim(rows, Method::maria, population, false));
-    table.claims.push_back(count_claim(rows, Method::project, population, false)); // ours, by its proof
+    table.claims.push_back(count_claim(rows, Method::project, population, false)); // our method, which has a proof
     for (const Method method : older_methods())
         table.claims.push_back(count_claim(rows, method, population, true));
     table.claims.push_back(fewest_claim(rows, population));

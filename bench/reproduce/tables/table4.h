@@ -7,16 +7,16 @@
 
 namespace tetrace {
 
-/// Table 4: rays with a wrong result per image of 1024 x 1024, by method, scene and device, split by what went
-/// wrong; project, which the paper does not have, beside its methods.
+/// Table 4: rays with a wrong result per image of 1024 x 1024, by method, scene and device, split by what went wrong.
+/// It compares the paper's methods with project, which the paper does not have.
 /// population: views of the camera set, of which the runs have some or all.
 [[nodiscard]] PaperTable table4(const SceneRuns& runs, std::size_t population);
 
-/// Where they are: their number by view, for each scene and method.
+/// Where those rays are: their number by view, for each scene and method.
 [[nodiscard]] PaperFigure table4_views(const SceneRuns& runs);
 
-/// The rows whose numbers stand for a method: of each scene and method the first that was verified, openmp's where
-/// there is one; in exact mode every device has the same answers.
+/// The rows whose numbers represent a method: for each scene and method the first that was verified, openmp's where
+/// available. In exact mode every device has the same answers.
 struct MethodRow {
     const SceneRun* run = nullptr;
     std::size_t row = 0; ///< index in SceneRun::rows

@@ -44,7 +44,7 @@ PaperCell threads_cell(const SearchRun& run, const RowKey& key)
     return exact_cell(key.threads == 0 ? run.threads : key.threads);
 }
 
-/// Of the bandwidth that the device's copies reach: with all of its threads.
+/// Share of the device's copy bandwidth, which is measured with all of its threads.
 PaperCell copy_cell(const SearchRun& run, const RowRun& row, double searches_per_s,
                     const std::vector<RowDevice>& devices)
 {

@@ -66,7 +66,7 @@ std::vector<double> view_frames(const SceneRun& run, std::size_t row)
     return frames;
 }
 
-/// The paper's range for the row's structure on its GPU; bvh2 is its BVH.
+/// The paper's range for the row's structure, on the paper's GPU; its BVH corresponds to bvh2.
 std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, const RowRun& row)
 {
     const auto frames = paper::frames_of(run.build.scene);
@@ -149,7 +149,7 @@ const std::vector<Column>& pair_columns()
     return list;
 }
 
-/// Who takes less time, and from when on.
+/// Which structure takes less time, and from how many rays on.
 std::string ahead_text(const RowPair& pair)
 {
     const auto even = break_even(pair);
@@ -191,7 +191,7 @@ Estimate inverse(const Estimate& estimate)
     return {1 / estimate.value, over(estimate.high), over(estimate.low), estimate.exact};
 }
 
-/// The pairs that the paper has: bvh2 and the device's fastest layout of the CDT, on devices of a kind.
+/// The pairs that the paper has, bvh2 and the device's fastest layout of the CDT, on devices of a kind.
 std::vector<RowPair> papers_pairs(const SceneRuns& runs, std::string_view scene, DeviceKind kind)
 {
     std::vector<RowPair> pairs;
@@ -257,7 +257,7 @@ std::vector<Claim> pair_claims(const SceneRuns& runs)
     return claims;
 }
 
-/// "cwbvh opencl:1", with "single" or "packet16" before Embree's; without the device where all have one.
+/// "cwbvh opencl:1", preceded by "single" or "packet16" for Embree's; without the device where all have the same one.
 std::string curve_name(const RowPair& pair, bool with_device)
 {
     const RowRun& bvh = pair.run->rows[pair.bvh];
@@ -267,7 +267,7 @@ std::string curve_name(const RowPair& pair, bool with_device)
     return name;
 }
 
-/// Ascending ratios over the share of the views that have at most so much.
+/// Ascending ratios, each over the share of the views with at most that ratio.
 PaperFigure::Series curve_of(const RowPair& pair, bool with_device)
 {
     PaperFigure::Series series{curve_name(pair, with_device), {}};
