@@ -42,7 +42,7 @@ Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hi
     for (std::size_t ray = 0; ray < hits.size(); ++ray) {
         if (!is_answer_of(counted[ray], hits[ray]))
             throw Error(ErrorKind::internal,
-                        fmt::format("ray {} has another answer where its visits are counted", ray));
+                        fmt::format("ray {} has a different answer when its visits are counted", ray));
         visits.nodes += counted[ray].tet;
         visits.triangles += counted[ray].steps;
     }

@@ -89,7 +89,7 @@ double parse_seconds(const std::string& option, const std::string& text)
     }
     double value = 0;
     if (!read_whole(digits, value) || !std::isfinite(value) || value <= 0)
-        reject_value(option, text, "a positive number of seconds, or with s, m or h behind it");
+        reject_value(option, text, "a positive number of seconds, or a number followed by s, m or h");
     return value * unit;
 }
 
@@ -115,7 +115,7 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text)
         }
     std::uint64_t value = 0;
     if (!read_whole(digits, value) || value == 0 || value > std::numeric_limits<std::uint64_t>::max() >> shift)
-        reject_value(option, text, "a whole number of bytes, or with K, M, G or T behind it (powers of 1024)");
+        reject_value(option, text, "a whole number of bytes, or one followed by K, M, G or T (powers of 1024)");
     return value << shift;
 }
 

@@ -248,7 +248,8 @@ std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<
 {
     if (!options.out) {
         if (options.resume)
-            throw Error(ErrorKind::usage, "--resume: the journal lies beside the result; name its file with --out");
+            throw Error(ErrorKind::usage,
+                        "--resume: the journal is in the result's folder; name the result's file with --out");
         return nullptr;
     }
     return std::make_unique<Journal>(options.out->string() + ".journal", journal_head(options, builds), options.resume);
