@@ -1,5 +1,6 @@
-// One kernel: compiled once per kernel and math mode (CMakeLists.txt), which arrive as KERNEL_STRUCTURE_HEADER and its
-// like, and KERNEL_NAME; of a BVH once more with COUNTS_VISITS, for the build that counts and is never timed.
+// One kernel, compiled once per kernel and math mode (CMakeLists.txt), which are given by macros:
+// KERNEL_STRUCTURE_HEADER and the like, and KERNEL_NAME. BVH kernels are compiled once more with COUNTS_VISITS, to
+// count and never to be timed.
 #include "backends/openmp/kernels.h"
 #include "core/device/host_session.h"
 #include "core/device/launch.h"
@@ -21,7 +22,7 @@ thread_local std::uint32_t nodes_visited, triangles_visited;
 
 static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
 
-// What trace_one() returns, as the host has it; where visits are counted, with those in place of tet and steps.
+// What trace_one() returns, as the host's Hit; where visits are counted, the counts replace tet and steps.
 template <class Trace>
 tetrace::Hit answer(const Trace& trace_one)
 {
@@ -36,7 +37,7 @@ tetrace::Hit answer(const Trace& trace_one)
 #endif
 }
 
-// Calls work with the scene, the launch and each pixel of an image, tile after tile, on that many threads.
+// Calls work with the scene, the launch and each pixel of an image, tile after tile, on the given number of threads.
 template <class Work>
 void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job, unsigned threads,
                 unsigned tile_height, const Work& work)

@@ -4,12 +4,13 @@
 
 namespace tetrace::openmp {
 
-/// Does all rays of a job, tile after tile. rays: the quads of those that are given, empty for task
-/// trace. output: words_per_ray() a ray, row after row.
+/// Traces all rays of a job, tile after tile. rays: the quads of given rays, empty for task trace. output:
+/// words_per_ray() per ray, row after row.
 using RunFunction = void(const PackedScene& scene, std::span<const Quad> rays, const TraceJob& job,
                          std::span<std::uint32_t> output, unsigned threads, unsigned tile_height);
 
-/// One compiled kernel by task, null where it has none; CMake compiles kernel.cpp once for each.
+/// One compiled kernel: a function per task, null for tasks that it does not have. CMake compiles kernel.cpp once for
+/// each kernel.
 struct CompiledKernel {
     KernelId id; ///< of task trace and schedule tiles
     RunFunction* trace;
@@ -23,11 +24,11 @@ struct CompiledKernel {
 };
 [[nodiscard]] const std::vector<CompiledKernel>& compiled_kernels();
 
-/// The BVHs' kernels in exact mode, compiled to count what a ray visits: a hit's `tet` is the number of nodes that were
-/// fetched for it, its `steps` that of the triangles tested; all else is as compiled_kernels() have it. Never timed.
+/// The BVHs' kernels in exact mode, compiled to count what a ray visits: a hit's `tet` is the number of nodes fetched,
+/// its `steps` the number of triangles tested; all else is as in compiled_kernels(). Never timed.
 [[nodiscard]] const std::vector<CompiledKernel>& counting_kernels();
 
-/// The function of a kernel, of any schedule, in such a list; null where the list has none.
+/// The function of a kernel in such a list, for any schedule; null if the list has none.
 [[nodiscard]] RunFunction* find_function(const std::vector<CompiledKernel>& kernels, KernelId id);
 
 } // namespace tetrace::openmp

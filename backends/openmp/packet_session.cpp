@@ -27,7 +27,7 @@ namespace scalar {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
-// What the scalar kernel needs for a ray that packets leave to it.
+// What the scalar kernel needs for the rays that packets leave to it.
 struct Rays {
     scalar::SceneView scene;
     scalar::TraceParams params;
@@ -92,7 +92,7 @@ std::uint32_t* copy_of(const std::vector<Quad>& quads)
         throw Error(ErrorKind::unsupported,
                     "packets need a copy of the records: " + std::to_string(whole_pages) + " bytes are not to be had");
 #ifdef MADV_HUGEPAGE
-    madvise(block, whole_pages, MADV_HUGEPAGE); // a wish: without it walks are slower
+    madvise(block, whole_pages, MADV_HUGEPAGE); // optional: without huge pages walks are slower
 #endif
     std::memcpy(block, quads.data(), bytes);
     return static_cast<std::uint32_t*>(block);
@@ -132,7 +132,7 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     return result;
 }
 
-// Calls work on so many threads, which compute as kernel.cpp's.
+// Calls work on that many threads, with the floating-point settings of kernel.cpp's threads.
 template <class Work>
 void on_threads(unsigned threads, const Work& work)
 {

@@ -14,14 +14,14 @@ struct PacketKernel {
     TraceBlock* trace;
     TraceRays* rays;
 };
-/// Those that this build has and this processor runs, the widest first; never empty.
+/// The widths that this build has and this processor runs, the widest first; never empty.
 [[nodiscard]] const std::vector<PacketKernel>& packet_kernels();
-/// The one with so many lanes; 0: the widest. Throws Error{unsupported} that says why it is missing, and which there
-/// are.
+/// The kernel with that many lanes; 0: the widest. Throws Error{unsupported}, which says why it is missing and which
+/// widths there are.
 [[nodiscard]] PacketKernel packet_kernel(unsigned lanes);
 
-/// Traces packets of primary or given rays through layout half32: schedule packets. The bits are those of schedule
-/// tiles.
+/// Schedule packets: traces packets of primary or given rays through layout half32. Hits are the same bits as with
+/// schedule tiles.
 class PacketSession : public HostSession {
 public:
     PacketSession(PacketKernel kernel, Task task, const PackedScene& scene, unsigned threads);
@@ -43,7 +43,7 @@ private:
     double copy_s_ = 0;
     std::vector<Quad> rays_;
     bool rays_end_ = false;                        ///< any of them
-    std::unique_ptr<std::uint32_t, Free> records_; ///< where no record crosses a line of the cache, on huge pages
+    std::unique_ptr<std::uint32_t, Free> records_; ///< aligned so that no record crosses a cache line, on huge pages
 };
 
 } // namespace tetrace::openmp

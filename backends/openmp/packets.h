@@ -4,8 +4,8 @@
 
 namespace tetrace::openmp {
 
-/// What a packet kernel gets (packet/block.cpp): pointers and numbers alone, since it is compiled for processors that
-/// have more than the one which the rest of the program is compiled for, and may share no inline function with it.
+/// The arguments of a packet kernel (packet/block.cpp): only pointers and numbers. The kernel is compiled for
+/// processors with more instructions than the rest of the program needs, so the two may share no inline function.
 struct PacketJob {
     const std::uint32_t* records;   ///< PackedScene::tets of layout half32
     const std::uint32_t* triangles; ///< and the other arrays of that scene
@@ -15,27 +15,27 @@ struct PacketJob {
     std::uint32_t divisions;
     float origin[3], corner[3], step_x[3], step_y[3]; ///< of the view
     std::uint32_t width, height, start_tet, max_steps;
-    const std::uint32_t* directions; ///< quads of rays that are given, null where there are none: {direction, link}
+    const std::uint32_t* directions; ///< quads of given rays, null if there are none: {direction, link}
     const std::uint32_t* origins;    ///< {origin, end}
     bool has_ends;                   ///< whether any of them ends
-    std::uint32_t ray_count;         ///< how many they are
-    std::uint32_t* next_ray;         ///< the first that no thread has taken
+    std::uint32_t ray_count;         ///< number of given rays
+    std::uint32_t* next_ray;         ///< the first ray that no thread has taken
     std::uint32_t* hits;             ///< HIT_WORDS a ray: pixels row after row, or rays in their order
     /// Traces the ray of that number with the scalar kernel, and writes its hit.
     void (*trace_one)(const void* context, std::uint32_t number);
     const void* context;
 };
 
-/// Pixels along the side of a block, which one call traces; those beyond the image's edge are left out.
+/// Pixels along the side of a block, which one call traces; pixels outside the image are left out.
 inline constexpr std::uint32_t packet_block_size = 32;
 
-/// Traces the block of pixels whose first one is (x, y), in packets of so many lanes: 16 need AVX-512 (F, BW, DQ, VL),
-/// 8 AVX2, and 4 nothing but what the whole program needs.
+/// Traces the block of pixels whose first one is (x, y), in packets of that many lanes: 16 need AVX-512 (F, BW, DQ,
+/// VL), 8 need AVX2, and 4 need no more than the whole program.
 using TraceBlock = void(const PacketJob& job, std::uint32_t x, std::uint32_t y);
 extern "C" TraceBlock tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
 
-/// What each thread does where rays are given: traces rays until no thread finds one, in lanes that take another as one
-/// has ended.
+/// The work of each thread for given rays: traces rays until none is left; a lane takes a new ray when its ray has
+/// ended.
 using TraceRays = void(const PacketJob& job);
 extern "C" TraceRays tetrace_trace_rays_4, tetrace_trace_rays_8, tetrace_trace_rays_16;
 

@@ -1,4 +1,4 @@
-// The self-test: compiled once per math mode (CMakeLists.txt), which arrives as PROBE_SYMBOL.
+// The self-test: compiled once per math mode (CMakeLists.txt), which is given by PROBE_SYMBOL.
 #include "backends/openmp/probe.h"
 
 #include <bit>
@@ -20,7 +20,7 @@ std::vector<std::uint32_t> PROBE_SYMBOL(std::span<const Quad> operations)
 {
     std::fenv_t environment;
     std::fegetenv(&environment);
-    std::fesetenv(FE_DFL_ENV); // as the kernels' threads
+    std::fesetenv(FE_DFL_ENV); // the same setting as in the kernels' threads
     std::vector<std::uint32_t> results;
     for (const Quad& quad : operations)
         results.push_back(probe(quad.x, quad.y, quad.z, quad.w));

@@ -30,7 +30,7 @@ std::string dashed(std::string_view words)
     return name;
 }
 
-/// The text's first version number, cut to at most `count` numbers.
+/// The text's first version number, cut to at most `most_numbers` numbers.
 std::string version_in(std::string_view text, int most_numbers)
 {
     const auto* const begin = std::find_if(text.begin(), text.end(), is_digit);

@@ -1,6 +1,6 @@
-// Beams: what the rays of a packet do alike is done once, by the beam of all directions that its pixels span, a lane a
-// packet. A beam goes on as long as one answer is that of all its rays, whatever rounding does to them
-// (docs/spec/packets.md, K7).
+// Beams: steps that all rays of a packet take alike are done once, for the beam of all directions that its pixels span.
+// Each lane is the beam of one packet. A beam goes on while all its rays are sure to have the same answer in spite of
+// rounding (docs/spec/packets.md, K7).
 constexpr uint most_packets = tetrace::openmp::packet_block_size * tetrace::openmp::packet_block_size / LANES;
 constexpr uint batches_in_turns = 4;
 constexpr float reach_x = 0.5f * (packet_width - 1); // from the middle of a beam to its outermost rays, in pixels
@@ -10,21 +10,21 @@ constexpr float reach_y = 0.5f * (packet_height - 1);
 struct Packets {
     uint count;
     uint x[most_packets], y[most_packets]; // first pixels
-    uint record[most_packets];             // in front of which all rays stand, or by whose tet they have ended; NO_LINK
-                                           // where they have no common way: some may be in the domain
-    uint carried[3][most_packets];         // of those that stand in front of a record, see Front
-    uint turn[most_packets];               // of those too
-    uint exit[most_packets];               // of those that have ended
-    uint steps[most_packets];              // tets left
+    uint record[most_packets];     // the record in front of which all rays are, or in whose tet they ended; NO_LINK
+                                   // where they share no way: some may be in the domain
+    uint carried[3][most_packets]; // of those in front of a record, see Front
+    uint turn[most_packets];       // of those too
+    uint exit[most_packets];       // of those that have ended
+    uint steps[most_packets];      // tets left
     bool has_ended[most_packets];
 };
 
-// The image's own coordinates: a place seen from the rays' origin is its depth times the direction of the pixel where
-// it is seen; `rows` turn it into that pixel times the depth, and the depth. A side of an edge is sure where it exceeds
-// the doubts of the edge's ends: `doubt` times how far from the middle they are seen, and `least_doubt`.
+// The image's own coordinates. A point relative to the rays' origin is its depth times the direction of the pixel where
+// it is seen; `rows` transform it into that pixel times the depth, and the depth. A side of an edge is certain if it
+// exceeds the error bounds of the edge's ends: `doubt` times their distance from the middle, plus `least_doubt`.
 struct Eye {
     Vectors rows[3];
-    Floats sense; // -1: columns are counted backwards, so that what is left in space is left here
+    Floats sense; // -1: columns are counted backwards, so that left in space is left here
     Floats doubt, least_doubt;
 };
 
@@ -64,7 +64,7 @@ LANE_FN Eye eye_of(const PacketJob& job)
     return eye;
 }
 
-// Where beams see a vertex: columns and rows beside their middle, times its depth.
+// Where beams see a vertex: columns and rows relative to the beam's middle, times its depth.
 struct Imaged {
     Floats column, row, depth, doubt;
 };
@@ -74,10 +74,10 @@ LANE_FN Imaged select(Mask mask, const Imaged& a, const Imaged& b)
             select(mask, a.doubt, b.doubt)};
 }
 
-// LANES beams on their way.
+// LANES beams during their walk.
 struct BeamWalk : Way {
     Imaged carried[3];
-    Words apexes[3];    // the records whose apexes they are
+    Words apexes[3];    // the records whose apexes the carried vertices are
     Floats column, row; // of their middle
     Words exit, steps;
     uint begun, ended;
@@ -95,7 +95,7 @@ LANE_FN Imaged imaged(const PacketJob& job, const Eye& eye, const BeamWalk& walk
     return {column, row, depth, fused(magnitude(column) + magnitude(row), eye.doubt, eye.least_doubt)};
 }
 
-// The beams all of whose rays see q to the left of p, and those all of whose rays see it to the right.
+// Masks of the beams all of whose rays see q to the left of p, and of those all of whose rays see it to the right.
 struct SureSides {
     Mask left, right;
 };
@@ -116,7 +116,7 @@ LANE_FN void see_corners(const PacketJob& job, const Eye& eye, const BeamWalk& w
         corners[i] = imaged(job, eye, walk, corners_of(job, links, i).of);
 }
 
-// Lets beams enter tets by faces whose corners they carry then.
+// Lets beams enter tets by faces; the beams then carry the corners of these faces.
 LANE_FN void enter_tets_by(BeamWalk& walk, Mask lanes, Words links, const Imaged* corners)
 {
     for (uint i = 0; i < 3; ++i) {
@@ -127,7 +127,7 @@ LANE_FN void enter_tets_by(BeamWalk& walk, Mask lanes, Words links, const Imaged
     walk.live |= lanes_of(lanes);
 }
 
-// Lets beams enter the domain by a face that all their rays enter by.
+// Lets beams enter the domain by a face by which all their rays enter.
 LANE_FN void enter_domain(const PacketJob& job, const Eye& eye, BeamWalk& walk, uint lanes)
 {
     Packet middle;
@@ -144,7 +144,7 @@ LANE_FN void enter_domain(const PacketJob& job, const Eye& eye, BeamWalk& walk, 
     });
 }
 
-// Lets beams leave the tet that they start in by a face that all their rays leave by.
+// Lets beams leave the tet that they start in by a face by which all their rays leave.
 LANE_FN void leave_start(const PacketJob& job, const Eye& eye, BeamWalk& walk, uint lanes)
 {
     for (uint face = 0; face < 4; ++face) {
@@ -166,7 +166,7 @@ LANE_FN void leave_start(const PacketJob& job, const Eye& eye, BeamWalk& walk, u
     }
 }
 
-// A step of beams that go on.
+// A step of all live beams.
 LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
 {
     const Records at = load_records(job.records, walk.offsets);
@@ -182,7 +182,7 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
     walk.steps = select(mask_of(going), walk.steps + all(1u), walk.steps);
     const Words turn = walk.turn;
     const Words exits = exits_of(walk, replaced, at.exits.of);
-    walk.turn = select(mask_of(going), walk.turn, turn); // beams that stop here keep theirs
+    walk.turn = select(mask_of(going), walk.turn, turn); // beams that stop here keep their vertices
     const uint ended = going & lanes_of(equal(exits & all(3u), all(HALF32_END)));
     walk.exit = select(mask_of(ended), exits, walk.exit);
     walk.ended |= ended;
@@ -190,7 +190,7 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
     enter_tets(walk, exits);
 }
 
-// Lets lanes be the beams of packets [first, first + LANES) of a block, and tells as many as there are.
+// Sets the lanes to the beams of packets [first, first + LANES) of a block, and returns how many of these exist.
 LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
 {
     const uint count = packets.count - first < LANES ? packets.count - first : LANES;
@@ -204,7 +204,7 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
     return count < LANES ? (1u << count) - 1u : every_lane;
 }
 
-// The beams of packets [first, first + LANES) of a block where they begin.
+// The beams of packets [first, first + LANES) of a block at their start.
 [[gnu::noinline]] void begin(const PacketJob& job, const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
 {
     const uint lanes = aim(eye, packets, first, walk);
@@ -244,17 +244,17 @@ LANE_FN void end(Packets& packets, uint first, const BeamWalk& walk)
     }
 }
 
-// Where a packet goes on that its beam has left in front of a record.
+// Where a packet continues after its beam has stopped in front of a record.
 LANE_FN Front front_of(const Packets& packets, uint number)
 {
     const auto& carried = packets.carried;
     return {packets.record[number], {carried[0][number], carried[1][number], carried[2][number]}, packets.turn[number]};
 }
 
-// The beams of a block's packets, as far as they come.
+// Walks the beams of a block's packets as far as they can go.
 void walk_beams(const PacketJob& job, Packets& packets)
 {
-    constexpr uint few = LANES / 8; // what so few would save is less than what a step costs
+    constexpr uint few = LANES / 8; // the last few beams would save less than a step costs
     const Eye eye = eye_of(job);
     for (uint first = 0; first < packets.count; first += batches_in_turns * LANES) {
         BeamWalk walks[batches_in_turns];

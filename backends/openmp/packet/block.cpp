@@ -1,7 +1,7 @@
 // Traces a block of an image, or given rays, in packets of LANES rays: compiled once for each of 4, 8 and 16
-// (CMakeLists.txt), the wider ones with instructions that few processors have. So nothing here may have external
-// linkage but the entry point, and no inline function of a library may be called: the linker keeps one of all copies of
-// such a one, and might keep this.
+// (CMakeLists.txt), the wider ones with instructions that not every processor has. Only the entry point may have
+// external linkage, and no inline function of a library may be called: the linker keeps one copy of such a function for
+// the whole program, and might keep the one compiled here.
 #include "backends/openmp/packets.h"
 #include "kernels/layouts/layout.h"
 
@@ -33,13 +33,13 @@ using tetrace::openmp::PacketJob;
 
 constexpr uint packets_at_once = 4;
 
-// Steps before those that packets count: that out of the tet that all rays start in.
+// Steps that packets do not count: the one out of the tet in which all rays start.
 LANE_FN uint steps_before(const PacketJob& job)
 {
     return job.start_tet == NO_TET ? 0 : 1;
 }
 
-// Lanes of several packets of a block, by their numbers, that have one deepest axis.
+// Lanes with one deepest axis, from several packets of a block; packets are given by their numbers.
 template <int z, uint count>
 [[gnu::noinline]] void trace_lanes(const PacketJob& job, const Packets& block, const uint* numbers, Packet* packets,
                                    const ByAxis* lanes)
@@ -62,7 +62,7 @@ template <int z, uint count>
     walk_on<z, count>(job, packets, walks, steps_before(job));
 }
 
-// The hits of a packet, but for rays that a beam has let take too many steps.
+// Writes the hits of a packet; rays that took too many steps in a beam are left to the scalar kernel.
 LANE_FN void write_counted_hits(const PacketJob& job, Packet& packet)
 {
     const Words most = all(job.max_steps);
@@ -70,7 +70,7 @@ LANE_FN void write_counted_hits(const PacketJob& job, Packet& packet)
     write_hits(job, packet, packet.lanes);
 }
 
-// Packets of a block, by their numbers, from where their beams have come to.
+// Traces packets of a block, given by their numbers, from where their beams stopped.
 template <uint count>
 void trace_packets(const PacketJob& job, const Packets& block, const uint* numbers)
 {
@@ -103,7 +103,7 @@ void write_ended(const PacketJob& job, const Packets& block, uint number)
     write_counted_hits(job, packet);
 }
 
-// Asks for the lines that a packet's hits are written to, while there is other work.
+// Prefetches the cache lines that a packet's hits are written to, while there is other work.
 LANE_FN void prefetch_hits(const PacketJob& job, uint x, uint y)
 {
     for (uint row = y; row < y + packet_height && row < job.height; ++row) {
@@ -132,8 +132,8 @@ void trace_block(const PacketJob& job, Packets& block)
         trace_packets<1>(job, block, waiting + i);
 }
 
-// Collects the packets of a square of pixels down to squares of 8, but for those of squares that see nothing of the
-// domain.
+// Collects the packets of a square of pixels by halving it down to squares of 8, without squares that see nothing of
+// the domain.
 template <uint size>
 void collect(const PacketJob& job, uint x, uint y, Packets& block)
 {

@@ -1,8 +1,8 @@
-// Rays that are given, which share no way: lanes whose rays have ended take those that wait.
+// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray.
 constexpr uint packets_in_turns = 8;
-constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes rays when it walks with fewer
-constexpr uint rays_at_once = 512;           // that a thread takes
-constexpr uint rays_ahead = 32;              // whose tets are asked for before the rays are taken
+constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes new rays when it has fewer live lanes
+constexpr uint rays_at_once = 512;           // that a thread takes at a time
+constexpr uint rays_ahead = 32;              // whose tets are prefetched before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_QUADS, tet_words = 4 * record_words;
 
@@ -13,7 +13,7 @@ struct Queue {
     uint next, end;
 };
 
-// Whether a ray waits, after taking others where none does.
+// Whether a ray waits; takes more rays first if none does.
 LANE_FN bool has_rays(const PacketJob& job, Queue& queue)
 {
     if (queue.next == queue.end && queue.end < job.ray_count) {
@@ -24,7 +24,7 @@ LANE_FN bool has_rays(const PacketJob& job, Queue& queue)
     return queue.next != queue.end;
 }
 
-// Asks for the two lines of the tet that a given ray's link names.
+// Prefetches the two cache lines of the tet that a given ray's link names.
 LANE_FN void prefetch_tet(const PacketJob& job, uint number)
 {
     const uint link = job.directions[4 * std::size_t{number} + 3];
@@ -34,7 +34,7 @@ LANE_FN void prefetch_tet(const PacketJob& job, uint number)
     __builtin_prefetch(records + tet_words / 2);
 }
 
-// Fetches the rays of lanes that have their numbers, and tells their links.
+// Fetches the rays of lanes by their numbers, and returns their links.
 LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
 {
     const Mask mask = mask_of(lanes);
@@ -50,8 +50,9 @@ LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
     return direction.of[3];
 }
 
-// What becomes carried vertex i, of what the four vertices of lanes' tets have, where a ray leaves its tet by a face as
-// if it had entered by face 1, whose corners are 0 3 2, where that is face 0, and else by face 0, whose are 1 2 3.
+// Selects carried vertex i, or a property of it, from those of the four vertices of lanes' tets. A ray that leaves by
+// face 0 is treated as if it had entered by face 1 (corners 0 3 2), any other as if it had entered by face 0 (corners 1
+// 2 3).
 template <class T>
 LANE_FN T carried_behind(const Mask* by_face, const T* of, uint i)
 {
@@ -59,7 +60,7 @@ LANE_FN T carried_behind(const Mask* by_face, const T* of, uint i)
     return select(by_face[0], of[behind_first[i]], select(by_face[i + 1], of[0], of[i + 1]));
 }
 
-// Lets lanes leave the tets that their rays start in: exit_from_face() of path.h. steps: of the packet.
+// Lets lanes leave the tets in which their rays start, as exit_from_face() of path.h. steps: of the packet.
 template <bool has_ends>
 LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, uint lanes, Words links, uint steps)
 {
@@ -104,7 +105,7 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     store(walk.offsets, walk.record * record_words);
 }
 
-// Writes what has ended in a packet, and lets its free lanes take rays. steps: that the packet has done.
+// Writes the hits of a packet's ended rays, and lets its free lanes take new rays. steps: of the packet so far.
 template <bool has_ends>
 [[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Packet& packet, GivenWalk& walk, uint steps)
 {

@@ -5,8 +5,8 @@ struct Hits {
     Words of[HIT_WORDS];
 };
 
-// The triangle, t, u and v of lanes that hit one, where no ray ends before. A ray in its triangle's plane is left to
-// the scalar kernel.
+// The triangle, t, u and v of lanes that hit one, for rays that do not end before it. A ray in its triangle's plane is
+// left to the scalar kernel.
 LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hits& hits)
 {
     LaneWords offsets;
@@ -31,7 +31,7 @@ LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hi
     packet.left_to_scalar |= lanes & lanes_of(equal(determinant, Floats{}));
 }
 
-// Hits of so many lanes, each as its first four words and its last two.
+// Hits of LANES lanes, each as its first four words and its last two.
 LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes, const Hits& hits)
 {
     const Quad first = transposed(hits.of[0], hits.of[1], hits.of[2], hits.of[3]);
@@ -53,7 +53,7 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
 {
     Hits hits{};
     hits.of[0] = all(NO_HIT);
-    hits.of[1] = packet.record >> 2; // NO_TET of a ray that entered none
+    hits.of[1] = packet.record >> 2; // NO_TET for a ray that entered none
     hits.of[5] = packet.steps;
     const uint hitting = lanes & ~packet.left_to_scalar & ~lanes_of(equal(packet.exit, all(NO_LINK)));
     if (hitting != 0) meet_triangles(job, packet, hitting, hits);

@@ -1,7 +1,7 @@
-// A vector layer as small as packets need it: LANES floats or words at once, 4, 8 (AVX2) or 16 (AVX-512). Arithmetic is
-// that of the compilers' vector types, IEEE lane by lane; here are masks, which differ most among processors, and what
-// loads records. For inclusion in an unnamed namespace, with LANES set: nothing in here may be shared with code that is
-// compiled for another processor. The including file has <cstdint>, <immintrin.h> for 8 and 16 lanes, and layout.h.
+// A small vector layer for packets: LANES floats or words, 4, 8 (AVX2) or 16 (AVX-512). Arithmetic uses the compilers'
+// vector types, IEEE lane by lane. This file adds masks, which differ most among processors, and the loading of
+// records. For inclusion in an unnamed namespace, with LANES set: nothing here may be shared with code that is compiled
+// for another processor. Include <cstdint>, <immintrin.h> for 8 and 16 lanes, and layout.h before it.
 #define LANE_FN [[maybe_unused, gnu::always_inline]] inline
 
 using uint = std::uint32_t;
@@ -132,7 +132,7 @@ LANE_FN Mask mask_of(uint lanes)
 }
 #endif
 
-// a * b + c, rounded once or twice: for what needs bounds alone.
+// a * b + c, rounded once or twice: only for error bounds.
 LANE_FN Floats fused(Floats a, Floats b, Floats c)
 {
 #if LANES == 16
@@ -155,8 +155,8 @@ LANE_FN Floats negated_where(Mask mask, Floats a)
     return as_floats(as_words(a) ^ select(mask, all(0x80000000u), Words{}));
 }
 
-// A word a lane in memory. What is written as a vector is read word by word: a compiler that sees through it takes the
-// words out of the register one by one, which is dearer.
+// A word a lane in memory. It is written as a vector and read word by word. A compiler that saw this would extract the
+// words from the register one by one, which is slower.
 struct LaneWords {
     alignas(4 * LANES) uint of[LANES];
 };
@@ -241,15 +241,15 @@ LANE_FN Quad load_quads(const uint* base, const LaneWords& offsets)
     return transposed(quads_at(base, of), quads_at(base, of + 1), quads_at(base, of + 2), quads_at(base, of + 3));
 }
 
-// Asks for what lanes will load next.
+// Prefetches what lanes will load next.
 LANE_FN void prefetch_quads(const uint* base, const LaneWords& offsets)
 {
     for (const uint offset : offsets.of)
         __builtin_prefetch(base + offset);
 }
 
-// Both quads of half32's records, one a lane. A load takes a whole record, which a cache line holds; so records come
-// with their two quads side by side, and what is transposed holds first and second quads by turns.
+// Both quads of half32's records, one a lane. A load takes a whole record, which lies in one cache line. A record's two
+// quads are then adjacent, and the transposed vectors hold first and second quads alternately.
 struct Records {
     Quad apex, exits;
 };

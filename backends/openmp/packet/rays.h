@@ -1,5 +1,5 @@
-// The rays of a packet, a lane each: of an image LANES neighbouring pixels, 4 x 4, 4 x 2 or 2 x 2. As ray.h and shear.h
-// have them, operation for operation. After lanes.h.
+// The rays of a packet, one per lane; in an image, LANES neighbouring pixels, 4 x 4, 4 x 2 or 2 x 2. The operations are
+// exactly those of ray.h and shear.h. Include after lanes.h.
 constexpr uint packet_width = LANES == 4 ? 2 : 4;
 constexpr uint packet_height = LANES / packet_width;
 
@@ -20,17 +20,17 @@ LANE_FN Vectors cross3(const Vectors& a, const Vectors& b)
 }
 
 struct Packet {
-    LaneWords numbers; // of the rays: of pixels row after row, or as they are given
+    LaneWords numbers; // of the rays: by pixel, row after row, or in the order in which they are given
     Floats origin[3], direction[3];
-    Floats end;          // ray parameter that a hit has at most
+    Floats end;          // the largest ray parameter of a hit
     uint lanes;          // that have a ray
-    uint left_to_scalar; // those whose sign is a tie, or that do what hardly any ray does
-    // How a ray has ended: the exit's word, the record of the tet that it left last, tets left; of one that has not,
-    // these less the steps that its packet has done.
+    uint left_to_scalar; // lanes with a tie or another rare case
+    // How a ray has ended: the exit's word, the record of the last tet that it left, the number of tets left. For a ray
+    // that has not ended, `steps` is that number minus the packet's steps.
     Words exit, record, steps;
 };
 
-// Rays through these places of the image, in pixels; which lanes have one is left open.
+// Rays through these places of the image, in pixels. The caller sets which lanes have a ray.
 LANE_FN void make_rays_through(const PacketJob& job, Floats column, Floats row, Packet& packet)
 {
     for (uint axis = 0; axis < 3; ++axis) {
@@ -58,7 +58,7 @@ LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
     make_rays_through(job, __builtin_convertvector(column, Floats), __builtin_convertvector(row, Floats), packet);
 }
 
-// The lanes whose direction is longest along each axis.
+// For each axis, the lanes whose direction's largest component is along it.
 struct ByAxis {
     uint of[3];
 };
@@ -84,9 +84,9 @@ LANE_FN Seen select(Mask mask, const Seen& a, const Seen& b)
 {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
 }
-// shear_of() of project.h for rays whose deepest axis is z, without its products by zero: a point's x is that of its
-// components along the axes behind z and z with two numbers, and y likewise. Where the kernel has x and y change places
-// this has y negated, which makes the same products and the same signs.
+// shear_of() of project.h for rays whose deepest axis is z, without its products by zero: a point's x comes from its
+// components along z and one other axis, and y likewise. Where the kernel swaps x and y, this negates y, which gives
+// the same products and the same signs.
 template <int z>
 struct Shear {
     static constexpr int x = (z + 1) % 3, y = (z + 2) % 3;
@@ -112,7 +112,7 @@ LANE_FN Seen seen_at(const Packet& packet, const Shear<z>& shear, const Words* p
     return {along_x * shear.x_from_x + along_z * shear.x_from_z, along_y * shear.y_from_y + along_z * shear.y_from_z};
 }
 
-// The same for lanes that have deepest axes of their own: with the products by zero.
+// The same for lanes with different deepest axes: with the products by zero.
 constexpr int any_axis = 3;
 template <>
 struct Shear<any_axis> {
@@ -151,7 +151,7 @@ LANE_FN Seen apex_seen(const PacketJob& job, const Packet& packet, const Shear<z
     const Words place[3] = {all(words[0]), all(words[1]), all(words[2])};
     return seen_at(packet, shear, place);
 }
-// How deep along the ray a vertex is, as carried_walk.h has it, and the same for where rays end.
+// The depth of a vertex along the ray, as `along` in kernels/walks/carried.h, and the depth of the rays' ends.
 LANE_FN Floats depth_at(const Packet& packet, const Words* place)
 {
     return dot3(offset_of(packet, place), {packet.direction[0], packet.direction[1], packet.direction[2]});

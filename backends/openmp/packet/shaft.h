@@ -1,5 +1,5 @@
-// What no ray of a square of pixels meets: the domain, where an edge of its outline has all of them on its outer side.
-// In double precision; a square that is in doubt is traced.
+// Finds squares of pixels whose rays all miss the domain: an edge of the domain's outline has all of them on its outer
+// side. In double precision; a square in doubt is traced.
 struct Place {
     double x, y, z;
 };
@@ -28,7 +28,7 @@ LANE_FN double size_of(Place a)
     return __builtin_fabs(a.x) + __builtin_fabs(a.y) + __builtin_fabs(a.z);
 }
 
-// Pixels [x, x_end) x [y, y_end), and their directions: those of a parallelogram round `centre`.
+// Pixels [x, x_end) x [y, y_end), and their directions: a parallelogram around `centre`.
 struct Square {
     uint x, y, x_end, y_end;
     Place centre, half_x, half_y;
@@ -48,11 +48,10 @@ LANE_FN Square square_at(const PacketJob& job, uint x, uint y, uint size)
     return square;
 }
 
-// Far more than what rounding moves a ray, or the place where it meets a side of the domain (docs/spec/packets.md,
-// K11).
+// Far more than rounding can move a ray, or the place where it meets a side of the domain (docs/spec/packets.md, K11).
 constexpr double doubt = 0x1p-14;
 
-// The side of all rays of the square at the line from p to q, both seen from the origin: 1, -1, or 0 where in doubt.
+// The side of all rays of the square at the line from p to q, both seen from the origin: 1, -1, or 0 if in doubt.
 LANE_FN int side_of_all(const Square& square, Place p, Place q)
 {
     const Place normal = cross(p, q);
@@ -73,7 +72,7 @@ LANE_FN int side_of_all(const Square& square, Place p, Place q)
             const auto is_seen = [&](uint of, uint end) {
                 return end != 0 ? job.origin[of] > edge(of, end) : job.origin[of] < edge(of, end);
             };
-            if (is_seen(a, end_a) == is_seen(b, end_b)) continue; // not of the outline
+            if (is_seen(a, end_a) == is_seen(b, end_b)) continue; // not part of the outline
             float from[3], to[3], opposite[3];
             from[axis] = opposite[axis] = edge(axis, 0) - job.origin[axis];
             to[axis] = edge(axis, 1) - job.origin[axis];

@@ -42,7 +42,7 @@ LANE_FN uint lanes_entering(Packet& packet, uint lanes, const Seen* corners)
     return inside & ~ties;
 }
 
-// From outside: lanes of one square together, face after face of it.
+// From outside: lanes of one square together, face by face.
 template <int z>
 [[gnu::noinline]] void enter_domain(const PacketJob& job, Packet& packet, Walk<z>& walk, uint lanes)
 {
@@ -63,7 +63,7 @@ template <int z>
             if (entering != 0) enter_record(job, packet, walk, entering, link);
             waiting &= ~(entering | packet.left_to_scalar);
         }
-        packet.left_to_scalar |= waiting; // those that entry_anywhere() is for
+        packet.left_to_scalar |= waiting; // lanes that need entry_anywhere()
     }
 }
 
@@ -75,8 +75,8 @@ LANE_FN Quad corners_of(const PacketJob& job, Words links, uint i)
     return load_quads(job.records, offsets);
 }
 
-// Asks the faces of squares of the domain, one a lane at a time, until ask(links, lanes) has told that lanes are done;
-// tells those whose squares have no more.
+// Tests the faces of squares of the domain, one per lane at a time, until ask(links, lanes) returns that lanes are
+// done. Returns the lanes whose squares have no more faces.
 template <class Ask>
 LANE_FN uint ask_faces(const PacketJob& job, Words squares, uint lanes, const Ask& ask)
 {
@@ -135,7 +135,7 @@ LANE_FN void leave_first(const PacketJob& job, Packet& packet, Walk<z>& walk, ui
         enter_record(job, packet, walk, lanes, exit >> 2);
 }
 
-// face_left_by() of signs.h: the lanes that leave a tet by each of its faces. ties: those with a sign that is one.
+// As face_left_by() of signs.h: the lanes that leave a tet by each of its faces. ties: the lanes with a tie.
 struct ByFace {
     uint of[4], ties;
 };

@@ -1,19 +1,19 @@
-// The walk of a packet's lanes, carried_walk.h lane by lane. A sign that is a tie is no lane's business: it hardly ever
-// occurs, and the scalar kernel then traces that ray anew.
+// The walk of a packet's lanes: walk_by_records.h, lane by lane. Lanes do not decide ties: a tie is rare, and the
+// scalar kernel then traces that ray from its start.
 
-// Where lanes are: in front of the tet and face that their records are of.
+// Where lanes are: in front of the tet and face of their records.
 struct Way {
     Words turn, record;
     LaneWords offsets; // of the records, in words
     uint live;
 };
 
-// The walk of lanes with one deepest axis.
+// The walk of lanes that share one deepest axis.
 template <int z>
 struct Walk : Way {
     Shear<z> shear;
     Seen carried[3];
-    Floats depths[3], reach; // of the carried vertices, and of the rays' ends: where rays have ends
+    Floats depths[3], reach; // of the carried vertices, and of the rays' ends; used only if rays have ends
 };
 
 LANE_FN uint corner(uint face, uint index)
@@ -25,7 +25,7 @@ LANE_FN Words corner(Words face, uint index)
     return (all(0x634B39u) >> (6u * face + 2u * index)) & 3u;
 }
 
-// Record of a face's corner: that which has it as its apex.
+// Record of a face's corner: the record whose apex it is.
 LANE_FN uint record_of_corner(uint link, uint index)
 {
     return (link & ~3u) | corner(link & 3u, index);
@@ -35,10 +35,10 @@ LANE_FN Words record_of_corner(Words links, uint index)
     return (links & all(~3u)) | corner(links & 3u, index);
 }
 
-// Where several lanes are together: in front of a record, with the vertices that they carry there.
+// The common place of several lanes: in front of a record, with the vertices that they carry there.
 struct Front {
     uint record;
-    uint carried[3]; // records whose apexes they are
+    uint carried[3]; // the records whose apexes these vertices are
     uint turn;
 };
 
@@ -54,7 +54,7 @@ LANE_FN void go_on_from(const PacketJob& job, const Packet& packet, Walk<z>& wal
     walk.live |= lanes;
 }
 
-// Lets lanes enter a tet by the face that a record is of.
+// Lets lanes enter a tet by the face of a record.
 template <int z>
 LANE_FN void enter_record(const PacketJob& job, const Packet& packet, Walk<z>& walk, uint lanes, uint record)
 {
@@ -62,7 +62,7 @@ LANE_FN void enter_record(const PacketJob& job, const Packet& packet, Walk<z>& w
     go_on_from(job, packet, walk, lanes, {record, {corner_record(0), corner_record(1), corner_record(2)}, 0});
 }
 
-// The lanes of the packet that see q to the left of p, those that see it to the right, and ties.
+// Masks of the lanes that see q to the left of p, and of the lanes with a tie.
 struct Sides {
     Mask left, tie;
 };
@@ -72,7 +72,7 @@ LANE_FN Sides sides_of(const Seen& p, const Seen& q)
     return {greater(plus, minus), equal(plus, minus)};
 }
 
-// Ends lanes whose ray has met a triangle or the domain's boundary, or its own end, after so many steps of the packet.
+// Ends lanes whose ray has met a triangle, the domain's boundary or its own end. steps: of the packet so far.
 LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uint steps)
 {
     const Mask mask = mask_of(lanes);
@@ -81,8 +81,8 @@ LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uin
     packet.steps = select(mask, packet.steps + all(steps), packet.steps);
 }
 
-// The lanes that are at their end as is_end says, or because the ray ends before it enters the tet behind the carried
-// vertices: their exit is then none.
+// The lanes that have ended: those of is_end, and those whose ray ends before it enters the tet behind the carried
+// vertices. The exit of the latter becomes NO_LINK.
 template <int z>
 LANE_FN Mask end_behind(const Walk<z>& walk, Mask is_end, Words& exit)
 {
@@ -92,11 +92,11 @@ LANE_FN Mask end_behind(const Walk<z>& walk, Mask is_end, Words& exit)
     return is_end | is_beyond;
 }
 
-// The exits that lanes take whose apex replaces the masks' carried vertices.
+// The exits of lanes. replaced: masks of the lanes in which the apex replaces each carried vertex.
 LANE_FN Words exits_of(Way& way, const Mask* replaced, const Words* exits)
 {
     const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - way.turn;
-    const Words index = least(place, place + all(3u)); // of the corner that it is: one below 0 is a large number
+    const Words index = least(place, place + all(3u)); // of the corner; a value below 0 wraps to a large number
     const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
     const Words turned = way.turn + (exit & all(3u));
     way.turn = least(turned, turned - all(3u));
@@ -110,7 +110,7 @@ LANE_FN void enter_tets(Way& way, Words exits)
     store(way.offsets, way.record * (4 * HALF32_QUADS));
 }
 
-// A step of all live lanes, which is their packet's step of that number.
+// A step of all live lanes. steps: its number in the packet.
 template <int z, bool has_ends>
 LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint steps)
 {
@@ -118,8 +118,8 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     const Seen apex = seen_at(packet, walk.shear, at.apex.of);
     const Sides s0 = sides_of(walk.carried[0], apex), s1 = sides_of(walk.carried[1], apex),
                 s2 = sides_of(walk.carried[2], apex);
-    // As left_behind() of carried_walk.h. Sides that are all alike, where the ray misses the tet, come from wrong links
-    // alone; there as here the third vertex then goes.
+    // As replaced_by() of kernels/walks/carried.h. Three equal sides mean that the ray misses the tet, which only wrong
+    // links cause; both functions then replace the third vertex.
     const Mask first = without(s2.left, s1.left), second = without(s0.left, s2.left);
     const Mask replaced[3] = {first, second, neither(first, second)};
     for (uint i = 0; i < 3; ++i)
@@ -134,14 +134,14 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         is_end = end_behind(walk, is_end, exit);
     }
     const uint ended = walk.live & ~ties & lanes_of(is_end);
-    end_lanes(packet, ended, exit, walk.record, steps); // always: hardly a branch would be foreseen
+    end_lanes(packet, ended, exit, walk.record, steps); // without a condition: a branch would mostly be mispredicted
     packet.left_to_scalar |= ties;
     walk.live &= ~(ties | ended);
     enter_tets(walk, exit);
 }
 
-// Walks several packets in turns until all lanes have ended: while one waits for its records, others compute.
-// steps: tets that the lanes have left before.
+// Walks several packets in turn until all lanes have ended: while one waits for its records, others compute.
+// steps: the number of tets that the lanes have already left.
 template <int z, uint count>
 LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint steps)
 {
@@ -159,5 +159,5 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
         }
     }
     for (uint i = 0; i < count; ++i)
-        packets[i].left_to_scalar |= walks[i].live; // lost, which is the scalar kernel's to say
+        packets[i].left_to_scalar |= walks[i].live; // lost; the scalar kernel confirms it
 }
