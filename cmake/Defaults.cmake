@@ -1,4 +1,4 @@
-# What every target of ours shares, as an interface target: nothing directory-wide.
+# The settings that all our targets share, as an interface target: nothing is directory-wide.
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
@@ -12,11 +12,12 @@ add_library(tetrace_options INTERFACE)
 target_compile_features(tetrace_options INTERFACE cxx_std_20)
 target_include_directories(tetrace_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
-if(CMAKE_UNITY_BUILD) # a source that another includes looks like a header to it
+if(CMAKE_UNITY_BUILD) # gcc takes a source that another one includes for a header
   target_compile_options(tetrace_options INTERFACE -Wno-subobject-linkage)
 endif()
 
-# All but the kernels of math mode fast: cameras, packed data and answers are the same bits on every machine.
+# For everything except the kernels of math mode fast: cameras, packed data and answers are the same bits on every
+# machine.
 add_library(tetrace_exact INTERFACE)
 target_link_libraries(tetrace_exact INTERFACE tetrace_options)
 target_compile_options(tetrace_exact INTERFACE -ffp-contract=off)

@@ -1,7 +1,9 @@
-# Kernels that devices get as text or code: what there is, flattened into one text each, embedded into the program.
+# Kernels that devices get as text or code: the list of them, each flattened into one text, and embedded into the
+# program.
 
 # TETRACE_LAYOUTS and TETRACE_KERNELS, as structure/method/layout, are those of ours in kernels/kernel_list.inc, in its
-# order; every backend compiles them in both math modes. Beside them: TETRACE_FAMILY_<layout>, and TETRACE_TASKS_<method>_<layout>.
+# order; every backend compiles them in both math modes. Also set: TETRACE_FAMILY_<layout> and
+# TETRACE_TASKS_<method>_<layout>.
 set(tetrace_kernel_list ${PROJECT_SOURCE_DIR}/kernels/kernel_list.inc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tetrace_kernel_list})
 set(TETRACE_LAYOUTS "")
@@ -24,8 +26,8 @@ foreach(row IN LISTS rows)
   endif()
 endforeach()
 
-# tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, name, as embedded_name() has it without its math
-# mode, tasks, headers, the parts of the text, and definitions, which name them to C++.
+# tetrace_kernel_parts(<kernel>): sets structure, method, layout, family, name (that of embedded_name() without math
+# mode), tasks, headers (the parts of the text) and definitions (which name these headers to C++).
 macro(tetrace_kernel_parts kernel)
   string(REPLACE "/" ";" parts ${kernel})
   list(GET parts 0 structure)
@@ -55,7 +57,8 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
 endif()
 
-# Packets of rays: the widths that are compiled, from 4 lanes up. Which of them the processor runs is asked at run time.
+# Packets of rays: the widths that are compiled, from 4 lanes up. The program checks at run time which of them the
+# processor can run.
 set(TETRACE_PACKET_LANES 16 CACHE STRING "Most lanes of a packet: 16 (AVX-512), 8 (AVX2) or 4; other processors than x86-64 have 4")
 set_property(CACHE TETRACE_PACKET_LANES PROPERTY STRINGS 16 8 4)
 if(NOT TETRACE_PACKET_LANES MATCHES "^(4|8|16)$")
@@ -72,7 +75,7 @@ endif()
 set(tetrace_packet_flags_8 -mavx2)
 set(tetrace_packet_flags_16 -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vector-width=512)
 
-# tetrace_compile_packets(<target> <lanes>): how a target is compiled whose source has packets of that width.
+# tetrace_compile_packets(<target> <lanes>): sets how a target with packets of that width is compiled.
 function(tetrace_compile_packets target lanes)
   target_compile_definitions(${target} PRIVATE LANES=${lanes})
   target_link_libraries(${target} PRIVATE tetrace_options)
@@ -84,9 +87,9 @@ find_program(TETRACE_XZ xz REQUIRED DOC "Packs the kernels that the program carr
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB_RECURSE TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
 
-# tetrace_flatten(<output> <entry> [<kernel>]): a text in which every #include "..." of the entry file is replaced by what
-# it names (once more wherever it stands: there are no guards but one), and every #include KERNEL_..._HEADER by the
-# kernel's.
+# tetrace_flatten(<output> <entry> [<kernel>]): a text in which every #include "..." of the entry file is replaced by
+# the named file (each time that it is included: no file but one has a guard), and every #include KERNEL_..._HEADER by
+# the kernel's file.
 function(tetrace_flatten output entry)
   if(ARGC GREATER 2)
     tetrace_kernel_parts(${ARGV2})
@@ -99,7 +102,7 @@ function(tetrace_flatten output entry)
 endfunction()
 
 # tetrace_embed(<output.cpp> <namespace> <name>=<file>...): defines <namespace>::embedded_kernels() of
-# backends/embedded.h with the bytes of the files, packed; what has it needs tetrace_embedded.
+# backends/embedded.h with the packed bytes of the files; a target with this source links tetrace_embedded.
 function(tetrace_embed output namespace)
   set(files ${ARGN})
   list(TRANSFORM files REPLACE "^[^=]*=" "")

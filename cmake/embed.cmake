@@ -1,5 +1,5 @@
 # Script of tetrace_embed(), see Kernels.cmake: -DOUTPUT -DNAMESPACE -DXZ -DFILES=<name>=<file>;...
-# One stream for all: kernels are much alike, and a stream of each would be five times as long in sum.
+# One stream for all: kernels are similar, and separate streams would be five times as long in total.
 set(files "")
 set(rows "")
 foreach(entry IN LISTS FILES)

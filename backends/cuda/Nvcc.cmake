@@ -1,7 +1,7 @@
-# TETRACE_NVCC: nvcc, where there is one that works here (-DTETRACE_NVCC= does without). Sets TETRACE_NVCC_VERSION ("13.0"),
-# empty without; TETRACE_NVCC_ARCHITECTURES, those that machine code is made for; TETRACE_NVCC_TARGETS, the options that
-# compile for them. One architecture a generation: code for sm_80 runs on sm_86 and sm_89 as well, which would double the
-# time that a kernel takes to compile and the bytes that it has in the program.
+# TETRACE_NVCC: nvcc, if one works here (-DTETRACE_NVCC= disables it). Sets TETRACE_NVCC_VERSION ("13.0"), empty without
+# nvcc; TETRACE_NVCC_ARCHITECTURES, for which machine code is made; TETRACE_NVCC_TARGETS, the options that compile for
+# them. One architecture a generation: code for sm_80 also runs on sm_86 and sm_89; code for these too would double a
+# kernel's compile time and its bytes in the program.
 find_program(TETRACE_NVCC nvcc HINTS ENV CUDA_PATH ENV CUDA_HOME PATH_SUFFIXES bin PATHS /usr/local/cuda/bin /opt/cuda/bin
   DOC "NVIDIA's compiler; empty: kernels are compiled by NVRTC at run time")
 

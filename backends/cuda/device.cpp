@@ -14,7 +14,7 @@ namespace tetrace::cuda {
 namespace {
 
 constexpr double event_period_s = 0.5e-6; // of cuEventElapsedTime, as NVIDIA states it
-constexpr double host_period_s = 1e-9;    // an emulation's events read the host's clock
+constexpr double host_period_s = 1e-9;    // an emulation's events use the host's clock
 
 std::string uuid_of(const Driver& driver, Ordinal ordinal)
 {
@@ -33,7 +33,7 @@ std::string pci_of(const Driver& driver, Ordinal ordinal)
     return text.size() > usual ? text.substr(text.size() - usual) : text; // some drivers give the domain 8 digits
 }
 
-/// "580.65.06", from the kernel's module; empty where it does not say.
+/// "580.65.06", from the driver's kernel module; empty where it does not say.
 std::string kernel_module_version()
 {
     std::ifstream file("/proc/driver/nvidia/version");

@@ -8,7 +8,7 @@ namespace {
 
 constexpr const char* remedy = "; NVIDIA's driver brings it (Debian: package nvidia-driver, or libcuda1 alone)";
 
-/// The functions' names that the library lacks are added to `missing`.
+/// Adds the names of functions that the library lacks to `missing`.
 Driver functions_of(void* library, std::string& missing)
 {
     Driver driver;

@@ -15,7 +15,7 @@ using FunctionHandle = struct FunctionState*;
 using StreamHandle = struct StreamState*;
 using EventHandle = struct EventState*;
 
-// CUresult values that are told apart.
+// CUresult values that are distinguished.
 constexpr Result success = 0;
 constexpr Result error_invalid_value = 1;
 constexpr Result error_out_of_memory = 2;
@@ -26,7 +26,7 @@ constexpr Result error_launch_resources = 701;
 constexpr Result error_launch_failed = 719;
 constexpr Result error_not_supported = 801;
 
-// CUdevice_attribute values that are asked for.
+// CUdevice_attribute values that are queried.
 constexpr int attribute_block_threads = 1;
 constexpr int attribute_warp_size = 10;
 constexpr int attribute_multiprocessors = 16;
@@ -34,13 +34,13 @@ constexpr int attribute_capability_major = 75;
 constexpr int attribute_capability_minor = 76;
 
 /// The driver as a table of functions: NVIDIA's library, or host functions that stand in for it (backends/cuda_host).
-/// All else of this backend reaches CUDA through such a table alone.
+/// The rest of this backend uses CUDA only through such a table.
 struct Driver {
 #define DRIVER_FUNCTION(member, symbol, parameters, arguments) Result(*member) parameters = nullptr;
 #include "backends/cuda/driver_functions.inc"
 #undef DRIVER_FUNCTION
-    /// Not of CUDA: only an emulation has it, which is how devices are known to be emulated. Says how many host threads
-    /// the calling thread's next launches use.
+    /// Not part of CUDA: only an emulation has it, which shows that devices are emulated. Sets the number of host
+    /// threads for the calling thread's next launches.
     void (*use_threads)(unsigned threads) = nullptr;
 
     [[nodiscard]] bool is_emulation() const
@@ -52,10 +52,10 @@ struct Driver {
 /// The name under which an emulation exports Driver::use_threads.
 constexpr const char* use_threads_symbol = "tetrace_emulation_use_threads";
 
-/// A driver that was looked for: whole, or with the reason why it cannot be used.
+/// The result of looking for a driver: a complete table, or the reason why it cannot be used.
 struct LoadedDriver {
     Driver driver;
-    std::string reason; ///< empty where it can be used; else what is wrong and what brings it
+    std::string reason; ///< empty if it can be used; else what is wrong and what to install
 
     [[nodiscard]] bool usable() const { return reason.empty(); }
 };
@@ -67,7 +67,7 @@ struct LoadedDriver {
 /// A result in words: "CUDA_ERROR_ILLEGAL_ADDRESS (an illegal memory access was encountered)".
 [[nodiscard]] std::string text_of(const Driver& driver, Result result);
 
-/// What a driver says of its version: 13000 as "13.0".
+/// A driver's version as text: 13000 as "13.0".
 [[nodiscard]] std::string version_text(int version);
 
 } // namespace tetrace::cuda

@@ -11,7 +11,7 @@ namespace {
 
 constexpr unsigned probe_block_threads = 64;
 
-/// Whether a kernel's text, where there is one, has an entry for its task and schedule (kernel.cu).
+/// Whether a kernel's text, if there is one, has an entry for its task and schedule (kernel.cu).
 bool has_entry(const KernelId& kernel)
 {
     if (kernel.task == Task::trace) return kernel.schedule != Schedule::packets;

@@ -11,12 +11,12 @@ namespace tetrace::cuda {
 /// What distinguishes CUDA on NVIDIA's driver from its emulation.
 struct Platform {
     std::string name;                     ///< of the backend
-    std::string clock;                    ///< which one events read
+    std::string clock;                    ///< the clock that events read
     std::function<LoadedDriver()> driver; ///< called when the devices are first asked for
-    std::function<Programs()> programs;   ///< the same
+    std::function<Programs()> programs;   ///< called when the programs are first needed
 };
 
-/// A backend on any driver table: all of CUDA but where its functions and kernels come from.
+/// A backend on any driver table: everything except where CUDA's functions and kernels come from.
 class DriverBackend : public Backend {
 public:
     explicit DriverBackend(Platform platform) : platform_(std::move(platform)) {}
@@ -33,7 +33,7 @@ public:
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
 
 private:
-    /// What is found on the machine, once.
+    /// What was found on the machine; looked up once.
     struct Found {
         LoadedDriver driver;
         Programs programs;
@@ -51,7 +51,7 @@ private:
 /// Every kernel's text, for NVRTC: <method>_<layout> and probe.
 [[nodiscard]] std::span<const EmbeddedKernel> embedded_sources();
 
-/// What this build has: the texts, the code where it was made with nvcc, and NVRTC where it is installed.
+/// What this build has: the texts, the code if it was made with nvcc, and NVRTC if it is installed.
 [[nodiscard]] Programs embedded_programs();
 
 } // namespace tetrace::cuda

@@ -10,7 +10,8 @@ namespace tetrace::cuda {
 
 namespace {
 
-/// CUresult values after which every call in the context fails alike: faults of the kernel, of memory, of the device.
+/// CUresult values after which every call in the context fails in the same way: faults of the kernel, of memory, of the
+/// device.
 bool is_sticky(Result result)
 {
     constexpr std::array sticky{46, 214, 220, 226, 700, 702, 709, 710, 714, 715, 716, 717, 718, 719, 999};
@@ -139,7 +140,7 @@ Module::Module(Context& context, std::span<const std::byte> image, const std::st
 {
     std::array<char, 2048> log{};
     std::array names{jit_error_log_buffer, jit_error_log_buffer_bytes};
-    // The size is passed where a pointer stands: the API's own convention.
+    // The size is passed as a pointer: the API's convention.
     std::array<void*, 2> values{log.data(), reinterpret_cast<void*>(log.size() - 1)};
     ModuleHandle module = nullptr;
     const Result result = context.driver().module_load(&module, image.data(), 2, names.data(), values.data());

@@ -8,11 +8,11 @@
 
 namespace tetrace::cuda {
 
-/// A device's primary context, retained while this lives; what is made in it must end before it does.
-/// Every call throws Error{internal} with the driver's own name of what went wrong. After some errors the context is of
-/// no more use (CUDA calls them sticky), to none of the sessions that share it. The driver destroys it with the last of
-/// them, so that the next session gets a new one. It is not reset before that: the sessions that are still open would
-/// give memory back that a new context has handed out again.
+/// A device's primary context, retained while this object lives; what is made in it must be destroyed before it.
+/// Every call throws Error{internal} with the driver's name of the error. After some errors (CUDA calls them sticky)
+/// the context is unusable for all sessions that share it. The driver destroys it with the last of them, so that the
+/// next session gets a new one. It is not reset before that: sessions that are still open would free memory that
+/// belongs to the new context.
 class Context {
 public:
     Context(const Driver& driver, Ordinal device);
@@ -22,11 +22,11 @@ public:
 
     [[nodiscard]] const Driver& driver() const { return driver_; }
     [[nodiscard]] ContextHandle handle() const { return handle_; }
-    /// Other sessions and libraries use other contexts: to be called before any work in this one.
+    /// Other sessions and libraries use other contexts: call this before any work in this context.
     void make_current();
-    /// Throws where a call did not succeed. doing: what it was to do, "CUDA: " goes before it.
+    /// Throws if a call failed. doing: what the call does; the text puts "CUDA: " before it.
     void check(Result result, const std::string& doing);
-    /// Of a result that the caller judges itself: whether the context is of use still.
+    /// For a result that the caller checks itself: notes whether the context is still usable.
     void note(Result result);
 
 private:
@@ -36,13 +36,13 @@ private:
     bool lost_ = false;
 };
 
-/// Bytes of a device's memory, for the life of this.
+/// Bytes of a device's memory, for the life of this object.
 class Memory {
 public:
     Memory() = default;
-    /// Throws Error{unsupported} with both numbers where so many bytes are not free. what: to be kept there.
+    /// Throws Error{unsupported} with both numbers where fewer bytes are free. what: the content, for the error's text.
     Memory(Context& context, std::size_t bytes, const char* what);
-    /// The same, filled with what `bytes` holds when the stream comes to it.
+    /// The same, filled with the content that `bytes` has when the stream reaches the copy.
     Memory(Context& context, std::span<const std::byte> bytes, const char* what, StreamHandle stream);
     Memory(Memory&& other) noexcept;
     Memory& operator=(Memory&& other) noexcept;

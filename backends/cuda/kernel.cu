@@ -30,17 +30,17 @@ KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint
     write_hit(hit, output_word(launch, pixel), output);
 }
 
-// A ray a thread, a tile a block.
+// One ray per thread, one tile per block.
 extern "C" __global__ void ENTRY(trace_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output)
 {
     trace_pixel(scene, launch, launch.first_tile + blockIdx.x, threadIdx.x, output);
 }
 
-// As many blocks as the device holds at once, whose warps stay: each fetches the next warp-full of rays from a counter,
+// As many blocks as the device holds at once. Their warps stay: each fetches the next warp-full of rays from a counter,
 // which is 0 at first, until none of the `tiles` is left.
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
-// addendum for Kepler, with Karras, 2012. Blocks are of whole warps, and a tile is one warp or two: all lanes of a warp
-// get a ray or none does.
+// addendum for Kepler, with Karras, 2012. Blocks are of whole warps, and a tile is one or two warps: either all lanes
+// of a warp get a ray, or none.
 extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                                  uint* counter, uint tiles)
 {
@@ -57,7 +57,7 @@ extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene
 }
 
 #ifdef TAKES_RAYS
-// A given ray a thread, a tile a block.
+// One given ray per thread, one tile per block.
 extern "C" __global__ void ENTRY(rays_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                            const uint4* __restrict__ rays)
 {
@@ -70,7 +70,7 @@ extern "C" __global__ void ENTRY(rays_tiles_, KERNEL_NAME)(SceneView scene, Laun
 #endif
 
 #ifdef SEARCHES_EXITS
-// An exit search a thread, a tile a block.
+// One exit search per thread, one tile per block.
 extern "C" __global__ void ENTRY(search_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                              const uint4* __restrict__ rays)
 {

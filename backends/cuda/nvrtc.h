@@ -7,20 +7,21 @@
 
 namespace tetrace::cuda {
 
-/// NVIDIA's run-time compiler, loaded where it is found: it turns a kernel's text into code for a device.
+/// NVIDIA's run-time compiler, loaded if it is found: it compiles a kernel's text for a device.
 class Nvrtc {
 public:
     /// Looks for the library by its names (CUDA 13, 12, 11.2) where the loader looks, then in the toolkits' usual
     /// folders. It stays loaded.
     [[nodiscard]] static const Nvrtc& installed();
 
-    /// Empty where it can be used; else what was looked for and what brings it.
+    /// Empty if it can be used; else what was looked for and what to install.
     [[nodiscard]] const std::string& reason() const { return reason_; }
     [[nodiscard]] std::string version() const; ///< "13.0"
 
-    /// What to compile for a device: its machine code ("sm_90") where the compiler knows the device, else the assembly
-    /// of the newest older one ("compute_90"), which the driver translates.
-    /// capability: 10 * major + minor. Throws Error{unsupported} where the device is older than all that it knows.
+    /// The target to compile for: machine code ("sm_90") if the compiler knows the device, else assembly for the newest
+    /// older device that it knows ("compute_90"), which the driver translates.
+    /// capability: 10 * major + minor. Throws Error{unsupported} if the device is older than all that the compiler
+    /// knows.
     [[nodiscard]] std::string target(int capability) const;
 
     /// Code, or assembly, for a target. text: ends with a 0. name: in the compiler's messages. options: for example
@@ -39,7 +40,7 @@ private:
     [[nodiscard]] std::string output(Program program, GetSize size, GetText text) const;
     void check(int result, const std::string& doing) const;
 
-    // The library's functions, as its binary interface has them.
+    // The library's functions, as in its binary interface.
     int (*version_)(int* major, int* minor) = nullptr;
     const char* (*error_text_)(int result) = nullptr;
     int (*target_count_)(int* count) = nullptr;

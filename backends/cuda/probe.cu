@@ -1,4 +1,4 @@
-// The self-test (kernels/probe.h), an operation a thread. KERNEL_NAME is probe_exact or probe_fast.
+// The self-test (kernels/probe.h), one operation per thread. KERNEL_NAME is probe_exact or probe_fast.
 #include "kernels/layouts/layout.h"
 
 #include "kernels/language/dialect_cuda.h"

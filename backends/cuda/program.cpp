@@ -13,7 +13,7 @@ namespace tetrace::cuda {
 
 namespace {
 
-/// All that NVRTC's result depends on.
+/// Everything that NVRTC's result depends on.
 std::uint64_t cache_key(const Nvrtc& nvrtc, std::string_view text, std::span<const std::string> options,
                         const std::string& target)
 {
@@ -23,7 +23,8 @@ std::uint64_t cache_key(const Nvrtc& nvrtc, std::string_view text, std::span<con
     return key;
 }
 
-/// Loads what a compiler made. Where the driver cannot use it, it is mostly the older of the two: both are named.
+/// Loads a compiler's output. If the driver cannot use it, the driver is usually older than the compiler: the error
+/// names both versions.
 Module load_image(Context& context, std::span<const std::byte> image, const ProgramId& id, const std::string& compiler)
 try {
     return {context, image, id.name()};
@@ -37,7 +38,7 @@ try {
                                             "nvidia-cuda-toolkit), brings it");
 }
 
-/// NVRTC's module, from the cache where it is there; second: whether it was.
+/// NVRTC's module, from the cache if it is there; second: whether it was.
 std::pair<Module, bool> compiled_module(Context& context, int capability, const Programs& programs, const ProgramId& id,
                                         const ProgramCache& cache)
 {
@@ -57,7 +58,7 @@ std::pair<Module, bool> compiled_module(Context& context, int capability, const 
     return {load_image(context, std::as_bytes(std::span(image)), id, compiler), false};
 }
 
-/// Empty where the driver cannot use the build's code and NVRTC is there to try.
+/// Empty if the driver cannot use the build's code and NVRTC is available instead.
 std::optional<Module> build_module(Context& context, const Programs& programs, const ProgramId& id)
 {
     const EmbeddedKernel* code = find_kernel(programs.code, id.name());

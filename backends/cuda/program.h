@@ -13,7 +13,7 @@ struct Programs {
     std::span<const EmbeddedKernel> sources = {}; ///< <method>_<layout> and probe: texts for NVRTC
     std::span<const EmbeddedKernel> code = {}; ///< <method>_<layout>_<math> and probe_<math>: what the build compiled
     std::string compiler = {};                 ///< of the code, "nvcc 13.0"
-    const Nvrtc& (*nvrtc)() = nullptr;         ///< loads it when called; null where it is not to be used
+    const Nvrtc& (*nvrtc)() = nullptr;         ///< loads NVRTC when called; null: NVRTC is not used
 
     [[nodiscard]] bool has_nvrtc() const { return nvrtc != nullptr && nvrtc().reason().empty(); }
 };
@@ -27,19 +27,20 @@ struct ProgramId {
 };
 [[nodiscard]] ProgramId program_of(const KernelId& kernel);
 
-/// NVRTC's options, the same as nvcc gets (CMakeLists.txt), KERNEL_NAME among them.
+/// NVRTC's options, the same as nvcc's (CMakeLists.txt), including KERNEL_NAME.
 [[nodiscard]] std::vector<std::string> compiler_options(const ProgramId& id);
 
 struct LoadedProgram {
     Module module;
     double compile_s = 0; ///< compiled, translated by the driver, loaded
-    bool cached = false;  ///< NVRTC's work came from the cache
+    bool cached = false;  ///< NVRTC's output came from the cache
 };
 
-/// Loads what the build compiled; where there is none, or the driver cannot use it, what NVRTC compiles for the device.
-/// capability: the device's, 10 * major + minor. cache: folder that NVRTC's work is kept in; empty: it is not kept.
-/// Throws Error{unsupported} where neither is to be had, naming both versions where the driver is older than the
-/// compiler, Error{internal} where the device is lost or NVRTC fails.
+/// Loads what the build compiled. If there is none, or the driver cannot use it, loads what NVRTC compiles for the
+/// device.
+/// capability: the device's, 10 * major + minor. cache: folder for NVRTC's output; empty: it is not kept.
+/// Throws Error{unsupported} if neither is available, naming both versions where the driver is older than the compiler,
+/// Error{internal} where the device is lost or NVRTC fails.
 [[nodiscard]] LoadedProgram load_program(Context& context, int capability, const Programs& programs,
                                          const ProgramId& id, const std::filesystem::path& cache);
 

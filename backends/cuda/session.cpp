@@ -17,7 +17,7 @@ std::string entry_of(const KernelId& kernel)
     return std::string(name_of(kernel.task)).append("_").append(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
 }
 
-/// One address space needs no limit and no parts; whoever asks for smaller buffers gets an answer all the same.
+/// One address space needs no limit and no parts, but a smaller limit in the options is still enforced.
 void require_arrays_fit(const PackedScene& scene, std::uint64_t max_buffer_bytes)
 {
     for (const SceneBuffer& buffer : scene_buffers(scene))
@@ -79,8 +79,8 @@ void CudaSession::set_rays(std::span<const Quad> quads)
 {
     require_rays_fit(quads, max_buffer_bytes_);
     make_current();
-    finish_launch(); // which reads the old ones
-    rays_ = {};      // before the new ones: both may not fit
+    finish_launch(); // the launch reads the old ones
+    rays_ = {};      // freed before the new ones are made: both may not fit
     rays_ = Memory(device_.context, std::as_bytes(quads), "the rays", device_.stream.get());
     device_.synchronize();
 }
@@ -89,7 +89,7 @@ void CudaSession::poison_output(std::size_t words)
 {
     require_output_fits(words, max_buffer_bytes_);
     if (output_.bytes() != words * sizeof(std::uint32_t)) {
-        output_ = {}; // before the new one: both may not fit
+        output_ = {}; // freed before the new one is made: both may not fit
         output_ = Memory(device_.context, words * sizeof(std::uint32_t), "the output");
     }
     device_.context.check(device_.driver().fill_words(output_.address(), POISON, words, device_.stream.get()),
@@ -104,7 +104,7 @@ void CudaSession::launch(const TraceJob& job)
     launches_.start(
         launch_params(job, divisions_, tile_height_, TetParts{}.log2_bytes),
         [this](const LaunchParams& params, std::uint32_t tiles) {
-            finish_launch(); // of the one before: there is but one stopwatch
+            finish_launch(); // for the previous launch: there is only one stopwatch
             schedule_ == Schedule::persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
             launched_tiles_ = tiles;
         },

@@ -10,7 +10,7 @@ namespace tetrace::cuda {
 /// Runs one kernel on a packed scene in a device's memory.
 class CudaSession : public Session {
 public:
-    /// scene: packed as the kernel wants it. tile_height: 4 or 8.
+    /// scene: packed in the kernel's layout. tile_height: 4 or 8.
     CudaSession(const Driver& driver, Ordinal device, const Programs& programs, const KernelId& kernel,
                 const PackedScene& scene, const SessionOptions& options, unsigned tile_height);
     ~CudaSession() override;
@@ -28,7 +28,7 @@ private:
     void poison_output(std::size_t words);
     void launch_tiles(const LaunchParams& params, std::uint32_t tiles);
     void launch_persistent(const LaunchParams& params, std::uint32_t tiles);
-    /// Waits for the launch that is under way, if any, and counts its time.
+    /// Waits for the current launch, if any, and counts its time.
     void finish_launch();
 
     OpenDevice device_;
@@ -38,15 +38,15 @@ private:
     FunctionHandle kernel_;
     std::vector<Memory> arrays_; ///< by binding
     std::vector<Address>
-        scene_; ///< what the kernels get: SceneView of kernels/language/scene_view_cuda.h, word for word
+        scene_; ///< the kernels' argument: SceneView of kernels/language/scene_view_cuda.h, word for word
     std::uint32_t divisions_;
     Memory output_, counter_, rays_;
     EventTimer timer_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
-    unsigned resident_blocks_ = 0; ///< of schedule persistent: as many as the device holds at once
+    unsigned resident_blocks_ = 0; ///< for schedule persistent: as many as the device holds at once
     Launches launches_;
-    std::uint32_t launched_tiles_ = 0; ///< of the launch that is under way; 0: none is
+    std::uint32_t launched_tiles_ = 0; ///< of the current launch; 0: there is none
     SetupTimes setup_;
     std::uint64_t bytes_;
 };

@@ -8,7 +8,7 @@ namespace tetrace::cuda {
 namespace {
 
 constexpr std::size_t least_bytes = std::size_t{64} << 20, most_bytes = std::size_t{512} << 20;
-constexpr double enough_s = 5e-3; // a copy that long outlasts its launch and the clock's resolution by far
+constexpr double enough_s = 5e-3; // much longer than a launch and the clock's resolution
 constexpr int passes = 8;
 
 double copy_s(OpenDevice& device, const Memory& from, const Memory& to)

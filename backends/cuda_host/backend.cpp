@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-/// Kernels are compiled into the program already: a module's image is but a name for one.
+/// Kernels are already compiled into the program: a module's image is only a kernel's name.
 const std::vector<EmbeddedKernel>& host_images()
 {
     static const std::vector<std::string> names = [] {

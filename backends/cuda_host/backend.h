@@ -4,8 +4,8 @@
 
 namespace tetrace {
 
-/// The CUDA backend, its launches and its kernels' source, executed on the host: no measure of any GPU, but a test of
-/// all that a GPU would run.
+/// The CUDA backend, its launches and its kernels' source, executed on the host. It does not measure any GPU; it tests
+/// everything that a GPU would run.
 [[nodiscard]] Backend& cuda_host_backend();
 
 } // namespace tetrace

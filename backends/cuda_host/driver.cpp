@@ -321,7 +321,7 @@ void run_grid(Entry entry, std::uint32_t blocks, Dimensions block, void** argume
     }
 }
 
-/// Grids are lines of blocks: the backend launches no others.
+/// Grids are one-dimensional: the backend launches no others.
 Result launch(FunctionHandle function, unsigned grid_x, unsigned grid_y, unsigned grid_z, unsigned block_x,
               unsigned block_y, unsigned block_z, unsigned, StreamHandle, void** parameters, void**)
 {

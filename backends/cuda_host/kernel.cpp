@@ -1,5 +1,5 @@
-// backends/cuda/kernel.cu as host C++: compiled once per kernel and math mode (CMakeLists.txt), which arrive as
-// KERNEL_STRUCTURE_HEADER and its like, and KERNEL_NAME.
+// backends/cuda/kernel.cu as host C++: compiled once per kernel and math mode (CMakeLists.txt), which are given by
+// macros: KERNEL_STRUCTURE_HEADER and the like, and KERNEL_NAME.
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
 #include "core/device/launch.h"

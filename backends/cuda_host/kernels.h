@@ -6,8 +6,8 @@
 
 namespace tetrace::cuda_host {
 
-/// An entry point compiled for the host: runs the thread that the calling thread's threadIdx and blockIdx name
-/// (shim.h). arguments: the address of each of its arguments, as a launch has them.
+/// An entry point compiled for the host: runs the thread with the calling thread's threadIdx and blockIdx (shim.h).
+/// arguments: the address of each argument, as in a launch.
 using Entry = void (*)(void** arguments);
 
 struct CompiledEntry {

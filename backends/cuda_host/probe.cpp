@@ -1,4 +1,4 @@
-// backends/cuda/probe.cu as host C++: compiled once per math mode (CMakeLists.txt), which arrives as KERNEL_NAME.
+// backends/cuda/probe.cu as host C++: compiled once per math mode (CMakeLists.txt), which is given by KERNEL_NAME.
 #include "backends/cuda_host/kernels.h"
 #include "backends/cuda_host/shim.h"
 #include "kernels/layouts/layout.h"

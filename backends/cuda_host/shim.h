@@ -7,14 +7,14 @@
 
 #include <bit>
 
-// What CUDA C++ adds to C++, as far as backends/cuda/*.cu use it, for a host compiler: to be included before them.
-// The threads of a block run one after the other, a warp is one thread.
+// The parts of CUDA C++ that backends/cuda/*.cu use, for a host compiler; include it before them. The threads of a
+// block run one after the other, and a warp is one thread.
 
 #define __device__
 #define __global__
 #define __restrict__ __restrict
 
-/// CUDA's 16-byte vector, one load of the device.
+/// CUDA's 16-byte vector, which a device loads at once.
 struct alignas(16) uint4 {
     std::uint32_t x, y, z, w;
 };
@@ -26,12 +26,12 @@ struct Dimensions {
     std::uint32_t x = 1, y = 1, z = 1;
 };
 
-// constinit: no wrapper function asks whether they have been made.
+// constinit: no wrapper function checks whether they are initialised.
 extern constinit thread_local Dimensions current_thread, current_block, block_size;
 
 constexpr std::uint32_t warp_size = 1;
 
-// Of two numbers. What the device does in an instruction, the host's library does in a call, for the sake of NaN.
+// Operands are never NaN. A device has an instruction for this; the host's library would make a call, to handle NaN.
 inline float lesser(float a, float b)
 {
     return a < b ? a : b;

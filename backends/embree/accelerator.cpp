@@ -76,7 +76,7 @@ Accelerator::~Accelerator()
 
 namespace {
 
-// What is asked of a query besides its rays, and in which order the two major versions take both.
+// A query's options, and the order in which the two major versions take options and rays.
 #if TETRACE_EMBREE_MAJOR >= 4
 template <class Arguments>
 Arguments with_coherence(Arguments arguments, Coherence coherence)

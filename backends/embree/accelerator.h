@@ -14,7 +14,7 @@
 
 namespace tetrace::embree {
 
-/// What a query asks of Embree; the two major versions spell it differently.
+/// The options of a query to Embree; the two major versions spell them differently.
 enum class Coherence { coherent, incoherent };
 
 /// A query of one ray, from parameter `near` to `end`.
@@ -50,7 +50,7 @@ public:
 
     void intersect(RTCRayHit& ray, Coherence coherence) const;
     void intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const;
-    /// Whether anything is hit: a ray's tfar becomes -inf then.
+    /// Whether anything is hit: if so, a ray's tfar becomes -inf.
     void occluded(RTCRay& ray, Coherence coherence) const;
     void occluded16(const int* valid, RTCRay16& rays, Coherence coherence) const;
 

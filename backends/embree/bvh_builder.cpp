@@ -77,7 +77,7 @@ std::vector<RTCBuildPrimitive> build_primitives(const TriangleMesh& mesh)
     return primitives;
 }
 
-/// Embree's tree, depth first; boxes are made anew from those of the parts in the leaves.
+/// Embree's tree, depth first; boxes are recomputed from those of the parts in the leaves.
 class BvhCollector {
 public:
     std::uint32_t add(const EmbreeNode& built)
@@ -97,7 +97,7 @@ public:
     Bvh take() { return std::move(bvh_); }
 
 private:
-    // In order of their numbers, and once where both parts of a triangle came into the same leaf.
+    // In order of their numbers, and only once if both parts of a triangle are in the same leaf.
     void add_leaf(BvhNode& leaf, const EmbreeNode& built)
     {
         std::vector<std::uint32_t> triangles;
@@ -135,11 +135,11 @@ RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& pr
     arguments.setNodeBounds = [](void*, const RTCBounds**, unsigned, void*) {};
     arguments.createLeaf = new_leaf;
     arguments.splitPrimitive = split_primitive;
-    arguments.userPtr = const_cast<TriangleMesh*>(&mesh); // which split_primitive only reads
+    arguments.userPtr = const_cast<TriangleMesh*>(&mesh); // split_primitive only reads it
     return arguments;
 }
 
-/// Nothing where the tree would be deeper than Embree may make it.
+/// Nothing if the tree would be deeper than the limit given to Embree.
 std::optional<Bvh> build_with_embree(const TriangleMesh& mesh, unsigned threads)
 {
     const std::string config = threads == 0 ? "" : "threads=" + std::to_string(threads);
@@ -169,7 +169,7 @@ void check_bvh_input(const TriangleMesh& mesh)
         refuse(std::to_string(mesh.triangles.size()) + " triangles, at most 2^30 can be numbered");
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (const auto v : mesh.triangles[i]) {
-            if (v >= mesh.vertices.size()) refuse("triangle " + std::to_string(i) + " has a corner that there is not");
+            if (v >= mesh.vertices.size()) refuse("triangle " + std::to_string(i) + " has a missing corner");
             for (int axis = 0; axis < 3; ++axis)
                 if (!(std::abs(mesh.vertices[v][axis]) <= largest_bvh_coordinate))
                     refuse("triangle " + std::to_string(i) + " has a corner that is not finite or beyond " +
@@ -185,7 +185,7 @@ BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads)
 {
     check_bvh_input(mesh);
     const Stopwatch watch;
-    std::fenv_t environment; // Embree's bins assert rounding to nearest, and it may leave the thread flushing denormals
+    std::fenv_t environment; // Embree asserts rounding to nearest, and may leave the thread flushing denormals
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV);
     auto bvh = build_with_embree(mesh, threads);

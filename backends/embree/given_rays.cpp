@@ -29,7 +29,7 @@ Float3 vector_of(const Quad& quad)
     return {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
 }
 
-/// Quads as two lists (kernels/layouts/layout.h), and what is asked of each ray.
+/// Quads as two lists (kernels/layouts/layout.h), and what each ray asks for.
 struct Rays {
     std::span<const Quad> directions, origins;
     bool any_hit;

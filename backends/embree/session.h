@@ -8,7 +8,7 @@
 
 namespace tetrace::embree {
 
-/// Rays through Embree: primary ones in the same tiles and from the same bits as the walk's, or those that are given.
+/// Rays through Embree: primary rays in the same tiles and with the same bits as the walk's, or given rays.
 class EmbreeSession : public HostSession {
 public:
     EmbreeSession(Method method, Task task, std::shared_ptr<const Accelerator> accelerator, unsigned threads);

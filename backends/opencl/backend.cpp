@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// The context that open sessions of the device share, else a new one. A lost one serves no new session.
+    /// The context that the device's open sessions share, else a new one. A lost context is not used for new sessions.
     std::shared_ptr<opencl::Context> context(std::size_t device, unsigned threads)
     {
         if (!devices_.at(device).usable) throw Error(ErrorKind::missing, devices_[device].reason);

@@ -8,7 +8,7 @@ namespace tetrace::opencl {
 
 namespace {
 
-/// The part of a device that has so many compute units; the device itself where it cannot be divided so.
+/// The part of a device with that many compute units; the whole device if it cannot be divided so.
 cl::Device part_of(cl::Device device, unsigned units)
 {
     const std::array<cl_device_partition_property, 4> by_counts = {CL_DEVICE_PARTITION_BY_COUNTS,

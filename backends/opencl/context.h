@@ -11,17 +11,17 @@ namespace tetrace::opencl {
 /// Seconds that a finished command took on the device.
 [[nodiscard]] double seconds_of(const cl::Event& event);
 
-/// A context on a device: what its sessions share. Errors of the API come out of it as tetrace's.
+/// A context on a device, shared by its sessions. It turns the API's errors into Error.
 class Context {
 public:
-    /// threads: of an emulated device as many as that, where it can be divided; 0 or more than it has: all.
+    /// threads: the number to use of an emulated device that can be divided; 0 or more than it has: all.
     /// Throws Error where the driver fails.
     Context(const FoundDevice& found, unsigned threads);
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }
     [[nodiscard]] const Device& facts() const { return found_.facts; }
     [[nodiscard]] const cl::Context& handle() const { return handle_; }
-    /// The device, or the part of it that has so many threads.
+    /// The device, or the part of it with that many threads.
     [[nodiscard]] const cl::Device& device() const { return device_; }
     [[nodiscard]] unsigned threads() const { return threads_; }
     /// An in-order queue with profiling.
@@ -30,7 +30,7 @@ public:
     /// Whether a call failed in a way that later calls may not survive: the next session takes a new context.
     [[nodiscard]] bool is_lost() const { return is_lost_; }
 
-    /// Does some work; an error of the API becomes Error, see to_error(). bytes: that the work needs on the device.
+    /// Does some work; an error of the API becomes Error, see to_error(). bytes: what the work needs on the device.
     template <class Work>
     auto run(const std::string& doing, std::uint64_t bytes, const Work& work)
     {

@@ -68,13 +68,13 @@ unsigned group_width_of(const cl::Device& device)
     return 0;
 }
 
-/// Oclgrind says of its device that it is everything.
+/// Oclgrind's device claims to be of every type.
 DeviceKind kind_of(const cl::Device& device)
 {
     return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 ? DeviceKind::emulated : DeviceKind::gpu;
 }
 
-/// Empty where the device has all that the kernels need.
+/// Empty if the device has all that the kernels need; else the reason.
 std::string reason_against(const cl::Device& device, std::size_t group_items)
 {
     if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "its driver says that it is not available";
@@ -145,7 +145,7 @@ std::vector<FoundDevice> devices_of(const cl::Platform& platform)
     std::vector<FoundDevice> devices;
     try {
         std::vector<cl::Device> handles;
-        platform.getDevices(CL_DEVICE_TYPE_ALL, &handles); // none is no error to these bindings
+        platform.getDevices(CL_DEVICE_TYPE_ALL, &handles); // having none is no error for these bindings
         for (const cl::Device& handle : handles)
             devices.push_back(described(platform, handle));
         if (handles.empty())

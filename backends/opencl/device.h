@@ -12,8 +12,8 @@ namespace tetrace::opencl {
 /// A device of any platform. id is null where facts speak of a platform without devices, or of no platform.
 struct FoundDevice {
     Device facts;
-    cl_device_id id = nullptr; ///< not cl::Device, which calls the driver when the process ends: it may be gone by then
-    std::string build_key; ///< platform, driver and device with versions: compiled programs are valid for these alone
+    cl_device_id id = nullptr; ///< not cl::Device, which calls the driver at exit: it may be unloaded by then
+    std::string build_key; ///< platform, driver and device with versions: compiled programs are valid only for these
     bool divides_correctly = false; ///< offers correctly rounded division and square root, as a build option
 };
 

@@ -11,7 +11,7 @@ namespace tetrace::opencl {
 /// "CL_OUT_OF_RESOURCES"; "OpenCL error -9999" where OpenCL 1.2 and its loader have no name for it.
 [[nodiscard]] std::string error_name(cl_int code);
 
-/// Whether the code says that memory or a limit on buffers does not suffice.
+/// Whether the code means that memory or a limit on buffers is too small.
 [[nodiscard]] bool is_about_memory(cl_int code);
 
 /// What was being done when the API failed, for the error's text.

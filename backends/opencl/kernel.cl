@@ -1,6 +1,6 @@
-// A kernel as an OpenCL program (CMakeLists.txt): a thin entry round the shared text. Build options (session.cpp):
-// GROUP_ITEMS, the items of a work group, which has a tile at a time; PERSISTENT for that schedule; RAYS and SEARCH for
-// those tasks; MATH_FAST; TETS_IN_PARTS.
+// A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
+// GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS and
+// SEARCH for those tasks; MATH_FAST; TETS_IN_PARTS.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/scene_view_opencl.h"
@@ -34,8 +34,8 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
 #endif
 }
 
-// Does the tiles from launch.first_tile to end_tile - 1. counter: the next tile that no group has, used by schedule
-// persistent. The arguments in this order: session.cpp sets them.
+// Traces the tiles from launch.first_tile to end_tile - 1. counter: the next tile that no group has taken, for schedule
+// persistent. session.cpp sets the arguments in this order.
 __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image(
     const LaunchParams launch, const uint end_tile, __global uint* restrict output, __global uint* restrict counter,
     __global const uint4* restrict rays
@@ -66,7 +66,7 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
         if (get_local_id(0) == 0u) fetched = atomic_inc(counter);
         barrier(CLK_LOCAL_MEM_FENCE);
         uint tile = fetched;
-        barrier(CLK_LOCAL_MEM_FENCE); // all have read it before it changes
+        barrier(CLK_LOCAL_MEM_FENCE); // all items have read it before it changes
         if (tile >= end_tile) break;
         run_item(scene, launch, tile, output, rays);
     }

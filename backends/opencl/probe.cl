@@ -3,7 +3,7 @@
 
 #include "kernels/probe.h"
 
-// An item a quad of {operation, a, b, c}.
+// One item per quad of {operation, a, b, c}.
 __kernel void run_probe(__global const uint4* restrict operations, __global uint* restrict results)
 {
     size_t item = get_global_id(0);

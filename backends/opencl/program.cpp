@@ -10,12 +10,12 @@ namespace {
 std::string options_for(const FoundDevice& device, const ProgramId& id)
 {
     std::string options = "-cl-std=CL1.2 " + id.defines;
-    // Oclgrind 21.10 interprets what its optimiser makes, all but llvm.experimental.noalias.scope.decl, which inlined
-    // functions bring that return structs.
+    // Oclgrind 21.10 interprets its optimiser's output, but not llvm.experimental.noalias.scope.decl, which comes from
+    // inlined functions that return structs.
     if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
     if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
-    // No decision has denormals (docs/spec/numbers.md, N1), but unused lanes of a processor's vectors have, where
-    // compilers compute with all words of a quad; some processors multiply those a hundred times slower.
+    // No decision has denormals (docs/spec/numbers.md, N1). Unused lanes of a processor's vectors may have them, where
+    // compilers compute with all words of a quad, and some processors multiply denormals a hundred times slower.
     if (device.facts.kind != DeviceKind::gpu) options += " -cl-denorms-are-zero";
     return device.divides_correctly ? options + " -cl-fp32-correctly-rounded-divide-sqrt" : options;
 }
@@ -53,7 +53,7 @@ Program::Program(Context& context, const ProgramId& id, const ProgramCache& cach
     if (!is_cached_) compile(context, id, source->text());
 }
 
-/// Whether the cache had it, and the driver takes it still.
+/// Whether the cache had it and the driver still accepts it.
 bool Program::load(const Context& context)
 {
     const auto binary = cache_.find(key_);
@@ -88,7 +88,7 @@ void Program::keep() const
         const auto binaries = handle_.getInfo<CL_PROGRAM_BINARIES>();
         if (binaries.size() == 1 && !binaries.front().empty()) cache_.keep(key_, binaries.front());
     } catch (const cl::Error&) {
-        return; // a driver that does not give its binary away compiles again
+        return; // if a driver does not return its binary, the next run compiles again
     }
 }
 

@@ -8,7 +8,7 @@
 
 namespace tetrace::opencl {
 
-/// The program of a kernel among embedded_kernels(), whatever its math mode and schedule.
+/// The name of a kernel's program among embedded_kernels(), for any math mode and schedule.
 [[nodiscard]] std::string source_name(const KernelId& kernel);
 
 /// What decides a program: one of embedded_kernels() and how it is compiled.
@@ -18,16 +18,16 @@ struct ProgramId {
     std::string defines = {}; ///< further options: "-DGROUP_ITEMS=64"
 };
 
-/// A program compiled for a context's device, from a cache where it is there.
+/// A program compiled for a context's device, or taken from a cache.
 class Program {
 public:
-    /// Throws Error{internal} with the compiler's own words where it fails.
+    /// Throws Error{internal} with the compiler's messages if it fails.
     Program(Context& context, const ProgramId& id, const ProgramCache& cache);
 
     [[nodiscard]] const cl::Program& handle() const { return handle_; }
     [[nodiscard]] bool is_cached() const { return is_cached_; }
-    /// Puts it into the cache, unless it came from there: after its kernels ran first, which is when some drivers
-    /// finish it.
+    /// Puts it into the cache, unless it came from there. Call it after the kernels' first run: some drivers finish
+    /// compiling only then.
     void keep() const;
 
 private:

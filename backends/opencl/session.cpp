@@ -21,8 +21,8 @@ enum Argument : cl_uint {
 
 constexpr std::size_t smallest_buffer_bytes = 16; // OpenCL has no empty buffers
 
-/// No device holds more items than that in a compute unit at once (NVIDIA's most), and groups that do not fit start
-/// when all work is done; a processor's unit is one thread, which works on one group at a time.
+/// The most items that any device holds in a compute unit at once (NVIDIA's number). Groups that do not fit start when
+/// all work is done. A processor's unit is one thread, which works on one group at a time.
 constexpr std::size_t resident_items = 2048;
 
 cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
@@ -115,8 +115,8 @@ void OpenclSession::set_rays(std::span<const Quad> quads)
 {
     require_rays_fit(quads, max_buffer_bytes_);
     run("uploading rays", quads.size_bytes(), [&] {
-        queue_.finish();      // what is enqueued reads the old ones
-        rays_ = cl::Buffer(); // which go first: both may not fit
+        queue_.finish();      // enqueued work reads the old ones
+        rays_ = cl::Buffer(); // the old ones are freed first: both may not fit
         rays_ = make_uploaded(context_->handle(), queue_, std::as_bytes(quads));
         queue_.finish();
         kernel_.setArg(rays_argument, rays_);
@@ -128,7 +128,7 @@ void OpenclSession::resize_output(std::size_t words)
     if (words == output_words_) return;
     require_output_fits(words, max_buffer_bytes_);
     const std::uint64_t bytes = words * sizeof(std::uint32_t);
-    output_ = cl::Buffer(); // the old one goes first: both may not fit
+    output_ = cl::Buffer(); // the old one is freed first: both may not fit
     output_words_ = 0;
     run("making the output", bytes, [&] {
         output_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, bytes);
@@ -184,7 +184,7 @@ void OpenclSession::take_times()
 {
     queue_.finish();
     for (const Enqueued& launched : enqueued_) {
-        launched.event.wait(); // tells where the kernel failed
+        launched.event.wait(); // reports an error of the kernel
         launches_.took(launched.tiles, seconds_of(launched.event));
     }
     enqueued_.clear();

@@ -32,7 +32,7 @@ private:
     void resize_output(std::size_t words);
     void enqueue(const LaunchParams& params, std::uint32_t tiles);
     [[nodiscard]] std::size_t groups_for(std::uint32_t tiles) const;
-    /// Waits for what is enqueued, and counts its times.
+    /// Waits for enqueued work, and counts its times.
     void take_times();
     template <class Work>
     void run(const char* doing, std::uint64_t output_bytes, const Work& work);

@@ -90,7 +90,7 @@ std::uint32_t* copy_of(const std::vector<Quad>& quads)
     void* const block = std::aligned_alloc(huge_page, whole_pages);
     if (block == nullptr)
         throw Error(ErrorKind::unsupported,
-                    "packets need a copy of the records: " + std::to_string(whole_pages) + " bytes are not to be had");
+                    "packets need a copy of the records: " + std::to_string(whole_pages) + " bytes are not available");
 #ifdef MADV_HUGEPAGE
     madvise(block, whole_pages, MADV_HUGEPAGE); // optional: without huge pages walks are slower
 #endif

@@ -31,8 +31,8 @@ bool has_address(Place place)
     return static_cast<bool>(usage_of(place) & vk::BufferUsageFlagBits::eShaderDeviceAddress);
 }
 
-/// Wishes in falling order; every device has the last one of each (Vulkan 1.1, section 11.2.1, but for host-cached
-/// memory).
+/// Preferred properties, best first. Every device has the last of each list (Vulkan 1.1, section 11.2.1), except
+/// host-cached memory.
 std::initializer_list<vk::MemoryPropertyFlags> wishes_for(Place place)
 {
     static const std::initializer_list<vk::MemoryPropertyFlags> device = {Property::eDeviceLocal, {}};
@@ -43,7 +43,7 @@ std::initializer_list<vk::MemoryPropertyFlags> wishes_for(Place place)
     return place == Place::upload ? upload : place == Place::read_back ? read_back : device;
 }
 
-/// Drivers list their types so that the first that has what is wished has least besides.
+/// Drivers order their types such that the first with the wanted properties has the fewest others.
 std::uint32_t memory_type(const vk::PhysicalDeviceMemoryProperties& memory, std::uint32_t allowed, Place place)
 {
     for (const vk::MemoryPropertyFlags wish : wishes_for(place))

@@ -7,33 +7,33 @@
 
 namespace tetrace::vulkan {
 
-/// Where a buffer lies, and what for.
+/// Where a buffer is, and its purpose.
 enum class Place {
     device,    ///< the device's own memory: kernels and transfers use it
     upload,    ///< the host writes, transfers read
     read_back, ///< transfers write, the host reads through its caches
-    geometry,  ///< of the device, by address: what a BVH is built of; this and the next two need Uses::ray_queries
-    structure, ///< of the device: a BVH of the driver's
-    scratch    ///< of the device, by address: what building one needs meanwhile
+    geometry,  ///< of the device, by address: what a BVH is built from; this and the next two need Uses::ray_queries
+    structure, ///< of the device: a BVH built by the driver
+    scratch    ///< of the device, by address: scratch memory for building one
 };
 
 /// A buffer with memory of its own.
 class Buffer {
 public:
     Buffer() = default;
-    /// bytes: 0 makes the smallest there is. Throws vk::SystemError (Context::run() translates it), and
-    /// Error{unsupported} with both numbers where no single allocation may be that large.
+    /// bytes: 0 makes the smallest possible buffer. Throws vk::SystemError (Context::run() translates it), and
+    /// Error{unsupported} with both numbers where an allocation may not be that large.
     Buffer(const Context& context, std::uint64_t bytes, Place place);
 
     [[nodiscard]] vk::Buffer handle() const { return *handle_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    /// As the device sees it; of those places alone that are used by address.
+    /// The device's address; only for places that are used by address.
     [[nodiscard]] vk::DeviceAddress address(const Context& context) const;
     /// The memory as the host sees it; empty where it does not.
     [[nodiscard]] std::span<std::byte> mapped() const;
     /// Whether the host reads it through its caches.
     [[nodiscard]] bool is_cached() const;
-    /// What the host wrote becomes visible to the device, and the other way round; nothing where memory is coherent.
+    /// Makes what the host wrote visible to the device, or the other way round; does nothing where memory is coherent.
     void flush(const Context& context) const;
     void invalidate(const Context& context) const;
 
@@ -47,14 +47,14 @@ private:
     std::byte* mapped_ = nullptr;
 };
 
-/// Copies bytes to the buffer's begin: straight where the host sees its memory, else by way of staging, and waits.
+/// Copies bytes to the start of the buffer and waits: directly if the host sees its memory, else through staging.
 void upload(const Context& context, const Buffer& to, std::span<const std::byte> bytes);
 
-/// Copies the buffer's begin into bytes, through memory that the host caches, and waits. staging: Place::read_back and
-/// large enough, or empty where needs_staging() is false.
+/// Copies the start of the buffer into bytes, through memory that the host caches, and waits. staging: Place::read_back
+/// and large enough, or empty if needs_staging() is false.
 void read_back(const Context& context, const Buffer& from, const Buffer& staging, std::span<std::byte> bytes);
 
-/// Whether the host cannot read the buffer itself at the speed of its caches.
+/// Whether the host cannot read the buffer directly through its caches.
 [[nodiscard]] bool needs_staging(const Buffer& buffer);
 
 } // namespace tetrace::vulkan

@@ -8,13 +8,13 @@
 
 namespace tetrace::vulkan {
 
-/// What a context is opened for: what devices offer beyond compute is enabled for those sessions alone that need it.
+/// What a context is opened for: features beyond compute are enabled only for sessions that need them.
 enum class Uses { compute, ray_queries };
 
-/// A logical device with one queue: what belongs to one session, so that a device that is lost is lost to it alone.
+/// A logical device with one queue. It belongs to one session, so that a lost device is lost only to that session.
 class Context {
 public:
-    /// Throws Error where the driver fails. uses: ray_queries where found.ray_queries has no reason against it.
+    /// Throws Error where the driver fails. uses: ray_queries only if found.ray_queries has no reason against it.
     explicit Context(const FoundDevice& found, Uses uses = Uses::compute);
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }
@@ -29,13 +29,13 @@ public:
     void submit(const vk::raii::CommandBuffer& commands) const;
     /// Waits for everything submitted.
     void finish() const;
-    /// A pool for the two times of a piece of work.
+    /// A query pool for the two times of a piece of work.
     [[nodiscard]] vk::raii::QueryPool make_timestamps() const;
     /// Seconds between record_begin_time() and record_end_time(), in commands that have finished.
     [[nodiscard]] double seconds_of(const vk::raii::QueryPool& times) const;
 
-    /// Does some work; an error of the API becomes Error, see to_error(), and what the validation layers say becomes
-    /// Error{internal}. bytes: that the work needs on the device.
+    /// Does some work; an error of the API becomes Error, see to_error(), and a message of the validation layers
+    /// becomes Error{internal}. bytes: what the work needs on the device.
     template <class Work>
     auto run(const std::string& doing, std::uint64_t bytes, const Work& work) const
     {
@@ -47,7 +47,7 @@ public:
         }
     }
 
-    /// Throws Error{internal} where the validation layers have said something since the last time.
+    /// Throws Error{internal} if the validation layers have sent messages since the last call.
     void check_validation(const std::string& doing) const;
 
 private:
@@ -58,12 +58,11 @@ private:
     vk::raii::Fence fence_{nullptr};
 };
 
-/// Both times are those at which all that was recorded or submitted before has ended: the spans of work that overlaps
-/// count once.
+/// Both times are taken when everything recorded or submitted before has ended: overlapping spans of work count once.
 void record_begin_time(const vk::raii::CommandBuffer& commands, const vk::raii::QueryPool& times);
 void record_end_time(const vk::raii::CommandBuffer& commands, const vk::raii::QueryPool& times);
 
-/// Makes what the transfers and kernels before it wrote visible to transfers, kernels and the host behind it.
+/// Makes what earlier transfers and kernels wrote visible to later transfers, kernels and the host.
 void record_barrier(const vk::raii::CommandBuffer& commands);
 
 } // namespace tetrace::vulkan

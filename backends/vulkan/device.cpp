@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t tile_items = TILE_WIDTH * 8;
 
-/// A device without a handle, for why there is none.
+/// A device without a handle, which holds the reason why there is none.
 FoundDevice no_device(const std::string& reason)
 {
     FoundDevice none;
@@ -62,7 +62,7 @@ void find_queue(const vk::raii::PhysicalDevice& device, Limits& limits)
 
 Limits limits_of(const vk::raii::PhysicalDevice& device)
 {
-    // Devices of 1.0 know none of the later structures, and no instance of 1.0 is here to ask them with.
+    // Devices of 1.0 do not know the later structures.
     const vk::PhysicalDeviceProperties properties = device.getProperties();
     Limits limits;
     limits.api_version = properties.apiVersion;
@@ -77,7 +77,7 @@ Limits limits_of(const vk::raii::PhysicalDevice& device)
     return limits;
 }
 
-/// What devices of Vulkan 1.1 tell of themselves.
+/// The properties of devices of Vulkan 1.1.
 void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
 {
     const auto extensions = device.enumerateDeviceExtensionProperties();
@@ -121,7 +121,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     // where quads are read (results/texels.md).
     found.reads_texels = is_emulated;
     if (is_emulated) found.shares = facts.threads;
-    // Its minimum is three instructions, two of them for NaNs; bvh2 is 7 % faster by selects, cwbvh 3 %.
+    // lavapipe's minimum is three instructions, two of them for NaNs; with selects bvh2 is 7 % faster, cwbvh 3 %.
     found.selects_minima = is_emulated;
     facts.driver = "Vulkan driver " + version_text(properties.driverVersion);
     facts.implementation = "vulkan-" + std::to_string(properties.vendorID);

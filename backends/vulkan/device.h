@@ -11,7 +11,7 @@
 
 namespace tetrace::vulkan {
 
-/// What of a device decides whether it can be used, and how.
+/// The properties of a device that decide whether and how it can be used.
 struct Limits {
     std::uint32_t api_version = 0;
     std::optional<std::uint32_t> queue_family; ///< the first that computes and has timestamps
@@ -25,11 +25,10 @@ struct Limits {
     std::uint64_t allocation_bytes = 0;
 };
 
-/// Empty where the device can run our kernels, else the reason with both numbers.
+/// Empty if the device can run our kernels, else the reason with both numbers.
 [[nodiscard]] std::string why_not_usable(const Limits& limits);
 
-/// Storage buffers that a kernel is given: so many arrays of a scene, the output, and rays, or further parts of the
-/// tets.
+/// The number of storage buffers of a kernel: the scene's arrays, the output, and rays or further parts of the tets.
 [[nodiscard]] constexpr std::uint32_t storage_buffers_needed(std::size_t arrays, bool in_parts)
 {
     return static_cast<std::uint32_t>(arrays) + (in_parts ? MAX_TET_PARTS : 2);
@@ -44,12 +43,12 @@ struct FoundDevice {
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
     bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
     bool selects_minima = false;   ///< selects the smaller of two numbers faster than its minimum does
-    unsigned shares = 1;           ///< it cuts a dispatch into so many runs of successive groups, a thread each
+    unsigned shares = 1;           ///< it cuts a dispatch into this many runs of successive groups, one per thread
     bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests
-    std::string build_key;         ///< device and driver with versions: compiled pipelines are valid for these alone
+    std::string build_key;         ///< device and driver with versions: compiled pipelines are valid only for these
 };
 
-/// Of the structure that has most: a device that has fewer is of no use.
+/// For the structure with the most arrays: a device with fewer buffers cannot be used.
 inline constexpr std::uint32_t least_storage_buffers = storage_buffers_needed(5, false);
 
 /// Every device of every driver, or one entry that says why there is none. Throws nothing.

@@ -8,7 +8,7 @@
 
 namespace tetrace::vulkan {
 
-/// Whether the code says that memory does not suffice.
+/// Whether the code means that memory is too small.
 [[nodiscard]] bool is_about_memory(vk::Result code);
 
 /// What was being done when the API failed, for the error's text.

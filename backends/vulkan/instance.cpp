@@ -38,7 +38,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     return VK_FALSE;
 }
 
-/// As a raw structure: the bindings' type of its callback differs between their versions.
+/// As a raw structure: the callback's type in the bindings differs between versions.
 vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog& log)
 {
     VkDebugUtilsMessengerCreateInfoEXT info{};

@@ -8,11 +8,11 @@
 
 namespace tetrace::vulkan {
 
-/// What the validation layers say, from whichever thread, until somebody asks.
+/// Messages of the validation layers from any thread, kept until they are fetched.
 class ValidationLog {
 public:
     void add(const std::string& message);
-    /// Everything since the last call, a message a line; empty where there was none.
+    /// All messages since the last call, one per line; empty if there were none.
     [[nodiscard]] std::string take();
 
 private:
@@ -43,8 +43,8 @@ private:
     bool validates_ = false;
 };
 
-/// The process's one instance, made at the first call, never destroyed: drivers do not survive that their libraries are
-/// closed while the process exits. Throws as the constructor does.
+/// The process's one instance, made at the first call, never destroyed: drivers crash if their libraries are closed
+/// while the process exits. Throws as the constructor does.
 [[nodiscard]] Instance& instance();
 
 } // namespace tetrace::vulkan

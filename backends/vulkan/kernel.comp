@@ -1,7 +1,7 @@
 #version 450
-// A kernel as a compute shader (CMakeLists.txt): a thin entry round the shared text. A work group is a tile. TRACE, RAYS or
-// SEARCH: for that task.
-layout(constant_id = 2) const bool selects_minima = false; // the driver's own minimum is the dearer one
+// A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
+// RAYS or SEARCH: the task.
+layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
 #include "kernels/language/dialect_glsl.h"
 
@@ -14,7 +14,7 @@ layout(constant_id = 2) const bool selects_minima = false; // the driver's own m
 #include "kernels/kernel.h"
 
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the tile's height
-layout(constant_id = 1) const bool starts_outside = false; // all rays of task trace do: no start in a tet is compiled
+layout(constant_id = 1) const bool starts_outside = false; // of all rays: no start in a tet is compiled
 layout(push_constant) uniform Launch
 {
     LaunchParams launch;
@@ -37,8 +37,9 @@ layout(std430, set = 0, binding = RAYS_BINDING) readonly buffer Rays
 #endif
 #endif
 
-// lavapipe gives each of its threads one run of successive groups, x first, z last: with a z for each (session.cpp) and
-// tiles that change hands after every x all have about as much to do, whatever the image.
+// lavapipe gives each of its threads one run of successive groups, x first, z last. Here each thread has its own z
+// (session.cpp), and tiles pass to the next z after every x, so that all threads have about as much to do for any
+// image.
 uint tile_of_group()
 {
     uint run = gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z;

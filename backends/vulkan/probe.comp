@@ -1,5 +1,5 @@
 #version 450
-// The self-test as a compute shader: an item a quad of {operation, a, b, c}.
+// The self-test as a compute shader: one item per quad of {operation, a, b, c}.
 #include "kernels/language/dialect_glsl.h"
 
 #include "kernels/probe.h"

@@ -22,7 +22,7 @@ vk::raii::PipelineCache make_cache(const Context& context, const ProgramCache& c
     return context.device().createPipelineCache(info);
 }
 
-/// What was told about a pipeline's making: whether the cache had it.
+/// The driver's feedback on making a pipeline: whether the cache had it.
 bool is_hit(const vk::PipelineCreationFeedback& feedback)
 {
     using Flag = vk::PipelineCreationFeedbackFlagBits;

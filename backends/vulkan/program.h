@@ -31,18 +31,18 @@ struct ProgramId {
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 
-/// A compute pipeline with the buffers that it is given.
+/// A compute pipeline with its buffers.
 class Program {
 public:
     /// Throws Error{internal} where the driver cannot compile it.
     Program(const Context& context, const ProgramId& id, const ProgramCache& cache);
 
     [[nodiscard]] const vk::raii::PipelineLayout& layout() const { return layout_; }
-    /// Whether the driver had no need to compile; false where it does not tell.
+    /// Whether the driver did not need to compile; false if it does not say.
     [[nodiscard]] bool is_cached() const { return is_cached_; }
     /// Every binding needs a buffer before record() is called; not while commands that use the program run.
     void bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const;
-    /// The buffer that was bound there before must live until then.
+    /// The previously bound buffer must live until then.
     void bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer);
     /// The structure must live as long as the program runs.
     void bind_structure(const Context& context, std::uint32_t binding, vk::AccelerationStructureKHR structure) const;

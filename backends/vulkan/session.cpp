@@ -19,7 +19,7 @@ void require_storage_buffers(const FoundDevice& found, const PackedScene& scene,
                                             " storage buffers, " + std::to_string(needed) + " are needed");
 }
 
-/// Every array as texels, those of quads apart from those of words: kernels/language/scene_view_texels_glsl.h.
+/// Every array as texels, arrays of quads separate from arrays of words: kernels/language/scene_view_texels_glsl.h.
 std::vector<TexelBinding> texel_bindings(Layout layout)
 {
     std::vector<TexelBinding> texels;
@@ -30,7 +30,7 @@ std::vector<TexelBinding> texel_bindings(Layout layout)
     return texels;
 }
 
-/// Whether the scene is read as texels: where the device likes it, and has views of so many words.
+/// Whether the scene is read as texels: if the device prefers it, and its views can be that large.
 bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetParts& parts)
 {
     if (!found.reads_texels || parts.count > 1) return false;
@@ -40,11 +40,11 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
     return std::ranges::all_of(scene_buffers(scene), fits);
 }
 
-/// How many tiles side by side one thread of an emulated device gets. With 1 walks lose 2 %, as neighbours read
-/// the same; with 16 BVHs lose 3 %, as a thread has the same few columns in all rows.
+/// How many adjacent tiles one thread of an emulated device gets. With 1, walks lose 2 %, because neighbouring tiles
+/// read the same data; with 16, BVHs lose 3 %, because a thread gets the same few columns in all rows.
 constexpr std::uint32_t tiles_of_run = 4;
 
-constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as kernel_rt.comp has it
+constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as in rt/kernel.comp
 
 constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
 
@@ -122,7 +122,7 @@ void VulkanSession::compile()
 
 void VulkanSession::compile_starts_inside()
 {
-    take_times(); // of what still runs the old program
+    take_times(); // for launches that still run the old program
     starts_outside_ = false;
     compile();
     if (output_words_ != 0) program_->bind(context_, OUTPUT_BINDING, output_);
@@ -171,13 +171,13 @@ void VulkanSession::set_rays(std::span<const Quad> quads)
         throw Error(ErrorKind::unsupported, "the rays have " + std::to_string(words) + " words, the device's views " +
                                                 std::to_string(context_.found().limits.texels));
     context_.run("uploading rays", quads.size_bytes(), [&] {
-        take_times(); // of what still reads the old ones
+        take_times(); // for launches that still read the old ones
         if (rays_.bytes() != quads.size_bytes()) bind_rays(Buffer(context_, quads.size_bytes(), Place::device));
         upload(context_, rays_, std::as_bytes(quads));
     });
 }
 
-/// The old ones' view goes before they do.
+/// The view of the old ones is destroyed before they are.
 void VulkanSession::bind_rays(Buffer rays)
 {
     if (in_texels_)
@@ -192,7 +192,7 @@ void VulkanSession::resize_output(std::size_t words)
     if (words == output_words_) return;
     require_output_fits(words, max_buffer_bytes_);
     const std::uint64_t bytes = words * sizeof(std::uint32_t);
-    output_ = Buffer(); // the old ones go first: all may not fit
+    output_ = Buffer(); // the old ones are freed first: both may not fit
     staging_ = Buffer();
     output_words_ = 0;
     context_.run("making the output", bytes_ + bytes, [&] {
@@ -250,7 +250,7 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
 void VulkanSession::launch(const TraceJob& job)
 {
     context_.run("launching", output_bytes(), [&] {
-        take_times(); // of a launch that nobody waited for
+        take_times(); // for a launch that nobody waited for
         if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
         resize_output(output_words(job, kernel_.task));
         launches_.start(
@@ -279,7 +279,7 @@ void VulkanSession::read_output(std::span<std::uint32_t> words)
 {
     require_output_of_last_launch(words.size(), output_words_);
     context_.run("reading back", output_bytes(), [&] {
-        take_times(); // mapped memory is read at once: nothing may be writing it still
+        take_times(); // mapped memory is read directly: nothing may still be writing it
         vulkan::read_back(context_, output_, staging_, std::as_writable_bytes(words));
     });
     context_.check_validation("the next call");

@@ -13,7 +13,7 @@ namespace tetrace::vulkan {
 /// One packed scene in the buffers of one device, or the driver's own BVH of a mesh, and one pipeline that reads it.
 class VulkanSession : public Session {
 public:
-    /// Throws Error{unsupported} where a limit or the memory does not suffice, with both numbers.
+    /// Throws Error{unsupported} with both numbers where a limit or the memory is too small.
     VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                   const SessionOptions& options);
     /// For kernels of layout rt; the device has ray queries.
@@ -46,9 +46,10 @@ private:
     const vk::raii::CommandBuffer& commands_for(std::size_t index);
     /// The image's first launch poisons the output before its kernel.
     void enqueue(const LaunchParams& params, std::uint32_t tiles);
-    /// Records the dispatches of so many tiles, such that each of the device's shares has tiles from everywhere.
+    /// Records the dispatches of that many tiles, such that each of the device's threads gets tiles from all over the
+    /// image.
     void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
-    /// Waits for what is enqueued, and counts its times.
+    /// Waits for enqueued work, and counts its times.
     void take_times();
 
     Context context_; // outlives all that follows
@@ -57,7 +58,7 @@ private:
     unsigned tile_height_;
     KernelId kernel_;
     std::filesystem::path program_cache_;
-    bool starts_outside_ = true; ///< all rays so far: the program has no other start
+    bool starts_outside_ = true; ///< all rays so far start outside: the program has no other start
     bool in_texels_ = false;     ///< the scene's arrays are read as texels
     std::uint32_t divisions_ = 0;
     std::uint64_t bytes_ = 0;

@@ -190,7 +190,7 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
     enter_tets(walk, exits);
 }
 
-// Sets the lanes to the beams of packets [first, first + LANES) of a block, and returns how many of these exist.
+// Sets the lanes to the beams of packets [first, first + LANES) of a block, and returns the mask of those that exist.
 LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
 {
     const uint count = packets.count - first < LANES ? packets.count - first : LANES;

@@ -13,7 +13,7 @@ using LevelType = vk::AccelerationStructureTypeKHR;
 using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
-/// Makes what was copied and built before it visible to builds and kernels behind it.
+/// Makes earlier copies and builds visible to later builds and kernels.
 void record_build_barrier(const vk::raii::CommandBuffer& commands)
 {
     const auto barrier = vk::MemoryBarrier{}
@@ -46,7 +46,7 @@ vk::AccelerationStructureGeometryKHR opaque(vk::GeometryTypeKHR type, vk::Accele
         .setGeometry(data);
 }
 
-/// What the driver is asked for: rays that are traced fast, whatever the build takes.
+/// The driver is asked for fast tracing, not for a fast build.
 vk::AccelerationStructureBuildGeometryInfoKHR build_info(LevelType type,
                                                          const vk::AccelerationStructureGeometryKHR& geometry)
 {

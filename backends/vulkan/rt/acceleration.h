@@ -1,4 +1,4 @@
-// What Vulkan drivers bring for ray tracing: their own BVHs, and ray queries through them.
+// rt/: ray tracing by Vulkan drivers: their own BVHs, and ray queries through them.
 #pragma once
 
 #include "backends/vulkan/buffer.h"
@@ -8,21 +8,21 @@
 
 namespace tetrace::vulkan {
 
-/// A triangle mesh as the driver's own BVH: a bottom level of its triangles, built to be traced fast and then
-/// compacted, and a top level that has it once, as it stands.
+/// A triangle mesh as the driver's own BVH: a bottom level of its triangles, built for fast tracing and then compacted,
+/// and a top level with one instance of it, without a transformation.
 class Acceleration {
 public:
     /// context: of Uses::ray_queries. Throws Error{unsupported} with both numbers where the device's structures hold
-    /// fewer triangles, or its memory does not suffice.
+    /// fewer triangles, or its memory is too small.
     Acceleration(const Context& context, const TriangleMesh& mesh);
 
     /// The top level, for shaders.
     [[nodiscard]] vk::AccelerationStructureKHR handle() const { return *top_.handle; }
-    /// Of both levels, compacted.
+    /// Bytes of both levels, compacted.
     [[nodiscard]] std::uint64_t bytes() const { return bottom_.memory.bytes() + top_.memory.bytes(); }
-    /// Copying vertices and indices to the device, on the host's clock.
+    /// Seconds of copying vertices and indices to the device, on the host's clock.
     [[nodiscard]] double upload_s() const { return upload_s_; }
-    /// Building both levels and compacting, by timestamps.
+    /// Seconds of building both levels and compacting, by timestamps.
     [[nodiscard]] double build_s() const { return build_s_; }
 
 private:
@@ -31,7 +31,7 @@ private:
         vk::raii::AccelerationStructureKHR handle{nullptr};
     };
     [[nodiscard]] Level make_level(vk::AccelerationStructureTypeKHR type, std::uint64_t bytes) const;
-    /// Builds a level of so many triangles or instances.
+    /// Builds a level of that many triangles or instances.
     [[nodiscard]] Level build(vk::AccelerationStructureTypeKHR type,
                               const vk::AccelerationStructureGeometryKHR& geometry, std::uint32_t count);
     [[nodiscard]] Level build_bottom(const TriangleMesh& mesh);

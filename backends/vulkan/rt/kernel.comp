@@ -1,6 +1,7 @@
 #version 460
-// Traces by the driver's own BVH (acceleration.h): the rays are made and given as kernel.comp's, the rest is the driver's.
-// A work group is a tile. TRACE or RAYS: for that task.
+// Traces through the driver's own BVH (acceleration.h). Rays are made or given as in kernel.comp, the rest is the
+// driver's.
+// A work group is a tile. TRACE or RAYS: the task.
 #extension GL_EXT_ray_query : require
 #include "kernels/language/dialect_glsl.h"
 
@@ -35,7 +36,7 @@ Hit trace(Ray ray, real end)
     rayQueryEXT query;
     rayQueryInitializeEXT(query, scene, flags, 0xFFu, vec3(ray.origin.x, ray.origin.y, ray.origin.z), real(0.0f),
                           vec3(ray.direction.x, ray.direction.y, ray.direction.z), end);
-    while (rayQueryProceedEXT(query)) {} // all is opaque: there are no candidates to confirm
+    while (rayQueryProceedEXT(query)) {} // all triangles are opaque: there are no candidates to confirm
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT)
         return make_no_hit(NO_HIT, NO_TET, 0u);
     vec2 weights = rayQueryGetIntersectionBarycentricsEXT(query, true);
@@ -51,7 +52,7 @@ Hit trace(Ray ray, real end)
 
 void main()
 {
-    uint run = gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z; // as kernel.comp has it
+    uint run = gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z; // as in kernel.comp
     uint tile = launch.first_tile + run * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     Pixel pixel = pixel_of(launch, tile, gl_LocalInvocationIndex);
     if (!is_in_image(launch, pixel)) return;
