@@ -1,3 +1,5 @@
+// walks/: the walks from tet to tet, one file each, and how rays enter the domain.
+//
 // The vertices that a walk along a path carries, as the ray sees them: those of the face that it is at. A step projects
 // one new vertex, the apex of the tet behind the face, and two signs say which of the three vertices it replaces.
 STRUCT(Carried)

@@ -41,7 +41,8 @@ std::string first_line(const fs::path& file)
     return line;
 }
 
-/// The sentence about a folder: the first line of its CMakeLists.txt, else of its first header; empty without one.
+/// The sentence about a folder: the first line of its CMakeLists.txt, else of its first header, which begins with the
+/// folder's name there; empty without one.
 std::string sentence_of(const fs::path& folder)
 {
     const std::string of_target = first_line(folder / "CMakeLists.txt");
@@ -50,7 +51,7 @@ std::string sentence_of(const fs::path& folder)
     for (const auto& entry : fs::directory_iterator(folder))
         if (entry.path().extension() == ".h") headers.insert(entry.path());
     const std::string of_header = headers.empty() ? std::string() : first_line(*headers.begin());
-    return of_header.starts_with("// ") ? of_header : std::string();
+    return of_header.starts_with("// " + folder.filename().string() + "/: ") ? of_header : std::string();
 }
 
 } // namespace

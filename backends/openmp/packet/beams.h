@@ -1,3 +1,5 @@
+// packet/: the walk of a packet of rays, a ray per lane; one source for vectors of 4, 8 and 16 lanes.
+//
 // Beams: steps that all rays of a packet take alike are done once, for the beam of all directions that its pixels span.
 // Each lane is the beam of one packet. A beam goes on while all its rays are sure to have the same answer in spite of
 // rounding (docs/spec/packets.md, K7).

@@ -1,4 +1,4 @@
-// rt/: ray tracing by Vulkan drivers: their own BVHs, and ray queries through them.
+// rt/: what Vulkan drivers bring for ray tracing: their own BVHs, and ray queries through them.
 #pragma once
 
 #include "backends/vulkan/buffer.h"
