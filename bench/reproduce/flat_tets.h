@@ -22,7 +22,6 @@ public:
     explicit FlatTets(const SceneWork& scene);
 
     [[nodiscard]] std::uint64_t count() const { return count_; }
-    [[nodiscard]] bool is_flat(std::size_t tet) const { return flat_[tet]; } ///< as the tet mesh numbers them
 
     /// Counts the rays that pass a flat tet in their first steps_looked_at steps, among the rays through these pixels
     /// (y * width + x). Looks at no more than rays_looked_at rays, spread over the pixels. openmp traces the walks.

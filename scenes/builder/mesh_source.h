@@ -51,7 +51,6 @@ public:
     bool next(std::vector<std::string_view>& words);
     /// The next line as it is.
     bool next_raw(std::string_view& line);
-    [[nodiscard]] std::size_t line_number() const { return line_; }
     [[nodiscard]] std::size_t offset() const { return at_; }
     [[nodiscard]] std::string place(const std::string& element) const; ///< "<element> (line <n>)"
 
