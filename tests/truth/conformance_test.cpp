@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <ostream>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -32,6 +33,11 @@ std::string name_of(const Part& part)
     std::string name = part.backend;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
+}
+
+void PrintTo(const Part& part, std::ostream* out)
+{
+    *out << name_of(part);
 }
 
 /// Small: interpreters of kernels are among the devices.
