@@ -10,8 +10,7 @@
 
 namespace tetrace {
 
-/// How devices are named: the same under each API, so that one device under several APIs can be recognised.
-
+// Devices have the same names under each API, so that one device under several APIs can be recognised.
 /// The placeholder for an API without devices, with the reason.
 [[nodiscard]] Device unusable_device(const std::string& name, const std::string& reason);
 

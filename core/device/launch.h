@@ -29,10 +29,8 @@ static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; se
 /// Words of an image's output, guards included.
 [[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
 
-/// Throws Error{unsupported} with both numbers where an image's output exceeds the largest buffer. max_buffer_bytes: 0
-/// is no limit.
+/// Throws Error{unsupported} with both numbers if an image's output exceeds the largest buffer; 0 is no limit.
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
-
 /// The same for a session's rays.
 void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes);
 

@@ -26,8 +26,7 @@ struct SceneBuffer {
 /// All arrays of the scene's layout by their binding; at most SCENE_ARRAYS.
 [[nodiscard]] std::vector<SceneBuffer> scene_buffers(const PackedScene& scene);
 
-/// How the array of tets is cut where it exceeds a device's largest buffer: parts of 2^log2_bytes, the last one
-/// shorter.
+/// How the array of tets is cut if it exceeds a device's largest buffer: parts of 2^log2_bytes, the last one shorter.
 struct TetParts {
     unsigned count = 1;
     unsigned log2_bytes = 31;
