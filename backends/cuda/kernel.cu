@@ -14,12 +14,10 @@
 
 KERNEL_FN void write_hit(Hit hit, uint word, uint* output)
 {
-    output[word] = hit.face_id;
-    output[word + 1u] = hit.tet;
-    output[word + 2u] = as_bits(hit.t);
-    output[word + 3u] = as_bits(hit.u);
-    output[word + 4u] = as_bits(hit.v);
-    output[word + 5u] = hit.steps;
+    uint2* pairs = reinterpret_cast<uint2*>(output + word);
+    pairs[0] = make_uint2(hit.face_id, hit.tet);
+    pairs[1] = make_uint2(as_bits(hit.t), as_bits(hit.u));
+    pairs[2] = make_uint2(as_bits(hit.v), hit.steps);
 }
 
 KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint item, uint* output)
@@ -31,7 +29,7 @@ KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint
 }
 
 // One ray per thread, one tile per block.
-extern "C" __global__ void ENTRY(trace_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output)
+KERNEL_FN void trace_tiles(SceneView scene, LaunchParams launch, uint* output)
 {
     trace_pixel(scene, launch, launch.first_tile + blockIdx.x, threadIdx.x, output);
 }
@@ -41,8 +39,7 @@ extern "C" __global__ void ENTRY(trace_tiles_, KERNEL_NAME)(SceneView scene, Lau
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
 // addendum for Kepler, with Karras, 2012. Blocks are of whole warps, and a tile is one or two warps: either all lanes
 // of a warp get a ray, or none.
-extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
-                                                                 uint* counter, uint tiles)
+KERNEL_FN void trace_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles)
 {
     uint tile_items = TILE_WIDTH * launch.tile_height;
     uint lane = threadIdx.x % warpSize;
@@ -55,6 +52,37 @@ extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene
         trace_pixel(scene, launch, launch.first_tile + index / tile_items, index % tile_items, output);
     }
 }
+
+// Rays from outside have entries of their own: with both kinds in one, either waits for the other's registers.
+KERNEL_FN LaunchParams from_outside(LaunchParams launch)
+{
+    launch.trace.start_tet = NO_TET;
+    return launch;
+}
+
+extern "C" __global__ void ENTRY(trace_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output)
+{
+    trace_tiles(scene, from_outside(launch), output);
+}
+
+extern "C" __global__ void ENTRY(trace_persistent_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                                 uint* counter, uint tiles)
+{
+    trace_persistent(scene, from_outside(launch), output, counter, tiles);
+}
+
+#ifdef STARTS_IN_TETS
+extern "C" __global__ void ENTRY(inside_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output)
+{
+    trace_tiles(scene, launch, output);
+}
+
+extern "C" __global__ void ENTRY(inside_persistent_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                                  uint* counter, uint tiles)
+{
+    trace_persistent(scene, launch, output, counter, tiles);
+}
+#endif
 
 #ifdef TAKES_RAYS
 // One given ray per thread, one tile per block.

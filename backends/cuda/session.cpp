@@ -12,9 +12,9 @@ namespace {
 
 constexpr unsigned persistent_block_threads = 128; // four warps: enough blocks fit for every warp that a device holds
 
-std::string entry_of(const KernelId& kernel)
+std::string entry_name(std::string_view prefix, const KernelId& kernel)
 {
-    return std::string(name_of(kernel.task)).append("_").append(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
+    return std::string(prefix).append("_").append(name_of(kernel.schedule)) + "_" + embedded_name(kernel);
 }
 
 /// One address space needs no limit and no parts, but a smaller limit in the options is still enforced.
@@ -34,7 +34,10 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
                          const PackedScene& scene, const SessionOptions& options, unsigned tile_height)
     : device_(driver, device),
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
-      task_(kernel.task), schedule_(kernel.schedule), kernel_(program_.module.function(entry_of(kernel))),
+      task_(kernel.task), schedule_(kernel.schedule), outside_(entry(device, entry_name(name_of(kernel.task), kernel))),
+      inside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt
+                  ? entry(device, entry_name("inside", kernel))
+                  : outside_),
       divisions_(scene.divisions), timer_(device_.context), tile_height_(tile_height), threads_(options.threads),
       max_buffer_bytes_(options.max_buffer_bytes), launches_(tile_height), bytes_(scene.bytes())
 {
@@ -44,17 +47,23 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
     upload(scene);
     if (schedule_ != Schedule::persistent) return;
     counter_ = Memory(device_.context, sizeof(std::uint32_t), "the counter of persistent threads");
-    int blocks = 0;
-    device_.context.check(driver.blocks_per_multiprocessor(&blocks, kernel_, persistent_block_threads, 0),
-                          "asking how many blocks fit");
-    resident_blocks_ =
-        static_cast<unsigned>(std::max(1, blocks * attribute_of(driver, device, attribute_multiprocessors)));
 }
 
 CudaSession::~CudaSession()
 {
     // Modules and memory are released in the context that is current.
     device_.driver().context_set_current(device_.context.handle());
+}
+
+CudaSession::Entry CudaSession::entry(Ordinal device, const std::string& name)
+{
+    const FunctionHandle function = program_.module.function(name);
+    const Driver& driver = device_.driver();
+    int blocks = 0;
+    device_.context.check(driver.blocks_per_multiprocessor(&blocks, function, persistent_block_threads, 0),
+                          "asking how many blocks fit");
+    return {function,
+            static_cast<unsigned>(std::max(1, blocks * attribute_of(driver, device, attribute_multiprocessors)))};
 }
 
 void CudaSession::make_current()
@@ -100,6 +109,7 @@ void CudaSession::launch(const TraceJob& job)
 {
     make_current();
     poison_output(output_words(job, task_));
+    entry_ = job.start_tet == NO_TET ? outside_ : inside_;
     launched_tiles_ = 0;
     launches_.start(
         launch_params(job, divisions_, tile_height_, TetParts{}.log2_bytes),
@@ -117,7 +127,7 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
     Address output = output_.address(), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
     timer_.start(device_.stream.get());
-    device_.launch(kernel_, tiles, TILE_WIDTH * tile_height_, parameters);
+    device_.launch(entry_.function, tiles, TILE_WIDTH * tile_height_, parameters);
     timer_.stop(device_.stream.get());
 }
 
@@ -130,7 +140,7 @@ void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t ti
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
     device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");
     timer_.start(device_.stream.get());
-    device_.launch(kernel_, std::min(blocks, resident_blocks_), persistent_block_threads, parameters);
+    device_.launch(entry_.function, std::min(blocks, entry_.resident_blocks), persistent_block_threads, parameters);
     timer_.stop(device_.stream.get());
 }
 

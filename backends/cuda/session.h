@@ -28,6 +28,12 @@ private:
     void poison_output(std::size_t words);
     void launch_tiles(const LaunchParams& params, std::uint32_t tiles);
     void launch_persistent(const LaunchParams& params, std::uint32_t tiles);
+    /// A kernel's entry point.
+    struct Entry {
+        FunctionHandle function;
+        unsigned resident_blocks; ///< as many as the device holds at once
+    };
+    [[nodiscard]] Entry entry(Ordinal device, const std::string& name);
     /// Waits for the current launch, if any, and counts its time.
     void finish_launch();
 
@@ -35,7 +41,7 @@ private:
     LoadedProgram program_;
     Task task_;
     Schedule schedule_;
-    FunctionHandle kernel_;
+    Entry outside_, inside_;     ///< for rays of an image that begin outside the domain, or in a tet
     std::vector<Memory> arrays_; ///< by binding
     std::vector<Address>
         scene_; ///< the kernels' argument: SceneView of kernels/language/scene_view_cuda.h, word for word
@@ -44,8 +50,8 @@ private:
     EventTimer timer_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
-    unsigned resident_blocks_ = 0; ///< for schedule persistent: as many as the device holds at once
     Launches launches_;
+    Entry entry_ = {};                 ///< of the image
     std::uint32_t launched_tiles_ = 0; ///< of the current launch; 0: there is none
     SetupTimes setup_;
     std::uint64_t bytes_;

@@ -23,6 +23,18 @@ void ENTRY(run_trace_persistent_, KERNEL_NAME)(void** arguments)
     call(ENTRY(trace_persistent_, KERNEL_NAME), arguments);
 }
 
+#ifdef STARTS_IN_TETS
+void ENTRY(run_inside_tiles_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(inside_tiles_, KERNEL_NAME), arguments);
+}
+
+void ENTRY(run_inside_persistent_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(inside_persistent_, KERNEL_NAME), arguments);
+}
+#endif
+
 #ifdef TAKES_RAYS
 void ENTRY(run_rays_tiles_, KERNEL_NAME)(void** arguments)
 {

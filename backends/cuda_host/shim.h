@@ -14,10 +14,18 @@
 #define __global__
 #define __restrict__ __restrict
 
-/// CUDA's 16-byte vector, which a device loads at once.
+/// CUDA's vectors, which a device loads or stores at once.
+struct alignas(8) uint2 {
+    std::uint32_t x, y;
+};
 struct alignas(16) uint4 {
     std::uint32_t x, y, z, w;
 };
+
+inline uint2 make_uint2(std::uint32_t x, std::uint32_t y)
+{
+    return {x, y};
+}
 
 namespace tetrace::cuda_host {
 
@@ -65,6 +73,12 @@ inline float __uint_as_float(std::uint32_t bits)
 inline std::uint32_t __float_as_uint(float value)
 {
     return std::bit_cast<std::uint32_t>(value);
+}
+
+inline float __fmaf_rn(float a, float b, float c)
+{
+    return a * b +
+           c; // rounded twice: a call, where the processor has no such instruction, would cost more than it gains
 }
 
 inline float __uint2float_rn(std::uint32_t value)

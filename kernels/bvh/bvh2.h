@@ -9,12 +9,12 @@
 KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, uint y_low, uint y_high, uint z_low,
                          uint z_high)
 {
-    PRECISE real x0 = as_real(x_low) * frame.inverse.x - frame.offset.x;
-    PRECISE real x1 = as_real(x_high) * frame.inverse.x - frame.offset.x;
-    PRECISE real y0 = as_real(y_low) * frame.inverse.y - frame.offset.y;
-    PRECISE real y1 = as_real(y_high) * frame.inverse.y - frame.offset.y;
-    PRECISE real z0 = as_real(z_low) * frame.inverse.z - frame.offset.z;
-    PRECISE real z1 = as_real(z_high) * frame.inverse.z - frame.offset.z;
+    real x0 = multiply_add(as_real(x_low), frame.inverse.x, -frame.offset.x);
+    real x1 = multiply_add(as_real(x_high), frame.inverse.x, -frame.offset.x);
+    real y0 = multiply_add(as_real(y_low), frame.inverse.y, -frame.offset.y);
+    real y1 = multiply_add(as_real(y_high), frame.inverse.y, -frame.offset.y);
+    real z0 = multiply_add(as_real(z_low), frame.inverse.z, -frame.offset.z);
+    real z1 = multiply_add(as_real(z_high), frame.inverse.z, -frame.offset.z);
     real near = maximum(maximum(minimum(x0, x1), minimum(y0, y1)), maximum(minimum(z0, z1), real(0.0f)));
     real far = minimum(minimum(maximum(x0, x1), maximum(y0, y1)), minimum(maximum(z0, z1), limit));
     return near <= with_slack(far) ? near : NEVER;

@@ -19,9 +19,9 @@ KERNEL_FN GridFrame grid_frame(RayFrame frame, uint4 quad)
     PRECISE real step_x = as_real((quad.w & 0xFFu) << 23u) * frame.inverse.x;
     PRECISE real step_y = as_real((quad.w >> 8u & 0xFFu) << 23u) * frame.inverse.y;
     PRECISE real step_z = as_real((quad.w >> 16u & 0xFFu) << 23u) * frame.inverse.z;
-    PRECISE real start_x = as_real(quad.x) * frame.inverse.x - frame.offset.x;
-    PRECISE real start_y = as_real(quad.y) * frame.inverse.y - frame.offset.y;
-    PRECISE real start_z = as_real(quad.z) * frame.inverse.z - frame.offset.z;
+    real start_x = multiply_add(as_real(quad.x), frame.inverse.x, -frame.offset.x);
+    real start_y = multiply_add(as_real(quad.y), frame.inverse.y, -frame.offset.y);
+    real start_z = multiply_add(as_real(quad.z), frame.inverse.z, -frame.offset.z);
     grid.step = VEC3(step_x, step_y, step_z);
     grid.start = VEC3(start_x, start_y, start_z);
     return grid;
@@ -29,8 +29,7 @@ KERNEL_FN GridFrame grid_frame(RayFrame frame, uint4 quad)
 
 KERNEL_FN real plane_depth(real step, real start, uint planes, uint shift)
 {
-    PRECISE real depth = to_real(planes >> shift & 0xFFu) * step + start;
-    return depth;
+    return multiply_add(to_real(planes >> shift & 0xFFu), step, start);
 }
 
 // Hits of four children, whose planes are the bytes of the words. turn: the ray's octant, inverted. slot xor turn is a

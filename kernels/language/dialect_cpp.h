@@ -35,6 +35,11 @@ KERNEL_FN real to_real(uint value)
     return real(static_cast<float>(value));
 }
 
+// a * b + c, rounded once or twice: only for what decides nothing, such as the boxes of BVHs (docs/spec/bvhs.md, B7).
+KERNEL_FN real multiply_add(real a, real b, real c)
+{
+    return a * b + c;
+}
 // Operands are never NaN.
 KERNEL_FN real minimum(real a, real b)
 {

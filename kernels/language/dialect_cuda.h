@@ -24,6 +24,11 @@ KERNEL_FN real to_real(uint value)
 {
     return __uint2float_rn(value);
 }
+// a * b + c, rounded once or twice: only for what decides nothing, such as the boxes of BVHs (docs/spec/bvhs.md, B7).
+KERNEL_FN real multiply_add(real a, real b, real c)
+{
+    return __fmaf_rn(a, b, c);
+}
 KERNEL_FN real minimum(real a, real b)
 {
     return fminf(a, b);

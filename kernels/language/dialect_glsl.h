@@ -33,6 +33,11 @@ KERNEL_FN real square_root(real value)
 {
     return sqrt(value);
 }
+// a * b + c, rounded once or twice: only for what decides nothing, such as the boxes of BVHs (docs/spec/bvhs.md, B7).
+KERNEL_FN real multiply_add(real a, real b, real c)
+{
+    return a * b + c;
+}
 KERNEL_FN real minimum(real a, real b)
 {
     return SELECTS_MINIMA ? (a < b ? a : b) : min(a, b);

@@ -4,6 +4,7 @@
 // Include after this: entry_links.h or entry_faces.h (the boundary faces that a square lists), then entry_nearest.h or
 // entry_on_path.h (by which of them a ray enters).
 #define NO_ENTRY 0xFFFFFFFFu // instead of a boundary face's number
+#define STARTS_IN_TETS       // rays of an image may also begin inside the domain
 
 // The corners of a boundary face, in the order of faces.h.
 STRUCT(EntryFace)

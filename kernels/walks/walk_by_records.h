@@ -21,9 +21,10 @@ STRUCT(Walker)
     Carried p0;
     Carried p1;
     Carried p2;
-    uint turn;   // corner i of the previous record's entry face is the carried vertex (i + turn) % 3
-    uint exit;   // of that record
-    uint record; // any record of the tet that was left
+    uint turn;     // corner i of the previous record's entry face is the carried vertex (i + turn) % 3
+    uint exit;     // of that record
+    uint before;   // the exit that led to that record
+    uint replaced; // the carried vertex that its apex replaced, or UNDECIDED: then `exit` is not yet known
     uint steps;
 };
 
@@ -34,20 +35,48 @@ KERNEL_FN bool goes_on(Walker at, TraceParams params, bool is_endless, real reac
            (is_endless || at.p0.along <= reach || at.p1.along <= reach || at.p2.along <= reach);
 }
 
-// The face by which the ray leaves the tet behind the current face.
-KERNEL_FN Walker next_face(Walker at, Carried apex, uint4 exits, uint replaced)
+// The walker with the apex of its previous record in place of a carried vertex, at the exit that this leads to.
+KERNEL_FN Walker with_apex(Walker at, Carried apex, uint4 exits, uint replaced)
 {
-    Walker next;
+    Walker next = at;
     next.p0 = replaced == 0u ? apex : at.p0;
     next.p1 = replaced == 1u ? apex : at.p1;
     next.p2 = replaced == 2u ? apex : at.p2;
+    uint index = replaced < at.turn ? replaced + 3u - at.turn : replaced - at.turn;
+    next.exit = index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
+    next.replaced = replaced;
+    return next;
+}
+
+// The face by which the ray leaves the tet behind the current face, as far as float products tell. One branch ends the
+// loop around it: nothing waits for the record's second half alone.
+KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
+{
+    Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
+    uint4 exits = record_exits(scene, at.exit >> 2u);
+    Walker next = at;
     uint turn = at.turn + (at.exit & 3u);
     next.turn = turn >= 3u ? turn - 3u : turn;
-    uint index = replaced < next.turn ? replaced + 3u - next.turn : replaced - next.turn;
-    next.exit = index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
-    next.record = at.exit >> 2u;
+    next.before = at.exit;
     next.steps = at.steps + 1u;
-    return next;
+    return with_apex(next, apex, exits, roughly_replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen));
+}
+
+// The same at a tie, which the step to `at` has left undecided.
+KERNEL_FN Walker face_at_tie(SceneView scene, Ray ray, Shear shear, Walker at)
+{
+    uint record = at.before >> 2u;
+    uint rank_0 = record_apex(scene, record_of_corner(record, 0u)).w;
+    uint rank_1 = record_apex(scene, record_of_corner(record, 1u)).w;
+    uint rank_2 = record_apex(scene, record_of_corner(record, 2u)).w;
+    Ranks ranks;
+    ranks.p0 = at.turn == 0u ? rank_0 : at.turn == 1u ? rank_2 : rank_1;
+    ranks.p1 = at.turn == 0u ? rank_1 : at.turn == 1u ? rank_0 : rank_2;
+    ranks.p2 = at.turn == 0u ? rank_2 : at.turn == 1u ? rank_1 : rank_0;
+    uint4 vertex = record_apex(scene, record);
+    Carried apex = carried(ray, shear, vertex);
+    uint replaced = replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, ranks, apex.seen, vertex.w);
+    return with_apex(at, apex, record_exits(scene, record), replaced);
 }
 
 // The walk at an exit of `tet`, after it has left `steps` tets.
@@ -60,7 +89,8 @@ KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint
     at.p2 = carried(ray, shear, record_apex(scene, record_of_corner(first, 2u)));
     at.turn = 0u;
     at.exit = exit;
-    at.record = tet << 2u;
+    at.before = tet << 4u;
+    at.replaced = 0u;
     at.steps = steps;
     return at;
 }
@@ -85,17 +115,11 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
         if (goes_on(at, params, is_endless, reach)) {
             for (;;) {
                 for (;;) {
-                    Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
-                    uint4 exits = record_exits(scene, at.exit >> 2u);
-                    uint replaced = roughly_replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
-                    if (replaced == UNDECIDED) break;
-                    at = next_face(at, apex, exits, replaced);
-                    if (!goes_on(at, params, is_endless, reach)) break;
+                    at = next_face(scene, ray, shear, at);
+                    if (at.replaced == UNDECIDED || !goes_on(at, params, is_endless, reach)) break;
                 }
-                if (!goes_on(at, params, is_endless, reach)) break;
-                Carried apex = carried(ray, shear, record_apex(scene, at.exit >> 2u));
-                uint4 exits = record_exits(scene, at.exit >> 2u);
-                at = next_face(at, apex, exits, replaced_by(at.p0, at.p1, at.p2, apex));
+                if (at.replaced != UNDECIDED) break;
+                at = face_at_tie(scene, ray, shear, at);
                 if (!goes_on(at, params, is_endless, reach)) break;
             }
         }
@@ -109,7 +133,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
         may_begin_anew = false;
     }
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
-    tet = at.record >> 2u;
+    tet = at.before >> 4u;
     if (at.exit == NO_LINK) return make_no_hit(NO_HIT, tet, at.steps);
     if ((at.exit & 3u) == HALF32_END) return hit_on(scene, ray, at.exit >> 2u, tet, at.steps, end);
     return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);

@@ -35,6 +35,11 @@ KERNEL_FN Carried carried_vertex(SceneView scene, Ray ray, Shear shear, uint ver
     return carried(ray, shear, FETCH(scene, vertices, vertex));
 }
 
+KERNEL_FN uint vertex_rank(SceneView scene, uint vertex)
+{
+    return FETCH(scene, vertices, vertex).w;
+}
+
 // The face by which the ray leaves the tet behind a gate. vertex: the apex's number.
 KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, uint vertex, Carried apex, uint replaced)
 {
@@ -75,7 +80,12 @@ KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
     CompactTet tet = compact_tet(scene, gate.behind);
     uint vertex = apex_behind(gate, tet);
     Carried apex = carried_vertex(scene, ray, shear, vertex);
-    return gate_beyond(scene, gate, tet, vertex, apex, replaced_by(gate.p0, gate.p1, gate.p2, apex));
+    Ranks ranks;
+    ranks.p0 = vertex_rank(scene, gate.v0);
+    ranks.p1 = vertex_rank(scene, gate.v1);
+    ranks.p2 = vertex_rank(scene, gate.v2);
+    uint replaced = replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, ranks, apex.seen, vertex_rank(scene, vertex));
+    return gate_beyond(scene, gate, tet, vertex, apex, replaced);
 }
 
 // The face with these vertices.

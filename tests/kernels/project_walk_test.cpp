@@ -142,6 +142,37 @@ TEST(ProjectWalk, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
     EXPECT_GT(sought[0], 0u) << "rays whose square has no face that holds them";
 }
 
+TEST(ProjectWalk, passes_over_no_boundary_face_that_it_enters_by)
+{
+    // At lines and corners of the domain's squares, and past them by a unit in the last place.
+    Random random(65);
+    std::uint32_t entered = 0, missed = 0;
+    for (const auto& grid : grids()) {
+        const auto& lines = grid->scene.domain.lines;
+        const auto at = [&](std::size_t axis) {
+            return lines[axis][random.below(static_cast<std::uint32_t>(lines[axis].size()))];
+        };
+        for (int i = 0; i < 500; ++i) {
+            Float3 from{2 * at(0), 2 * at(1), 2 * at(2)}, to{at(0), at(1), at(2)};
+            if (random.below(2) == 0) to = special_point(*grid, random);
+            const auto axis = static_cast<int>(random.below(3));
+            to[axis] = std::nextafter(to[axis], random.below(2) == 0 ? -8.0f : 8.0f);
+            const Line line = {snap_to_grid(from), without_small({to.x - from.x, to.y - from.y, to.z - from.z})};
+            if (grid->scene.domain.contains(line.origin) || line.direction == Float3{}) continue;
+            const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
+            std::uint32_t first = 0;
+            const auto faces = static_cast<std::uint32_t>(grid->packed.entry_links.size());
+            while (first < faces && right::depth_in(right::entry_face(grid->view, first), ray) < 0)
+                ++first;
+            ASSERT_EQ(right::entry_anywhere(grid->view, ray, 0, 0), first == faces ? NO_ENTRY : first)
+                << grid->name << ", ray " << i;
+            ++(first == faces ? missed : entered);
+        }
+    }
+    EXPECT_GT(entered, 500u);
+    EXPECT_GT(missed, 500u);
+}
+
 TEST(ProjectWalk, has_the_same_bits_on_openmp_and_cuda_host_where_rays_pass_vertices_and_edges)
 {
     const Scene& scene = grids().front()->scene;
