@@ -58,8 +58,8 @@ private:
         const auto& before = run_->images[i];
         record.chained_hash = hash_of(hits, before.empty() ? 0 : before.back().chained_hash);
         const std::uint32_t cap = job_of(row, view).max_steps;
-        record.lost_at_cap = static_cast<std::uint64_t>(std::count_if(
-            hits.begin(), hits.end(), [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
+        record.lost_at_cap = static_cast<std::uint64_t>(
+            std::ranges::count_if(hits, [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
         if (run_->flat == nullptr || !is_cdt(row)) return record;
         record.flawed = run_->flat->walks(row, view, record.verdict.verdicts.flawed);
         record.any = run_->flat->walks_anywhere(row, view);

@@ -26,10 +26,9 @@ PaperFigure figure_of_two_points()
             "a paper",
             {"tets", "a ray"},
             {"time", "ms"},
-            {{"maria tet80", {{10, 0.5}, {12, 0.75}}}},
-            {{"time-grows", "time grows", ClaimVerdict::holds, "0.99."}},
             {},
-            {}};
+            {{"maria tet80", {{10, 0.5}, {12, 0.75}}}},
+            {{"time-grows", "time grows", ClaimVerdict::holds, "0.99."}}};
 }
 
 } // namespace
