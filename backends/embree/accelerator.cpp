@@ -31,7 +31,7 @@ void attach_mesh(RTCDevice device, RTCScene scene, const TriangleMesh& mesh)
         *vertices++ = v.z;
     }
     for (const auto& triangle : mesh.triangles)
-        triangles = std::ranges::copy(triangle, triangles);
+        triangles = std::copy(triangle.begin(), triangle.end(), triangles);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);

@@ -1,7 +1,7 @@
 #include "bench/output/row_fields.h"
 
 #include "bench/output/device_json.h"
-#include "bench/output/ray_json.h"
+#include "bench/rows/ray_json.h"
 #include "bench/rows/row_tracing.h"
 #include "core/base/hash.h"
 

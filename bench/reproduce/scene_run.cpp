@@ -80,15 +80,9 @@ private:
 /// The options, with only those selections that apply to the structure's rows.
 Options options_of(Structure structure, Options options)
 {
-    const auto is_other_layout = [&](Layout layout) { return structure_of(layout) != structure; };
-    const auto is_other_method = [&](Method method) {
-        return std::none_of(all_kernels().begin(), all_kernels().end(), [&](const KernelId& kernel) {
-            return kernel.method == method && kernel.structure == structure;
-        });
-    };
     options.structures = {structure};
-    std::erase_if(options.layouts, is_other_layout);
-    std::erase_if(options.methods, is_other_method);
+    std::erase_if(options.layouts, [&](Layout layout) { return structure_of(layout) != structure; });
+    std::erase_if(options.methods, [&](Method method) { return !is_method_of(structure, method); });
     return options;
 }
 

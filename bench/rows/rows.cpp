@@ -266,6 +266,13 @@ std::string row_name(const RowKey& key)
         order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
 }
 
+bool is_method_of(Structure structure, Method method)
+{
+    return std::ranges::any_of(all_kernels(), [&](const KernelId& kernel) {
+        return kernel.structure == structure && kernel.method == method;
+    });
+}
+
 std::string device_label(const RowKey& key)
 {
     const std::string device = numbered_backend(key);

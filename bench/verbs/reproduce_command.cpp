@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 
 namespace tetrace {
 
@@ -51,13 +52,6 @@ bool wants_scenes(const Options& options)
     const auto& targets = options.targets;
     return std::ranges::any_of(
         targets, [](PaperTarget target) { return target != PaperTarget::table5 && target != PaperTarget::growth; });
-}
-
-bool is_method_of(Structure structure, Method method)
-{
-    const auto& kernels = all_kernels();
-    return std::ranges::any_of(
-        kernels, [&](const KernelId& kernel) { return kernel.structure == structure && kernel.method == method; });
 }
 
 /// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
@@ -278,6 +272,9 @@ struct Keeping {
 void make_tables(Reproduction& all, const Options& options)
 {
     const SceneRuns ours = all.of_builds({our_build}), papers = all.of_builds({our_build, papers_build});
+    const auto add_figures = [&](std::vector<PaperFigure> figures) {
+        std::ranges::move(figures, std::back_inserter(all.figures));
+    };
     if (wants(options, PaperTarget::table3)) {
         all.tables.push_back(table3(papers));
         all.tables.push_back(table3_rates(papers));
@@ -290,20 +287,17 @@ void make_tables(Reproduction& all, const Options& options)
     if (wants(options, PaperTarget::table6)) {
         all.tables.push_back(table6(ours));
         all.tables.push_back(table6_pairs(ours));
-        for (PaperFigure& figure : table6_figures(ours))
-            all.figures.push_back(std::move(figure));
+        add_figures(table6_figures(ours));
     }
     if (wants(options, PaperTarget::growth)) {
         const SceneRuns sizes = all.of_builds({growth_build});
         all.tables.push_back(growth_table(sizes));
         all.tables.push_back(growth_exponents(sizes));
-        for (PaperFigure& figure : growth_figures(sizes))
-            all.figures.push_back(std::move(figure));
+        add_figures(growth_figures(sizes));
     }
     if (wants(options, PaperTarget::figure6)) {
         all.tables.push_back(figure6_table(ours));
-        for (PaperFigure& figure : figure6(ours))
-            all.figures.push_back(std::move(figure));
+        add_figures(figure6(ours));
     }
 }
 
