@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
 
 #if TETRACE_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>

@@ -105,7 +105,7 @@ private:
             triangles.push_back(built.primitives[i].primID);
             leaf.box = merged(leaf.box, box_of(built.primitives[i]));
         }
-        std::sort(triangles.begin(), triangles.end());
+        std::ranges::sort(triangles);
         triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
         leaf.first = static_cast<std::uint32_t>(bvh_.references.size());
         leaf.count = static_cast<std::uint32_t>(triangles.size());

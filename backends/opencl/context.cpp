@@ -1,6 +1,5 @@
 #include "backends/opencl/context.h"
 
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -41,11 +40,6 @@ Context::Context(const FoundDevice& found, unsigned threads)
         }
         handle_ = cl::Context(device_);
     });
-}
-
-cl::CommandQueue Context::make_queue() const
-{
-    return {handle_, device_, CL_QUEUE_PROFILING_ENABLE};
 }
 
 } // namespace tetrace::opencl

@@ -25,7 +25,7 @@ public:
     [[nodiscard]] const cl::Device& device() const { return device_; }
     [[nodiscard]] unsigned threads() const { return threads_; }
     /// An in-order queue with profiling.
-    [[nodiscard]] cl::CommandQueue make_queue() const;
+    [[nodiscard]] cl::CommandQueue make_queue() const { return {handle_, device_, CL_QUEUE_PROFILING_ENABLE}; }
 
     /// Whether a call failed in a way that later calls may not survive: the next session takes a new context.
     [[nodiscard]] bool is_lost() const { return is_lost_; }

@@ -35,7 +35,7 @@ bool has_extension(const cl::Device& device, const std::string& name)
 std::string trimmed(const std::string& text)
 {
     const auto is_blank = [](unsigned char c) { return std::isspace(c) != 0 || c == 0; };
-    const auto begin = std::find_if_not(text.begin(), text.end(), is_blank);
+    const auto begin = std::ranges::find_if_not(text, is_blank);
     const auto end = std::find_if_not(text.rbegin(), text.rend(), is_blank).base();
     return begin < end ? std::string(begin, end) : std::string();
 }

@@ -9,8 +9,6 @@
 
 #include <omp.h>
 
-#include <algorithm>
-
 namespace tetrace {
 namespace {
 

@@ -173,11 +173,6 @@ PacketSession::PacketSession(PacketKernel kernel, Task task, const PackedScene& 
     copy_s_ = watch.seconds();
 }
 
-void PacketSession::Free::operator()(void* block) const
-{
-    std::free(block);
-}
-
 SetupTimes PacketSession::setup_times() const
 {
     SetupTimes times;

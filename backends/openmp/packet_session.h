@@ -31,7 +31,7 @@ public:
 
 private:
     struct Free {
-        void operator()(void* block) const;
+        void operator()(void* block) const { std::free(block); }
     };
 
     void run(const TraceJob& job, std::span<std::uint32_t> output) override;

@@ -8,13 +8,19 @@ namespace tetrace::openmp {
 /// Runs one compiled kernel on the packed scene where it lies: nothing is compiled, and only given rays are copied.
 class OpenmpSession : public HostSession {
 public:
-    OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height);
+    OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height)
+        : HostSession(task), run_(function), scene_(scene), threads_(threads), tile_height_(tile_height)
+    {
+    }
     void set_rays(std::span<const Quad> quads) override { rays_.assign(quads.begin(), quads.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
     [[nodiscard]] std::uint64_t bytes() const override { return scene_.bytes(); }
 
 private:
-    void run(const TraceJob& job, std::span<std::uint32_t> output) override;
+    void run(const TraceJob& job, std::span<std::uint32_t> output) override
+    {
+        run_(scene_, rays_, job, output, threads_, tile_height_);
+    }
 
     RunFunction* run_;
     const PackedScene& scene_;

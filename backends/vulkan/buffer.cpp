@@ -77,36 +77,6 @@ Buffer::Buffer(const Context& context, std::uint64_t bytes, Place place)
         mapped_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE, {}));
 }
 
-vk::DeviceAddress Buffer::address(const Context& context) const
-{
-    return context.device().getBufferAddressKHR(vk::BufferDeviceAddressInfo{}.setBuffer(*handle_));
-}
-
-std::span<std::byte> Buffer::mapped() const
-{
-    return mapped_ == nullptr ? std::span<std::byte>{} : std::span(mapped_, bytes_);
-}
-
-bool Buffer::is_cached() const
-{
-    return static_cast<bool>(properties_ & Property::eHostCached);
-}
-
-vk::MappedMemoryRange Buffer::whole() const
-{
-    return vk::MappedMemoryRange{}.setMemory(*memory_).setSize(VK_WHOLE_SIZE);
-}
-
-void Buffer::flush(const Context& context) const
-{
-    if (!(properties_ & Property::eHostCoherent)) context.device().flushMappedMemoryRanges(whole());
-}
-
-void Buffer::invalidate(const Context& context) const
-{
-    if (!(properties_ & Property::eHostCoherent)) context.device().invalidateMappedMemoryRanges(whole());
-}
-
 namespace {
 
 void copy_and_wait(const Context& context, const Buffer& from, const Buffer& to, const vk::BufferCopy& region)

@@ -28,17 +28,37 @@ public:
     [[nodiscard]] vk::Buffer handle() const { return *handle_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
     /// The device's address; only for places that are used by address.
-    [[nodiscard]] vk::DeviceAddress address(const Context& context) const;
+    [[nodiscard]] vk::DeviceAddress address(const Context& context) const
+    {
+        return context.device().getBufferAddressKHR(vk::BufferDeviceAddressInfo{}.setBuffer(*handle_));
+    }
     /// The memory as the host sees it; empty where it does not.
-    [[nodiscard]] std::span<std::byte> mapped() const;
+    [[nodiscard]] std::span<std::byte> mapped() const
+    {
+        return mapped_ == nullptr ? std::span<std::byte>{} : std::span(mapped_, bytes_);
+    }
     /// Whether the host reads it through its caches.
-    [[nodiscard]] bool is_cached() const;
+    [[nodiscard]] bool is_cached() const
+    {
+        return static_cast<bool>(properties_ & vk::MemoryPropertyFlagBits::eHostCached);
+    }
     /// Makes what the host wrote visible to the device, or the other way round; does nothing where memory is coherent.
-    void flush(const Context& context) const;
-    void invalidate(const Context& context) const;
+    void flush(const Context& context) const
+    {
+        if (!(properties_ & vk::MemoryPropertyFlagBits::eHostCoherent))
+            context.device().flushMappedMemoryRanges(whole());
+    }
+    void invalidate(const Context& context) const
+    {
+        if (!(properties_ & vk::MemoryPropertyFlagBits::eHostCoherent))
+            context.device().invalidateMappedMemoryRanges(whole());
+    }
 
 private:
-    [[nodiscard]] vk::MappedMemoryRange whole() const;
+    [[nodiscard]] vk::MappedMemoryRange whole() const
+    {
+        return vk::MappedMemoryRange{}.setMemory(*memory_).setSize(VK_WHOLE_SIZE);
+    }
 
     std::uint64_t bytes_ = 0;
     vk::MemoryPropertyFlags properties_;

@@ -1,9 +1,7 @@
 #include "backends/vulkan/context.h"
 
 #include "backends/vulkan/instance.h"
-#include "backends/vulkan/ticks.h"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
@@ -74,11 +72,6 @@ void Context::finish() const
         throw Error(ErrorKind::internal,
                     "waiting for '" + facts().name + "': vkWaitForFences gave " + vk::to_string(result));
     device_.resetFences(*fence_);
-}
-
-vk::raii::QueryPool Context::make_timestamps() const
-{
-    return device_.createQueryPool(vk::QueryPoolCreateInfo{}.setQueryType(vk::QueryType::eTimestamp).setQueryCount(2));
 }
 
 double Context::seconds_of(const vk::raii::QueryPool& times) const

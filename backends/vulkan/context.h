@@ -30,7 +30,11 @@ public:
     /// Waits for everything submitted.
     void finish() const;
     /// A query pool for the two times of a piece of work.
-    [[nodiscard]] vk::raii::QueryPool make_timestamps() const;
+    [[nodiscard]] vk::raii::QueryPool make_timestamps() const
+    {
+        return device_.createQueryPool(
+            vk::QueryPoolCreateInfo{}.setQueryType(vk::QueryType::eTimestamp).setQueryCount(2));
+    }
     /// Seconds between record_begin_time() and record_end_time(), in commands that have finished.
     [[nodiscard]] double seconds_of(const vk::raii::QueryPool& times) const;
 
@@ -57,6 +61,14 @@ private:
     vk::raii::CommandPool pool_{nullptr};
     vk::raii::Fence fence_{nullptr};
 };
+
+/// Ticks from begin to end of a counter whose low valid_bits (1 to 64) are defined. Correct even if the counter wrapped
+/// once in between.
+[[nodiscard]] constexpr std::uint64_t ticks_between(std::uint64_t begin, std::uint64_t end, unsigned valid_bits)
+{
+    const std::uint64_t mask = valid_bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << valid_bits) - 1;
+    return (end - begin) & mask;
+}
 
 /// Both times are taken when everything recorded or submitted before has ended: overlapping spans of work count once.
 void record_begin_time(const vk::raii::CommandBuffer& commands, const vk::raii::QueryPool& times);

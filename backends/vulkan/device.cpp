@@ -24,7 +24,7 @@ FoundDevice no_device(const std::string& reason)
 
 bool has_extension(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name)
 {
-    return std::any_of(extensions.begin(), extensions.end(), [&](const vk::ExtensionProperties& extension) {
+    return std::ranges::any_of(extensions, [&](const vk::ExtensionProperties& extension) {
         return std::string_view(extension.extensionName.data()) == name;
     });
 }

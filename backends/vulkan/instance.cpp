@@ -26,7 +26,7 @@ bool validation_is_wanted()
 bool has_validation_layer(const vk::raii::Context& loader)
 {
     const auto layers = loader.enumerateInstanceLayerProperties();
-    return std::any_of(layers.begin(), layers.end(), [](const vk::LayerProperties& layer) {
+    return std::ranges::any_of(layers, [](const vk::LayerProperties& layer) {
         return std::string_view(layer.layerName.data()) == validation_layer;
     });
 }

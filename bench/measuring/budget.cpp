@@ -1,7 +1,6 @@
 #include "bench/measuring/budget.h"
 
 #include "bench/measuring/verify.h"
-#include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
 #include "core/base/stopwatch.h"
@@ -112,9 +111,8 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples)
         if (scenes.insert(row.scene).second) views_to_judge_ += views;
     }
     for (Entry& entry : entries_)
-        entry.is_reference = std::any_of(entries_.begin(), entries_.end(), [&](const Entry& other) {
-            return reference_of(other.row->key) == entry.row->key;
-        });
+        entry.is_reference = std::ranges::any_of(
+            entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
     fit(left_s());
 }
 
@@ -149,14 +147,12 @@ void Budget::review_timed()
 void Budget::fit(double affordable_s)
 {
     if (entries_.empty()) return;
-    const bool has_references =
-        std::any_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.is_reference; });
+    const bool has_references = std::ranges::any_of(entries_, [](const Entry& entry) { return entry.is_reference; });
     if (const double need_s = needed_s(true); has_references && need_s > affordable_s)
         reject("openmp's rows that others are compared with", need_s);
     const double need_s = needed_s();
     skip_slowest(affordable_s, false);
-    if (skipped_s_ > 0 &&
-        std::none_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return is_alive(*entry.row); }))
+    if (skipped_s_ > 0 && std::ranges::none_of(entries_, [](const Entry& entry) { return is_alive(*entry.row); }))
         reject("all rows", need_s);
 }
 
@@ -208,11 +204,6 @@ void Budget::reject(const std::string& who, double need_s) const
 std::string Budget::sufficient() const
 {
     return budget_text(1.25 * (now() - start_s_ + needed_s() + skipped_s_));
-}
-
-double Budget::judging_s() const
-{
-    return judged_views_ == 0 ? 0 : judged_s_ / judged_views_ * std::max(0.0, views_to_judge_ - judged_views_);
 }
 
 double Budget::needed_s(bool by_references_only) const

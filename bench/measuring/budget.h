@@ -2,7 +2,6 @@
 
 #include "bench/rows/row_tracing.h"
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -57,7 +56,10 @@ private:
         [[nodiscard]] double need_s() const { return views_left * view_s; }
     };
 
-    [[nodiscard]] double judging_s() const;
+    [[nodiscard]] double judging_s() const
+    {
+        return judged_views_ == 0 ? 0 : judged_s_ / judged_views_ * std::max(0.0, views_to_judge_ - judged_views_);
+    }
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
     [[nodiscard]] Entry* slowest(bool among_references);
     void skip(Entry& entry, double affordable_s);

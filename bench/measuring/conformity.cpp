@@ -1,7 +1,5 @@
 #include "bench/measuring/conformity.h"
 
-#include "core/base/error.h"
-
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -55,22 +53,6 @@ Conformity conformity_of(const RowRun& row)
     case Status::skipped: return Conformity::skipped;
     default: return Conformity::error;
     }
-}
-
-std::string_view name_of(Conformity conformity)
-{
-    switch (conformity) {
-    case Conformity::reference: return "reference";
-    case Conformity::bit_exact: return "bit-exact";
-    case Conformity::within_ulps: return "within ulps";
-    case Conformity::uncompared: return "not compared";
-    case Conformity::not_exact: return "not exact";
-    case Conformity::wrong: return "wrong";
-    case Conformity::unsupported: return "unsupported";
-    case Conformity::skipped: return "skipped";
-    case Conformity::error: return "error";
-    }
-    throw Error(ErrorKind::internal, "name_of(Conformity): no such conformity");
 }
 
 std::string conformity_text(const RowRun& row)

@@ -3,7 +3,6 @@
 #include "bench/rows/row_run.h"
 
 #include <string>
-#include <string_view>
 
 namespace tetrace {
 
@@ -19,11 +18,13 @@ enum class Conformity {
     skipped,
     error
 };
+/// The kind only, as tests/expected/ records it.
+template <>
+inline constexpr auto enum_names<Conformity> = names_up_to<Conformity::error>("reference", "bit-exact", "within ulps",
+                                                                              "not compared", "not exact", "wrong",
+                                                                              "unsupported", "skipped", "error");
 
 [[nodiscard]] Conformity conformity_of(const RowRun& row);
-
-/// The kind only, as tests/expected/ records it: "bit-exact", "within ulps".
-[[nodiscard]] std::string_view name_of(Conformity conformity);
 
 /// The cell with numbers and self-test findings: "within 2 ulp", "wrong: 12 rays", "not exact: contracts".
 /// Rows without anything to compare with show the oracle's status.

@@ -9,18 +9,11 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
-#include <span>
 #include <sstream>
 
 namespace tetrace {
 
 namespace {
-
-bool is_timed(const RowRun& row)
-{
-    const Status status = status_of(row);
-    return row.session != nullptr && (status == Status::ok || status == Status::flawed);
-}
 
 /// The same counters for every row: otherwise Google Benchmark's CSV ends the program. Steps are in our own section.
 void set_counters(benchmark::State& state, const RowRun& row)
@@ -211,7 +204,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const double sweep_s = warm_up_rows(rows, budget);
     result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
     result.lowered = !flags.repetitions && result.samples < options.samples;
-    const auto timed = std::count_if(rows.begin(), rows.end(), is_timed);
+    const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
     const Stopwatch watch;
     Sweep sweep{&budget, 0, static_cast<double>(timed) * result.samples};

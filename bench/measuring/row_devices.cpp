@@ -75,10 +75,10 @@ std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows)
             devices.push_back({row.backend, row.key.device, row.device, 0, {}, {}, {}, {}});
         }
         auto& math = devices[*found].math;
-        if (std::find(math.begin(), math.end(), row.key.kernel.math) == math.end()) math.push_back(row.key.kernel.math);
+        if (std::ranges::find(math, row.key.kernel.math) == math.end()) math.push_back(row.key.kernel.math);
     }
     number_hardware(devices);
-    std::stable_sort(devices.begin(), devices.end(), [](const RowDevice& a, const RowDevice& b) {
+    std::ranges::stable_sort(devices, [](const RowDevice& a, const RowDevice& b) {
         return std::tuple(a.hardware, a.device.kind == DeviceKind::emulated) <
                std::tuple(b.hardware, b.device.kind == DeviceKind::emulated);
     });

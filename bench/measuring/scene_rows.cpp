@@ -12,8 +12,7 @@ namespace {
 std::vector<RowKey> rows_of(const std::string& label, const std::vector<RowKey>& keys)
 {
     std::vector<RowKey> rows;
-    std::copy_if(keys.begin(), keys.end(), std::back_inserter(rows),
-                 [&](const RowKey& key) { return key.scene == label; });
+    std::ranges::copy_if(keys, std::back_inserter(rows), [&](const RowKey& key) { return key.scene == label; });
     return rows;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 void poison(std::vector<Hit>& hits)
 {
-    std::fill(hits.begin(), hits.end(), Hit{POISON, POISON, 0, 0, 0, 0});
+    std::ranges::fill(hits, Hit{POISON, POISON, 0, 0, 0, 0});
 }
 
 /// openmp's hits for the kernels of other backends' rows, traced only for the comparison.
@@ -126,8 +126,7 @@ private:
         const RayTotals totals = count_rays(hits);
         if (totals.unwritten > 0) {
             const auto first = static_cast<std::size_t>(
-                std::find_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.face_id == POISON; }) -
-                hits.begin());
+                std::ranges::find_if(hits, [](const Hit& hit) { return hit.face_id == POISON; }) - hits.begin());
             const std::uint32_t pixel = pixel_of_ray(row, view, first);
             throw Error(ErrorKind::wrong_result,
                         fmt::format("{} of {} rays were never written, the first at view {}, pixel ({}, {})",

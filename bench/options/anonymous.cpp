@@ -32,7 +32,7 @@ std::string last_part(std::string path)
 {
     path.erase(path.find_last_not_of('/') + 1);
     const std::string name = std::filesystem::path(path).filename().string();
-    const bool deep = std::count(path.begin(), path.end(), '/') > 2;
+    const bool deep = std::ranges::count(path, '/') > 2;
     const bool has_ending = std::filesystem::path(name).has_extension();
     return deep || has_ending ? name : "(a folder)";
 }

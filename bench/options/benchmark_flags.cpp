@@ -3,7 +3,6 @@
 #include "bench/options/option_values.h"
 #include "core/base/error.h"
 
-#include <algorithm>
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <regex>

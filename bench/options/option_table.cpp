@@ -28,7 +28,7 @@ std::vector<T> kernels_have(T KernelId::*member)
 {
     std::vector<T> values;
     for (const KernelId& kernel : all_kernels())
-        if (std::find(values.begin(), values.end(), kernel.*member) == values.end()) values.push_back(kernel.*member);
+        if (std::ranges::find(values, kernel.*member) == values.end()) values.push_back(kernel.*member);
     return values;
 }
 
@@ -39,14 +39,13 @@ std::string names_of(Structure structure, T KernelId::*member)
     std::vector<std::string> names;
     for (const KernelId& kernel : all_kernels())
         if (const std::string name(name_of(kernel.*member));
-            kernel.structure == structure && std::find(names.begin(), names.end(), name) == names.end())
+            kernel.structure == structure && std::ranges::find(names, name) == names.end())
             names.push_back(name);
     return join_alternatives(names);
 }
 
 template <class T>
-std::function<void(Options&, const std::string&)> append(std::string option, std::vector<T> Options::*list,
-                                                         std::vector<T> accepted)
+ApplyOption append(std::string option, std::vector<T> Options::*list, std::vector<T> accepted = values_of<T>())
 {
     return
         [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
@@ -54,8 +53,7 @@ std::function<void(Options&, const std::string&)> append(std::string option, std
 
 /// "all" stands for every value.
 template <class T>
-std::function<void(Options&, const std::string&)> append_or_all(std::string option, std::vector<T> Options::*list,
-                                                                std::vector<T> accepted)
+ApplyOption append_or_all(std::string option, std::vector<T> Options::*list, std::vector<T> accepted)
 {
     return [=](Options& options, const std::string& text) {
         std::vector<std::string> names = {"all"};
@@ -63,8 +61,7 @@ std::function<void(Options&, const std::string&)> append_or_all(std::string opti
             names.emplace_back(name_of(value));
             if (text == "all" || text == names.back()) (options.*list).push_back(value);
         }
-        if (std::find(names.begin(), names.end(), text) == names.end())
-            reject_value(option, text, join_alternatives(names));
+        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
     };
 }
 
@@ -76,13 +73,11 @@ std::vector<std::string> backend_names()
     return names;
 }
 
-std::function<void(Options&, const std::string&)> append_backend(const std::string& option,
-                                                                 std::vector<std::string> Options::*list)
+ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list)
 {
     return [=](Options& options, const std::string& text) {
         const auto names = backend_names();
-        if (std::find(names.begin(), names.end(), text) == names.end())
-            reject_value(option, text, join_alternatives(names));
+        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
         (options.*list).push_back(text);
     };
 }
@@ -98,16 +93,26 @@ void set_filter(Options& options, const std::string& text)
     options.filter = text;
 }
 
-std::string target_names()
+ApplyOption set(bool Options::*flag)
 {
-    std::vector<std::string> names;
-    for (const PaperTarget target : all_targets())
-        names.emplace_back(name_of(target));
-    return join_alternatives(names);
+    return [=](Options& options, const std::string&) { options.*flag = true; };
 }
 
-std::function<void(Options&, const std::string&)> set_path(const std::string& option,
-                                                           std::optional<std::filesystem::path> Options::*path)
+ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high)
+{
+    return [=](Options& options, const std::string& text) {
+        options.*count = static_cast<unsigned>(parse_count(option, text, low, high));
+    };
+}
+
+ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low, unsigned high)
+{
+    return [=](Options& options, const std::string& text) {
+        (options.*list).push_back(static_cast<unsigned>(parse_count(option, text, low, high)));
+    };
+}
+
+ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
 {
     return [=](Options& options, const std::string& text) {
         if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
@@ -128,27 +133,17 @@ void set_packet_lanes(Options& options, const std::string& text)
         accepted.push_back(std::to_string(lanes));
         if (text == accepted.back()) options.packet_lanes = lanes;
     }
-    if (std::find(accepted.begin(), accepted.end(), text) == accepted.end())
+    if (std::ranges::find(accepted, text) == accepted.end())
         reject_value("--packet-lanes", text, join_alternatives(accepted));
-}
-
-void set_samples(Options& options, const std::string& text)
-{
-    options.samples = static_cast<unsigned>(parse_count("--samples", text, 3, 10000));
-}
-
-void add_target(Options& options, const std::string& text)
-{
-    options.targets.push_back(choose("reproduce", text, all_targets()));
 }
 
 std::vector<OptionRow> reproduce_options()
 {
     return {
         {"Tables", "TABLE", "LIST",
-         "The tables and figures to regenerate: " + target_names() +
+         "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
              ". Default: all except growth, which is not in the paper.",
-         bit(Verb::reproduce), true, add_target},
+         bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
          "10000x16384, as in the paper.",
@@ -156,10 +151,7 @@ std::vector<OptionRow> reproduce_options()
         {"Tables", "--sizes", "N",
          "Sizes of growth: triangles of banana, or cubes along an axis with --scene cubes. Default: 1500, 6000, 25000, "
          "100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
-         bit(Verb::reproduce), true,
-         [](Options& o, const std::string& v) {
-             o.sizes.push_back(static_cast<std::uint32_t>(parse_count("--sizes", v, 2, most_banana)));
-         }},
+         bit(Verb::reproduce), true, append_count("--sizes", &Options::sizes, 2, most_banana)},
     };
 }
 
@@ -174,48 +166,36 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
          "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
-         building, true, append("--domain", &Options::domains, {DomainKind::tight, DomainKind::wide})},
+         building, true, append("--domain", &Options::domains)},
         {"Scenes", "--divisions", "N",
          "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
              std::to_string(BuildOptions{}.divisions) + ".",
-         building, true,
-         [](Options& o, const std::string& v) {
-             o.divisions.push_back(static_cast<std::uint32_t>(parse_count("--divisions", v, 1, 64)));
-         }},
+         building, true, append_count("--divisions", &Options::divisions, 1, 64)},
         {"Scenes", "--switches", "SWITCHES",
          "TetGen's switches, as in its manual. 'build' takes a list. Default: " + BuildOptions{}.switches + ".",
          building, true, [](Options& o, const std::string& v) { o.switches.push_back(v); }},
         {"Scenes", "--resolution", "N",
          "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
              ".",
-         building, false,
-         [](Options& o, const std::string& v) {
-             o.resolution = static_cast<std::uint32_t>(parse_count("--resolution", v, 2, 128));
-         }},
+         building, false, set_count("--resolution", &Options::resolution, 2, 128)},
         {"Scenes", "--time-limit", "TIME",
          "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
          false, [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
         {"Scenes", "--memory-limit", "SIZE",
          "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
          false, [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
-        {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false,
-         [](Options& o, const std::string&) { o.clear = true; }},
+        {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false, set(&Options::clear)},
     };
 }
 
 std::vector<OptionRow> row_options()
 {
-    const std::vector<TetOrder> orders = {TetOrder::hilbert, TetOrder::reached, TetOrder::input};
-    const std::vector<Schedule> schedules = {Schedule::tiles, Schedule::persistent, Schedule::packets};
-    const std::vector<RayKind> kinds = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse,
-                                        RayKind::random};
-    const std::vector<RayOrder> ray_orders = {RayOrder::tiles, RayOrder::morton, RayOrder::shuffled};
     return {
         {"Rows", "--structure", "NAME",
          "Keep the rows of this structure: cdt or bvh. Default: both. 'check' leaves out the rows of Embree's and a "
          "driver's own BVHs unless --structure, --method, --layout, --backend, --filter or '--require embree' is "
          "given.",
-         tracing, true, append("--structure", &Options::structures, kernels_have(&KernelId::structure))},
+         tracing, true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
@@ -241,30 +221,29 @@ std::vector<OptionRow> row_options()
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
          "from the primary hits: 'shadow', towards a light, and 'ao', short rays round the normal (for both, any hit "
          "is an answer); 'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
-         measuring, true, append("--rays", &Options::rays, kinds)},
+         measuring, true, append("--rays", &Options::rays)},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds but primary: 'tiles', as their pixels lie; 'morton', sorted by origin and "
          "direction; 'shuffled'. Each is a row of its own. Default: tiles.",
-         measuring, true, append("--ray-order", &Options::ray_orders, ray_orders)},
+         measuring, true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
          "'exact': no contraction, the same bits everywhere; 'fast': the compiler is free. Embree has one build, and "
          "its rows appear in both modes. Default: exact.",
-         tracing, true, append("--math", &Options::math, kernels_have(&KernelId::math))},
+         tracing, true, append("--math", &Options::math)},
         {"Rows", "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but the tets that "
          "no ray from outside reaches come last; 'input', as TetGen wrote them. For rows of structure cdt only. "
          "Default: hilbert.",
-         tracing, true, append("--order", &Options::orders, orders)},
+         tracing, true, append("--order", &Options::orders)},
         {"Rows", "--schedule", "NAME",
          "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
          "project on half32. Embree has a schedule of its own. Default: tiles and packets.",
-         tracing, true, append("--schedule", &Options::schedules, schedules)},
+         tracing, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match, for example 'tet96.*openmp'. Default: all.",
          measuring | bit(Verb::compare), false, set_filter},
-        {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false,
-         [](Options& o, const std::string&) { o.list = true; }},
+        {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
 }
 
@@ -276,10 +255,7 @@ std::vector<OptionRow> ray_options()
          "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii. "
          "Default: smoke.",
          tracing | bit(Verb::build), false,
-         [](Options& o, const std::string& v) {
-             o.camera_set =
-                 choose<CameraSet>("--camera-set", v, {CameraSet::smoke, CameraSet::orbit, CameraSet::flight});
-         }},
+         [](Options& o, const std::string& v) { o.camera_set = choose<CameraSet>("--camera-set", v); }},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
          "Default: all.",
@@ -288,10 +264,7 @@ std::vector<OptionRow> ray_options()
          false, [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
          "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use. Default: 0.",
-         with_rays, false,
-         [](Options& o, const std::string& v) {
-             o.threads = static_cast<unsigned>(parse_count("--threads", v, 0, 4096));
-         }},
+         with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {"Rays", "--tile", "WxH",
          "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
          false, set_tile},
@@ -313,9 +286,9 @@ std::vector<OptionRow> judging_options()
     return {
         {"Measuring", "--samples", "N",
          "Samples a row, 3 to 10000; a sample traces all selected views once. Default: 10.", bit(Verb::bench), false,
-         set_samples},
+         set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
-         bit(Verb::reproduce), false, set_samples},
+         bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
          "(if as many are asked for), since intervals from fewer are too narrow. If 5 do not fit, the slowest rows are "
@@ -330,7 +303,7 @@ std::vector<OptionRow> judging_options()
          "Exit with 0 even if maria itself has wrong rays. Lost rays, and rows that differ from openmp, still fail. "
          "Wrong and lost rays of plane, plucker, stp and ms06 never fail, since these methods do not claim to have "
          "none.",
-         bit(Verb::check), false, [](Options& o, const std::string&) { o.allow_flawed = true; }},
+         bit(Verb::check), false, set(&Options::allow_flawed)},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
          "regression; a row whose whole interval lies within it is the SAME. Default: 3.",
@@ -338,11 +311,11 @@ std::vector<OptionRow> judging_options()
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
         {"Judging", "--allow-missing", "",
          "Exit with 0 even if rows that A timed are missing, skipped or unsupported in B. Failed rows still count.",
-         bit(Verb::compare), false, [](Options& o, const std::string&) { o.allow_missing = true; }},
+         bit(Verb::compare), false, set(&Options::allow_missing)},
         {"Pictures", "--picture", "KIND",
          "'normals', the surface shaded by its normals, or 'steps', the steps of each ray in false colour with a scale "
          "bar. Default: normals.",
-         bit(Verb::render), true, append("--picture", &Options::pictures, {Picture::normals, Picture::steps})},
+         bit(Verb::render), true, append("--picture", &Options::pictures)},
         {"Pictures", "--picture", "FOLDER",
          "Write a picture of each view in which a row differs from openmp, with the differing pixels marked: PNG, or "
          "PPM if OpenImageIO is missing. Default: none.",
@@ -366,21 +339,18 @@ std::vector<OptionRow> output_options()
         {"Output", "--format", "FORMAT",
          "Form of the result: table, json, csv or markdown. With --out, all but table go to that file; otherwise they "
          "replace the table on standard output. Default: table.",
-         reporting, false,
-         [](Options& o, const std::string& v) {
-             o.format = choose<Format>("--format", v, {Format::table, Format::json, Format::csv, Format::markdown});
-         }},
+         reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
         {"Output", "--out", "FILE",
          "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
          "the table. The table still goes to standard output.",
          reporting, false, set_path("--out", &Options::out)},
         {"Output", "--anonymous", "",
          "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
-         false, [](Options& o, const std::string&) { o.anonymous = true; }},
+         false, set(&Options::anonymous)},
         {"Output", "--resume", "",
          "Continue the run whose journal is FILE.journal, for FILE of --out: views and batches of searches that it has "
          "are not repeated. If there is no journal, begin one.",
-         bit(Verb::reproduce), false, [](Options& o, const std::string&) { o.resume = true; }},
+         bit(Verb::reproduce), false, set(&Options::resume)},
         {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, one test case a row. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",

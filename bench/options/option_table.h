@@ -8,6 +8,9 @@
 
 namespace tetrace {
 
+/// Takes one value of an option. Throws Error{usage}.
+using ApplyOption = std::function<void(Options&, const std::string&)>;
+
 /// One option of the program. Parsing, every --help and the README's table are generated from it.
 struct OptionRow {
     std::string group; ///< heading in help
@@ -16,7 +19,7 @@ struct OptionRow {
     std::string help;  ///< sentences; the last one gives the default
     unsigned verbs;    ///< bit 1 << verb for each verb that takes it
     bool list;         ///< may be repeated, and takes several values separated by commas
-    std::function<void(Options&, const std::string&)> apply; ///< takes one value; throws Error{usage}
+    ApplyOption apply;
 };
 
 [[nodiscard]] const std::vector<OptionRow>& option_table();

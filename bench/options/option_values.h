@@ -20,16 +20,24 @@ namespace tetrace {
 /// Throws Error{usage}: the value is not accepted; lists the accepted ones.
 [[noreturn]] void reject_value(const std::string& option, const std::string& value, const std::string& accepted);
 
-/// The value with that name. Throws Error{usage} listing the names where there is none.
+/// "a, b or c": the names of values.
 template <class T>
-[[nodiscard]] T choose(const std::string& option, const std::string& text, const std::vector<T>& values)
+[[nodiscard]] std::string join_names(const std::vector<T>& values)
 {
     std::vector<std::string> names;
-    for (const T& value : values) {
-        if (name_of(value) == text) return value;
+    for (const T& value : values)
         names.emplace_back(name_of(value));
-    }
-    reject_value(option, text, join_alternatives(names));
+    return join_alternatives(names);
+}
+
+/// The value with that name. Throws Error{usage} listing the names where there is none.
+template <class T>
+[[nodiscard]] T choose(const std::string& option, const std::string& text,
+                       const std::vector<T>& values = values_of<T>())
+{
+    for (const T& value : values)
+        if (name_of(value) == text) return value;
+    reject_value(option, text, join_names(values));
 }
 
 /// A whole number in [low, high]. Throws Error{usage} naming the bounds.

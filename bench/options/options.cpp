@@ -10,10 +10,11 @@ namespace tetrace {
 
 namespace {
 
-const std::vector<Verb>& all_verbs()
+/// The verbs that are words; the version is asked for by --version.
+std::vector<Verb> all_verbs()
 {
-    static const std::vector<Verb> verbs = {Verb::devices, Verb::scenes,    Verb::build,   Verb::bench,  Verb::check,
-                                            Verb::render,  Verb::reproduce, Verb::compare, Verb::report, Verb::help};
+    auto verbs = values_of<Verb>();
+    std::erase(verbs, Verb::version);
     return verbs;
 }
 
@@ -141,7 +142,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     std::vector<std::string> files;
     if (file_arguments(verb).most > 0) app.add_option("FILE", files);
     auto ours = without_benchmark_flags(arguments, options);
-    std::reverse(ours.begin(), ours.end()); // CLI11 takes the arguments from the back
+    std::ranges::reverse(ours); // CLI11 takes the arguments from the back
     try {
         app.parse(std::move(ours));
     } catch (const CLI::CallForHelp&) {
@@ -168,69 +169,7 @@ Options parse_help(const std::vector<std::string>& topics)
     return options;
 }
 
-std::string verb_names()
-{
-    std::vector<std::string> names;
-    for (const Verb verb : all_verbs())
-        names.emplace_back(name_of(verb));
-    return join_alternatives(names);
-}
-
 } // namespace
-
-std::string_view name_of(Verb verb)
-{
-    switch (verb) {
-    case Verb::devices: return "devices";
-    case Verb::scenes: return "scenes";
-    case Verb::build: return "build";
-    case Verb::bench: return "bench";
-    case Verb::check: return "check";
-    case Verb::render: return "render";
-    case Verb::reproduce: return "reproduce";
-    case Verb::compare: return "compare";
-    case Verb::report: return "report";
-    case Verb::help: return "help";
-    case Verb::version: return "version";
-    }
-    throw Error(ErrorKind::internal, "name_of(Verb): no such verb");
-}
-
-std::string_view name_of(Format format)
-{
-    switch (format) {
-    case Format::table: return "table";
-    case Format::json: return "json";
-    case Format::csv: return "csv";
-    case Format::markdown: return "markdown";
-    }
-    throw Error(ErrorKind::internal, "name_of(Format): no such format");
-}
-
-std::string_view name_of(Picture picture)
-{
-    return picture == Picture::normals ? "normals" : "steps";
-}
-
-std::string_view name_of(PaperTarget target)
-{
-    switch (target) {
-    case PaperTarget::table3: return "table3";
-    case PaperTarget::table4: return "table4";
-    case PaperTarget::table5: return "table5";
-    case PaperTarget::table6: return "table6";
-    case PaperTarget::growth: return "growth";
-    case PaperTarget::figure6: return "figure6";
-    }
-    throw Error(ErrorKind::internal, "name_of(PaperTarget): no such target");
-}
-
-const std::vector<PaperTarget>& all_targets()
-{
-    static const std::vector<PaperTarget> targets = {PaperTarget::table3, PaperTarget::table4,  PaperTarget::table5,
-                                                     PaperTarget::table6, PaperTarget::figure6, PaperTarget::growth};
-    return targets;
-}
 
 Options parse_options(const std::vector<std::string>& arguments)
 {
@@ -247,7 +186,7 @@ Options parse_options(const std::vector<std::string>& arguments)
         if (name_of(verb) == first) return parse_verb(verb, rest);
     throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb; accepted: {}, --help or --version\n"
                                               "'tetrace help' describes them",
-                                              first, verb_names()));
+                                              first, join_names(all_verbs())));
 }
 
 std::vector<SceneRequest> scene_requests(const Options& options)

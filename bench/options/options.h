@@ -8,23 +8,33 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
 enum class Verb { devices, scenes, build, bench, check, render, reproduce, compare, report, help, version };
+template <>
+inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
+                                                                    "render", "reproduce", "compare", "report", "help",
+                                                                    "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
+template <>
+inline constexpr auto enum_names<Format> = names_up_to<Format::markdown>("table", "json", "csv", "markdown");
 
 /// A picture that `render` writes.
 enum class Picture { normals, steps };
+template <>
+inline constexpr auto enum_names<Picture> = names_up_to<Picture::steps>("normals", "steps");
 
 /// A table or a figure of the paper that `reproduce` measures again. Growth, how cost grows with the mesh, is not in
 /// the paper.
 enum class PaperTarget { table3, table4, table5, table6, figure6, growth };
+template <>
+inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::growth>("table3", "table4", "table5", "table6",
+                                                                                 "figure6", "growth");
 
 /// The number of exit searches behind Table 5. Default: the paper's.
 struct SearchSize {
@@ -95,12 +105,6 @@ struct Options {
     bool anonymous = false;                   ///< no host name and no folders in results
     std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
 };
-
-[[nodiscard]] std::string_view name_of(Verb verb);
-[[nodiscard]] std::string_view name_of(Format format);
-[[nodiscard]] std::string_view name_of(Picture picture);
-[[nodiscard]] std::string_view name_of(PaperTarget target);
-[[nodiscard]] const std::vector<PaperTarget>& all_targets();
 
 /// Reads a command line, without the program's name.
 /// Throws Error{usage} naming what is not accepted, and the accepted values.

@@ -9,11 +9,6 @@ namespace tetrace {
 
 namespace {
 
-Cell text_cell(const std::string& text)
-{
-    return text.empty() ? Cell() : Cell(text);
-}
-
 /// The rows' indices, ordered by device; rows that were not opened come last.
 std::vector<std::size_t> by_device(const BenchResult& result)
 {
@@ -22,7 +17,7 @@ std::vector<std::size_t> by_device(const BenchResult& result)
     for (std::size_t i = 0; i < rows.size(); ++i)
         places[i] = device_of(rows[i], result.devices).value_or(result.devices.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
     return order;
 }
 

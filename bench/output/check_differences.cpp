@@ -31,7 +31,7 @@ std::string hit_text(const Hit& hit)
 TraceJob job_of(const RowRun& row, std::uint32_t view)
 {
     const auto& numbers = row.scene->view_numbers();
-    const auto index = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), view) - numbers.begin());
+    const auto index = static_cast<std::size_t>(std::ranges::find(numbers, view) - numbers.begin());
     return row.scene->job(index, &row.packed->data);
 }
 

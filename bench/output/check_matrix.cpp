@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const Pointers& rows, const Name& name)
 {
     std::vector<std::string> names;
     for (const RowRun* row : rows)
-        if (std::find(names.begin(), names.end(), name(row->key)) == names.end()) names.push_back(name(row->key));
+        if (std::ranges::find(names, name(row->key)) == names.end()) names.push_back(name(row->key));
     return names;
 }
 
@@ -42,7 +42,7 @@ std::vector<Answer> answers_of(const Pointers& rows)
     std::vector<Answer> answers;
     for (const RowRun* row : rows) {
         if (traced(*row) == nullptr) continue;
-        const auto known = std::find_if(answers.begin(), answers.end(), [&](const Answer& answer) {
+        const auto known = std::ranges::find_if(answers, [&](const Answer& answer) {
             return answer.kernel == kernel_title(row->key) && traced(*answer.first)->hit_hash == traced(*row)->hit_hash;
         });
         if (known != answers.end()) {
@@ -57,9 +57,8 @@ std::vector<Answer> answers_of(const Pointers& rows)
 /// The devices' names; their number where all devices that traced the kernel agree, which keeps the line short.
 std::string devices_of(const Answer& answer, const Pointers& rows)
 {
-    const auto all = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const RowRun* row) {
-        return traced(*row) != nullptr && kernel_title(row->key) == answer.kernel;
-    }));
+    const auto all = static_cast<std::size_t>(std::ranges::count_if(
+        rows, [&](const RowRun* row) { return traced(*row) != nullptr && kernel_title(row->key) == answer.kernel; }));
     return answer.rows == all && all > 2 ? fmt::format("all {} devices", all) : answer.devices;
 }
 
@@ -115,7 +114,7 @@ std::string devices_text(const std::vector<RowRun>& rows)
     for (const RowRun& row : rows) {
         const std::string label = device_label(row.key);
         if (!row.device.usable || row.key.kernel.math != MathMode::exact ||
-            std::find(told.begin(), told.end(), label) != told.end())
+            std::ranges::find(told, label) != told.end())
             continue;
         told.push_back(label);
         table.add({label, row.device.name, std::string(name_of(row.device.kind)),

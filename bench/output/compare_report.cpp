@@ -91,8 +91,7 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
         const std::string a = device_text(*row.before), b = device_text(*row.after);
         const std::string devices = a == b ? a + " in both" : fmt::format("{} in A; {} in B", a, b);
         std::string sentence = fmt::format("{}: {}.", row.before->api(), devices);
-        if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end())
-            sentences.push_back(std::move(sentence));
+        if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
     }
     return sentences;
 }
@@ -161,8 +160,8 @@ std::size_t count_of(const ResultComparison& comparison, SpeedVerdict verdict)
 
 std::size_t too_few_count(const ResultComparison& comparison)
 {
-    return static_cast<std::size_t>(std::count_if(comparison.rows.begin(), comparison.rows.end(),
-                                                  [](const ComparedRow& row) { return row.has_too_few_samples(); }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(comparison.rows, [](const ComparedRow& row) { return row.has_too_few_samples(); }));
 }
 
 std::string summary_text(const ResultComparison& comparison)

@@ -9,6 +9,9 @@ namespace tetrace {
 /// A device as results record it (results/README.md); unknown members are left out.
 [[nodiscard]] nlohmann::json device_json(const Device& device);
 
+/// A self-test as results record it: its fields under their names, "exact", and its line of text.
+[[nodiscard]] nlohmann::json self_test_json(const SelfTest& test);
+
 /// A device that rows ran on, with its yardstick and self-tests.
 [[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
 

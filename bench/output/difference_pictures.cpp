@@ -4,7 +4,6 @@
 #include "bench/pictures/shading.h"
 #include "bench/rows/row_tracing.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -16,8 +15,8 @@ std::string file_name(const SeenImage& image)
 {
     std::string name = fmt::format("{}-{}-{}-{}", image.row.key.scene, image.row.scene->view_numbers()[image.view],
                                    kernel_title(image.row.key), device_label(image.row.key));
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == ' ' || c == ':' || c == '/'; }, '-');
+    std::ranges::replace_if(
+        name, [](char c) { return c == ' ' || c == ':' || c == '/'; }, '-');
     return name;
 }
 

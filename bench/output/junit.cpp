@@ -5,7 +5,6 @@
 #include "bench/terminal/text.h"
 #include "core/base/hash.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace tetrace {

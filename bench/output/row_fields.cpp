@@ -1,8 +1,7 @@
 #include "bench/output/row_fields.h"
 
 #include "bench/output/device_json.h"
-#include "bench/output/ray_json.h"
-#include "bench/output/self_test_json.h"
+#include "bench/rows/ray_json.h"
 #include "bench/rows/row_tracing.h"
 #include "core/base/hash.h"
 
@@ -13,6 +12,27 @@ namespace tetrace {
 namespace {
 
 using nlohmann::json;
+
+constexpr bool required = true, optional = false;
+
+Recorded recorded(const char* schema, bool always = optional, const char* what = nullptr)
+{
+    return {schema, always, what};
+}
+
+/// The field's column in one table.
+struct ColumnOf {
+    Place place;
+
+    PlacedColumn operator()(const Shown& shown) const { return {place, shown}; }
+    PlacedColumn operator()(const char* title, const char* unit = "", int decimals = 2,
+                            Cell (*cell)(const json&) = plain_cell) const
+    {
+        return {place, {title, unit, decimals, cell}};
+    }
+};
+constexpr ColumnOf csv{&RowField::csv}, check{&RowField::check}, rates{&RowField::rates}, times{&RowField::times},
+    report{&RowField::report};
 
 Cell milliseconds(const json& value)
 {
@@ -31,17 +51,12 @@ Cell percent(const json& value)
                            : Cell(fmt::format("{:{}.{}f} %", 100 * value.get<double>(), 3 + decimals, decimals));
 }
 
-std::optional<double> above_0(double value)
+json text_or_nothing(const std::string& text)
 {
-    return value > 0 ? std::optional(value) : std::nullopt;
+    return text.empty() ? json() : json(text);
 }
 
-std::optional<std::string> text_or_nothing(const std::string& text)
-{
-    return text.empty() ? std::nullopt : std::optional(text);
-}
-
-std::optional<std::string> reason_or_nothing(const RowRun& row)
+json reason_or_nothing(const RowRun& row)
 {
     return text_or_nothing(reason_of(row));
 }
@@ -60,20 +75,23 @@ std::string status_text(const RowFacts& facts)
     return text;
 }
 
-json json_of_ray(const std::optional<DifferingRay>& ray)
+json compile_and_build_s(const SetupTimes& setup)
 {
-    return ray ? differing_ray_json(*ray) : json();
-}
-
-json json_of_ray(const std::optional<WrongRay>& ray)
-{
-    return ray ? wrong_ray_json(*ray) : json();
+    const double seconds = setup.compile_s + setup.build_s;
+    return seconds > 0 ? json(seconds) : json();
 }
 
 std::optional<double> bvh_build_s(const RowFacts& facts)
 {
     if (facts.setup.build_s > 0) return facts.setup.build_s;
     return facts.row->packed != nullptr ? facts.row->packed->bvh_build_s : std::nullopt;
+}
+
+/// Reads what there is only of answers that were compared with openmp's.
+template <class Value>
+auto if_compared(Value Traced::*member)
+{
+    return [=](const Traced& trace) { return trace.compared ? json(trace.*member) : json(); };
 }
 
 double a_ray(std::uint64_t count, const Visits& visits)
@@ -84,481 +102,238 @@ double a_ray(std::uint64_t count, const Visits& visits)
 /// The row's identity and how it ended.
 std::vector<RowField> identity_fields()
 {
-    return {{.key = "name",
-             .value = [](const RowKey& key) { return row_name(key); },
-             .schema = "line",
-             .required = true,
-             .what = "structure/method/layout/scene/rays/math:mode/api:backend: the keys below in one",
-             .csv = {"name"},
-             .check = {"row"}},
-            {.key = "row", .value = kernel_title, .rates = {"row"}, .times = {"row"}},
-            {.key = "backend", .value = device_label, .rates = {"backend"}, .times = {"backend"}},
-            {.key = "scene", .value = &RowKey::scene, .schema = "line", .required = true, .csv = {"scene"}},
-            {.key = "structure",
-             .value = [](const RowKey& key) { return name_of(key.kernel.structure); },
-             .schema = R"({ "enum": ["cdt", "bvh"] })",
-             .required = true,
-             .csv = {"structure"}},
-            {.key = "method",
-             .value = [](const RowKey& key) { return name_of(key.kernel.method); },
-             .schema = "line",
-             .required = true,
-             .csv = {"method"}},
-            {.key = "layout",
-             .value = [](const RowKey& key) { return name_of(key.kernel.layout); },
-             .schema = "line",
-             .required = true,
-             .csv = {"layout"}},
-            {.key = "backend", .value = &RowKey::backend, .schema = "line", .required = true, .csv = {"backend"}},
-            {.key = "device",
-             .value = [](const RowRun& row) { return row.device.name.empty() ? json() : device_json(row.device); },
-             .schema = "device",
-             .what = "as in tetrace.devices, without what was measured of it"},
-            {.key = "device",
-             .value = [](const RowRun& row) { return text_or_nothing(row.device.name); },
-             .csv = {"device"}},
-            {.key = "type",
-             .value = [](const RowRun& row) { return text_or_nothing(device_kind_text(row)); },
-             .csv = {"type"}},
-            {.key = "device_index",
-             .value = [](const RowRun& row) { return row.device.name.empty() ? json() : json(row.key.device); },
-             .schema = "count"},
-            {.key = "rays",
-             .value = [](const RowKey& key) { return name_of(key.rays); },
-             .schema = R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })",
-             .required = true,
-             .what = "their kind",
-             .csv = {"rays"}},
-            {.key = "ray_order",
-             .value = [](const RowKey& key) { return name_of(key.ray_order); },
-             .schema = R"({ "enum": ["tiles", "morton", "shuffled"] })"},
-            {.key = "ray_hash",
-             .value =
-                 [](const RowRun& row) {
-                     const bool are_given = traced(row) != nullptr && row.key.kernel.task == Task::rays;
-                     return are_given ? json(hash_text(hash_of_rays(row))) : json();
-                 },
-             .schema = "hash",
-             .what = "of the rays that are given, view after view: equal hashes are the same rays, bit for bit"},
-            {.key = "math",
-             .value = [](const RowKey& key) { return name_of(key.kernel.math); },
-             .schema = R"({ "enum": ["exact", "fast"] })",
-             .required = true,
-             .csv = {"math"}},
-            {.key = "order",
-             .value = [](const RowKey& key) { return name_of(key.order); },
-             .schema = R"({ "enum": ["hilbert", "reached", "input"] })",
-             .required = true,
-             .what = "of the tets in memory",
-             .csv = {"order"}},
-            {.key = "schedule",
-             .value = [](const RowKey& key) { return name_of(key.kernel.schedule); },
-             .schema = R"({ "enum": ["tiles", "persistent", "packets"] })",
-             .what = "how rays come to work items; results from before this key have it in the row's name",
-             .csv = {"schedule"}},
-            {.key = "status", .value = status_name, .schema = "status", .required = true, .csv = {"status"}},
-            {.key = "reason", .value = reason_or_nothing, .schema = "text", .csv = {"reason"}},
-            {.key = "self_test",
-             .value = [](const RowRun& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },
-             .schema = "self_test",
-             .what = "how the device computes in the row's math mode"}};
+    return {
+        {"", "name", [](const RowKey& key) { return row_name(key); },
+         recorded("line", required, "structure/method/layout/scene/rays/math:mode/api:backend: the keys below in one"),
+         csv("name"), check("row")},
+        {"", "row", kernel_title, rates("row"), times("row")},
+        {"", "backend", device_label, rates("backend"), times("backend")},
+        {"", "scene", &RowKey::scene, recorded("line", required), csv("scene")},
+        {"", "structure", in(&RowKey::kernel, named(&KernelId::structure)),
+         recorded(R"({ "enum": ["cdt", "bvh"] })", required), csv("structure")},
+        {"", "method", in(&RowKey::kernel, named(&KernelId::method)), recorded("line", required), csv("method")},
+        {"", "layout", in(&RowKey::kernel, named(&KernelId::layout)), recorded("line", required), csv("layout")},
+        {"", "backend", &RowKey::backend, recorded("line", required), csv("backend")},
+        {"", "device", [](const RowRun& row) { return row.device.name.empty() ? json() : device_json(row.device); },
+         recorded("device", optional, "as in tetrace.devices, without what was measured of it")},
+        {"", "device", in(&RowRun::device, unless_empty(&Device::name)), csv("device")},
+        {"", "type", [](const RowRun& row) { return text_or_nothing(device_kind_text(row)); }, csv("type")},
+        {"", "device_index", [](const RowRun& row) { return row.device.name.empty() ? json() : json(row.key.device); },
+         recorded("count")},
+        {"", "rays", named(&RowKey::rays),
+         recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
+         csv("rays")},
+        {"", "ray_order", named(&RowKey::ray_order), recorded(R"({ "enum": ["tiles", "morton", "shuffled"] })")},
+        {"", "ray_hash",
+         [](const RowRun& row) {
+             const bool are_given = traced(row) != nullptr && row.key.kernel.task == Task::rays;
+             return are_given ? json(hash_text(hash_of_rays(row))) : json();
+         },
+         recorded("hash", optional,
+                  "of the rays that are given, view after view: equal hashes are the same rays, bit for bit")},
+        {"", "math", in(&RowKey::kernel, named(&KernelId::math)),
+         recorded(R"({ "enum": ["exact", "fast"] })", required), csv("math")},
+        {"", "order", named(&RowKey::order),
+         recorded(R"({ "enum": ["hilbert", "reached", "input"] })", required, "of the tets in memory"), csv("order")},
+        {"", "schedule", in(&RowKey::kernel, named(&KernelId::schedule)),
+         recorded(R"({ "enum": ["tiles", "persistent", "packets"] })", optional,
+                  "how rays come to work items; results from before this key have it in the row's name"),
+         csv("schedule")},
+        {"", "status", status_name, recorded("status", required), csv("status")},
+        {"", "reason", reason_or_nothing, recorded("text"), csv("reason")},
+        {"", "self_test", [](const RowRun& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },
+         recorded("self_test", optional, "how the device computes in the row's math mode")},
+    };
 }
 
 /// Its speed, alone and compared with others.
 std::vector<RowField> rate_fields()
 {
-    return {{.group = "rates",
-             .key = "mrays_per_s",
-             .value = &Figures::mrays_per_s,
-             .schema = "positive",
-             .required = true,
-             .what = "of the median sample, as all rates",
-             .csv = {"rate", "Mrays/s"},
-             .rates = {"Mrays/s"}},
-            {.group = "rates",
-             .key = "msteps_per_s",
-             .value = &Figures::msteps_per_s,
-             .schema = "positive",
-             .csv = {"rate", "Msteps/s", 1},
-             .rates = {"Msteps/s", "", 1}},
-            {.group = "counts",
-             .key = "mean_steps",
-             .value = [](const Traced& trace) { return mean_steps(trace.totals).all; },
-             .schema = "not_negative",
-             .csv = {"steps per ray"}},
-            {.group = "counts",
-             .key = "mean_steps_hit",
-             .value = [](const Traced& trace) { return mean_steps(trace.totals).hit; },
-             .schema = "not_negative",
-             .csv = {"steps per hit"}},
-            {.group = "counts",
-             .key = "mean_steps_miss",
-             .value = [](const Traced& trace) { return mean_steps(trace.totals).miss; },
-             .schema = "not_negative",
-             .csv = {"steps per miss"}},
-            {.key = "comparison",
-             .value =
-                 [](const Comparison& comparison) {
-                     const MedianRatio& rate = comparison.rate;
-                     return fmt::format("{:5.2f} [{:.2f}, {:.2f}]", rate.value, rate.low, rate.high);
-                 },
-             .rates = {"x {reference}"}},
-            {.group = ratio_group,
-             .key = "row",
-             .value = [](const RowFacts& facts) { return facts.comparison ? json(row_name(facts.row->key)) : json(); },
-             .schema = "line",
-             .required = true},
-            {.group = ratio_group,
-             .key = "ratio",
-             .value = [](const Comparison& comparison) { return comparison.rate.value; },
-             .schema = "positive",
-             .required = true,
-             .what = "the reference's median device seconds over the row's: above 1 the row is faster",
-             .csv = {"ratio to reference"}},
-            {.group = ratio_group,
-             .key = "low",
-             .value = [](const Comparison& comparison) { return comparison.rate.low; },
-             .schema = "positive",
-             .required = true,
-             .csv = {.title = "low", .key = "ratio_low"}},
-            {.group = ratio_group,
-             .key = "high",
-             .value = [](const Comparison& comparison) { return comparison.rate.high; },
-             .schema = "positive",
-             .required = true,
-             .csv = {.title = "high", .key = "ratio_high"}},
-            {.group = ratio_group,
-             .key = "confidence",
-             .value = [](const Comparison&) { return ratio_confidence; },
-             .schema = R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })",
-             .required = true},
-            {.group = ratio_group,
-             .key = "reference",
-             .value = [](const Comparison& comparison) { return row_name(comparison.reference->key); },
-             .schema = "line",
-             .required = true,
-             .csv = {"reference"}},
-            {.group = "rates",
-             .key = "ratio_to_single",
-             .value = &RowFacts::ratio_to_single,
-             .schema = "positive",
-             .what = "to Embree's single rays on the same scene, same run; of rows on the host",
-             .csv = {"ratio to Embree single"},
-             .rates = {"x single"}},
-            {.group = "rates",
-             .key = "estimated_gb_per_s",
-             .value = &Figures::gb_per_s,
-             .schema = "positive",
-             .what = "steps times bytes_per_step",
-             .csv = {"estimated", "GB/s", 1}},
-            {.group = "rates",
-             .key = "bytes_per_step",
-             .value =
-                 [](const RowFacts& facts) {
-                     const bool has_any = facts.figures && facts.figures->gb_per_s;
-                     return has_any ? json(bytes_per_step(facts.row->key.kernel)) : json();
-                 },
-             .schema = "positive"},
-            {.group = "rates",
-             .key = "bytes_per_step_is",
-             .value =
-                 [](const Figures& figures) {
-                     return figures.gb_per_s ? json("an estimate: what a step loads of its tet's record on average "
-                                                    "(docs/spec/devices.md, W7)")
-                                             : json();
-                 },
-             .schema = "line"},
-            {.group = "rates",
-             .key = "share_of_copy_bandwidth",
-             .value = &RowFacts::share_of_copy,
-             .schema = "positive",
-             .what = "of the row's own device",
-             .csv = {"share of copy"},
-             .rates = {.title = "of copy", .cell = percent<0>}}};
+    return {
+        {"rates", "mrays_per_s", &Figures::mrays_per_s,
+         recorded("positive", required, "of the median sample, as all rates"), csv("rate", "Mrays/s"),
+         rates("Mrays/s")},
+        {"rates", "msteps_per_s", &Figures::msteps_per_s, recorded("positive"), csv("rate", "Msteps/s", 1),
+         rates("Msteps/s", "", 1)},
+        {"counts", "mean_steps", [](const Traced& trace) { return mean_steps(trace.totals).all; },
+         recorded("not_negative"), csv("steps per ray")},
+        {"counts", "mean_steps_hit", [](const Traced& trace) { return mean_steps(trace.totals).hit; },
+         recorded("not_negative"), csv("steps per hit")},
+        {"counts", "mean_steps_miss", [](const Traced& trace) { return mean_steps(trace.totals).miss; },
+         recorded("not_negative"), csv("steps per miss")},
+        {"", "comparison",
+         [](const Comparison& comparison) {
+             const MedianRatio& rate = comparison.rate;
+             return fmt::format("{:5.2f} [{:.2f}, {:.2f}]", rate.value, rate.low, rate.high);
+         },
+         rates("x {reference}")},
+        {ratio_group, "row",
+         [](const RowFacts& facts) { return facts.comparison ? json(row_name(facts.row->key)) : json(); },
+         recorded("line", required)},
+        {ratio_group, "ratio", in(&Comparison::rate, &MedianRatio::value),
+         recorded("positive", required,
+                  "the reference's median device seconds over the row's: above 1 the row is faster"),
+         csv("ratio to reference")},
+        {ratio_group, "low", in(&Comparison::rate, &MedianRatio::low), recorded("positive", required),
+         csv({.title = "low", .key = "ratio_low"})},
+        {ratio_group, "high", in(&Comparison::rate, &MedianRatio::high), recorded("positive", required),
+         csv({.title = "high", .key = "ratio_high"})},
+        {ratio_group, "confidence", [](const Comparison&) { return ratio_confidence; },
+         recorded(R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })", required)},
+        {ratio_group, "reference", [](const Comparison& comparison) { return row_name(comparison.reference->key); },
+         recorded("line", required), csv("reference")},
+        {"rates", "ratio_to_single", &RowFacts::ratio_to_single,
+         recorded("positive", optional, "to Embree's single rays on the same scene, same run; of rows on the host"),
+         csv("ratio to Embree single"), rates("x single")},
+        {"rates", "estimated_gb_per_s", &Figures::gb_per_s,
+         recorded("positive", optional, "steps times bytes_per_step"), csv("estimated", "GB/s", 1)},
+        {"rates", "bytes_per_step",
+         [](const RowFacts& facts) {
+             const bool has_any = facts.figures && facts.figures->gb_per_s;
+             return has_any ? json(bytes_per_step(facts.row->key.kernel)) : json();
+         },
+         recorded("positive")},
+        {"rates", "bytes_per_step_is",
+         [](const Figures& figures) {
+             return figures.gb_per_s ? json("an estimate: what a step loads of its tet's record on average "
+                                            "(docs/spec/devices.md, W7)")
+                                     : json();
+         },
+         recorded("line")},
+        {"rates", "share_of_copy_bandwidth", &RowFacts::share_of_copy,
+         recorded("positive", optional, "of the row's own device"), csv("share of copy"),
+         rates({.title = "of copy", .cell = percent<0>})},
+    };
 }
 
 /// Where its time goes.
 std::vector<RowField> time_fields()
 {
     return {
-        {.key = "bytes",
-         .value = [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
-         .csv = {"size", "bytes"}},
-        {.group = "times",
-         .key = "clock",
-         .value = [](const RowFacts& facts) { return traced(*facts.row) ? json(facts.row->backend->clock()) : json(); },
-         .schema = "line",
-         .required = true},
-        {.key = "compile_and_build_s",
-         .value = [](const RowFacts& facts) { return above_0(facts.setup.compile_s + facts.setup.build_s); },
-         .times = {"compile", "ms", 1, milliseconds}},
-        {.group = "times",
-         .key = "compile_s",
-         .value = [](const RowFacts& facts) { return above_0(facts.setup.compile_s); },
-         .schema = "positive",
-         .what = "of Embree: its build",
-         .csv = {"compile", "s", 6},
-         .report = {"compile", "", 1, milliseconds}},
-        {.group = "times",
-         .key = "compile_cached",
-         .value = [](const RowFacts& facts) { return facts.setup.compile_cached ? json(true) : json(); },
-         .schema = R"({ "type": "boolean" })",
-         .what = "the kernel came from the cache of compiled programs",
-         .times = {"cached"}},
-        {.group = "times",
-         .key = "upload_s",
-         .value = [](const RowFacts& facts) { return above_0(facts.setup.upload_s); },
-         .schema = "positive",
-         .csv = {"upload", "s", 6},
-         .times = {"upload", "ms", 1, milliseconds},
-         .report = {"upload", "", 1, milliseconds}},
-        {.group = "times",
-         .key = "pack_s",
-         .value = [](const RowRun& row) { return row.packed != nullptr ? json(row.packed->pack_s) : json(); },
-         .schema = "not_negative"},
-        {.group = "times",
-         .key = "bvh_build_s",
-         .value = bvh_build_s,
-         .schema = "not_negative",
-         .what = "of our BVHs, which share one tree; of layout rt the driver's, by the device's clock"},
-        {.group = "times",
-         .key = "first_kernel_s",
-         .value = &Traced::kernel_s,
-         .schema = "not_negative",
-         .required = true,
-         .what = "the first pass over all views, in which devices compile what they left until then"},
-        {.group = "times",
-         .key = "first_wall_s",
-         .value = &Traced::wall_s,
-         .schema = "not_negative",
-         .required = true,
-         .csv = {"first", "s", 6},
-         .times = {"first", "ms", 1, milliseconds},
-         .report = {"first", "", 1, milliseconds}},
-        {.group = "times",
-         .key = "samples_s",
-         .value = [](const RowRun& row) { return row.samples_s.empty() ? json() : json(row.samples_s); },
-         .schema = "durations",
-         .what = "kernel alone, all views"},
-        {.group = "times",
-         .key = "wall_samples_s",
-         .value = [](const RowRun& row) { return row.wall_samples_s.empty() ? json() : json(row.wall_samples_s); },
-         .schema = "durations",
-         .what = "launch to the end of waiting, on the host's clock"},
-        {.group = "times",
-         .key = "median_s",
-         .value = [](const Figures& figures) { return figures.kernel_s.median; },
-         .schema = "positive",
-         .csv = {"median", "s", 6},
-         .times = {"kernel", "ms", 1, milliseconds},
-         .report = {"kernel", "", 1, milliseconds}},
-        {.group = "times",
-         .key = "lower_quartile_s",
-         .value = [](const Figures& figures) { return figures.kernel_s.lower_quartile; },
-         .schema = "positive"},
-        {.group = "times",
-         .key = "upper_quartile_s",
-         .value = [](const Figures& figures) { return figures.kernel_s.upper_quartile; },
-         .schema = "positive"},
-        {.group = "times",
-         .key = "spread",
-         .value = [](const Figures& figures) { return figures.kernel_s.spread(); },
-         .schema = "not_negative",
-         .what = "interquartile range over median",
-         .csv = {"spread", "", 3},
-         .rates = {.title = "spread", .cell = percent<1>}},
-        {.group = "times",
-         .key = "noisy",
-         .value = [](const Figures& figures) { return figures.kernel_s.noisy(); },
-         .schema = R"({ "type": "boolean" })",
-         .what = "spread above 5 %"},
-        {.group = "times",
-         .key = "overhead_s",
-         .value = &Figures::overhead_s,
-         .schema = R"({ "type": "number" })",
-         .what = "launching and waiting: median of wall less kernel, sample by sample",
-         .csv = {"launch overhead", "s", 6},
-         .times = {"launch", "ms", 2, milliseconds},
-         .report = {"launch", "", 2, milliseconds}},
-        {.group = "times",
-         .key = "download_s",
-         .value = &Traced::download_s,
-         .schema = "not_negative",
-         .required = true,
-         .what = "all views' output copied to the host in the warm pass before the samples, checks left out",
-         .csv = {"download", "s", 6},
-         .times = {"download", "ms", 1, milliseconds},
-         .report = {"download", "", 1, milliseconds}},
-        {.group = "times",
-         .key = "wall_s",
-         .value = &Figures::wall_s,
-         .schema = "positive",
-         .what = "launch to the end of waiting on the host's clock, median",
-         .csv = {"wall", "s", 6},
-         .times = {"wall", "ms", 1, milliseconds},
-         .report = {"wall", "", 1, milliseconds}},
-        {.key = "bytes",
-         .value = [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
-         .schema = "count",
-         .what = "of the structure and its scene data on the device",
-         .times = {"size", "MB", 1, megabytes},
-         .report = {"size", "MB", 1, megabytes}},
-        {.key = "samples", .value = [](const RowRun& row) { return row.samples_s.size(); }, .csv = {"samples"}},
-        {.key = "status", .value = status_text, .rates = {"status"}}};
+        {"", "bytes", [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
+         csv("size", "bytes")},
+        {"times", "clock",
+         [](const RowFacts& facts) { return traced(*facts.row) ? json(facts.row->backend->clock()) : json(); },
+         recorded("line", required)},
+        {"", "compile_and_build_s", compile_and_build_s, times("compile", "ms", 1, milliseconds)},
+        {"times", "compile_s", positive(&SetupTimes::compile_s), recorded("positive", optional, "of Embree: its build"),
+         csv("compile", "s", 6), report("compile", "", 1, milliseconds)},
+        {"times", "compile_cached",
+         [](const RowFacts& facts) { return facts.setup.compile_cached ? json(true) : json(); },
+         recorded(R"({ "type": "boolean" })", optional, "the kernel came from the cache of compiled programs"),
+         times("cached")},
+        {"times", "upload_s", positive(&SetupTimes::upload_s), recorded("positive"), csv("upload", "s", 6),
+         times("upload", "ms", 1, milliseconds), report("upload", "", 1, milliseconds)},
+        {"times", "pack_s", [](const RowRun& row) { return row.packed != nullptr ? json(row.packed->pack_s) : json(); },
+         recorded("not_negative")},
+        {"times", "bvh_build_s", bvh_build_s,
+         recorded("not_negative", optional,
+                  "of our BVHs, which share one tree; of layout rt the driver's, by the device's clock")},
+        {"times", "first_kernel_s", &Traced::kernel_s,
+         recorded("not_negative", required,
+                  "the first pass over all views, in which devices compile what they left until then")},
+        {"times", "first_wall_s", &Traced::wall_s, recorded("not_negative", required), csv("first", "s", 6),
+         times("first", "ms", 1, milliseconds), report("first", "", 1, milliseconds)},
+        {"times", "samples_s", unless_empty(&RowRun::samples_s),
+         recorded("durations", optional, "kernel alone, all views")},
+        {"times", "wall_samples_s", unless_empty(&RowRun::wall_samples_s),
+         recorded("durations", optional, "launch to the end of waiting, on the host's clock")},
+        {"times", "median_s", in(&Figures::kernel_s, &Statistics::median), recorded("positive"), csv("median", "s", 6),
+         times("kernel", "ms", 1, milliseconds), report("kernel", "", 1, milliseconds)},
+        {"times", "lower_quartile_s", in(&Figures::kernel_s, &Statistics::lower_quartile), recorded("positive")},
+        {"times", "upper_quartile_s", in(&Figures::kernel_s, &Statistics::upper_quartile), recorded("positive")},
+        {"times", "spread", in(&Figures::kernel_s, &Statistics::spread),
+         recorded("not_negative", optional, "interquartile range over median"), csv("spread", "", 3),
+         rates({.title = "spread", .cell = percent<1>})},
+        {"times", "noisy", in(&Figures::kernel_s, &Statistics::noisy),
+         recorded(R"({ "type": "boolean" })", optional, "spread above 5 %")},
+        {"times", "overhead_s", &Figures::overhead_s,
+         recorded(R"({ "type": "number" })", optional,
+                  "launching and waiting: median of wall less kernel, sample by sample"),
+         csv("launch overhead", "s", 6), times("launch", "ms", 2, milliseconds), report("launch", "", 2, milliseconds)},
+        {"times", "download_s", &Traced::download_s,
+         recorded("not_negative", required,
+                  "all views' output copied to the host in the warm pass before the samples, checks left out"),
+         csv("download", "s", 6), times("download", "ms", 1, milliseconds), report("download", "", 1, milliseconds)},
+        {"times", "wall_s", &Figures::wall_s,
+         recorded("positive", optional, "launch to the end of waiting on the host's clock, median"),
+         csv("wall", "s", 6), times("wall", "ms", 1, milliseconds), report("wall", "", 1, milliseconds)},
+        {"", "bytes", [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
+         recorded("count", optional, "of the structure and its scene data on the device"),
+         times("size", "MB", 1, megabytes), report("size", "MB", 1, megabytes)},
+        {"", "samples", [](const RowRun& row) { return row.samples_s.size(); }, csv("samples")},
+        {"", "status", status_text, rates("status")},
+    };
 }
 
 /// What its rays met, and whether that is right.
 std::vector<RowField> answer_fields()
 {
     return {
-        {.group = "counts",
-         .key = "rays",
-         .value = [](const Traced& trace) { return trace.totals.rays; },
-         .schema = R"({ "type": "integer", "minimum": 1 })",
-         .required = true,
-         .csv = {.title = "rays traced", .key = "ray_count"}},
-        {.group = "counts",
-         .key = "hits",
-         .value = [](const Traced& trace) { return trace.totals.hits; },
-         .schema = "count",
-         .required = true,
-         .csv = {.title = "hits", .key = "hit_count"}},
-        {.group = "counts",
-         .key = "misses",
-         .value = [](const Traced& trace) { return trace.totals.misses; },
-         .schema = "count",
-         .required = true},
-        {.group = "counts",
-         .key = "lost",
-         .value = [](const Traced& trace) { return trace.totals.lost; },
-         .schema = "count",
-         .required = true},
-        {.group = "counts",
-         .key = "steps",
-         .value = [](const Traced& trace) { return trace.totals.steps() > 0 ? json(trace.totals.steps()) : json(); },
-         .schema = "count"},
-        {.group = "visits", .key = "nodes", .value = &Visits::nodes, .schema = "count", .required = true},
-        {.group = "visits", .key = "triangles", .value = &Visits::triangles, .schema = "count", .required = true},
-        {.group = "visits",
-         .key = "mean_nodes",
-         .value = [](const Visits& visits) { return a_ray(visits.nodes, visits); },
-         .schema = "not_negative",
-         .required = true},
-        {.group = "visits",
-         .key = "mean_triangles",
-         .value = [](const Visits& visits) { return a_ray(visits.triangles, visits); },
-         .schema = "not_negative",
-         .required = true},
-        {.group = "verification",
-         .key = "rays",
-         .value = [](const Traced& trace) { return trace.verdicts.rays; },
-         .schema = R"({ "type": "integer", "minimum": 1 })",
-         .required = true,
-         .check = {"rays"}},
-        {.group = "verification",
-         .key = "agreed",
-         .value = [](const Traced& trace) { return trace.verdicts.agreed; },
-         .schema = "count",
-         .required = true,
-         .what = "with Embree in robust mode",
-         .check = {"agreed"}},
-        {.group = "verification",
-         .key = "ties",
-         .value = [](const Traced& trace) { return trace.verdicts.ties; },
-         .schema = "count",
-         .required = true,
-         .what = "the ray passes within rounding of an edge that explains the other answer",
-         .csv = {"ties"},
-         .check = {"ties"}},
-        {.group = "verification",
-         .key = "largest_tie_distance",
-         .value =
-             [](const Traced& trace) {
-                 return trace.verdicts.ties > 0 ? json(trace.verdicts.largest_tie_distance) : json();
-             },
-         .schema = "not_negative",
-         .check = {"largest", "", 12}},
-        {.group = "verification",
-         .key = "settled",
-         .value = [](const Traced& trace) { return trace.verdicts.settled; },
-         .schema = "count",
-         .required = true,
-         .what = "exact arithmetic says that Embree is off",
-         .check = {"settled"}},
-        {.group = "verification",
-         .key = "offset",
-         .value = [](const Traced& trace) { return trace.verdicts.offset; },
-         .schema = "count",
-         .what = "right only for the origin off the surface that a BVH's given ray starts from",
-         .check = {"offset"}},
-        {.group = "verification",
-         .key = "wrong",
-         .value = [](const Traced& trace) { return trace.verdicts.wrong; },
-         .schema = "count",
-         .required = true,
-         .what = "exact arithmetic says that the row is, or its t, u and v do not name one point",
-         .csv = {"wrong"},
-         .check = {"wrong"}},
-        {.group = "verification",
-         .key = "lost",
-         .value = [](const Traced& trace) { return trace.verdicts.lost; },
-         .schema = "count",
-         .required = true,
-         .csv = {"lost"},
-         .check = {"lost"}},
-        {.group = "verification",
-         .key = "compared_with_openmp",
-         .value = &Traced::compared,
-         .schema = R"({ "type": "boolean" })",
-         .required = true},
-        {.key = "conformity",
-         .value = &RowFacts::conformity,
-         .schema = "line",
-         .what = "of `check`, as in tetrace.matrix",
-         .check = {"conformity"}},
-        {.group = "verification",
-         .key = "different_from_openmp",
-         .value = [](const Traced& trace) { return trace.compared ? json(trace.different) : json(); },
-         .schema = "count",
-         .check = {"differ"}},
-        {.group = "verification",
-         .key = "largest_ulps",
-         .value = [](const Traced& trace) { return trace.compared ? json(trace.largest_ulps) : json(); },
-         .schema = "count",
-         .what = "of t, u and v",
-         .check = {"ulps"}},
-        {.group = "verification",
-         .key = "first_different",
-         .value = [](const Traced& trace) { return json_of_ray(trace.first_different); },
-         .schema = "differing_ray"},
-        {.group = "verification",
-         .key = "first_wrong",
-         .value = [](const Traced& trace) { return json_of_ray(trace.verdicts.first_wrong); },
-         .schema = "wrong_ray"},
-        {.key = "hit_hash",
-         .value = [](const Traced& trace) { return hash_text(trace.hit_hash); },
-         .schema = "hash",
-         .what = "of all hits, view after view: equal hashes are equal answers, bit for bit",
-         .csv = {"hit hash"},
-         .check = {"hits"}},
-        {.key = "status", .value = status_name, .check = {"status"}},
-        {.key = "reason", .value = reason_or_nothing, .check = {"reason"}}};
+        {"counts", "rays", in(&Traced::totals, &RayTotals::rays),
+         recorded(R"({ "type": "integer", "minimum": 1 })", required),
+         csv({.title = "rays traced", .key = "ray_count"})},
+        {"counts", "hits", in(&Traced::totals, &RayTotals::hits), recorded("count", required),
+         csv({.title = "hits", .key = "hit_count"})},
+        {"counts", "misses", in(&Traced::totals, &RayTotals::misses), recorded("count", required)},
+        {"counts", "lost", in(&Traced::totals, &RayTotals::lost), recorded("count", required)},
+        {"counts", "steps",
+         [](const Traced& trace) { return trace.totals.steps() > 0 ? json(trace.totals.steps()) : json(); },
+         recorded("count")},
+        {"visits", "nodes", &Visits::nodes, recorded("count", required)},
+        {"visits", "triangles", &Visits::triangles, recorded("count", required)},
+        {"visits", "mean_nodes", [](const Visits& visits) { return a_ray(visits.nodes, visits); },
+         recorded("not_negative", required)},
+        {"visits", "mean_triangles", [](const Visits& visits) { return a_ray(visits.triangles, visits); },
+         recorded("not_negative", required)},
+        {"verification", "rays", in(&Traced::verdicts, &Verdicts::rays),
+         recorded(R"({ "type": "integer", "minimum": 1 })", required), check("rays")},
+        {"verification", "agreed", in(&Traced::verdicts, &Verdicts::agreed),
+         recorded("count", required, "with Embree in robust mode"), check("agreed")},
+        {"verification", "ties", in(&Traced::verdicts, &Verdicts::ties),
+         recorded("count", required, "the ray passes within rounding of an edge that explains the other answer"),
+         csv("ties"), check("ties")},
+        {"verification", "largest_tie_distance",
+         [](const Traced& trace) {
+             return trace.verdicts.ties > 0 ? json(trace.verdicts.largest_tie_distance) : json();
+         },
+         recorded("not_negative"), check("largest", "", 12)},
+        {"verification", "settled", in(&Traced::verdicts, &Verdicts::settled),
+         recorded("count", required, "exact arithmetic says that Embree is off"), check("settled")},
+        {"verification", "offset", in(&Traced::verdicts, &Verdicts::offset),
+         recorded("count", optional, "right only for the origin off the surface that a BVH's given ray starts from"),
+         check("offset")},
+        {"verification", "wrong", in(&Traced::verdicts, &Verdicts::wrong),
+         recorded("count", required, "exact arithmetic says that the row is, or its t, u and v do not name one point"),
+         csv("wrong"), check("wrong")},
+        {"verification", "lost", in(&Traced::verdicts, &Verdicts::lost), recorded("count", required), csv("lost"),
+         check("lost")},
+        {"verification", "compared_with_openmp", &Traced::compared, recorded(R"({ "type": "boolean" })", required)},
+        {"", "conformity", &RowFacts::conformity, recorded("line", optional, "of `check`, as in tetrace.matrix"),
+         check("conformity")},
+        {"verification", "different_from_openmp", if_compared(&Traced::different), recorded("count"), check("differ")},
+        {"verification", "largest_ulps", if_compared(&Traced::largest_ulps),
+         recorded("count", optional, "of t, u and v"), check("ulps")},
+        {"verification", "first_different",
+         [](const Traced& trace) {
+             return trace.first_different ? differing_ray_json(*trace.first_different) : json();
+         },
+         recorded("differing_ray")},
+        {"verification", "first_wrong",
+         in(&Traced::verdicts,
+            [](const Verdicts& verdicts) {
+                return verdicts.first_wrong ? wrong_ray_json(*verdicts.first_wrong) : json();
+            }),
+         recorded("wrong_ray")},
+        {"", "hit_hash", [](const Traced& trace) { return hash_text(trace.hit_hash); },
+         recorded("hash", optional, "of all hits, view after view: equal hashes are equal answers, bit for bit"),
+         csv("hit hash"), check("hits")},
+        {"", "status", status_name, check("status")},
+        {"", "reason", reason_or_nothing, check("reason")},
+    };
 }
 
 } // namespace
-
-RowFacts::RowFacts(const RowRun& run)
-    : row(&run), setup(run.session ? run.session->setup_times() : SetupTimes{}), figures(figures_of(run))
-{
-}
-
-Cell plain_cell(const json& value)
-{
-    if (value.is_string()) return value.get<std::string>();
-    if (value.is_number_float()) return value.get<double>();
-    if (value.is_number()) return value.get<std::uint64_t>();
-    return value.is_boolean() && value.get<bool>() ? Cell("yes") : Cell();
-}
 
 const std::vector<RowField>& row_fields()
 {
@@ -569,25 +344,6 @@ const std::vector<RowField>& row_fields()
         return fields;
     }();
     return all;
-}
-
-std::vector<Column> columns_of(Place place, const std::string& reference)
-{
-    std::vector<Column> columns;
-    for (const RowField& field : row_fields())
-        if (const Shown& shown = field.*place; shown.title != nullptr)
-            columns.push_back({shown.key != nullptr ? shown.key : field.key,
-                               fmt::format(fmt::runtime(shown.title), fmt::arg("reference", reference)), shown.unit,
-                               shown.decimals});
-    return columns;
-}
-
-std::vector<Cell> cells_of(Place place, const RowFacts& facts)
-{
-    std::vector<Cell> cells;
-    for (const RowField& field : row_fields())
-        if (const Shown& shown = field.*place; shown.title != nullptr) cells.push_back(shown.cell(field.value(facts)));
-    return cells;
 }
 
 } // namespace tetrace

@@ -120,7 +120,7 @@ StepSummary summarize_steps(std::span<const Hit> hits)
     if (steps.empty()) {
         return summary;
     }
-    std::sort(steps.begin(), steps.end());
+    std::ranges::sort(steps);
     double sum = 0;
     for (const std::uint32_t count : steps) {
         sum += count;

@@ -2,7 +2,6 @@
 #include "core/device/backend.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -20,7 +19,7 @@ std::vector<std::string> devices_of(const ResultValue& scene)
     std::vector<std::string> devices;
     for (const auto& [kernel, cells] : scene.members())
         for (const auto& [device, cell] : cells.members())
-            if (std::find(devices.begin(), devices.end(), device) == devices.end()) devices.push_back(device);
+            if (std::ranges::find(devices, device) == devices.end()) devices.push_back(device);
     std::stable_partition(devices.begin(), devices.end(),
                           [](const std::string& name) { return name == reference_backend().name(); });
     return devices;
@@ -60,10 +59,9 @@ Section conformance_section(const ReportInput& input)
     Section section{"conformance", "Conformance", {}};
     Html matrices;
     for (std::size_t file = 0; file < input.files.size(); ++file) {
-        const std::string letter = file_letter(file, input.files.size());
         if (const auto matrix = input.files[file].section().find("matrix"))
             for (const auto& [scene, cells] : matrix->members())
-                matrices += heading(letter.empty() ? scene : scene + " · " + letter) + matrix_of(cells);
+                matrices += heading(with_letter(scene, file, input.files.size())) + matrix_of(cells);
     }
     section.content =
         matrices.empty()

@@ -4,18 +4,11 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <map>
 #include <set>
 
 namespace tetrace {
 
 namespace {
-
-std::string text_at(const ResultValue& object, const char* key)
-{
-    const auto value = object.find(key);
-    return value ? value->text() : std::string();
-}
 
 Html scaled(const ResultValue& object, const char* key, double factor)
 {
@@ -56,7 +49,7 @@ Html results_table(const ReportInput& input)
                    text_element("code", "", file.path.filename().string()), text(head.verb),
                    text_element("span", "date", minute_of(head.date)), text(head.cpu), text(head.system),
                    count_at(section, "threads"), count_at(section, "samples_a_row"),
-                   text_element("code", "", head.commit), text(text_at(section, "compiler"))});
+                   text_element("code", "", head.commit), text(section.text_at("compiler"))});
     }
     return table.html();
 }
@@ -73,25 +66,24 @@ std::string self_test_text(const ResultValue& device)
 {
     const auto tests = device.find("self_test");
     const auto exact = tests ? tests->find("exact") : std::nullopt;
-    return exact && exact->json().is_object() ? text_at(*exact, "text") : std::string();
+    return exact && exact->json().is_object() ? exact->text_at("text") : std::string();
 }
 
-std::string api_with_index(const ResultValue& object, const char* index_key)
+std::string api_at(const ResultValue& object, const char* index_key)
 {
     const auto index = object.find(index_key);
-    const std::string backend = object.at("backend").line();
-    return index && index->count() > 0 ? fmt::format("{}:{}", backend, index->count()) : backend;
+    return api_name(object.at("backend").line(), index ? index->count() : 0);
 }
 
 ToldDevice device_of_bench(const ResultValue& device)
 {
     ToldDevice told;
-    told.api = api_with_index(device, "index");
+    told.api = api_at(device, "index");
     told.name = device.at("name").line();
     told.kind = device_kind_of(device);
-    told.driver = text_at(device, "driver");
+    told.driver = device.text_at("driver");
     told.self_test = self_test_text(device);
-    told.problem = text_at(device, "problem");
+    told.problem = device.text_at("problem");
     told.copy = scaled(device, "copy_bytes_per_s", 1e-9);
     told.launch = scaled(device, "launch_s", 1e6);
     told.memory = scaled(device, "memory_bytes", 1e-9);
@@ -104,12 +96,12 @@ std::optional<ToldDevice> device_of_row(const ResultValue& row)
     const auto device = row.find("device");
     if (!device) return std::nullopt;
     ToldDevice told;
-    told.api = api_with_index(row, "device_index");
+    told.api = api_at(row, "device_index");
     told.name = device->at("name").line();
     told.kind = device_kind_of(*device);
-    told.driver = text_at(*device, "driver");
+    told.driver = device->text_at("driver");
     told.memory = scaled(*device, "memory_bytes", 1e-9);
-    if (const auto test = row.find("self_test")) told.self_test = text_at(*test, "text");
+    if (const auto test = row.find("self_test")) told.self_test = test->text_at("text");
     return told;
 }
 
@@ -139,7 +131,7 @@ std::vector<ToldDevice> all_devices(const ReportInput& input)
         for (ToldDevice& device : devices_of(input.files[i])) {
             device.host = input.files[i].head.cpu;
             device.letters = file_letter(i, input.files.size());
-            const auto same = std::find_if(all.begin(), all.end(), [&](const ToldDevice& other) {
+            const auto same = std::ranges::find_if(all, [&](const ToldDevice& other) {
                 return other.host == device.host && other.api == device.api && other.name == device.name &&
                        other.driver == device.driver && (other.copy.empty() || device.copy.empty());
             });
@@ -220,10 +212,10 @@ Html scene_table(const ReportInput& input)
             const ResultScene& scene = file.scenes[i];
             if (!seen.insert(scene.name + scene.hash + text_of_rays(scene)).second) continue;
             const ResultValue value = file.section().at("scenes").items().at(i);
-            table.add({text(scene.name), text(text_at(value, "source")), count_at(value, "tets"),
-                       count_at(value, "occlusive_faces"), count_at(value, "free_faces"),
-                       text(text_at(value, "domain")), text_element("code", "", text_at(value, "switches")),
-                       text(text_of_rays(scene)), text(file.rows.empty() ? "" : steps_text(file, scene.name)),
+            table.add({text(scene.name), text(value.text_at("source")), count_at(value, "tets"),
+                       count_at(value, "occlusive_faces"), count_at(value, "free_faces"), text(value.text_at("domain")),
+                       text_element("code", "", value.text_at("switches")), text(text_of_rays(scene)),
+                       text(file.rows.empty() ? "" : steps_text(file, scene.name)),
                        text_element("code", "", scene.hash)});
         }
     return table.empty() ? paragraph("These results name no scene.") : table.html();

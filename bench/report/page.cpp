@@ -23,8 +23,8 @@ std::string status_summary(const ReportInput& input)
     std::string text = count_text(input.rows.size(), "row", "rows");
     const char* separator = ": ";
     for (const char* const status : {"ok", "flawed", "wrong", "unsupported", "skipped", "error"}) {
-        const auto count = std::count_if(input.rows.begin(), input.rows.end(),
-                                         [&](const ReportRow& row) { return row.row->status == status; });
+        const auto count =
+            std::ranges::count_if(input.rows, [&](const ReportRow& row) { return row.row->status == status; });
         if (count > 0) text += fmt::format("{}{} {}", std::exchange(separator, ", "), count, status);
     }
     return text;

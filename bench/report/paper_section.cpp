@@ -10,15 +10,9 @@ namespace tetrace {
 
 namespace {
 
-std::string text_at(const ResultValue& object, const char* key)
-{
-    const auto value = object.find(key);
-    return value ? value->text() : std::string();
-}
-
 std::string title_with_source(const ResultValue& part)
 {
-    const std::string source = text_at(part, "source");
+    const std::string source = part.text_at("source");
     return part.at("title").text() + (source.empty() ? "" : " · " + source);
 }
 
@@ -79,7 +73,7 @@ Html table_of(const ResultValue& part)
     for (const ResultValue& column : part.at("columns").items()) {
         keys.push_back(column.at("key").text());
         decimals.push_back(decimals_of(column));
-        columns.push_back({column.at("title").text(), text_at(column, "unit"), is_number_column(rows, keys.back())});
+        columns.push_back({column.at("title").text(), column.text_at("unit"), is_number_column(rows, keys.back())});
     }
     HtmlTable table(columns);
     for (const ResultValue& row : rows.items()) {
@@ -100,7 +94,7 @@ Html claims_of(const ResultValue& part)
     if (claims)
         for (const ResultValue& claim : claims->items())
             table.add(
-                {badge(claim.at("verdict").line()), text(claim.at("text").text()), text(text_at(claim, "evidence"))});
+                {badge(claim.at("verdict").line()), text(claim.at("text").text()), text(claim.text_at("evidence"))});
     return table.html();
 }
 
@@ -116,7 +110,7 @@ Html notes_of(const ResultValue& part)
 /// "time, ms".
 std::string axis_title(const ResultValue& axis)
 {
-    const std::string unit = text_at(axis, "unit");
+    const std::string unit = axis.text_at("unit");
     return axis.at("title").text() + (unit.empty() ? "" : ", " + unit);
 }
 

@@ -2,7 +2,6 @@
 #include "bench/report/charts/bar_chart.h"
 #include "bench/report/html/svg.h"
 #include "bench/report/sections.h"
-#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <array>
@@ -46,8 +45,8 @@ std::set<std::string> devices_in(const RowGroup& group, std::size_t files)
 /// Whether bars must name their devices; the APIs distinguish the emulated devices of one result.
 bool needs_devices(const RowGroup& group, std::size_t files)
 {
-    const bool one_result = std::all_of(group.rows.begin(), group.rows.end(),
-                                        [&](const ReportRow* row) { return row->file == group.rows.front()->file; });
+    const bool one_result =
+        std::ranges::all_of(group.rows, [&](const ReportRow* row) { return row->file == group.rows.front()->file; });
     return devices_in(group, files).size() > 1 && (group.kind != DeviceKind::emulated || !one_result);
 }
 
@@ -82,8 +81,7 @@ Html rows_without_rate(const ReportInput& input)
 
 std::string device_text(const ReportRow& row, std::size_t files)
 {
-    const std::string letter = file_letter(row.file, files);
-    return row.row->device + (letter.empty() ? "" : " · " + letter);
+    return with_letter(row.row->device, row.file, files);
 }
 
 std::size_t api_series(const std::string& backend)
@@ -91,7 +89,7 @@ std::size_t api_series(const std::string& backend)
     // The styles of all_backends(), in their order; later backends get the styles after those.
     constexpr std::array<std::size_t, 6> styles = {0, 2, 3, 4, 5, 1};
     const auto& known = all_backends();
-    const auto found = std::find_if(known.begin(), known.end(), [&](const Backend* b) { return b->name() == backend; });
+    const auto found = std::ranges::find_if(known, [&](const Backend* b) { return b->name() == backend; });
     const auto place = static_cast<std::size_t>(found - known.begin());
     if (found == known.end()) return series_styles - 1;
     return place < styles.size() ? styles.at(place) : place;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <map>
 
 namespace tetrace {
 
@@ -32,8 +31,8 @@ struct RatioGroup {
 const ReportRow& row_named(const ReportInput& input, std::size_t file, const ResultValue& name)
 {
     const std::string wanted = name.line();
-    const auto found = std::find_if(input.rows.begin(), input.rows.end(),
-                                    [&](const ReportRow& row) { return row.file == file && row.name() == wanted; });
+    const auto found = std::ranges::find_if(
+        input.rows, [&](const ReportRow& row) { return row.file == file && row.name() == wanted; });
     if (found == input.rows.end()) name.reject(fmt::format("is '{}', and there is no row of that name", wanted));
     return *found;
 }
@@ -51,7 +50,7 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
     const ReportRow& row = row_named(input, file, name);
     if (!row.row->device_kind) name.reject("is of a row without a device");
     const RatioKey key{file, row.row->scene, row.rays, row.kind(), row_named(input, file, ratio.at("reference")).api};
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const RatioGroup& other) { return other.key == key; });
+    auto group = std::ranges::find_if(groups, [&](const RatioGroup& other) { return other.key == key; });
     if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
     group->intervals.push_back({row.name(), row.kernel + "  " + row.api, "", api_series(row.row->backend),
                                 ratio_at(ratio, "ratio"), ratio_at(ratio, "low"), ratio_at(ratio, "high")});
@@ -60,9 +59,9 @@ void add_ratio(std::vector<RatioGroup>& groups, const ReportInput& input, std::s
 Html chart_of(const RatioGroup& group, const ReportInput& input)
 {
     const RatioKey& key = group.key;
-    const std::string letter = file_letter(key.file, input.files.size());
-    const std::string title = fmt::format("{}, {}{}{}", key.scene, key.rays == "primary" ? "" : key.rays + " rays, ",
-                                          plural_of(key.kind), letter.empty() ? "" : " · " + letter);
+    const std::string what =
+        fmt::format("{}, {}{}", key.scene, key.rays == "primary" ? "" : key.rays + " rays, ", plural_of(key.kind));
+    const std::string title = with_letter(what, key.file, input.files.size());
     return figure(title,
                   draw(IntervalChart{fmt::format("Rates over those of {}: {}", key.reference, title),
                                      "slower than " + key.reference, "faster", group.intervals}),

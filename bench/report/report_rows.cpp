@@ -135,7 +135,7 @@ std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files, const s
         group_for(groups, *scene, row).rows.push_back(&row);
     }
     for (RowGroup& group : groups)
-        std::stable_sort(group.rows.begin(), group.rows.end(), [](const ReportRow* a, const ReportRow* b) {
+        std::ranges::stable_sort(group.rows, [](const ReportRow* a, const ReportRow* b) {
             return a->rate->mrays_per_s > b->rate->mrays_per_s;
         });
     order_groups(groups);
@@ -148,14 +148,15 @@ std::string file_letter(std::size_t file, std::size_t files)
     return file < 26 ? std::string(1, static_cast<char>('A' + file)) : std::to_string(file + 1);
 }
 
+std::string with_letter(const std::string& title, std::size_t file, std::size_t files)
+{
+    const std::string letter = file_letter(file, files);
+    return letter.empty() ? title : title + " · " + letter;
+}
+
 const char* plural_of(DeviceKind kind)
 {
-    switch (kind) {
-    case DeviceKind::cpu: return "processors";
-    case DeviceKind::gpu: return "GPUs";
-    case DeviceKind::emulated: return "emulated";
-    }
-    throw Error(ErrorKind::internal, "plural_of: no such kind of device");
+    return kind == DeviceKind::cpu ? "processors" : kind == DeviceKind::gpu ? "GPUs" : "emulated";
 }
 
 } // namespace tetrace

@@ -3,7 +3,6 @@
 #include "bench/results/result_file.h"
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +51,9 @@ struct RowGroup {
 
 /// A result's name on the page: A, B, ... Z, then 27, 28, ...; empty where there is only one.
 [[nodiscard]] std::string file_letter(std::size_t file, std::size_t files);
+
+/// A title followed by that name: "bunny · A".
+[[nodiscard]] std::string with_letter(const std::string& title, std::size_t file, std::size_t files);
 
 /// "processors", "GPUs", "emulated".
 [[nodiscard]] const char* plural_of(DeviceKind kind);

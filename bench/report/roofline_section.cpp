@@ -32,8 +32,7 @@ std::string without_structure(const std::string& kernel)
 /// Scenes of a result get shapes in their order.
 std::size_t scene_number(const ResultFile& file, const std::string& scene)
 {
-    const auto found = std::find_if(file.scenes.begin(), file.scenes.end(),
-                                    [&](const ResultScene& other) { return other.name == scene; });
+    const auto found = std::ranges::find_if(file.scenes, [&](const ResultScene& other) { return other.name == scene; });
     return static_cast<std::size_t>(found - file.scenes.begin());
 }
 
@@ -48,21 +47,14 @@ void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
         roof.largest_launch_share = std::max(roof.largest_launch_share.value_or(0), *rate.launch_share);
 }
 
-std::string device_api(const ResultValue& device)
-{
-    const std::uint64_t index = device.at("index").count();
-    const std::string backend = device.at("backend").line();
-    return index > 0 ? fmt::format("{}:{}", backend, index) : backend;
-}
-
 /// Empty for a device without a measured bandwidth, or without a row that has steps.
 std::optional<DeviceRoof> roof_of(const ResultValue& device, std::size_t file, const ReportInput& input)
 {
     const auto bandwidth = device.find("copy_bytes_per_s");
     if (!bandwidth) return std::nullopt;
     DeviceRoof roof;
-    const std::string api = device_api(device), letter = file_letter(file, input.files.size());
-    roof.title = fmt::format("{}: {}{}", api, device.at("name").line(), letter.empty() ? "" : " · " + letter);
+    const std::string api = api_name(device.at("backend").line(), device.at("index").count());
+    roof.title = api + ": " + with_letter(device.at("name").line(), file, input.files.size());
     roof.roofline.copy_bytes_per_s = bandwidth->number();
     if (roof.roofline.copy_bytes_per_s < 1 || roof.roofline.copy_bytes_per_s > 1e18)
         bandwidth->reject("is not between 1 and 1e18");
@@ -71,8 +63,9 @@ std::optional<DeviceRoof> roof_of(const ResultValue& device, std::size_t file, c
         if (row.file == file && row.api == api && row.rate && row.rate->msteps_per_s && row.rate->bytes_per_step)
             add_row(roof, row, input);
     if (roof.roofline.points.empty()) return std::nullopt;
-    std::stable_sort(roof.roofline.points.begin(), roof.roofline.points.end(),
-                     [](const RooflinePoint& a, const RooflinePoint& b) { return a.msteps_per_s > b.msteps_per_s; });
+    std::ranges::stable_sort(roof.roofline.points, [](const RooflinePoint& a, const RooflinePoint& b) {
+        return a.msteps_per_s > b.msteps_per_s;
+    });
     roof.roofline.label = "Roofline of " + roof.title;
     return roof;
 }

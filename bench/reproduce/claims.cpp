@@ -1,22 +1,10 @@
 #include "bench/reproduce/claims.h"
 
-#include "core/base/error.h"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 namespace tetrace {
-
-std::string_view name_of(ClaimVerdict verdict)
-{
-    switch (verdict) {
-    case ClaimVerdict::holds: return "holds";
-    case ClaimVerdict::does_not_hold: return "does not hold";
-    case ClaimVerdict::not_testable: return "not testable here";
-    }
-    throw Error(ErrorKind::internal, "name_of(ClaimVerdict): no such verdict");
-}
 
 ClaimVerdict judge_none(const Estimate& count)
 {
@@ -38,17 +26,16 @@ ClaimVerdict judge_less(const Estimate& first, const std::vector<Estimate>& othe
 {
     const auto is_below = [](const Estimate& a, const Estimate& b) { return a.highest() < b.lowest(); };
     const auto refutes = [&](const Estimate& other) { return other.highest() <= first.lowest(); };
-    if (std::any_of(others.begin(), others.end(), refutes)) return ClaimVerdict::does_not_hold;
-    const bool all = std::all_of(others.begin(), others.end(), [&](const Estimate& e) { return is_below(first, e); });
+    if (std::ranges::any_of(others, refutes)) return ClaimVerdict::does_not_hold;
+    const bool all = std::ranges::all_of(others, [&](const Estimate& e) { return is_below(first, e); });
     return all && !others.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
 }
 
 ClaimVerdict judge_above(const std::vector<Estimate>& ratios, double boundary)
 {
-    if (std::any_of(ratios.begin(), ratios.end(), [&](const Estimate& r) { return r.highest() < boundary; }))
+    if (std::ranges::any_of(ratios, [&](const Estimate& r) { return r.highest() < boundary; }))
         return ClaimVerdict::does_not_hold;
-    const bool all =
-        std::all_of(ratios.begin(), ratios.end(), [&](const Estimate& r) { return r.lowest() > boundary; });
+    const bool all = std::ranges::all_of(ratios, [&](const Estimate& r) { return r.lowest() > boundary; });
     return all && !ratios.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
 }
 
@@ -56,8 +43,8 @@ ClaimVerdict judge_within(const std::vector<Estimate>& numbers, double reach)
 {
     const auto is_inside = [&](const Estimate& e) { return e.lowest() >= -reach && e.highest() <= reach; };
     const auto is_outside = [&](const Estimate& e) { return e.lowest() > reach || e.highest() < -reach; };
-    if (std::any_of(numbers.begin(), numbers.end(), is_outside)) return ClaimVerdict::does_not_hold;
-    const bool all = std::all_of(numbers.begin(), numbers.end(), is_inside);
+    if (std::ranges::any_of(numbers, is_outside)) return ClaimVerdict::does_not_hold;
+    const bool all = std::ranges::all_of(numbers, is_inside);
     return all && !numbers.empty() ? ClaimVerdict::holds : ClaimVerdict::not_testable;
 }
 

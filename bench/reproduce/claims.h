@@ -1,23 +1,25 @@
 #pragma once
 
 #include "bench/statistics/interval.h"
+#include "core/base/enum_names.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace tetrace {
 
 /// The verdict of the measured intervals on a claim of the paper; a claim starts as not testable.
 enum class ClaimVerdict { not_testable, holds, does_not_hold };
-[[nodiscard]] std::string_view name_of(ClaimVerdict verdict); ///< "holds", "does not hold", "not testable here"
+template <>
+inline constexpr auto enum_names<ClaimVerdict> = names_up_to<ClaimVerdict::does_not_hold>("not testable here", "holds",
+                                                                                          "does not hold");
 
 /// A sentence of the paper, and its verdict here.
 struct Claim {
     std::string id, text;
-    ClaimVerdict verdict{}; ///< until a rule decides
-    std::string evidence;   ///< the numbers that decided, or what is missing for a decision
+    ClaimVerdict verdict{};    ///< until a rule decides
+    std::string evidence = {}; ///< the numbers that decided, or what is missing for a decision
 };
 
 // The rules below turn intervals into verdicts; the caller words the claims. A rule never decides on missing data:

@@ -3,7 +3,6 @@
 #include "bench/truth/walk_path.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace tetrace {
 
@@ -29,7 +28,7 @@ FlatTets::FlatTets(const SceneWork& scene) : scene_(&scene)
     const TetMesh& mesh = scene.loaded().scene.tets;
     for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet)
         flat_.push_back(flatness(mesh, tet) < flat_below);
-    count_ = static_cast<std::uint64_t>(std::count(flat_.begin(), flat_.end(), true));
+    count_ = static_cast<std::uint64_t>(std::ranges::count(flat_, true));
 }
 
 FlatWalks FlatTets::walks(const RowRun& row, std::size_t view, std::span<const std::uint32_t> pixels)
@@ -79,7 +78,7 @@ bool FlatTets::passes_flat(const Walker& walker, std::size_t view, std::uint32_t
     const TraceJob job = scene_->job(view, &walker.packed->data);
     const std::vector<bool>& flat = flat_packed_.at(walker.packed);
     const auto path = walk_path(*walker.session, job, pixel % job.width, pixel / job.width, steps_looked_at);
-    return std::any_of(path.begin(), path.end(), [&](std::uint32_t tet) { return flat.at(tet); });
+    return std::ranges::any_of(path, [&](std::uint32_t tet) { return flat.at(tet); });
 }
 
 } // namespace tetrace

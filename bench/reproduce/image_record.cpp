@@ -1,6 +1,6 @@
 #include "bench/reproduce/image_record.h"
 
-#include "bench/output/ray_json.h"
+#include "bench/rows/ray_json.h"
 #include "core/base/hash.h"
 
 #include <stdexcept>

@@ -1,8 +1,5 @@
 #include "bench/reproduce/paper.h"
 
-#include <algorithm>
-#include <iterator>
-
 namespace tetrace::paper {
 
 namespace {
@@ -27,30 +24,31 @@ constexpr PairOutcome who_is_faster[] = {
     {"armadillo", false},
 };
 
+/// The scene's row of a table of the paper's; empty where it has none.
+template <class Row, std::size_t count>
+std::optional<Row> find_scene(const Row (&rows)[count], std::string_view scene)
+{
+    for (const Row& row : rows)
+        if (row.scene == scene) return row;
+    return std::nullopt;
+}
+
 } // namespace
 
 std::optional<SceneCounts> counts_of(std::string_view scene)
 {
-    const auto* const found =
-        std::find_if(std::begin(table3), std::end(table3), [&](const SceneCounts& row) { return row.scene == scene; });
-    if (found == std::end(table3)) return std::nullopt;
-    return *found;
+    return find_scene(table3, scene);
 }
 
 std::optional<std::string_view> nearest_switches(std::string_view scene)
 {
-    const auto* const found =
-        std::find_if(std::begin(builds), std::end(builds), [&](const NearestBuild& row) { return row.scene == scene; });
-    if (found == std::end(builds)) return std::nullopt;
-    return found->switches;
+    const auto found = find_scene(builds, scene);
+    return found ? std::optional(found->switches) : std::nullopt;
 }
 
 std::optional<FrameRates> frames_of(std::string_view scene)
 {
-    const auto* const found =
-        std::find_if(std::begin(table6), std::end(table6), [&](const FrameRates& row) { return row.scene == scene; });
-    if (found == std::end(table6)) return std::nullopt;
-    return *found;
+    return find_scene(table6, scene);
 }
 
 std::span<const PairOutcome> outcomes()

@@ -15,12 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-bool is_timed(const RowRun& row)
-{
-    const Status status = status_of(row);
-    return row.session != nullptr && (status == Status::ok || status == Status::flawed);
-}
-
 void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
 {
     if (traced(row) == nullptr || images.empty()) return;
@@ -193,7 +187,7 @@ void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecor
     const std::size_t samples = is_timed(row) ? samples_ : 0;
     const auto is_time = [](double seconds) { return std::isfinite(seconds) && seconds > 0; };
     for (const auto& times : {record.samples_s, record.wall_samples_s})
-        if (times.size() != samples || !std::all_of(times.begin(), times.end(), is_time))
+        if (times.size() != samples || !std::ranges::all_of(times, is_time))
             throw std::domain_error(fmt::format("{} wants {} samples, all above 0 s", row_name(row.key), samples));
 }
 

@@ -58,8 +58,8 @@ private:
         const auto& before = run_->images[i];
         record.chained_hash = hash_of(hits, before.empty() ? 0 : before.back().chained_hash);
         const std::uint32_t cap = job_of(row, view).max_steps;
-        record.lost_at_cap = static_cast<std::uint64_t>(std::count_if(
-            hits.begin(), hits.end(), [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
+        record.lost_at_cap = static_cast<std::uint64_t>(
+            std::ranges::count_if(hits, [&](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
         if (run_->flat == nullptr || !is_cdt(row)) return record;
         record.flawed = run_->flat->walks(row, view, record.verdict.verdicts.flawed);
         record.any = run_->flat->walks_anywhere(row, view);
@@ -80,15 +80,9 @@ private:
 /// The options, with only those selections that apply to the structure's rows.
 Options options_of(Structure structure, Options options)
 {
-    const auto is_other_layout = [&](Layout layout) { return structure_of(layout) != structure; };
-    const auto is_other_method = [&](Method method) {
-        return std::none_of(all_kernels().begin(), all_kernels().end(), [&](const KernelId& kernel) {
-            return kernel.method == method && kernel.structure == structure;
-        });
-    };
     options.structures = {structure};
-    std::erase_if(options.layouts, is_other_layout);
-    std::erase_if(options.methods, is_other_method);
+    std::erase_if(options.layouts, [&](Layout layout) { return structure_of(layout) != structure; });
+    std::erase_if(options.methods, [&](Method method) { return !is_method_of(structure, method); });
     return options;
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <fmt/format.h>
 
 namespace tetrace {
 

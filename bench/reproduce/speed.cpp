@@ -33,11 +33,10 @@ struct TimeRatio {
 std::string range_text(const std::string& pair, const std::vector<TimeRatio>& ratios)
 {
     std::vector<TimeRatio> of_pair;
-    std::copy_if(ratios.begin(), ratios.end(), std::back_inserter(of_pair),
-                 [&](const TimeRatio& ratio) { return ratio.pair == pair; });
-    const auto [least, most] = std::minmax_element(of_pair.begin(), of_pair.end(), [](const auto& a, const auto& b) {
-        return a.estimate.value < b.estimate.value;
-    });
+    std::ranges::copy_if(ratios, std::back_inserter(of_pair),
+                         [&](const TimeRatio& ratio) { return ratio.pair == pair; });
+    const auto [least, most] = std::ranges::minmax_element(
+        of_pair, [](const auto& a, const auto& b) { return a.estimate.value < b.estimate.value; });
     const auto text = [](const TimeRatio& ratio) {
         return fmt::format("{} ({})", estimate_text(ratio.estimate), ratio.where);
     };
@@ -89,7 +88,7 @@ private:
         std::vector<std::string> told;
         std::string all;
         for (const TimeRatio& ratio : ratios) {
-            if (std::find(told.begin(), told.end(), ratio.pair) != told.end()) continue;
+            if (std::ranges::find(told, ratio.pair) != told.end()) continue;
             told.push_back(ratio.pair);
             all += (all.empty() ? "" : "; ") + range_text(ratio.pair, ratios);
         }
@@ -144,7 +143,7 @@ const std::vector<Method>& older_methods()
         std::vector<Method> found;
         for (const KernelId& kernel : all_kernels())
             if (kernel.structure == Structure::cdt && traits_of(kernel.method).year < traits_of(Method::maria).year &&
-                std::find(found.begin(), found.end(), kernel.method) == found.end())
+                std::ranges::find(found, kernel.method) == found.end())
                 found.push_back(kernel.method);
         return found;
     }();
@@ -204,18 +203,16 @@ Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 
 std::vector<Claim> speed_claims(const RecordedRuns& runs)
 {
-    return {fastest_claim({"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU", {}, ""},
-                          runs, of_kind(DeviceKind::cpu)),
-            overtaking_claim({"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp", {}, ""}, runs)};
+    return {fastest_claim({"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU"}, runs,
+                          of_kind(DeviceKind::cpu)),
+            overtaking_claim({"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp"}, runs)};
 }
 
 Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind)
 {
     const char* const device = kind == DeviceKind::gpu ? "GPU" : "CPU";
     Claim claim{fmt::format("time-is-proportional-to-tets-{}", name_of(kind)),
-                fmt::format("time is proportional to the tets traversed, on a {}", device),
-                {},
-                ""};
+                fmt::format("time is proportional to the tets traversed, on a {}", device)};
     std::vector<Estimate> correlations, intercepts;
     bool noisy = false, is_short = false;
     for_rated_rows(runs, kind, [&](const RecordedRows& run, std::size_t i) {

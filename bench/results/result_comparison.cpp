@@ -109,11 +109,11 @@ void require_rows(const ResultFile& before, const ResultFile& after, const std::
     if (rows.empty())
         reject_pair(before, after,
                     filter.empty() ? "neither has a row" : fmt::format("--filter '{}' matches no row", filter));
-    if (std::none_of(rows.begin(), rows.end(), [](const ComparedRow& row) { return is_timed(row.before); }))
+    if (std::ranges::none_of(rows, [](const ComparedRow& row) { return is_timed(row.before); }))
         reject_pair(before, after,
                     "A has no row with samples to compare with; 'tetrace bench --out FILE.json' times rows");
     const auto is_common = [](const ComparedRow& row) { return row.before != nullptr && row.after != nullptr; };
-    if (std::none_of(rows.begin(), rows.end(), is_common))
+    if (std::ranges::none_of(rows, is_common))
         reject_pair(before, after,
                     fmt::format("they have no row in common; A has {} and its like, B {}", rows.front().name(),
                                 after.rows.empty() ? "none" : after.rows.front().name + " and its like"));
@@ -145,7 +145,7 @@ std::string ComparedRow::note() const
 std::size_t ResultComparison::count(RowOutcome outcome) const
 {
     return static_cast<std::size_t>(
-        std::count_if(rows.begin(), rows.end(), [&](const ComparedRow& row) { return row.outcome == outcome; }));
+        std::ranges::count_if(rows, [&](const ComparedRow& row) { return row.outcome == outcome; }));
 }
 
 std::optional<double> ResultComparison::geometric_mean() const

@@ -115,7 +115,7 @@ std::string read_status(const ResultValue& value)
 {
     constexpr std::array known = {"ok", "flawed", "wrong", "unsupported", "skipped", "error"};
     std::string status = value.line();
-    if (std::find(known.begin(), known.end(), status) == known.end())
+    if (std::ranges::find(known, status) == known.end())
         value.reject(fmt::format("is '{}', and a row is {}", status, fmt::join(known, ", ")));
     return status;
 }
@@ -182,20 +182,15 @@ std::vector<T> read_named(const ResultValue& section, const char* key, const Rea
 template <class T>
 const T* find_named(const std::vector<T>& items, const std::string& name)
 {
-    const auto found = std::find_if(items.begin(), items.end(), [&](const T& item) { return item.name == name; });
+    const auto found = std::ranges::find_if(items, [&](const T& item) { return item.name == name; });
     return found == items.end() ? nullptr : &*found;
 }
 
 } // namespace
 
-std::string ResultRow::api() const
+std::string api_name(const std::string& backend, std::uint64_t index)
 {
-    return device_index > 0 ? fmt::format("{}:{}", backend, device_index) : backend;
-}
-
-ResultValue ResultFile::section() const
-{
-    return ResultValue(json, path.string()).at("tetrace");
+    return index > 0 ? fmt::format("{}:{}", backend, index) : backend;
 }
 
 const ResultScene* ResultFile::find_scene(const std::string& name) const
@@ -212,12 +207,9 @@ DeviceKind device_kind_of(const ResultValue& device)
 {
     const ResultValue type = device.at("type");
     const std::string name = type.line();
-    std::vector<std::string_view> known;
-    for (const DeviceKind kind : device_kinds) {
+    for (const DeviceKind kind : values_of<DeviceKind>())
         if (name == name_of(kind)) return kind;
-        known.push_back(name_of(kind));
-    }
-    type.reject(fmt::format("is '{}', and a device is {}", name, fmt::join(known, ", ")));
+    type.reject(fmt::format("is '{}', and a device is {}", name, fmt::join(enum_names<DeviceKind>, ", ")));
 }
 
 ResultFile read_result(const std::filesystem::path& path)

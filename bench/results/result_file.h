@@ -29,6 +29,9 @@ struct ResultScene {
     std::uint64_t width = 0, height = 0;
 };
 
+/// An API and a device's number in it: "opencl", "opencl:1".
+[[nodiscard]] std::string api_name(const std::string& backend, std::uint64_t index);
+
 /// A row of a result; texts are empty where the file has none.
 struct ResultRow {
     std::string name;
@@ -42,8 +45,7 @@ struct ResultRow {
     std::optional<double> mrays_per_s;     ///< of the median sample
     std::vector<double> samples_s; ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
-    /// The API and the device's number in it: "opencl", "opencl:1".
-    [[nodiscard]] std::string api() const;
+    [[nodiscard]] std::string api() const { return api_name(backend, device_index); }
 };
 
 /// A result file, checked as far as these members go. The rest is reached by section(), whose values are checked when
@@ -56,14 +58,13 @@ struct ResultFile {
     std::vector<ResultRow> rows; ///< names are unique, in the file's order: row i is section().at("rows").items()[i]
 
     /// The section `tetrace`. Refers to this object, which has to outlive it.
-    [[nodiscard]] ResultValue section() const;
+    [[nodiscard]] ResultValue section() const { return ResultValue(json, path.string()).at("tetrace"); }
     /// Null where no scene (row) has that name.
     [[nodiscard]] const ResultScene* find_scene(const std::string& name) const;
     [[nodiscard]] const ResultRow* find_row(const std::string& name) const;
 };
 
-/// The kind of a device, from a device of a result. Throws Error{invalid_input} where its "type" is none of
-/// device_kinds.
+/// The kind of a device, from a device of a result. Throws Error{invalid_input} where its "type" names none.
 [[nodiscard]] DeviceKind device_kind_of(const ResultValue& device);
 
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that

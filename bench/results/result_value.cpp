@@ -19,11 +19,6 @@ void ResultValue::require(bool is, const char* what) const
     if (!is) reject(fmt::format("is not {} ({})", what, value_->type_name()));
 }
 
-ResultValue ResultValue::member(const std::string& key, const nlohmann::json& value) const
-{
-    return {value, file_, key_.empty() ? key : key_ + "." + key};
-}
-
 std::optional<ResultValue> ResultValue::find(const std::string& key) const
 {
     require(value_->is_object(), "an object");
@@ -66,7 +61,7 @@ std::string ResultValue::line() const
 {
     std::string line = text();
     const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7f; };
-    if (std::any_of(line.begin(), line.end(), is_control)) reject("holds a control character");
+    if (std::ranges::any_of(line, is_control)) reject("holds a control character");
     return line;
 }
 

@@ -23,7 +23,13 @@ public:
     [[nodiscard]] std::vector<ResultValue> items() const;                           ///< of an array
     [[nodiscard]] std::vector<std::pair<std::string, ResultValue>> members() const; ///< of an object
 
-    [[nodiscard]] std::string text() const;    ///< any string, several lines perhaps
+    [[nodiscard]] std::string text() const; ///< any string, several lines perhaps
+    /// The text of an object's member; empty where it has no such key.
+    [[nodiscard]] std::string text_at(const std::string& key) const
+    {
+        const auto value = find(key);
+        return value ? value->text() : std::string();
+    }
     [[nodiscard]] std::string line() const;    ///< a string without control characters, safe to print anywhere
     [[nodiscard]] std::string hash() const;    ///< 16 hexadecimal digits
     [[nodiscard]] double number() const;       ///< finite
@@ -39,7 +45,10 @@ private:
         : value_(&value), file_(std::move(file)), key_(std::move(key))
     {
     }
-    [[nodiscard]] ResultValue member(const std::string& key, const nlohmann::json& value) const;
+    [[nodiscard]] ResultValue member(const std::string& key, const nlohmann::json& value) const
+    {
+        return {value, file_, key_.empty() ? key : key_ + "." + key};
+    }
     void require(bool is, const char* what) const;
 
     const nlohmann::json* value_;

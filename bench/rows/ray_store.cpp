@@ -5,8 +5,6 @@
 #include "core/device/given_quads.h"
 #include "core/rays/ray_order.h"
 
-#include <string>
-
 namespace tetrace {
 
 namespace {

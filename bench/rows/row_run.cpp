@@ -82,19 +82,6 @@ void Traced::add(const ImageVerdict& image)
     download_s += image.download_s;
 }
 
-std::string_view name_of(Status status)
-{
-    switch (status) {
-    case Status::ok: return "ok";
-    case Status::flawed: return "flawed";
-    case Status::wrong: return "wrong";
-    case Status::unsupported: return "unsupported";
-    case Status::skipped: return "skipped";
-    case Status::error: return "error";
-    }
-    throw Error(ErrorKind::internal, "name_of(Status): no such status");
-}
-
 std::string device_kind_text(const RowRun& row)
 {
     return row.device.name.empty() ? std::string() : std::string(name_of(row.device.kind));
@@ -121,6 +108,12 @@ Status status_of(const RowRun& row)
     const Traced* result = traced(row);
     if (result->different > 0) return Status::wrong;
     return result->verdicts.wrong + result->verdicts.lost > 0 ? Status::flawed : Status::ok;
+}
+
+bool is_timed(const RowRun& row)
+{
+    const Status status = status_of(row);
+    return row.session != nullptr && (status == Status::ok || status == Status::flawed);
 }
 
 std::string reason_of(const RowRun& row)
@@ -211,7 +204,7 @@ bool fails(const RowRun& row, bool flawed_passes)
 
 int exit_code(const std::vector<RowRun>& rows, bool flawed_passes)
 {
-    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails(row, flawed_passes); })) return 1;
+    if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails(row, flawed_passes); })) return 1;
     for (const RowRun& row : rows)
         if (const auto* failed = std::get_if<Failed>(&row.outcome)) return exit_code(failed->kind);
     return 0;

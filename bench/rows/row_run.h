@@ -19,7 +19,9 @@ namespace tetrace {
 /// How a row ended; see `tetrace help bench`. wrong: it differs from openmp, or its device left out rays, wrote
 /// elsewhere or changed its answers. flawed: the method itself makes some of its rays wrong or lost.
 enum class Status { ok, flawed, wrong, unsupported, skipped, error };
-[[nodiscard]] std::string_view name_of(Status status);
+template <>
+inline constexpr auto enum_names<Status> = names_up_to<Status::error>("ok", "flawed", "wrong", "unsupported", "skipped",
+                                                                      "error");
 
 /// The first ray on which a backend differs from openmp.
 struct DifferingRay {
@@ -97,6 +99,8 @@ struct RowRun {
 };
 
 [[nodiscard]] Status status_of(const RowRun& row);
+/// Whether samples of the row are taken: it is open, and ok or flawed.
+[[nodiscard]] bool is_timed(const RowRun& row);
 /// The reason, in one line; empty where the status is ok.
 [[nodiscard]] std::string reason_of(const RowRun& row);
 /// "cpu", "gpu" or "emulated"; empty where the row has no device because its scene could not be loaded.

@@ -15,7 +15,7 @@ namespace {
 template <class T>
 bool wanted(const std::vector<T>& list, const T& value)
 {
-    return list.empty() || std::find(list.begin(), list.end(), value) != list.end();
+    return list.empty() || std::ranges::find(list, value) != list.end();
 }
 
 /// Where no method is named, the kernel list says which methods represent all: two of the cdt, the paper's and the
@@ -54,20 +54,20 @@ bool wanted_kernel(const Options& options, const KernelId& kernel)
 bool is_named(const Options& options, const Backend& backend)
 {
     for (const auto* list : {&options.backends, &options.required})
-        if (std::find(list->begin(), list->end(), backend.name()) != list->end()) return true;
+        if (std::ranges::find(*list, backend.name()) != list->end()) return true;
     return false;
 }
 
 bool has_usable_device(const Backend& backend)
 {
     const auto& devices = backend.devices();
-    return std::any_of(devices.begin(), devices.end(), [](const Device& device) { return device.usable; });
+    return std::ranges::any_of(devices, [](const Device& device) { return device.usable; });
 }
 
 bool has_any_kernel(const Backend& backend)
 {
     const auto& kernels = all_kernels();
-    return std::any_of(kernels.begin(), kernels.end(), [&](const KernelId& k) { return backend.has_kernel(k); });
+    return std::ranges::any_of(kernels, [&](const KernelId& k) { return backend.has_kernel(k); });
 }
 
 std::string in_lower_case(std::string text)
@@ -83,7 +83,7 @@ bool wanted_device(const Options& options, const Backend& backend, std::size_t i
     const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
                                                        name_of(device.kind), device.id, backend.name(), index));
     const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
-    return options.devices.empty() || std::any_of(options.devices.begin(), options.devices.end(), holds);
+    return options.devices.empty() || std::ranges::any_of(options.devices, holds);
 }
 
 /// Indices of the devices that have rows.
@@ -103,7 +103,7 @@ bool names_rt(const Options& options)
     const auto names_it = [](const std::string& filter) { return std::regex_search(filter, word); };
     const auto& flags = options.benchmark_flags;
     return !options.layouts.empty() || names_it(options.filter) ||
-           std::any_of(flags.begin(), flags.end(), [&](const std::string& flag) {
+           std::ranges::any_of(flags, [&](const std::string& flag) {
                return flag.rfind("--benchmark_filter=", 0) == 0 && names_it(flag);
            });
 }
@@ -129,7 +129,7 @@ void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, con
         for (const TetOrder order : wanted_orders(options, key.kernel)) {
             key.device = device;
             key.order = order;
-            if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
+            if (std::ranges::find(rows, key) == rows.end()) rows.push_back(key);
         }
     }
 }
@@ -264,6 +264,13 @@ std::string row_name(const RowKey& key)
         "{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
         key.order == TetOrder::hilbert ? std::string() : std::string("/order:").append(name_of(key.order)), schedule,
         order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
+}
+
+bool is_method_of(Structure structure, Method method)
+{
+    return std::ranges::any_of(all_kernels(), [&](const KernelId& kernel) {
+        return kernel.structure == structure && kernel.method == method;
+    });
 }
 
 std::string device_label(const RowKey& key)

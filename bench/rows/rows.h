@@ -74,6 +74,9 @@ inline constexpr const char* search_scene = "random-tets";
 [[nodiscard]] std::vector<std::string> missing_devices(const Options& options,
                                                        const std::vector<Backend*>& backends = all_backends());
 
+/// Whether a kernel of the structure has the method.
+[[nodiscard]] bool is_method_of(Structure structure, Method method);
+
 /// A row's device in tables: "opencl", "opencl:1" for a backend's later devices, "openmp, 1 thread".
 [[nodiscard]] std::string device_label(const RowKey& key);
 

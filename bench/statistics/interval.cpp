@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <numeric>
 #include <random>
@@ -125,7 +124,7 @@ Estimate median_of_views(const std::vector<double>& values, Sampling sampling)
     Estimate estimate{quantile(values, 0.5), {}, {}, false};
     if (!bounds_anything(values.size(), sampling)) return estimate;
     std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     const std::size_t outside = left_out_of_median(sorted.size());
     estimate.low = sorted[outside];
     estimate.high = sorted[sorted.size() - 1 - outside];
@@ -135,7 +134,7 @@ Estimate median_of_views(const std::vector<double>& values, Sampling sampling)
 Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<double>& denominator, Sampling sampling)
 {
     check_pairs("a ratio", numerator, denominator);
-    if (std::any_of(denominator.begin(), denominator.end(), [](double value) { return !(value > 0); }))
+    if (std::ranges::any_of(denominator, [](double value) { return !(value > 0); }))
         throw Error(ErrorKind::internal, "a ratio to what is not positive");
     return bootstrap(numerator.size(), sampling,
                      [&](const auto& indices) { return sum_of(numerator, indices) / sum_of(denominator, indices); });

@@ -2,7 +2,6 @@
 
 #include "bench/statistics/statistics.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <random>
 

@@ -17,9 +17,9 @@ PairedRatio paired_ratio(const std::vector<double>& one_s, const std::vector<dou
         pair.views.push_back(other_s[view] / one_s[view]);
     }
     pair.median = median_of_views(pair.views, sampling);
-    const auto [lowest, highest] = std::minmax_element(pair.views.begin(), pair.views.end());
+    const auto [lowest, highest] = std::ranges::minmax_element(pair.views);
     pair.lowest = *lowest, pair.highest = *highest;
-    const auto won = std::count_if(pair.views.begin(), pair.views.end(), [](double ratio) { return ratio > 1; });
+    const auto won = std::ranges::count_if(pair.views, [](double ratio) { return ratio > 1; });
     pair.won = static_cast<double>(won) / static_cast<double>(pair.views.size());
     return pair;
 }

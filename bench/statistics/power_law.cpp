@@ -30,7 +30,7 @@ std::vector<double> logarithms(const std::vector<double>& values)
 
 bool all_positive(const std::vector<double>& values)
 {
-    return std::all_of(values.begin(), values.end(), [](double value) { return value > 0 && std::isfinite(value); });
+    return std::ranges::all_of(values, [](double value) { return value > 0 && std::isfinite(value); });
 }
 
 double standard_error(const std::vector<double>& x, const std::vector<double>& y, const Line& line)
@@ -53,7 +53,7 @@ std::optional<PowerLaw> fit_power_law(const std::vector<double>& x, const std::v
 {
     if (x.size() != y.size()) throw Error(ErrorKind::internal, "a power law through values of other points");
     if (x.size() < 3 || !all_positive(x) || !all_positive(y)) return std::nullopt;
-    const auto [least, most] = std::minmax_element(x.begin(), x.end());
+    const auto [least, most] = std::ranges::minmax_element(x);
     if (*least == *most) return std::nullopt;
     const auto log_x = logarithms(x), log_y = logarithms(y);
     const Line line = fit_line(log_x, log_y);

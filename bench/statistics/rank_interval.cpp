@@ -110,8 +110,8 @@ std::optional<FactorInterval> rank_interval(std::vector<double> numerator, std::
 {
     const auto left_out = quotients_left_out(numerator.size(), denominator.size(), error);
     if (!left_out) return std::nullopt;
-    std::sort(numerator.begin(), numerator.end());
-    std::sort(denominator.begin(), denominator.end());
+    std::ranges::sort(numerator);
+    std::ranges::sort(denominator);
     const std::size_t last = numerator.size() * denominator.size() - 1;
     return FactorInterval{quotient_of_rank(*left_out, numerator, denominator),
                           quotient_of_rank(last - *left_out, numerator, denominator)};

@@ -1,7 +1,6 @@
 #include "bench/statistics/speed_verdict.h"
 
 #include "bench/statistics/statistics.h"
-#include "core/base/error.h"
 
 #include <algorithm>
 
@@ -18,22 +17,6 @@ SpeedVerdict judge(const FactorInterval& interval, double tolerance)
 }
 
 } // namespace
-
-std::string_view name_of(SpeedVerdict verdict)
-{
-    switch (verdict) {
-    case SpeedVerdict::same: return "SAME";
-    case SpeedVerdict::faster: return "FASTER";
-    case SpeedVerdict::slower: return "SLOWER";
-    case SpeedVerdict::unsure: return "UNSURE";
-    }
-    throw Error(ErrorKind::internal, "name_of(SpeedVerdict): no such verdict");
-}
-
-bool SpeedChange::is_regression(double tolerance) const
-{
-    return verdict == SpeedVerdict::slower && ratio < 1 / (1 + tolerance);
-}
 
 SpeedChange compare_speed(const std::vector<double>& before_s, const std::vector<double>& after_s, std::size_t rows,
                           double tolerance)

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "bench/statistics/rank_interval.h"
+#include "core/base/enum_names.h"
 
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -17,7 +17,9 @@ enum class SpeedVerdict {
     slower, ///< else, the interval lies below 1
     unsure, ///< the samples do not tell: the interval holds 1 and reaches beyond the tolerance, or there is none
 };
-[[nodiscard]] std::string_view name_of(SpeedVerdict verdict);
+template <>
+inline constexpr auto enum_names<SpeedVerdict> = names_up_to<SpeedVerdict::unsure>("SAME", "FASTER", "SLOWER",
+                                                                                   "UNSURE");
 
 /// The chance, at most, that a comparison calls any of its rows faster or slower where nothing has changed, however
 /// many rows it has. Each row's interval has this divided by their number as its error (Bonferroni's inequality, which
@@ -32,7 +34,10 @@ struct SpeedChange {
     SpeedVerdict verdict = SpeedVerdict::unsure;
 
     /// Slower, and by more than the tolerance: what took 1 second takes more than 1 + tolerance.
-    [[nodiscard]] bool is_regression(double tolerance) const;
+    [[nodiscard]] bool is_regression(double tolerance) const
+    {
+        return verdict == SpeedVerdict::slower && ratio < 1 / (1 + tolerance);
+    }
 };
 
 /// Compares the samples of a row, one of `rows`. tolerance: a share, 0.03 for ratios from 1 / 1.03 to 1.03.

@@ -94,11 +94,6 @@ std::string progress_text(const std::string& stage, double elapsed_s, double fra
 
 ProgressLine::ProgressLine(bool draws, bool colour) : draws_(draws), colour_(colour) {}
 
-ProgressLine::~ProgressLine()
-{
-    clear();
-}
-
 void ProgressLine::show(const std::string& stage, double fraction, double left_s, const std::string& detail)
 {
     if (!draws_) return;
@@ -129,11 +124,6 @@ void ProgressLine::clear()
     drawn_ = 0;
     columns_to_clear = 0;
     since_draw_ = {};
-}
-
-Progress ProgressLine::callback()
-{
-    return [this](const std::string& stage, double fraction) { show(stage, fraction); };
 }
 
 ProgressLine& progress_line()

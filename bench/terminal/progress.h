@@ -13,7 +13,7 @@ class ProgressLine {
 public:
     /// draws: whether to draw at all. colour: whether escape sequences may be written.
     ProgressLine(bool draws, bool colour);
-    ~ProgressLine();
+    ~ProgressLine() { clear(); }
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
@@ -22,7 +22,10 @@ public:
     void show(const std::string& stage, double fraction, double left_s = -1, const std::string& detail = {});
     /// Clears the line. Called before anything else is written, and when the work is done.
     void clear();
-    [[nodiscard]] Progress callback();
+    [[nodiscard]] Progress callback()
+    {
+        return [this](const std::string& stage, double fraction) { show(stage, fraction); };
+    }
 
 private:
     bool draws_;

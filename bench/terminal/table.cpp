@@ -77,20 +77,15 @@ void Table::add(std::vector<Cell> cells)
     rows_.push_back(std::move(cells));
 }
 
-void Table::add_heading(const std::string& text)
-{
-    headings_.emplace(rows_.size(), text);
-}
-
 bool Table::has_cells(std::size_t column) const
 {
-    return std::any_of(rows_.begin(), rows_.end(), [&](const auto& row) { return !is_empty(row[column]); });
+    return std::ranges::any_of(rows_, [&](const auto& row) { return !is_empty(row[column]); });
 }
 
 bool Table::is_number(std::size_t column) const
 {
-    return std::none_of(rows_.begin(), rows_.end(),
-                        [&](const auto& row) { return std::holds_alternative<std::string>(row[column]); });
+    return std::ranges::none_of(rows_,
+                                [&](const auto& row) { return std::holds_alternative<std::string>(row[column]); });
 }
 
 std::string Table::text(std::size_t indent) const

@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -16,6 +15,12 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 [[nodiscard]] inline bool is_empty(const Cell& cell)
 {
     return std::holds_alternative<std::monostate>(cell);
+}
+
+/// A cell that is empty where the text is.
+[[nodiscard]] inline Cell text_cell(const std::string& text)
+{
+    return text.empty() ? Cell() : Cell(text);
 }
 
 /// A cell that is empty where there is no value.
@@ -41,7 +46,7 @@ public:
     /// Throws Error{internal} where the number of cells differs from the number of columns.
     void add(std::vector<Cell> cells);
     /// A line of text above the rows that are added next; only text() shows it.
-    void add_heading(const std::string& text);
+    void add_heading(const std::string& text) { headings_.emplace(rows_.size(), text); }
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
     [[nodiscard]] const std::vector<std::vector<Cell>>& rows() const { return rows_; }

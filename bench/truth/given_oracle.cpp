@@ -187,7 +187,7 @@ Verdicts GivenOracle::judge(const RaySet& set, std::span<const Hit> hits, Origin
         all.add(block);
         all.flawed.insert(all.flawed.end(), block.flawed.begin(), block.flawed.end());
     }
-    std::sort(all.flawed.begin(), all.flawed.end());
+    std::ranges::sort(all.flawed);
     all.rays = hits.size();
     return all;
 }

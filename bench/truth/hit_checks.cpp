@@ -30,14 +30,10 @@ std::uint64_t largest_ulps(const Hit& a, const Hit& b)
 
 void RayTotals::add(const RayTotals& other)
 {
-    rays += other.rays;
-    hits += other.hits;
-    misses += other.misses;
-    lost += other.lost;
-    unwritten += other.unwritten;
-    hit_steps += other.hit_steps;
-    miss_steps += other.miss_steps;
-    lost_steps += other.lost_steps;
+    for (const auto count :
+         {&RayTotals::rays, &RayTotals::hits, &RayTotals::misses, &RayTotals::lost, &RayTotals::unwritten,
+          &RayTotals::hit_steps, &RayTotals::miss_steps, &RayTotals::lost_steps})
+        this->*count += other.*count;
 }
 
 RayTotals count_rays(std::span<const Hit> hits)

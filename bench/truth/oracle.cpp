@@ -11,7 +11,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <vector>
 
 namespace tetrace {
 namespace {
@@ -34,13 +33,9 @@ ExactRay exact_ray(const View& view, std::uint32_t x, std::uint32_t y)
 
 void Verdicts::add(const Verdicts& other)
 {
-    rays += other.rays;
-    agreed += other.agreed;
-    ties += other.ties;
-    settled += other.settled;
-    offset += other.offset;
-    wrong += other.wrong;
-    lost += other.lost;
+    for (const auto count : {&Verdicts::rays, &Verdicts::agreed, &Verdicts::ties, &Verdicts::settled, &Verdicts::offset,
+                             &Verdicts::wrong, &Verdicts::lost})
+        this->*count += other.*count;
     largest_tie_distance = std::max(largest_tie_distance, other.largest_tie_distance);
     if (!first_wrong) first_wrong = other.first_wrong;
 }

@@ -40,11 +40,6 @@ Settler::Settler(const TriangleMesh& mesh) : mesh_(mesh)
             incident_[next[v]++] = i;
 }
 
-std::vector<std::uint32_t> Settler::triangles_at(std::uint32_t vertex) const
-{
-    return {incident_.begin() + ranges_[vertex], incident_.begin() + ranges_[vertex + 1]};
-}
-
 std::vector<std::uint32_t> Settler::candidates(std::uint32_t a, std::uint32_t b) const
 {
     std::vector<std::uint32_t> all;
@@ -55,7 +50,7 @@ std::vector<std::uint32_t> Settler::candidates(std::uint32_t a, std::uint32_t b)
             all.insert(all.end(), around.begin(), around.end());
         }
     }
-    std::sort(all.begin(), all.end());
+    std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }
@@ -129,8 +124,8 @@ bool Settler::is_silhouette(const ExactRay& ray, std::uint32_t a, std::uint32_t 
     bool left = false, right = false;
     for (const auto triangle : triangles_at(a)) {
         const auto& v = mesh_.triangles[triangle];
-        if (std::find(v.begin(), v.end(), b) == v.end()) continue;
-        const auto opposite = std::find_if(v.begin(), v.end(), [&](auto x) { return x != a && x != b; });
+        if (std::ranges::find(v, b) == v.end()) continue;
+        const auto opposite = std::ranges::find_if(v, [&](auto x) { return x != a && x != b; });
         const double side = dot(normal, to_double(mesh_.vertices[*opposite]) - origin);
         left = left || side > 0;
         right = right || side < 0;
@@ -154,10 +149,10 @@ double Settler::escape_distance(const ExactRay& ray, std::uint32_t triangle, std
         }
         if (ours == NO_HIT) continue;
         const auto& v = mesh_.triangles[ours];
-        if (std::find(v.begin(), v.end(), a) == v.end()) continue;
+        if (std::ranges::find(v, a) == v.end()) continue;
         if (at_vertex) nearest = std::min(nearest, distance_to_edge(ray, a, a));
         for (const auto b : mesh_.triangles[triangle])
-            if (b != a && std::find(v.begin(), v.end(), b) != v.end() && distance_to_edge(ray, a, b) <= bound)
+            if (b != a && std::ranges::find(v, b) != v.end() && distance_to_edge(ray, a, b) <= bound)
                 nearest = std::min(nearest, distance_to_edge(ray, a, b));
     }
     return nearest;

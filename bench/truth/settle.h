@@ -66,7 +66,10 @@ private:
     [[nodiscard]] bool is_silhouette(const ExactRay& ray, std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] double escape_distance(const ExactRay& ray, std::uint32_t triangle, std::uint32_t ours,
                                          double bound) const;
-    [[nodiscard]] std::vector<std::uint32_t> triangles_at(std::uint32_t vertex) const;
+    [[nodiscard]] std::vector<std::uint32_t> triangles_at(std::uint32_t vertex) const
+    {
+        return {incident_.begin() + ranges_[vertex], incident_.begin() + ranges_[vertex + 1]};
+    }
 
     const TriangleMesh& mesh_;
     std::vector<std::uint32_t> ranges_;   // per vertex, into incident_

@@ -3,7 +3,6 @@
 #include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
-#include "core/base/hash.h"
 
 #include <fmt/format.h>
 #include <optional>

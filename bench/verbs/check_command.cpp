@@ -136,7 +136,7 @@ Options with_default_layouts(Options options)
     const auto& required = options.required;
     const bool asked = !options.structures.empty() || !options.methods.empty() || !options.layouts.empty() ||
                        !options.backends.empty() || !options.filter.empty() ||
-                       std::find(required.begin(), required.end(), "embree") != required.end();
+                       std::ranges::find(required, "embree") != required.end();
     if (asked) return options;
     for (const KernelId& kernel : all_kernels())
         if (is_portable(kernel)) options.layouts.push_back(kernel.layout);
@@ -147,7 +147,7 @@ Options with_default_layouts(Options options)
 void require_selected(const std::vector<RowKey>& keys, const std::vector<std::string>& backends)
 {
     for (const std::string& name : backends)
-        if (std::none_of(keys.begin(), keys.end(), [&](const RowKey& key) { return key.backend == name; }))
+        if (std::ranges::none_of(keys, [&](const RowKey& key) { return key.backend == name; }))
             throw Error(ErrorKind::missing,
                         fmt::format("--require {0}: no row of {0} is selected, so none would be judged; 'tetrace check "
                                     "--list' with the same options prints those that are",
@@ -158,7 +158,7 @@ void require_selected(const std::vector<RowKey>& keys, const std::vector<std::st
 void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
 {
     for (const RowRun& row : rows) {
-        const bool required = std::find(backends.begin(), backends.end(), row.key.backend) != backends.end();
+        const bool required = std::ranges::find(backends, row.key.backend) != backends.end();
         const Status status = status_of(row);
         if (required && (status == Status::skipped || status == Status::unsupported))
             throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
@@ -173,7 +173,7 @@ void require_answers(const std::vector<RowRun>& rows)
         const Status status = status_of(row);
         return status == Status::skipped || status == Status::unsupported;
     };
-    if (std::all_of(rows.begin(), rows.end(), unanswered))
+    if (std::ranges::all_of(rows, unanswered))
         throw Error(ErrorKind::missing, fmt::format("nothing was checked: no selected row could run here, for example "
                                                     "{}: {}",
                                                     row_name(rows.front().key), reason_of(rows.front())));
@@ -207,7 +207,7 @@ int check_command(const Options& asked)
     deliver(options, check_report(checked, options));
     require_judged(rows, options.required);
     require_answers(rows);
-    if (std::any_of(rows.begin(), rows.end(), [&](const RowRun& row) { return fails_check(row, options); })) return 1;
+    if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); })) return 1;
     return exit_code(rows, options.allow_flawed);
 }
 

@@ -1,6 +1,6 @@
 #include "bench/options/identity.h"
+#include "bench/output/device_json.h"
 #include "bench/output/report.h"
-#include "bench/output/self_test_json.h"
 #include "bench/rows/device_abilities.h"
 #include "bench/rows/physical_device.h"
 #include "bench/rows/rows.h"
@@ -58,11 +58,6 @@ std::vector<ApiDevice> find_devices()
     for (std::size_t i = 0; i < found.size(); ++i)
         found[i].physical = numbers[i];
     return found;
-}
-
-Cell text_cell(const std::string& text)
-{
-    return text.empty() ? Cell() : Cell(text);
 }
 
 Cell count_cell(std::uint64_t count)
@@ -223,8 +218,7 @@ bool has_usable_device(const std::string& name)
 {
     for (const Backend* backend : all_backends()) {
         const auto devices = backend->devices();
-        if (backend->name() == name &&
-            std::any_of(devices.begin(), devices.end(), [](const Device& device) { return device.usable; }))
+        if (backend->name() == name && std::ranges::any_of(devices, [](const Device& device) { return device.usable; }))
             return true;
     }
     return false;

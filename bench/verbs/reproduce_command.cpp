@@ -4,21 +4,16 @@
 #include "bench/output/row_json.h"
 #include "bench/reproduce/paper.h"
 #include "bench/reproduce/scene_run.h"
-#include "bench/reproduce/tables/figure6.h"
-#include "bench/reproduce/tables/growth.h"
 #include "bench/reproduce/tables/paper_table.h"
 #include "bench/reproduce/tables/pictures.h"
-#include "bench/reproduce/tables/search_json.h"
-#include "bench/reproduce/tables/table3.h"
-#include "bench/reproduce/tables/table4.h"
-#include "bench/reproduce/tables/table5.h"
-#include "bench/reproduce/tables/table6.h"
+#include "bench/reproduce/tables/tables.h"
 #include "bench/reproduce/yardsticks.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 
 namespace tetrace {
 
@@ -37,7 +32,7 @@ struct Reproduction {
     {
         SceneRuns found;
         for (const SceneRun& run : runs)
-            if (std::find(builds.begin(), builds.end(), run.build.build) != builds.end()) found.push_back(&run);
+            if (std::ranges::find(builds, run.build.build) != builds.end()) found.push_back(&run);
         return found;
     }
 
@@ -49,23 +44,14 @@ struct Reproduction {
 
 bool wants(const Options& options, PaperTarget target)
 {
-    return std::find(options.targets.begin(), options.targets.end(), target) != options.targets.end();
+    return std::ranges::find(options.targets, target) != options.targets.end();
 }
 
 bool wants_scenes(const Options& options)
 {
     const auto& targets = options.targets;
-    return std::any_of(targets.begin(), targets.end(), [](PaperTarget target) {
-        return target != PaperTarget::table5 && target != PaperTarget::growth;
-    });
-}
-
-bool is_method_of(Structure structure, Method method)
-{
-    const auto& kernels = all_kernels();
-    return std::any_of(kernels.begin(), kernels.end(), [&](const KernelId& kernel) {
-        return kernel.structure == structure && kernel.method == method;
-    });
+    return std::ranges::any_of(
+        targets, [](PaperTarget target) { return target != PaperTarget::table5 && target != PaperTarget::growth; });
 }
 
 /// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
@@ -75,8 +61,8 @@ void add_methods(Options& options)
     const auto& methods = options.methods;
     const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
     const bool with_rivals = wants(options, PaperTarget::table6) || wants(options, PaperTarget::growth);
-    const bool names_any = std::any_of(methods.begin(), methods.end(), is_of_cdt);
-    if (with_rivals && names_any && std::find(methods.begin(), methods.end(), Method::maria) == methods.end())
+    const bool names_any = std::ranges::any_of(methods, is_of_cdt);
+    if (with_rivals && names_any && std::ranges::find(methods, Method::maria) == methods.end())
         throw Error(ErrorKind::usage, "table6 and growth compare maria with BVHs: add it to --method");
     if (names_any || (!methods.empty() && !with_rivals)) return;
     for (const KernelId& kernel : all_kernels())
@@ -87,7 +73,7 @@ void add_methods(Options& options)
 Options with_defaults(Options options, std::vector<std::string>& missing)
 {
     if (options.targets.empty())
-        for (const PaperTarget target : all_targets())
+        for (const PaperTarget target : values_of<PaperTarget>())
             if (target != PaperTarget::growth) options.targets.push_back(target);
     add_methods(options);
     if (!options.scenes.empty() || !wants_scenes(options)) return options;
@@ -259,9 +245,8 @@ std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<
 void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds)
 {
     const auto is_of_build = [&](const json& entry) {
-        return std::any_of(builds.begin(), builds.end(), [&](const SceneBuild& build) {
-            return entry.contains("scene") && entry["scene"] == build.label;
-        });
+        return std::ranges::any_of(
+            builds, [&](const SceneBuild& build) { return entry.contains("scene") && entry["scene"] == build.label; });
     };
     for (const json& entry : journal.entries())
         if (!entry.contains("batch") && !entry.contains("yardstick") && !entry.contains("setup") && !is_of_build(entry))
@@ -287,6 +272,9 @@ struct Keeping {
 void make_tables(Reproduction& all, const Options& options)
 {
     const SceneRuns ours = all.of_builds({our_build}), papers = all.of_builds({our_build, papers_build});
+    const auto add_figures = [&](std::vector<PaperFigure> figures) {
+        std::ranges::move(figures, std::back_inserter(all.figures));
+    };
     if (wants(options, PaperTarget::table3)) {
         all.tables.push_back(table3(papers));
         all.tables.push_back(table3_rates(papers));
@@ -299,28 +287,25 @@ void make_tables(Reproduction& all, const Options& options)
     if (wants(options, PaperTarget::table6)) {
         all.tables.push_back(table6(ours));
         all.tables.push_back(table6_pairs(ours));
-        for (PaperFigure& figure : table6_figures(ours))
-            all.figures.push_back(std::move(figure));
+        add_figures(table6_figures(ours));
     }
     if (wants(options, PaperTarget::growth)) {
         const SceneRuns sizes = all.of_builds({growth_build});
         all.tables.push_back(growth_table(sizes));
         all.tables.push_back(growth_exponents(sizes));
-        for (PaperFigure& figure : growth_figures(sizes))
-            all.figures.push_back(std::move(figure));
+        add_figures(growth_figures(sizes));
     }
     if (wants(options, PaperTarget::figure6)) {
         all.tables.push_back(figure6_table(ours));
-        for (PaperFigure& figure : figure6(ours))
-            all.figures.push_back(std::move(figure));
+        add_figures(figure6(ours));
     }
 }
 
 /// 0 where nothing was timed.
 unsigned samples_of(const Reproduction& all, const Options& options)
 {
-    const bool timed = all.searches.has_value() || std::any_of(all.runs.begin(), all.runs.end(),
-                                                               [](const SceneRun& run) { return run.build.timing; });
+    const bool timed =
+        all.searches.has_value() || std::ranges::any_of(all.runs, [](const SceneRun& run) { return run.build.timing; });
     return timed ? options.samples : 0;
 }
 

@@ -26,8 +26,7 @@ std::string remedies()
     std::vector<std::string> reasons;
     for (const CatalogueEntry& entry : catalogue()) {
         const std::string reason = why_not_available(entry.name);
-        if (!reason.empty() && std::find(reasons.begin(), reasons.end(), reason) == reasons.end())
-            reasons.push_back(reason);
+        if (!reason.empty() && std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
     }
     std::string text;
     for (const std::string& reason : reasons)

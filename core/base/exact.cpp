@@ -2,7 +2,6 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace tetrace {

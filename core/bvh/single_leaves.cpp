@@ -21,7 +21,7 @@ Box box_round(std::span<const TrianglePart> parts)
 
 void sort_by_centre(std::span<TrianglePart> parts, int axis)
 {
-    std::sort(parts.begin(), parts.end(), [&](const auto& a, const auto& b) {
+    std::ranges::sort(parts, [&](const auto& a, const auto& b) {
         return std::pair(a.box.low[axis] + a.box.high[axis], a.triangle) <
                std::pair(b.box.low[axis] + b.box.high[axis], b.triangle);
     });

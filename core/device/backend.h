@@ -5,23 +5,21 @@
 #include "core/rays/camera.h"
 #include "core/rays/hit.h"
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace tetrace {
 
 /// What a device computes on. Emulated: a GPU's API that runs on this machine's processor.
 enum class DeviceKind { cpu, gpu, emulated };
-inline constexpr std::array device_kinds{DeviceKind::cpu, DeviceKind::gpu, DeviceKind::emulated};
-/// As in results: "cpu", "gpu", "emulated".
-[[nodiscard]] std::string_view name_of(DeviceKind kind);
+/// As in results.
+template <>
+inline constexpr auto enum_names<DeviceKind> = names_up_to<DeviceKind::emulated>("cpu", "gpu", "emulated");
 
 /// A device as its API describes it; usable, or with the reason why not and what to install.
 struct Device {

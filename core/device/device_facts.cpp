@@ -1,7 +1,5 @@
 #include "core/device/device_facts.h"
 
-#include "core/base/error.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -33,7 +31,7 @@ std::string dashed(std::string_view words)
 /// The text's first version number, cut to at most `most_numbers` numbers.
 std::string version_in(std::string_view text, int most_numbers)
 {
-    const auto* const begin = std::find_if(text.begin(), text.end(), is_digit);
+    const auto* const begin = std::ranges::find_if(text, is_digit);
     const auto* end = begin;
     for (int numbers = 0; end != text.end(); ++end) {
         if (is_digit(*end)) continue;
@@ -46,16 +44,6 @@ std::string version_in(std::string_view text, int most_numbers)
 }
 
 } // namespace
-
-std::string_view name_of(DeviceKind kind)
-{
-    switch (kind) {
-    case DeviceKind::cpu: return "cpu";
-    case DeviceKind::gpu: return "gpu";
-    case DeviceKind::emulated: return "emulated";
-    }
-    throw Error(ErrorKind::internal, "name_of(DeviceKind): no such kind");
-}
 
 Device unusable_device(const std::string& name, const std::string& reason)
 {

@@ -20,7 +20,7 @@ void HostSession::launch(const TraceJob& job)
 void HostSession::read_output(std::span<std::uint32_t> words)
 {
     assert(words.size() == output_.size());
-    std::copy(output_.begin(), output_.end(), words.begin());
+    std::ranges::copy(output_, words.begin());
 }
 
 } // namespace tetrace

@@ -2,18 +2,12 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/hash.h"
 
 #include <cstring>
 #include <fstream>
 #include <iterator>
 
 namespace tetrace {
-
-std::filesystem::path ProgramCache::path_of(std::uint64_t key) const
-{
-    return folder_ / (hash_text(key) + ".bin");
-}
 
 std::optional<std::vector<unsigned char>> ProgramCache::find(std::uint64_t key) const
 {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstddef>
+#include "core/base/hash.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -22,7 +23,7 @@ public:
     void keep(std::uint64_t key, std::span<const unsigned char> program) const;
 
 private:
-    [[nodiscard]] std::filesystem::path path_of(std::uint64_t key) const;
+    [[nodiscard]] std::filesystem::path path_of(std::uint64_t key) const { return folder_ / (hash_text(key) + ".bin"); }
 
     std::filesystem::path folder_;
 };

@@ -154,11 +154,6 @@ std::string rounding_text(const char* what, std::uint32_t ulps)
 
 } // namespace
 
-bool SelfTest::is_exact() const
-{
-    return !contracts && sums_right && comparisons_right && integers_right && conversions_right && bits_kept;
-}
-
 std::uint32_t SelfTest::allowed_ulps() const
 {
     constexpr std::uint32_t promised = 3; // Vulkan and OpenCL allow 2.5; openmp itself adds 0.5

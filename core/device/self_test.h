@@ -24,7 +24,10 @@ struct SelfTest {
     friend bool operator==(const SelfTest&, const SelfTest&) = default;
 
     /// Whether decisions can be the same bits as on the host: all of the above except the ulps and the denormals.
-    [[nodiscard]] bool is_exact() const;
+    [[nodiscard]] bool is_exact() const
+    {
+        return !contracts && sums_right && comparisons_right && integers_right && conversions_right && bits_kept;
+    }
     /// Units in the last place by which t, u and v may differ: 0 where division is correctly rounded, else 3.
     [[nodiscard]] std::uint32_t allowed_ulps() const;
     /// In one line: "exact; division correctly rounded, denormals kept".

@@ -12,7 +12,7 @@ namespace {
 void check_guard(std::span<const std::uint32_t> guard, const char* where)
 {
     const auto intact = [](std::uint32_t word) { return word == POISON; };
-    if (std::all_of(guard.begin(), guard.end(), intact)) return;
+    if (std::ranges::all_of(guard, intact)) return;
     throw Error(ErrorKind::wrong_result,
                 std::string("the kernel wrote ") + where + " its output: the guard words there are overwritten");
 }
@@ -98,7 +98,7 @@ void Session::read_back(std::span<std::uint32_t> faces)
 {
     const auto output = checked_output(faces.size());
     std::copy_n(output.begin() + GUARD_WORDS, faces.size(), faces.begin());
-    const auto found = std::find_if(faces.begin(), faces.end(), [](std::uint32_t face) { return face > NO_EXIT; });
+    const auto found = std::ranges::find_if(faces, [](std::uint32_t face) { return face > NO_EXIT; });
     if (found == faces.end()) return;
     throw Error(ErrorKind::wrong_result,
                 "ray " + std::to_string(found - faces.begin()) +

@@ -21,7 +21,7 @@ std::vector<float> make_lines(double low, double high, std::uint32_t divisions, 
     std::vector<float> lines(divisions + 1);
     for (std::uint32_t i = 0; i <= divisions; ++i)
         lines[i] = static_cast<float>(std::nearbyint(first + (last - first) * i / divisions) * line_grid);
-    if (std::adjacent_find(lines.begin(), lines.end(), std::greater_equal<>()) != lines.end())
+    if (std::ranges::adjacent_find(lines, std::greater_equal<>()) != lines.end())
         throw Error(ErrorKind::invalid_input,
                     "making the domain: the mesh is too small for its distance from the origin along axis " +
                         std::string(1, "xyz"[axis]) + " (float32 cannot resolve it); move it to the origin");
@@ -68,8 +68,8 @@ private:
 // Range of intervals of `lines` that [low, high] overlaps with more than a point.
 std::pair<std::uint32_t, std::uint32_t> overlapped(const std::vector<float>& lines, float low, float high)
 {
-    const auto first = std::upper_bound(lines.begin(), lines.end(), low) - lines.begin() - 1;
-    const auto last = std::lower_bound(lines.begin(), lines.end(), high) - lines.begin();
+    const auto first = std::ranges::upper_bound(lines, low) - lines.begin() - 1;
+    const auto last = std::ranges::lower_bound(lines, high) - lines.begin();
     return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
 }
 
@@ -102,7 +102,7 @@ std::uint32_t side_of(const Domain& domain, const BoundaryFace& face)
         const auto axis = side / 2;
         const float plane = side % 2 == 0 ? domain.lines[axis].front() : domain.lines[axis].back();
         const auto on_plane = [&](Float3 p) { return p[static_cast<int>(axis)] == plane; };
-        if (std::all_of(face.corners.begin(), face.corners.end(), on_plane)) return side;
+        if (std::ranges::all_of(face.corners, on_plane)) return side;
     }
     return 6;
 }
@@ -123,11 +123,6 @@ void for_each_square(const Domain& domain, const BoundaryFace& face, std::uint32
 }
 
 } // namespace
-
-std::string_view name_of(DomainKind kind)
-{
-    return kind == DomainKind::tight ? "tight" : "wide";
-}
 
 bool Domain::contains(Float3 p) const
 {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "core/base/enum_names.h"
 #include "core/mesh/tet_mesh.h"
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -14,8 +14,8 @@ enum class DomainKind {
     tight = 0, ///< the mesh's bounding box grown by 2 % of its largest extent; rays mostly enter from outside
     wide = 1,  ///< a cube of half-size 3 bounding-sphere radii; cameras are inside, as in the paper
 };
-
-[[nodiscard]] std::string_view name_of(DomainKind kind);
+template <>
+inline constexpr auto enum_names<DomainKind> = names_up_to<DomainKind::wide>("tight", "wide");
 
 /// The box that the CDT fills, its sides cut into divisions x divisions squares.
 /// lines[axis] holds divisions + 1 ascending coordinates; the first and last are the box's own. Every corner of a

@@ -40,7 +40,7 @@ std::array<std::uint32_t, 3> sorted_face(const Tet& tet, std::uint32_t face)
     std::array<std::uint32_t, 3> vertices{};
     for (std::uint32_t i = 0, n = 0; i < 4; ++i)
         if (i != face) vertices[n++] = tet.vertices[i];
-    std::sort(vertices.begin(), vertices.end());
+    std::ranges::sort(vertices);
     return vertices;
 }
 

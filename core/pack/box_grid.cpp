@@ -1,7 +1,5 @@
 #include "core/pack/box_grid.h"
 
-#include <bit>
-
 namespace tetrace {
 namespace {
 
@@ -29,11 +27,6 @@ int line_above(const BoxGrid& grid, int axis, float x)
 }
 
 } // namespace
-
-double BoxGrid::width(int axis) const
-{
-    return std::bit_cast<float>(std::uint32_t{exponent[static_cast<std::size_t>(axis)]} << 23);
-}
 
 double line_at(const BoxGrid& grid, int axis, std::uint8_t line)
 {

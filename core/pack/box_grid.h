@@ -3,6 +3,7 @@
 #include "core/mesh/box.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace tetrace {
@@ -12,7 +13,10 @@ struct BoxGrid {
     Float3 origin;
     std::array<std::uint8_t, 3> exponent = {}; ///< the float with bits exponent << 23 is a cell's width
 
-    [[nodiscard]] double width(int axis) const;
+    [[nodiscard]] double width(int axis) const
+    {
+        return std::bit_cast<float>(std::uint32_t{exponent[static_cast<std::size_t>(axis)]} << 23);
+    }
 };
 
 /// A box in lines of a grid.

@@ -35,15 +35,15 @@ const std::vector<KernelRow>& kernel_rows()
     return rows;
 }
 
-/// Null if the list has no such kernel.
-const KernelRow* row_of(const KernelId& kernel)
+/// Without tasks, schedules and claims if the list has no such kernel.
+KernelRow row_of(const KernelId& kernel)
 {
     const auto& rows = kernel_rows();
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const KernelRow& candidate) {
+    const auto row = std::ranges::find_if(rows, [&](const KernelRow& candidate) {
         return candidate.method == kernel.method && candidate.layout == kernel.layout &&
                structure_of(candidate.layout) == kernel.structure;
     });
-    return row == rows.end() ? nullptr : &*row;
+    return row == rows.end() ? KernelRow{kernel.method, kernel.layout, 0, 0, false, false} : *row;
 }
 
 /// Foreign kernels have math mode fast, since we do not control how they compute; packets have exact, as the kernels
@@ -96,14 +96,12 @@ std::vector<KernelId> kernels_of(Task task)
 
 bool has_packets(const KernelId& kernel)
 {
-    const KernelRow* const row = row_of(kernel);
-    return row != nullptr && (row->schedules & bit(Schedule::packets)) != 0 && kernel.math == MathMode::exact;
+    return (row_of(kernel).schedules & bit(Schedule::packets)) != 0 && kernel.math == MathMode::exact;
 }
 
 bool has_task(const KernelId& kernel)
 {
-    const KernelRow* const row = row_of(kernel);
-    return row != nullptr && (row->tasks & bit(kernel.task)) != 0;
+    return (row_of(kernel).tasks & bit(kernel.task)) != 0;
 }
 
 Structure structure_of(Layout layout)
@@ -124,19 +122,12 @@ bool is_portable(const KernelId& kernel)
 
 bool claims_robustness(const KernelId& kernel)
 {
-    const KernelRow* const row = row_of(kernel);
-    return row != nullptr && row->is_robust;
+    return row_of(kernel).is_robust;
 }
 
 bool is_default(const KernelId& kernel)
 {
-    const KernelRow* const row = row_of(kernel);
-    return row != nullptr && row->is_default;
-}
-
-std::string_view name_of(Structure value)
-{
-    return value == Structure::cdt ? "cdt" : "bvh";
+    return row_of(kernel).is_default;
 }
 
 std::string_view name_of(Method value)
@@ -147,63 +138,6 @@ std::string_view name_of(Method value)
 std::string_view name_of(Layout value)
 {
     return traits_of(value).name;
-}
-
-std::string_view name_of(MathMode value)
-{
-    return value == MathMode::exact ? "exact" : "fast";
-}
-
-std::string_view name_of(RayKind value)
-{
-    switch (value) {
-    case RayKind::primary: return "primary";
-    case RayKind::shadow: return "shadow";
-    case RayKind::ao: return "ao";
-    case RayKind::diffuse: return "diffuse";
-    case RayKind::random: return "random";
-    }
-    return "?";
-}
-
-std::string_view name_of(RayOrder value)
-{
-    switch (value) {
-    case RayOrder::tiles: return "tiles";
-    case RayOrder::morton: return "morton";
-    case RayOrder::shuffled: return "shuffled";
-    }
-    return "?";
-}
-
-std::string_view name_of(Schedule value)
-{
-    switch (value) {
-    case Schedule::tiles: return "tiles";
-    case Schedule::persistent: return "persistent";
-    case Schedule::packets: return "packets";
-    }
-    return "?";
-}
-
-std::string_view name_of(Task value)
-{
-    switch (value) {
-    case Task::trace: return "trace";
-    case Task::rays: return "rays";
-    case Task::search: return "search";
-    }
-    return "?";
-}
-
-std::string_view name_of(TetOrder value)
-{
-    switch (value) {
-    case TetOrder::hilbert: return "hilbert";
-    case TetOrder::reached: return "reached";
-    case TetOrder::input: return "input";
-    }
-    return "?";
 }
 
 std::string name_of(const KernelId& kernel)

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include "core/base/enum_names.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,8 @@
 namespace tetrace {
 
 enum class Structure { cdt, bvh };
+template <>
+inline constexpr auto enum_names<Structure> = names_up_to<Structure::bvh>("cdt", "bvh");
 /// How a structure is traversed: an exit-face search of the CDT (kernels/methods/<name>.h), or how many rays are traced
 /// together through a BVH.
 enum class Method {
@@ -22,20 +25,33 @@ enum class Layout {
 #include "kernels/kernel_list.inc"
 };
 enum class MathMode { exact, fast };
+template <>
+inline constexpr auto enum_names<MathMode> = names_up_to<MathMode::fast>("exact", "fast");
 /// What rays are for (core/rays/ray_set.h). All but primary rays are given to a session. The values select streams of
 /// random numbers.
 enum class RayKind { primary = 0, shadow = 1, ao = 2, diffuse = 3, random = 4 };
+template <>
+inline constexpr auto enum_names<RayKind> = names_up_to<RayKind::random>("primary", "shadow", "ao", "diffuse",
+                                                                         "random");
 /// The order of given rays: by their pixels' tiles, along a space-filling curve, at random.
 enum class RayOrder { tiles, morton, shuffled };
+template <>
+inline constexpr auto enum_names<RayOrder> = names_up_to<RayOrder::shuffled>("tiles", "morton", "shuffled");
 /// How rays are assigned to work items: one ray per item and one tile per group; or items that stay and fetch rays
 /// until none is left (Aila, Laine, Karras 2012); or packets with as many rays as a processor's vectors have lanes.
 enum class Schedule { tiles, persistent, packets };
+template <>
+inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::packets>("tiles", "persistent", "packets");
 /// What a kernel does: it traces the primary rays of an image, traces given rays, or searches the exit face of a single
 /// tet for each given ray.
 enum class Task { trace, rays, search };
+template <>
+inline constexpr auto enum_names<Task> = names_up_to<Task::search>("trace", "rays", "search");
 /// The order of the tets in memory: along a space-filling curve; the same, with the tets that no ray from outside
 /// reaches (inside closed surfaces) after all others; as the tetrahedralization wrote them.
 enum class TetOrder { hilbert, reached, input };
+template <>
+inline constexpr auto enum_names<TetOrder> = names_up_to<TetOrder::input>("hilbert", "reached", "input");
 
 /// A kernel's name as data: backends map it to code, or say that they have none.
 struct KernelId {
@@ -76,15 +92,8 @@ struct KernelId {
 /// Whether the kernel has rows when no method is named.
 [[nodiscard]] bool is_default(const KernelId& kernel);
 
-[[nodiscard]] std::string_view name_of(Structure value);
 [[nodiscard]] std::string_view name_of(Method value);
 [[nodiscard]] std::string_view name_of(Layout value);
-[[nodiscard]] std::string_view name_of(MathMode value);
-[[nodiscard]] std::string_view name_of(RayKind value);
-[[nodiscard]] std::string_view name_of(RayOrder value);
-[[nodiscard]] std::string_view name_of(Schedule value);
-[[nodiscard]] std::string_view name_of(Task value);
-[[nodiscard]] std::string_view name_of(TetOrder value);
 
 /// structure/method/layout, for example "cdt/maria/tet80"; "search/maria/tet80" for task search; for task rays the same
 /// as for trace.

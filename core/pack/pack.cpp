@@ -48,9 +48,9 @@ std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
     std::iota(tets.begin(), tets.end(), 0u);
     if (order == TetOrder::input) return tets;
     std::vector<std::uint64_t> key(tets.size());
-    std::transform(scene.tets.tets.begin(), scene.tets.tets.end(), key.begin(),
-                   [&](const Tet& tet) { return hilbert_index(unit_centroid(scene, tet)); });
-    std::stable_sort(tets.begin(), tets.end(), [&](auto a, auto b) { return key[a] < key[b]; });
+    std::ranges::transform(scene.tets.tets, key.begin(),
+                           [&](const Tet& tet) { return hilbert_index(unit_centroid(scene, tet)); });
+    std::ranges::stable_sort(tets, [&](auto a, auto b) { return key[a] < key[b]; });
     if (order == TetOrder::reached) {
         const std::vector<bool> reached = reached_tets(scene.tets);
         std::stable_partition(tets.begin(), tets.end(), [&](auto tet) { return reached[tet]; });

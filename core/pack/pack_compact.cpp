@@ -4,9 +4,7 @@
 #include "core/mesh/face_corners.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -22,7 +20,7 @@ constexpr std::uint32_t not_numbered = 0xFFFFFFFFu;
 
 bool has_vertex(const Tet& tet, std::uint32_t vertex)
 {
-    return std::find(tet.vertices.begin(), tet.vertices.end(), vertex) != tet.vertices.end();
+    return std::ranges::find(tet.vertices, vertex) != tet.vertices.end();
 }
 
 /// Whether a walk that leaves the tet by the face knows three vertices of the next tet.
@@ -69,7 +67,7 @@ std::vector<Quad> vertex_quads(const TetMesh& mesh, const std::vector<std::uint3
     const auto key = [&](std::uint32_t i) {
         return std::tuple(mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z);
     };
-    std::sort(in_order.begin(), in_order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+    std::ranges::sort(in_order, [&](auto a, auto b) { return key(a) < key(b); });
     std::vector<Quad> quads(in_order.size());
     for (std::uint32_t rank = 0; rank < in_order.size(); ++rank) {
         const Float3 at = mesh.vertices[in_order[rank]];
@@ -82,7 +80,7 @@ std::vector<Quad> vertex_quads(const TetMesh& mesh, const std::vector<std::uint3
 FourWords numbered(const Tet& tet, const std::vector<std::uint32_t>& number)
 {
     FourWords vertices;
-    std::transform(tet.vertices.begin(), tet.vertices.end(), vertices.begin(), [&](auto v) { return number[v]; });
+    std::ranges::transform(tet.vertices, vertices.begin(), [&](auto v) { return number[v]; });
     return vertices;
 }
 
@@ -111,7 +109,7 @@ std::vector<FourWords> words_behind(const TetMesh& mesh, std::vector<std::uint32
 FourWords sorted_by(const FourWords& vertices, const FourWords& behind)
 {
     std::array<std::uint32_t, 4> order{0, 1, 2, 3};
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return vertices[a] < vertices[b]; });
+    std::ranges::sort(order, [&](auto a, auto b) { return vertices[a] < vertices[b]; });
     return {behind[order[0]], behind[order[1]], behind[order[2]], behind[order[3]]};
 }
 

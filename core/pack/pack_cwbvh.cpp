@@ -138,7 +138,7 @@ private:
     {
         const auto references = std::span(wide_.references).subspan(leaf.first, leaf.count);
         std::vector<std::uint32_t> triangles(references.begin(), references.end());
-        std::sort(triangles.begin(), triangles.end());
+        std::ranges::sort(triangles);
         triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
         return triangles;
     }

@@ -21,8 +21,7 @@ std::vector<std::uint32_t> ranks_of(const std::vector<Float3>& vertices)
 {
     std::vector<std::uint32_t> order(vertices.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](auto a, auto b) { return place_of(vertices[a]) < place_of(vertices[b]); });
+    std::ranges::stable_sort(order, [&](auto a, auto b) { return place_of(vertices[a]) < place_of(vertices[b]); });
     std::vector<std::uint32_t> ranks(order.size());
     for (std::uint32_t rank = 0; rank < order.size(); ++rank)
         ranks[order[rank]] = FIRST_RANK + rank;
@@ -45,7 +44,7 @@ std::uint32_t exit_word(const TetMesh& mesh, const Tet& tet, std::uint32_t entry
     auto carried = corners_of(tet, entry);
     carried[index] = tet.vertices[entry];
     const std::uint32_t first = corners_of(mesh.tets[link_tet(link)], link_face(link))[0];
-    const auto turned = std::find(carried.begin(), carried.end(), first);
+    const auto turned = std::ranges::find(carried, first);
     const auto rotation = (turned - carried.begin()) % 3; // 0 if no corner is shared: tests damage links
     return link << 2 | static_cast<std::uint32_t>(rotation);
 }

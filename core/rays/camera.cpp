@@ -101,16 +101,6 @@ View make_view(const Camera& camera, std::uint32_t width, std::uint32_t height)
     return {camera.origin, to_float(corner), to_float(step_x), to_float(step_y)};
 }
 
-std::string_view name_of(CameraSet set)
-{
-    switch (set) {
-    case CameraSet::smoke: return "smoke";
-    case CameraSet::orbit: return "orbit";
-    case CameraSet::flight: return "flight";
-    }
-    return "?";
-}
-
 std::size_t view_count(CameraSet set)
 {
     return set == CameraSet::smoke ? 4 : lattice_views;

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/base/enum_names.h"
 #include "core/mesh/triangle_mesh.h"
 
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -14,6 +14,8 @@ enum class CameraSet {
     orbit,  ///< 1,282 views on a spherical Fibonacci lattice at 2 radii
     flight, ///< 1,282 views along a spiral, distance swept between 1.2 and 2.9 radii
 };
+template <>
+inline constexpr auto enum_names<CameraSet> = names_up_to<CameraSet::flight>("smoke", "orbit", "flight");
 
 /// A pinhole camera, 60 degrees field of view along the image's larger side.
 struct Camera {
@@ -33,7 +35,6 @@ struct View {
 [[nodiscard]] std::vector<Camera> make_cameras(CameraSet set, const BoundingSphere& sphere);
 [[nodiscard]] View make_view(const Camera& camera, std::uint32_t width, std::uint32_t height);
 
-[[nodiscard]] std::string_view name_of(CameraSet set);
 [[nodiscard]] std::size_t view_count(CameraSet set);
 
 } // namespace tetrace

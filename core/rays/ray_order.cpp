@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace tetrace {
@@ -82,7 +81,7 @@ void sort_by(std::vector<GivenRay>& rays, const std::vector<std::uint64_t>& keys
 {
     std::vector<std::uint32_t> order(rays.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return keys[a] < keys[b]; });
+    std::ranges::stable_sort(order, [&](auto a, auto b) { return keys[a] < keys[b]; });
     std::vector<GivenRay> sorted;
     sorted.reserve(rays.size());
     for (const std::uint32_t i : order)

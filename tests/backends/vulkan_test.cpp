@@ -1,9 +1,9 @@
 // What Vulkan alone has: its program cache, staging, texels, validation layers, limits, timestamps, errors.
 // tests/backends/device_test.cpp has what is claimed of every API.
 #include "backends/vulkan/backend.h"
+#include "backends/vulkan/context.h"
 #include "backends/vulkan/instance.h"
 #include "backends/vulkan/session.h"
-#include "backends/vulkan/ticks.h"
 #include "core/device/given_quads.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"

@@ -1,5 +1,5 @@
 #include "bench/options/options.h"
-#include "bench/reproduce/tables/growth.h"
+#include "bench/reproduce/tables/tables.h"
 #include "bench/statistics/power_law.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"

@@ -14,9 +14,9 @@ PaperTable table_of_two_rows()
             "A table",
             "a paper",
             {{"method", "method"}, {"device", "device"}, {"rate", "rate", "Mrays/s"}, {"status", "status"}},
-            {{"maria", "openmp", Quantity{{2.5, 2, 3, false}, 5}, "ok"}, {"stp", "cuda", PaperCell(), "error: a, b"}},
+            {"A note."},
             {{"maria-is-fast", "maria is fast", ClaimVerdict::does_not_hold, "2.5 of 5."}},
-            {"A note."}};
+            {{"maria", "openmp", Quantity{{2.5, 2, 3, false}, 5}, "ok"}, {"stp", "cuda", PaperCell(), "error: a, b"}}};
 }
 
 PaperFigure figure_of_two_points()
@@ -26,10 +26,9 @@ PaperFigure figure_of_two_points()
             "a paper",
             {"tets", "a ray"},
             {"time", "ms"},
-            {{"maria tet80", {{10, 0.5}, {12, 0.75}}}},
-            {{"time-grows", "time grows", ClaimVerdict::holds, "0.99."}},
             {},
-            {}};
+            {{"maria tet80", {{10, 0.5}, {12, 0.75}}}},
+            {{"time-grows", "time grows", ClaimVerdict::holds, "0.99."}}};
 }
 
 } // namespace

@@ -1,5 +1,4 @@
-#include "bench/reproduce/tables/search_json.h"
-#include "bench/reproduce/tables/table5.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "backends/openmp/backend.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
 #include "bench/options/options.h"
-#include "bench/reproduce/tables/table6.h"
+#include "bench/reproduce/tables/tables.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -196,6 +196,25 @@ TEST(Table6, rows_pair_on_one_device_and_embree_with_openmp)
     EXPECT_EQ(with_embree, 4u);
     EXPECT_EQ(row_pairs(run).size(), 2u * (4 + 2));
     EXPECT_EQ(fastest_pairs(run).size(), 4u + 2) << "one layout of the CDT a device";
+}
+
+TEST(Table6, rows_of_different_math_modes_are_not_compared)
+{
+    SceneRun run = open_run("openmp");
+    set_all(run, 1, 2);
+    const std::size_t bvh2 = find_row(run, Layout::bvh2, Method::single);
+    ASSERT_FALSE(row_pairs(run).empty());
+    run.rows[bvh2].key.kernel.math = MathMode::fast;
+    for (const RowPair& pair : row_pairs(run))
+        EXPECT_NE(pair.bvh, bvh2) << "an exact row of the CDT beside a fast one of the BVH";
+    for (RowRun& row : run.rows)
+        if (is_cdt(row) && row.key.kernel.layout != Layout::tet80) row.key.kernel.math = MathMode::fast;
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+        if (is_cdt(run.rows[i])) set_times(run, i, ramp(run.rows[i].key.kernel.math == MathMode::fast ? 0.5 : 1));
+    bool has_exact = false;
+    for (const RowPair& pair : fastest_pairs(run))
+        has_exact = has_exact || run.rows[pair.cdt].key.kernel.layout == Layout::tet80;
+    EXPECT_TRUE(has_exact) << "a fast row is no faster layout than an exact one's";
 }
 
 TEST(Table6, the_fastest_layout_stands_for_the_cdt)

@@ -1,7 +1,7 @@
 // Every usable device against what tests/expected/ says of its implementation: a change in either direction fails.
 #include "bench/measuring/conformity.h"
 #include "bench/measuring/verify.h"
-#include "bench/output/self_test_json.h"
+#include "bench/output/device_json.h"
 #include "core/base/error.h"
 #include "scenes/procedural.h"
 #include "tests/support/damaged_scene.h"

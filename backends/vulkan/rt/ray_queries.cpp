@@ -39,7 +39,7 @@ std::string why_no_ray_queries(const std::vector<std::string>& extensions, bool 
 {
     std::string missing;
     for (const std::string needed : ray_query_extensions)
-        if (std::find(extensions.begin(), extensions.end(), needed) == extensions.end())
+        if (std::ranges::find(extensions, needed) == extensions.end())
             missing += (missing.empty() ? "" : ", ") + needed;
     if (missing.empty()) return {};
     return "the driver lacks " + missing + "; " +

@@ -89,7 +89,7 @@ Axis Axis::from_zero(double high, int intervals)
 
 Axis Axis::logarithmic_at(std::vector<double> values, double room)
 {
-    std::sort(values.begin(), values.end());
+    std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     if (values.empty()) throw Error(ErrorKind::internal, "Axis: no values");
     const double low = values.front() / room, high = values.back() * room;
@@ -161,8 +161,7 @@ std::vector<double> spread_apart(const std::vector<double>& positions, double ga
     };
     std::vector<std::size_t> order(positions.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return positions[a] < positions[b]; });
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return positions[a] < positions[b]; });
     // Each rank's share of the gaps is subtracted; "at least a gap apart" then becomes "not descending".
     std::vector<Block> blocks;
     for (std::size_t rank = 0; rank < order.size(); ++rank) {

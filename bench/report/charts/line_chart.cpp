@@ -77,8 +77,7 @@ Html grid(const LineChart& chart, const LineFrame& frame)
 
 bool ascends(const Series& series)
 {
-    return std::is_sorted(series.points.begin(), series.points.end(),
-                          [](const auto& a, const auto& b) { return a.first < b.first; });
+    return std::ranges::is_sorted(series.points, [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
 Html points_of(const Series& series, std::size_t number, const LineFrame& frame)

@@ -33,9 +33,8 @@ constexpr std::array badge_looks = {
 
 const BadgeLook& look_of(std::string_view word)
 {
-    const auto found = std::find_if(badge_looks.begin(), badge_looks.end(), [&](const BadgeLook& look) {
-        return word.substr(0, look.word.size()) == look.word;
-    });
+    const auto found = std::ranges::find_if(
+        badge_looks, [&](const BadgeLook& look) { return word.substr(0, look.word.size()) == look.word; });
     return found == badge_looks.end() ? neutral : *found;
 }
 
@@ -65,7 +64,7 @@ Html HtmlTable::html() const
     std::vector<bool> used;
     std::vector<Html> titles;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-        used.push_back(std::any_of(rows_.begin(), rows_.end(), [&](const auto& row) { return !row[c].empty(); }));
+        used.push_back(std::ranges::any_of(rows_, [&](const auto& row) { return !row[c].empty(); }));
         const Html unit =
             columns_[c].unit.empty() ? Html() : text(" ") + text_element("span", "unit", columns_[c].unit);
         titles.push_back(text(columns_[c].title) + unit);

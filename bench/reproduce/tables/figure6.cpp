@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/figure6.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/paper.h"
@@ -29,28 +29,23 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
     const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
-    const auto [fewest, most] = std::minmax_element(steps.begin(), steps.end());
-    const auto [shortest, longest] = std::minmax_element(seconds.begin(), seconds.end());
+    const auto [fewest, most] = std::ranges::minmax_element(steps);
+    const auto [shortest, longest] = std::ranges::minmax_element(seconds);
     const auto r = correlation(steps, seconds, run.sampling);
     const auto rays = static_cast<double>(run.scene->rays_per_view());
     const auto beside_ours = [&](double number) {
         return paper::has_scene(run.build.scene) ? std::optional(number) : std::nullopt;
     };
     const Line line = r ? fit_line(steps, seconds) : Line{};
-    return {run.build.scene,
-            std::string(name_of(row.key.kernel.method)),
-            std::string(name_of(row.key.kernel.layout)),
-            device_label(row.key),
-            device_kind_text(row),
-            exact_cell(static_cast<double>(steps.size())),
-            exact_cell(*fewest, beside_ours(paper::least_tets_a_ray)),
-            exact_cell(*most, beside_ours(paper::most_tets_a_ray)),
-            exact_cell(1e3 * *shortest),
-            exact_cell(1e3 * *longest),
-            exact_cell(figures_of(row)->msteps_per_s.value_or(0)),
-            r ? PaperCell(Quantity{*r, {}}) : PaperCell(),
-            r ? exact_cell(1e9 * line.slope / rays) : PaperCell(),
-            r ? exact_cell(1e3 * line.intercept) : PaperCell()};
+    auto cells = label_cells({run.build.scene}, row);
+    cells.insert(cells.end(),
+                 {exact_cell(static_cast<double>(steps.size())),
+                  exact_cell(*fewest, beside_ours(paper::least_tets_a_ray)),
+                  exact_cell(*most, beside_ours(paper::most_tets_a_ray)), exact_cell(1e3 * *shortest),
+                  exact_cell(1e3 * *longest), exact_cell(figures_of(row)->msteps_per_s.value_or(0)),
+                  r ? PaperCell(Quantity{*r, {}}) : PaperCell(), r ? exact_cell(1e9 * line.slope / rays) : PaperCell(),
+                  r ? exact_cell(1e3 * line.intercept) : PaperCell()});
+    return cells;
 }
 
 std::vector<Claim> claims_of(const RecordedRuns& runs)
@@ -67,7 +62,7 @@ std::vector<DeviceKind> rated_kinds(const SceneRun& run)
     std::vector<DeviceKind> kinds;
     for_rated(run, [&](std::size_t i) {
         const DeviceKind kind = run.rows[i].device.kind;
-        if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+        if (std::ranges::find(kinds, kind) == kinds.end()) kinds.push_back(kind);
     });
     return kinds;
 }
@@ -121,9 +116,6 @@ PaperFigure figure_of(const SceneRun& run, std::optional<DeviceKind> kind)
         source(),
         {"tets traversed", "a ray"},
         {"time of an image", "ms"},
-        {},
-        {},
-        {},
         {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
          "interleaved."}};
     const auto rows = kind ? rated_rows(run, *kind) : std::vector<std::size_t>();
@@ -175,14 +167,13 @@ PaperTable figure6_table(const SceneRuns& runs)
                       {"correlation", "r", "", 3},
                       {"slope_ns", "slope", "ns a tet and ray"},
                       {"intercept_ms", "intercept", "ms"}},
-                     {},
-                     claims_of({runs.begin(), runs.end()}),
                      {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
                       "views. Emulations of GPUs are in no claim.",
                       fmt::format("The paper: {} to {} tets a ray over its 1,282 views, of cameras that it does not "
                                   "give, and {} to {} Msteps/s on its CPU. {}",
                                   paper::least_tets_a_ray, paper::most_tets_a_ray, paper::least_cpu_msteps,
                                   paper::most_cpu_msteps, paper::rest_is_there)}};
+    table.claims = claims_of({runs.begin(), runs.end()});
     for (const SceneRun* run : runs) {
         for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
         for (std::size_t i = 0; i < run->rows.size(); ++i)
@@ -196,7 +187,7 @@ PaperTable figure6_table(const SceneRuns& runs)
 std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row)
 {
     const auto steps = view_steps(run, row);
-    const auto [fewest, most] = std::minmax_element(steps.begin(), steps.end());
+    const auto [fewest, most] = std::ranges::minmax_element(steps);
     return {static_cast<std::size_t>(fewest - steps.begin()), static_cast<std::size_t>(most - steps.begin())};
 }
 

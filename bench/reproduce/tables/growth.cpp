@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/growth.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/speed.h"
@@ -71,7 +71,7 @@ std::vector<GrowthLine> lines_of(const SceneRuns& runs)
             const auto same = [&](const GrowthLine& line) {
                 return line.family == family_of(*run) && is_one_kernel(*line.row, run->rows[i]);
             };
-            auto line = std::find_if(lines.begin(), lines.end(), same);
+            auto line = std::ranges::find_if(lines, same);
             if (line == lines.end()) line = lines.insert(line, {&run->rows[i], family_of(*run), {}});
             line->points.push_back(growing(*run, i));
         }
@@ -79,32 +79,24 @@ std::vector<GrowthLine> lines_of(const SceneRuns& runs)
     return lines;
 }
 
-PaperCell cell_of(const std::optional<double>& value)
-{
-    return value ? exact_cell(*value) : PaperCell();
-}
-
 std::vector<PaperCell> size_cells(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
-    const std::string status(name_of(status_of(row))), reason = reason_of(row);
-    std::vector<PaperCell> cells = {run.build.label, std::string(name_of(row.key.kernel.method)),
-                                    std::string(name_of(row.key.kernel.layout)), device_label(row.key),
-                                    known_text(device_kind_text(row))};
+    auto cells = label_cells({run.build.label}, row);
     if (run.scene != nullptr) {
         const Growing point = growing(run, i);
         const auto figures = figures_of(row);
         cells.push_back(exact_cell(point.faces));
         cells.push_back(exact_cell(static_cast<double>(run.scene->counts().tets)));
         for (const auto& value : {point.steps, point.nodes, point.triangles})
-            cells.push_back(cell_of(value));
+            cells.push_back(known_number(value));
         cells.push_back(figures ? exact_cell(figures->mrays_per_s) : PaperCell());
         for (const auto& value : {point.ns_a_ray, point.build_s, point.memory_mb})
-            cells.push_back(cell_of(value));
+            cells.push_back(known_number(value));
         cells.push_back(figures ? exact_cell(100 * figures->kernel_s.spread()) : PaperCell());
     } else
         cells.resize(cells.size() + 10);
-    cells.emplace_back(reason.empty() ? status : fmt::format("{}: {}", status, reason));
+    cells.emplace_back(status_with_reason(row));
     return cells;
 }
 
@@ -159,9 +151,6 @@ PaperFigure empty_figure(const std::string& id, const std::string& title, const 
                        "not in the paper",
                        {"occlusive faces", "", true},
                        {y, unit, true},
-                       {},
-                       {},
-                       {},
                        {"Both axes are logarithmic: a power law is a straight line, its exponent the slope."}};
     return figure;
 }
@@ -203,7 +192,7 @@ std::vector<std::string> families_of(const std::vector<GrowthLine>& lines)
 {
     std::vector<std::string> families;
     for (const GrowthLine& line : lines)
-        if (std::find(families.begin(), families.end(), line.family) == families.end()) families.push_back(line.family);
+        if (std::ranges::find(families, line.family) == families.end()) families.push_back(line.family);
     return families;
 }
 
@@ -219,7 +208,7 @@ const std::vector<std::uint32_t>& growth_sizes()
 
 std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes)
 {
-    std::sort(sizes.begin(), sizes.end());
+    std::ranges::sort(sizes);
     sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
     std::vector<SceneBuild> builds;
     for (const std::uint32_t size : sizes) {
@@ -255,8 +244,6 @@ PaperTable growth_table(const SceneRuns& runs)
                       {"memory_mb", "memory", "MB", 1},
                       {"spread_percent", "spread", "%", 1},
                       {"status", "status"}},
-                     {},
-                     {},
                      {"A size is the number of triangles of banana@N, of cubes@N the cubes along an axis. Times are of "
                       "the median sample of all views, device seconds of the kernel alone. Nodes and triangles are "
                       "counted by openmp's counting build, outside the timing."}};
@@ -283,8 +270,6 @@ PaperTable growth_exponents(const SceneRuns& runs)
          {"triangles", "triangles a ray"},
          {"build", "build and packing"},
          {"memory", "memory"}},
-        {},
-        {},
         {"cost ~ faces^x, x by least squares on logarithms, from 3 sizes on, with Student's 95 % interval: "
          "it tells how well a power fits these sizes, whose deviations it takes as independent. A cost "
          "that grows as a logarithm has a small x, which falls with the sizes."}};

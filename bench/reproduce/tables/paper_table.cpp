@@ -44,7 +44,7 @@ json columns_json(const PaperTable& table)
         columns.push_back({{"key", column.key}, {"title", column.title}});
         if (!column.unit.empty()) columns.back()["unit"] = column.unit;
         const auto is_number = [&](const auto& row) { return quantity(row[c]) != nullptr; };
-        if (std::any_of(table.rows.begin(), table.rows.end(), is_number)) columns.back()["decimals"] = column.decimals;
+        if (std::ranges::any_of(table.rows, is_number)) columns.back()["decimals"] = column.decimals;
     }
     return columns;
 }
@@ -159,16 +159,11 @@ struct Fact {
     std::string verdict = {}, text = {};
 };
 
-Cell text_or_none(const std::string& text)
-{
-    return text.empty() ? Cell() : Cell(text);
-}
-
 void add_fact(Table& tidy, std::vector<Cell> labels, const Fact& fact)
 {
     labels.resize(1 + label_keys.size());
-    labels.insert(labels.end(), {fact.quantity, text_or_none(fact.unit), fact.value, fact.low, fact.high, fact.paper,
-                                 fact.ratio, fact.x, text_or_none(fact.verdict), text_or_none(fact.text)});
+    labels.insert(labels.end(), {fact.quantity, text_cell(fact.unit), fact.value, fact.low, fact.high, fact.paper,
+                                 fact.ratio, fact.x, text_cell(fact.verdict), text_cell(fact.text)});
     tidy.add(std::move(labels));
 }
 
@@ -176,8 +171,7 @@ std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell
 {
     std::vector<Cell> labels = {table.id};
     for (const char* key : label_keys) {
-        const auto column =
-            std::find_if(table.columns.begin(), table.columns.end(), [&](const Column& one) { return one.key == key; });
+        const auto column = std::ranges::find_if(table.columns, [&](const Column& one) { return one.key == key; });
         const bool has = column != table.columns.end();
         labels.push_back(has ? plain_cell(row[static_cast<std::size_t>(column - table.columns.begin())], *column)
                              : Cell());
@@ -187,7 +181,7 @@ std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell
 
 bool is_label(const Column& column)
 {
-    return std::find(label_keys.begin(), label_keys.end(), column.key) != label_keys.end();
+    return std::ranges::find(label_keys, column.key) != label_keys.end();
 }
 
 void add_row_facts(Table& tidy, const PaperTable& table, const std::vector<PaperCell>& row)
@@ -247,6 +241,24 @@ std::optional<double> Quantity::ratio() const
     return ours.value / *paper;
 }
 
+PaperCell known_number(std::optional<double> value)
+{
+    return value ? exact_cell(*value) : PaperCell();
+}
+
+std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRun& row)
+{
+    first.insert(first.end(), {std::string(name_of(row.key.kernel.method)), std::string(name_of(row.key.kernel.layout)),
+                               device_label(row.key), known_text(device_kind_text(row))});
+    return first;
+}
+
+std::string status_with_reason(const RowRun& row)
+{
+    const std::string status(name_of(status_of(row))), reason = reason_of(row);
+    return reason.empty() ? status : status + ": " + reason;
+}
+
 PaperCell known_text(std::string text)
 {
     return text.empty() ? PaperCell() : PaperCell(std::move(text));
@@ -291,7 +303,7 @@ Table with_paper_columns(const PaperTable& table)
     std::vector<std::vector<Cell>> rows(table.rows.size());
     const auto add = [&](const Column& column, const std::vector<Cell>& cells, bool even_empty) {
         const auto is_empty = [](const Cell& cell) { return std::holds_alternative<std::monostate>(cell); };
-        if (!even_empty && std::all_of(cells.begin(), cells.end(), is_empty)) return;
+        if (!even_empty && std::ranges::all_of(cells, is_empty)) return;
         columns.push_back(column);
         for (std::size_t r = 0; r < rows.size(); ++r)
             rows[r].push_back(cells[r]);
@@ -305,7 +317,7 @@ Table with_paper_columns(const PaperTable& table)
             return list;
         };
         const bool intervals =
-            std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return has_interval(row.at(c)); });
+            std::ranges::any_of(table.rows, [&](const auto& row) { return has_interval(row.at(c)); });
         add(column, intervals ? cells(interval_cell) : cells(plain_cell), true);
         add({column.key + "_paper", "paper", {}, column.decimals}, cells(paper_cell), false);
         add({column.key + "_ratio", "ratio"}, cells(ratio_cell), false);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/reproduce/claims.h"
+#include "bench/rows/row_run.h"
 #include "bench/terminal/table.h"
 
 #include <nlohmann/json.hpp>
@@ -24,16 +25,22 @@ struct Quantity {
 using PaperCell = std::variant<std::monostate, std::string, Quantity>;
 
 [[nodiscard]] PaperCell exact_cell(double value, std::optional<double> paper = {});
+/// An exact number; an empty cell where there is none.
+[[nodiscard]] PaperCell known_number(std::optional<double> value);
 /// An empty cell where the text is empty.
 [[nodiscard]] PaperCell known_text(std::string text);
+/// The labels that come first, then method, layout, device and its type.
+[[nodiscard]] std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRun& row);
+/// The row's status, followed by its reason where it has one.
+[[nodiscard]] std::string status_with_reason(const RowRun& row);
 
 /// A table of the paper, measured again.
 struct PaperTable {
     std::string id, title, source;
     std::vector<Column> columns;
-    std::vector<std::vector<PaperCell>> rows; ///< a cell a column
-    std::vector<Claim> claims;
     std::vector<std::string> notes;
+    std::vector<Claim> claims = {};
+    std::vector<std::vector<PaperCell>> rows = {}; ///< a cell a column
 };
 
 /// A figure of the paper, measured again.
@@ -48,10 +55,10 @@ struct PaperFigure {
     };
     std::string id, title, source;
     Axis x, y;
-    std::vector<Series> series;
-    std::vector<Claim> claims;
-    std::vector<std::string> pictures; ///< file names, relative to the result's file
     std::vector<std::string> notes;
+    std::vector<Series> series = {};
+    std::vector<Claim> claims = {};
+    std::vector<std::string> pictures = {}; ///< file names, relative to the result's file
 };
 
 /// As results/README.md describes them. Numbers that are not finite are left out.

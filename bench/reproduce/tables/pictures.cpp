@@ -3,8 +3,7 @@
 #include "bench/pictures/false_colour.h"
 #include "bench/pictures/picture_name.h"
 #include "bench/pictures/shading.h"
-#include "bench/reproduce/tables/figure6.h"
-#include "bench/reproduce/tables/table4.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -68,8 +67,8 @@ void ResultPictures::draw(SceneRun& run, bool flawed, bool extremes) const
 void ResultPictures::draw_worst(SceneRun& run, std::size_t row) const
 {
     const auto& images = run.images[row];
-    const auto worst = std::max_element(images.begin(), images.end(),
-                                        [](const auto& a, const auto& b) { return flawed_rays(a) < flawed_rays(b); });
+    const auto worst =
+        std::ranges::max_element(images, [](const auto& a, const auto& b) { return flawed_rays(a) < flawed_rays(b); });
     if (worst == images.end() || flawed_rays(*worst) == 0) return;
     const auto view = static_cast<std::size_t>(worst - images.begin());
     const ImageVerdict verdict = run.verifier->verify(run.rows[row], view);

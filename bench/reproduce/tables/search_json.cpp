@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/search_json.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/output/row_json.h"

@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/table3.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/paper.h"
@@ -46,9 +46,7 @@ Claim counts_claim(const SceneRun& run)
 {
     const auto paper = paper::counts_of(run.build.scene);
     Claim claim{run.build.scene + "-has-the-papers-counts",
-                fmt::format("{} has the paper's tets and occlusive faces", run.build.scene),
-                {},
-                ""};
+                fmt::format("{} has the paper's tets and occlusive faces", run.build.scene)};
     if (!paper || run.scene == nullptr) {
         claim.evidence = paper ? "The scene could not be loaded." : "The paper's counts are not known to this program.";
         return claim;
@@ -83,20 +81,15 @@ std::string unknown_counts_note(const std::string& scene)
 
 std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRun& row)
 {
-    const auto figures = figures_of(row);
-    const std::string status(name_of(status_of(row))), reason = reason_of(row);
-    const auto number = [&](double value) { return figures ? exact_cell(value) : PaperCell(); };
-    return {run.build.scene,
-            run.build.build,
-            std::string(name_of(row.key.kernel.method)),
-            std::string(name_of(row.key.kernel.layout)),
-            device_label(row.key),
-            known_text(device_kind_text(row)),
-            number(figures ? mean_steps(traced(row)->totals).all.value_or(0) : 0),
-            number(figures ? figures->mrays_per_s : 0),
-            number(figures ? figures->msteps_per_s.value_or(0) : 0),
-            number(figures ? 100 * figures->kernel_s.spread() : 0),
-            reason.empty() ? status : fmt::format("{}: {}", status, reason)};
+    auto cells = label_cells({run.build.scene, run.build.build}, row);
+    if (const auto figures = figures_of(row))
+        for (const double number : {mean_steps(traced(row)->totals).all.value_or(0), figures->mrays_per_s,
+                                    figures->msteps_per_s.value_or(0), 100 * figures->kernel_s.spread()})
+            cells.push_back(exact_cell(number));
+    else
+        cells.resize(cells.size() + 4);
+    cells.emplace_back(status_with_reason(row));
+    return cells;
 }
 
 std::string source()
@@ -122,8 +115,6 @@ PaperTable table3(const SceneRuns& runs)
                       {"tet80_mb", "tet80", "MB", 1},
                       {"tet96_mb", "tet96", "MB", 1},
                       {"build_s", "built in", "s", 1}},
-                     {},
-                     {},
                      {"Build: paper's, of the paper's scenes alone, a domain of 3 radii that holds the cameras, uncut, "
                       "and the switches that come nearest to the paper's counts, where those are known; ours, as asked "
                       "for by --domain, --divisions and --switches. A "
@@ -158,12 +149,11 @@ PaperTable table3_rates(const SceneRuns& runs)
                       {"msteps_per_s", "Msteps/s", "", 1},
                       {"spread_percent", "spread", "%", 1},
                       {"status", "status"}},
-                     {},
-                     speed_claims({runs.begin(), runs.end()}),
                      {fmt::format("A sample is all views traced once, device seconds of the kernel alone; rates are of "
                                   "the median sample, spread is its interquartile range over the median. The paper has "
                                   "{} to {} Msteps/s on its CPU. {}",
                                   paper::least_cpu_msteps, paper::most_cpu_msteps, paper::rest_is_there)}};
+    table.claims = speed_claims({runs.begin(), runs.end()});
     for (const SceneRun* run : runs)
         for (const RowRun& row : run->rows)
             if (is_cdt(row)) table.rows.push_back(rate_cells(*run, row));

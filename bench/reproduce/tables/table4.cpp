@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/table4.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/reproduce/paper.h"
 #include "bench/reproduce/speed.h"
@@ -156,7 +156,7 @@ Claim count_claim(const std::vector<MethodRow>& rows, Method method, std::size_t
 
 Claim fewest_claim(const std::vector<MethodRow>& rows, std::size_t population)
 {
-    Claim claim{"maria-has-the-fewest", "maria has fewer wrong results than each older method", {}, ""};
+    Claim claim{"maria-has-the-fewest", "maria has fewer wrong results than each older method"};
     std::vector<Estimate> others;
     const auto mean_of = [&](Method method) -> std::optional<Estimate> {
         const MethodCounts counts = method_counts(rows, method, population);
@@ -211,7 +211,7 @@ std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
                     paper::rest_is_there),
         "project is not the paper's: that it has no such ray is this program's own claim, proved in "
         "docs/spec/project.md, P6."};
-    const auto loaded = std::find_if(runs.begin(), runs.end(), [](const auto* run) { return run->scene != nullptr; });
+    const auto loaded = std::ranges::find_if(runs, [](const auto* run) { return run->scene != nullptr; });
     if (loaded != runs.end())
         notes.push_back(sampling_note((*loaded)->sampling, population)); // all have the same views
     for (const SceneRun* run : runs) {
@@ -242,7 +242,7 @@ std::vector<MethodRow> method_rows(const SceneRuns& runs)
                 const Method method = row.key.kernel.method;
                 const bool usable = is_cdt(row) && is_whole(row) && traced(row)->different == 0 &&
                                     on_reference(row.key) == of_reference;
-                if (!usable || std::find(seen.begin(), seen.end(), method) != seen.end()) continue;
+                if (!usable || std::ranges::find(seen, method) != seen.end()) continue;
                 seen.push_back(method);
                 rows.push_back({run, i});
             }
@@ -252,13 +252,8 @@ std::vector<MethodRow> method_rows(const SceneRuns& runs)
 
 PaperTable table4(const SceneRuns& runs, std::size_t population)
 {
-    PaperTable table{"table4",
-                     "Rays with a wrong result per image of 1024 x 1024",
-                     fmt::format("{}, Table 4", paper::citation),
-                     columns(),
-                     {},
-                     {},
-                     notes_of(runs, population)};
+    PaperTable table{"table4", "Rays with a wrong result per image of 1024 x 1024",
+                     fmt::format("{}, Table 4", paper::citation), columns(), notes_of(runs, population)};
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (is_cdt(run->rows[i])) table.rows.push_back(cells_of(*run, i));
@@ -278,9 +273,6 @@ PaperFigure table4_views(const SceneRuns& runs)
                        fmt::format("to {}, Table 4", paper::citation),
                        {"view", "number in the camera set"},
                        {"wrong or lost", "rays an image"},
-                       {},
-                       {},
-                       {},
                        {"Pictures show the view with the most of them, the surface darkened, such rays marked."}};
     for (const MethodRow& row : method_rows(runs)) {
         const RowRun& run = row.run->rows[row.row];

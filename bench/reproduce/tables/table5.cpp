@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/table5.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/paper.h"
@@ -74,17 +74,12 @@ std::vector<PaperCell> count_cells(const RowRun& row)
 
 std::vector<PaperCell> cells_of(const SearchRun& run, const RowRun& row, const std::vector<RowDevice>& devices)
 {
-    const std::string status(name_of(status_of(row))), reason = reason_of(row);
-    std::vector<PaperCell> cells = {std::string(name_of(row.key.kernel.method)),
-                                    std::string(name_of(row.key.kernel.layout)),
-                                    device_label(row.key),
-                                    known_text(device_kind_text(row)),
-                                    threads_cell(run, row.key),
-                                    is_whole(row) ? exact_cell(static_cast<double>(traced(row)->totals.rays))
-                                                  : PaperCell()};
+    auto cells = label_cells({}, row);
+    cells.push_back(threads_cell(run, row.key));
+    cells.push_back(is_whole(row) ? exact_cell(static_cast<double>(traced(row)->totals.rays)) : PaperCell());
     for (const auto& part : {rate_cells(run, row, devices), count_cells(row)})
         cells.insert(cells.end(), part.begin(), part.end());
-    cells.emplace_back(reason.empty() ? status : fmt::format("{}: {}", status, reason));
+    cells.emplace_back(status_with_reason(row));
     return cells;
 }
 
@@ -113,13 +108,10 @@ std::vector<Claim> claims_of(const SearchRun& run)
 {
     const RecordedRuns runs = {&run};
     return {fastest_claim({"table5-maria-fastest-cpu",
-                           "maria is the fastest of the five methods on a CPU, one thread, exit search alone",
-                           {},
-                           ""},
+                           "maria is the fastest of the five methods on a CPU, one thread, exit search alone"},
                           runs, [](const RowRun& row) { return row.key.threads == 1; }),
             overtaking_claim(
-                {"table5-plucker-overtakes-stp-gpu", "on a GPU plucker is faster than stp, exit search alone", {}, ""},
-                runs),
+                {"table5-plucker-overtakes-stp-gpu", "on a GPU plucker is faster than stp, exit search alone"}, runs),
             exact_claim(run)};
 }
 
@@ -169,13 +161,9 @@ std::vector<std::string> notes_of(const SearchRun& run)
 
 PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices)
 {
-    PaperTable table{"table5",
-                     "Exit search alone, on random tets and rays",
-                     fmt::format("{}, Table 5", paper::citation),
-                     search_columns(),
-                     {},
-                     claims_of(run),
-                     notes_of(run)};
+    PaperTable table{"table5", "Exit search alone, on random tets and rays",
+                     fmt::format("{}, Table 5", paper::citation), search_columns(), notes_of(run)};
+    table.claims = claims_of(run);
     for (const RowRun& row : run.rows)
         table.rows.push_back(cells_of(run, row, devices));
     return table;

@@ -1,4 +1,4 @@
-#include "bench/reproduce/tables/table6.h"
+#include "bench/reproduce/tables/tables.h"
 
 #include "bench/measuring/figures.h"
 #include "bench/reproduce/paper.h"
@@ -28,10 +28,16 @@ bool is_embree(const RowRun& row)
     return row.key.kernel.layout == Layout::embree;
 }
 
+/// On one device in one math mode; a driver's own BVH has no mode to choose.
+bool run_alike(const RowRun& a, const RowRun& b)
+{
+    const bool has_mode = is_portable(a.key.kernel) && is_portable(b.key.kernel);
+    return same_place(a.key, b.key) && (!has_mode || a.key.kernel.math == b.key.kernel.math);
+}
+
 bool run_beside(const RowRun& cdt, const RowRun& bvh)
 {
-    if (is_embree(bvh)) return on_reference(cdt.key);
-    return same_place(cdt.key, bvh.key);
+    return is_embree(bvh) ? on_reference(cdt.key) : run_alike(cdt, bvh);
 }
 
 double total_s(const SceneRun& run, std::size_t row)
@@ -109,13 +115,10 @@ std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
     const RowRun& row = run.rows[i];
     const auto figures = figures_of(row);
     const auto cost = cost_of(run, i);
-    const std::string status(name_of(status_of(row))), reason = reason_of(row);
-    std::vector<PaperCell> cells = {run.build.scene, std::string(name_of(row.key.kernel.method)),
-                                    std::string(name_of(row.key.kernel.layout)), device_label(row.key),
-                                    known_text(device_kind_text(row))};
+    auto cells = label_cells({run.build.scene}, row);
     if (figures) {
         const auto frames = view_frames(run, i);
-        const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
+        const auto [least, most] = std::ranges::minmax_element(frames);
         const auto papers = row.device.kind == DeviceKind::gpu ? papers_frames(run, row) : std::nullopt;
         cells.push_back(exact_cell(static_cast<double>(frames.size())));
         cells.push_back(Quantity{median_of_views(frames, run.sampling), {}});
@@ -129,7 +132,7 @@ std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
     cells.push_back(cost ? exact_cell(cost->pack_s) : PaperCell());
     cells.push_back(cost ? exact_cell(1e-6 * static_cast<double>(cost->bytes)) : PaperCell());
     cells.push_back(figures ? exact_cell(100 * figures->kernel_s.spread()) : PaperCell());
-    cells.emplace_back(reason.empty() ? status : fmt::format("{}: {}", status, reason));
+    cells.emplace_back(status_with_reason(row));
     return cells;
 }
 
@@ -209,7 +212,7 @@ std::string pair_evidence(const RowPair& pair)
     const RowRun& cdt = pair.run->rows[pair.cdt];
     const auto cdt_frames = view_frames(*pair.run, pair.cdt), bvh_frames = view_frames(*pair.run, pair.bvh);
     const auto range = [](const std::vector<double>& frames) {
-        const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
+        const auto [least, most] = std::ranges::minmax_element(frames);
         return fmt::format("{:.4g} to {:.4g}", *least, *most);
     };
     return fmt::format("{} {}: the time of bvh2 is {} of the CDT's, median of {} views, {:.3g} to {:.3g}; {:.1f} % of "
@@ -229,9 +232,7 @@ Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, Devic
                                    : "this CPU (the paper's claim is of "
                                      "a GPU)",
                             outcome.cdt_is_faster ? "CDT" : "BVH", outcome.cdt_is_faster ? "BVH" : "CDT",
-                            outcome.scene),
-                {},
-                ""};
+                            outcome.scene)};
     std::vector<Estimate> ratios;
     bool noisy = false;
     for (const RowPair& pair : papers_pairs(runs, outcome.scene, kind)) {
@@ -272,7 +273,7 @@ PaperFigure::Series curve_of(const RowPair& pair, bool with_device)
 {
     PaperFigure::Series series{curve_name(pair, with_device), {}};
     auto ratios = pair.ratio.views;
-    std::sort(ratios.begin(), ratios.end());
+    std::ranges::sort(ratios);
     for (std::size_t i = 0; i < ratios.size(); ++i)
         series.points.emplace_back(100 * static_cast<double>(i + 1) / static_cast<double>(ratios.size()), ratios[i]);
     return series;
@@ -286,15 +287,12 @@ PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector
         source(),
         {"views that have at most this ratio", "%"},
         {"time of the BVH over the CDT's", "", true},
-        {},
-        {},
-        {},
         {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
          "the share of the "
          "views in which the BVH is faster. The CDT has its device's fastest layout."}};
     const RowKey& first = run.rows[pairs.front().cdt].key;
-    const bool one_device = std::all_of(pairs.begin(), pairs.end(),
-                                        [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
+    const bool one_device =
+        std::ranges::all_of(pairs, [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
     for (const RowPair& pair : pairs)
         figure.series.push_back(curve_of(pair, !one_device));
     figure.series.push_back({"equal", {{0, 1}, {100, 1}}});
@@ -325,7 +323,7 @@ std::vector<RowPair> fastest_pairs(const SceneRun& run)
         for (std::size_t i = 0; i < run.rows.size(); ++i) {
             const RowRun& other = run.rows[i];
             if (i == pair.cdt || !is_cdt(other) || !is_compared(other) || view_seconds(run, i).empty() ||
-                !same_place(other.key, row.key))
+                !run_alike(other, row))
                 continue;
             const double theirs = total_s(run, i), ours = total_s(run, pair.cdt);
             if (theirs < ours || (theirs == ours && i < pair.cdt)) return true;
@@ -353,8 +351,6 @@ PaperTable table6(const SceneRuns& runs)
                      "CDT and BVHs: frames a second, build time and memory",
                      source(),
                      frame_columns(),
-                     {},
-                     {},
                      {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
                       "alone: the median over the views with its interval (order statistics), the least and the most.",
                       "Built in: TetGen for the CDT, the builder of the BVH, which is Embree's, for bvh2 and cwbvh, "
@@ -375,8 +371,6 @@ PaperTable table6_pairs(const SceneRuns& runs)
                      "CDT against BVHs, paired view by view",
                      source(),
                      pair_columns(),
-                     {},
-                     pair_claims(runs),
                      {"A ratio is of the same view on the same device, above 1 the CDT is faster; the interval is that "
                       "of the median over the views (order statistics). Embree stands beside openmp.",
                       "Ahead: who takes less time, builds and rays together. Builds paid after: the rays, of these "
@@ -385,6 +379,7 @@ PaperTable table6_pairs(const SceneRuns& runs)
                       "for. Not to be told: the interval of the ratio of all views' times holds 1.",
                       "Claims are of bvh2, the paper's kind of BVH, and of the fastest layout of the CDT on each "
                       "device. Emulations of GPUs are in none."}};
+    table.claims = pair_claims(runs);
     for (const SceneRun* run : runs)
         for (const RowPair& pair : row_pairs(*run))
             table.rows.push_back(pair_cells(pair));

@@ -1,4 +1,4 @@
-#include "bench/output/ray_json.h"
+#include "bench/rows/ray_json.h"
 
 namespace tetrace {
 

@@ -1,0 +1,34 @@
+#include "bench/output/row_fields.h"
+
+#include <fmt/format.h>
+
+namespace tetrace {
+
+Cell plain_cell(const nlohmann::json& value)
+{
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return value.get<double>();
+    if (value.is_number()) return value.get<std::uint64_t>();
+    return value.is_boolean() && value.get<bool>() ? Cell("yes") : Cell();
+}
+
+std::vector<Column> columns_of(Place place, const std::string& reference)
+{
+    std::vector<Column> columns;
+    for (const RowField& field : row_fields())
+        if (const Shown& shown = field.*place; shown.title != nullptr)
+            columns.push_back({shown.key != nullptr ? shown.key : field.key,
+                               fmt::format(fmt::runtime(shown.title), fmt::arg("reference", reference)), shown.unit,
+                               shown.decimals});
+    return columns;
+}
+
+std::vector<Cell> cells_of(Place place, const RowFacts& facts)
+{
+    std::vector<Cell> cells;
+    for (const RowField& field : row_fields())
+        if (const Shown& shown = field.*place; shown.title != nullptr) cells.push_back(shown.cell(field.value(facts)));
+    return cells;
+}
+
+} // namespace tetrace

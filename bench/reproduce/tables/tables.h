@@ -1,0 +1,117 @@
+#pragma once
+
+#include "bench/measuring/row_devices.h"
+#include "bench/reproduce/scene_run.h"
+#include "bench/reproduce/search_run.h"
+#include "bench/reproduce/tables/paper_table.h"
+#include "bench/statistics/break_even.h"
+#include "bench/statistics/paired_ratio.h"
+
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+// Each table and figure is made in a file of its own name.
+
+/// Table 3: tets, faces and memory of each scene in each build.
+[[nodiscard]] PaperTable table3(const SceneRuns& runs);
+
+/// The speed of those builds: rates of every row.
+[[nodiscard]] PaperTable table3_rates(const SceneRuns& runs);
+
+/// Table 4: rays with a wrong result per image of 1024 x 1024, by method, scene and device, split by what went wrong.
+/// It compares the paper's methods with project, which the paper does not have.
+/// population: views of the camera set, of which the runs have some or all.
+[[nodiscard]] PaperTable table4(const SceneRuns& runs, std::size_t population);
+
+/// Where those rays are: their number by view, for each scene and method.
+[[nodiscard]] PaperFigure table4_views(const SceneRuns& runs);
+
+/// The rows whose numbers represent a method: for each scene and method the first that was verified, openmp's where
+/// available. In exact mode every device has the same answers.
+struct MethodRow {
+    const SceneRun* run = nullptr;
+    std::size_t row = 0; ///< index in SceneRun::rows
+};
+[[nodiscard]] std::vector<MethodRow> method_rows(const SceneRuns& runs);
+
+/// Wrong and lost rays of an image.
+[[nodiscard]] std::uint64_t flawed_rays(const ImageRecord& image);
+
+/// Table 5: the exit search alone, by method, layout and device: rates, and the number of faces that are not the exact
+/// ones.
+/// devices: those that the rows ran on, measured.
+[[nodiscard]] PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices);
+
+/// Bytes that a search moves besides its tet, which stays in the caches for all of its rays: 32 of the ray's 48,
+/// because no method needs both its origin and its moment, and the face that it writes.
+inline constexpr double bytes_per_search = 32 + 4;
+
+/// A row of the CDT and one of a BVH that traced the same views on the same device; Embree's rows pair with openmp's.
+struct RowPair {
+    const SceneRun* run = nullptr;
+    std::size_t cdt = 0, bvh = 0; ///< indices in SceneRun::rows; both have a rate
+    PairedRatio ratio;            ///< the BVH's time over the CDT's
+};
+
+/// All pairs of a run, each row of the CDT with its rivals, in the order of rows.
+[[nodiscard]] std::vector<RowPair> row_pairs(const SceneRun& run);
+
+/// The pairs whose CDT row is its device's fastest, by the time of all views.
+[[nodiscard]] std::vector<RowPair> fastest_pairs(const SceneRun& run);
+
+/// The number of rays from which the CDT, or the BVH, takes less time in total, including its build; first is the CDT.
+/// Empty where the interval of the ratio of their times contains 1, or a build time is unknown.
+[[nodiscard]] std::optional<BreakEven> break_even(const RowPair& pair);
+
+/// Table 6: frames of 1024 x 1024 a second, build time and memory of the CDT and of each BVH.
+[[nodiscard]] PaperTable table6(const SceneRuns& runs);
+
+/// Each layout of the CDT with each BVH: the ratio of their times over the views, when the builds pay off, and the
+/// claims.
+[[nodiscard]] PaperTable table6_pairs(const SceneRuns& runs);
+
+/// One figure for each scene and type of device: the ratios of fastest_pairs(), ascending, over the share of the views.
+[[nodiscard]] std::vector<PaperFigure> table6_figures(const SceneRuns& runs);
+
+/// Figure 6: time and tets traversed, one point per view. One figure for each scene and type of device
+/// ("figure6-bunny-gpu"); the scene's pictures are in its first figure. A scene without a rated row has one figure
+/// without points.
+/// runs: timed.
+[[nodiscard]] std::vector<PaperFigure> figure6(const SceneRuns& runs);
+
+/// The same as a table: range of tets and of times, correlation and line of each row; and the claims, which cover all
+/// scenes and devices.
+[[nodiscard]] PaperTable figure6_table(const SceneRuns& runs);
+
+/// The views (indices) in which a row's rays leave the fewest and the most tets.
+[[nodiscard]] std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row);
+
+/// The build of a scene that is available in several sizes.
+inline constexpr const char* growth_build = "growth";
+
+/// The default sizes: triangles of banana.
+[[nodiscard]] const std::vector<std::uint32_t>& growth_sizes();
+/// The default views: every 64th of the camera set.
+inline constexpr const char* growth_views = "0-1281:64";
+
+/// A scene in these sizes, ascending and each once. A size is the number of triangles for banana, and of cubes along an
+/// axis for cubes.
+/// request: what is built, except for its size; its name is "banana" or "cubes".
+[[nodiscard]] std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes);
+
+/// The cost of tracing as one scene is refined: one row for each size and row of the run.
+[[nodiscard]] PaperTable growth_table(const SceneRuns& runs);
+
+/// The exponents of fitted power laws in the number of occlusive faces: one row for each kernel and device.
+[[nodiscard]] PaperTable growth_exponents(const SceneRuns& runs);
+
+/// Lines over the number of occlusive faces: a ray's time, one figure for each type of device, and what a ray visits.
+[[nodiscard]] std::vector<PaperFigure> growth_figures(const SceneRuns& runs);
+
+/// The searches and their rows as results record them (results/README.md): all data behind table5.
+/// Precondition: the sessions of rows without a failure are open.
+[[nodiscard]] nlohmann::json searches_json(const SearchRun& run);
+
+} // namespace tetrace
