@@ -1,6 +1,6 @@
 // What CUDA alone has, without a GPU: that its two stand-ins, the host emulation and a library that poses as NVIDIA's
 // driver (tests/stub_cuda), say so; a driver's failures; NVRTC; the code that real GPUs get, which is looked at, not
-// run. tests/backends/device_test.cpp has what is claimed of every API.
+// run. device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/cuda/driver_backend.h"
 #include "backends/cuda_host/backend.h"
 #include "core/device/scene_buffers.h"

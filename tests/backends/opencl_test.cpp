@@ -1,5 +1,5 @@
 // What OpenCL alone has: its program cache, what its drivers say of themselves, its errors.
-// tests/backends/device_test.cpp has what is claimed of every API.
+// device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/opencl/backend.h"
 #include "backends/opencl/device.h"
 #include "backends/opencl/errors.h"

@@ -1,5 +1,5 @@
 // What Vulkan alone has: its program cache, staging, texels, validation layers, limits, timestamps, errors.
-// tests/backends/device_test.cpp has what is claimed of every API.
+// device_test.cpp and the other tests of each_device.h have what is claimed of every API.
 #include "backends/vulkan/backend.h"
 #include "backends/vulkan/context.h"
 #include "backends/vulkan/instance.h"

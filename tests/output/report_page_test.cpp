@@ -1,162 +1,15 @@
-#include "bench/report/page.h"
+// What the sections of the page show of results, and what they say where there is nothing to show.
 #include "bench/report/sections.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/output/report_fixture.h"
 
-#include <algorithm>
-#include <cstdlib>
-#include <fmt/format.h>
-#include <functional>
-#include <regex>
 #include <set>
+#include <string>
+#include <vector>
 
 using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
-
-using nlohmann::json;
-
-/// Names that would leave their place if anything forgot to escape them; or their innocent counterpart.
-struct Names {
-    std::string device, reason, title;
-};
-const Names innocent = {"a device", "a reason", "a title"};
-const Names hostile = {R"(<script>alert("1")</script> & 'Co' </svg></title>)",
-                       "</td></table><img src=https://example.org/x onerror=alert(1)>",
-                       "\"><style>body{background:url(https://example.org/x)}</style><!-- "};
-
-json row_json(const std::string& name, const std::string& backend, const std::string& type, const Names& names)
-{
-    return {{"name", name},
-            {"scene", "cubes"},
-            {"structure", "cdt"},
-            {"method", "maria"},
-            {"layout", "tet80"},
-            {"backend", backend},
-            {"rays", "primary"},
-            {"math", "exact"},
-            {"order", "hilbert"},
-            {"status", "ok"},
-            {"device", {{"name", names.device + " of " + backend}, {"type", type}, {"driver", names.device}}},
-            {"device_index", 0},
-            {"hit_hash", "00000000000000ff"},
-            {"bytes", 1000000},
-            {"counts", {{"mean_steps", 10.5}}},
-            {"times",
-             {{"samples_s", {1.0, 1.1, 1.2}},
-              {"median_s", 1.1},
-              {"lower_quartile_s", 1.05},
-              {"upper_quartile_s", 1.15},
-              {"noisy", true},
-              {"overhead_s", 0.01},
-              {"wall_s", 1.11}}},
-            {"rates", {{"mrays_per_s", 4.0}, {"msteps_per_s", 40.0}, {"bytes_per_step", 44}}}};
-}
-
-json device_json(const std::string& backend, const std::string& type, const Names& names)
-{
-    return {{"backend", backend}, {"index", 0},           {"name", names.device + " of " + backend},
-            {"type", type},       {"driver", "a driver"}, {"copy_bytes_per_s", 1e10},
-            {"launch_s", 1e-5}};
-}
-
-json head_json(const char* verb, const Names& names)
-{
-    return {{"schema_version", 2},
-            {"verb", verb},
-            {"date", "2026-01-31T12:00:00Z"},
-            {"version", "0.1.0"},
-            {"commit", "abc1234"},
-            {"host", {{"cpu", names.device}, {"system", names.title}, {"threads", 2}}}};
-}
-
-json scenes_json(const Names& names)
-{
-    return {{{"name", "cubes"},
-             {"hash", "0123456789abcdef"},
-             {"source", names.title},
-             {"camera_set", "smoke"},
-             {"views", {0, 3}},
-             {"width", 24},
-             {"height", 16}}};
-}
-
-/// A row on the processor, on a GPU, on an emulated device, and one that could not run.
-json bench_json(const Names& names = innocent)
-{
-    json section = head_json("bench", names);
-    section["scenes"] = scenes_json(names);
-    section["devices"] = {device_json("openmp", "cpu", names), device_json("cuda", "gpu", names),
-                          device_json("vulkan", "emulated", names)};
-    section["rows"] = {row_json("row/openmp", "openmp", "cpu", names), row_json("row/cuda", "cuda", "gpu", names),
-                       row_json("row/vulkan", "vulkan", "emulated", names)};
-    json failed = row_json("row/opencl", "opencl", "emulated", names);
-    failed.erase("rates");
-    failed.erase("times");
-    failed["status"] = "error";
-    failed["reason"] = names.reason;
-    section["rows"].push_back(failed);
-    section["ratios"] = {
-        {{"row", "row/vulkan"}, {"reference", "row/openmp"}, {"ratio", 1.1}, {"low", 0.9}, {"high", 1.2}}};
-    return {{"tetrace", section}};
-}
-
-json check_json(const Names& names = innocent)
-{
-    json section = head_json("check", names);
-    section["scenes"] = scenes_json(names);
-    section["rows"] = json::array();
-    section["missing_devices"] = {names.reason};
-    section["matrix"]["cubes"]["cdt maria tet80"] = {{"openmp", {{"cell", "reference"}, {"conformity", "reference"}}},
-                                                     {"vulkan", {{"cell", names.reason}, {"conformity", "wrong"}}}};
-    return {{"tetrace", section}};
-}
-
-json reproduce_json(const Names& names = innocent)
-{
-    const json claims = {{{"id", "1"}, {"text", names.title}, {"verdict", "holds"}, {"evidence", names.reason}},
-                         {{"id", "2"}, {"text", "another"}, {"verdict", "does not hold"}, {"evidence", ""}}};
-    json section = head_json("reproduce", names);
-    section["tables"] = {
-        {{"id", "table4"},
-         {"title", names.title},
-         {"source", names.reason},
-         {"columns", {{{"key", "method"}, {"title", names.title}}, {{"key", "rate"}, {"title", "rate"}}}},
-         {"rows",
-          {{{"method", names.device},
-            {"rate", {{"value", 12.5}, {"low", 12}, {"high", 13}, {"paper", 25}, {"ratio", 0.5}}}}}},
-         {"claims", claims},
-         {"notes", {names.reason}}}};
-    section["figures"] = {{{"id", "figure6"},
-                           {"title", names.title},
-                           {"source", "the paper"},
-                           {"x", {{"title", names.title}, {"unit", ""}}},
-                           {"y", {{"title", "time"}, {"unit", "ms"}}},
-                           {"series", {{{"name", names.device}, {"points", {{0, 1}, {1, 2}}}}}},
-                           {"claims", json::array()},
-                           {"pictures", json::array()},
-                           {"notes", json::array()}}};
-    return {{"tetrace", section}};
-}
-
-/// The tags of a page in their order, attributes and text left out. What quotes enclose is no tag.
-std::vector<std::string> tags_of(const std::string& page)
-{
-    std::vector<std::string> tags;
-    const std::regex tag("<(/?[a-z0-9]+)(?: [-a-zA-Z0-9]+=\"[^\"]*\")*>");
-    for (auto it = std::sregex_iterator(page.begin(), page.end(), tag); it != std::sregex_iterator(); ++it)
-        tags.push_back((*it)[1]);
-    return tags;
-}
-
-std::multiset<std::string> rows_of(const std::string& page, const std::string& css_class)
-{
-    std::multiset<std::string> rows;
-    const std::regex mark("class=\"" + css_class + "[^\"]*\" data-row=\"([^\"]*)\"");
-    for (auto it = std::sregex_iterator(page.begin(), page.end(), mark); it != std::sregex_iterator(); ++it)
-        rows.insert((*it)[1]);
-    return rows;
-}
 
 std::vector<std::string> drawings_of(const std::string& page)
 {
@@ -166,82 +19,7 @@ std::vector<std::string> drawings_of(const std::string& page)
     return drawings;
 }
 
-/// The part of a page from the heading of one section to the next.
-std::string section_of(const std::string& page, const std::string& id)
-{
-    const std::size_t begin = page.find("<section id=\"" + id + "\"");
-    if (begin == std::string::npos) return "no section " + id;
-    return page.substr(begin, page.find("</section>", begin) - begin);
-}
-
-class ReportPage : public testing::Test {
-protected:
-    std::string page_of(const std::vector<json>& results, std::vector<std::filesystem::path> pictures = {})
-    {
-        std::vector<std::filesystem::path> files;
-        for (const json& result : results) {
-            files.push_back(folder_ / fmt::format("{}.json", files.size()));
-            write_file(files.back(), result.dump());
-        }
-        return tetrace::report_page(read_report_input(files, std::move(pictures)));
-    }
-    std::string error_of_page(const json& result, std::vector<std::filesystem::path> pictures = {})
-    {
-        return error_of([&] { static_cast<void>(page_of({result}, std::move(pictures))); });
-    }
-
-    TemporaryFolder folder_;
-};
-
-/// A PNG of one white pixel.
-const std::string
-    white_pixel("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\0\0\0\0\x3a\x7e\x9b\x55\0\0\0\nIDAT"
-                "\x78\x9c\x63\xf8\x0f\0\x01\x01\x01\0\x1b\xb6\xee\x56\0\0\0\0IEND\xae\x42\x60\x82",
-                67);
-
 } // namespace
-
-TEST_F(ReportPage, tags_are_balanced)
-{
-    write_file(folder_ / "a.png", white_pixel);
-    std::vector<std::string> open;
-    for (const std::string& tag : tags_of(page_of({bench_json(), check_json(), reproduce_json()}, {folder_ / "a.png"})))
-        if (tag[0] == '/') {
-            ASSERT_FALSE(open.empty());
-            EXPECT_EQ(open.back(), tag.substr(1));
-            open.pop_back();
-        } else if (tag != "meta" && tag != "img") {
-            open.push_back(tag);
-        }
-    EXPECT_TRUE(open.empty());
-}
-
-TEST_F(ReportPage, names_of_whatever_characters_change_no_markup)
-{
-    const auto tags = [&](const Names& names) {
-        return tags_of(page_of({bench_json(names), check_json(names), reproduce_json(names)}));
-    };
-    EXPECT_EQ(tags(hostile), tags(innocent));
-    const std::string page = page_of({bench_json(hostile)});
-    EXPECT_TRUE(contains(page, "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp; &apos;Co&apos;"));
-}
-
-TEST_F(ReportPage, loads_nothing_and_runs_nothing)
-{
-    write_file(folder_ / "a.png", white_pixel);
-    const std::string page = page_of({bench_json(hostile), check_json(hostile)}, {folder_ / "a.png"});
-    for (const std::string& tag : tags_of(page))
-        EXPECT_TRUE(tag != "script" && tag != "link" && tag != "iframe" && tag != "object") << tag;
-    const std::regex source("<[^>\"]*(?: [-a-zA-Z0-9]+=\"[^\"]*\")* (src|href|srcset|data|on[a-z]+)=\"([^\"]{0,30})");
-    for (auto it = std::sregex_iterator(page.begin(), page.end(), source); it != std::sregex_iterator(); ++it) {
-        const std::string target = (*it)[2];
-        EXPECT_TRUE(target.rfind("#", 0) == 0 || target.rfind("data:image/png;base64,", 0) == 0) << it->str();
-    }
-    const std::string style = page.substr(page.find("<style>"), page.find("</style>") - page.find("<style>"));
-    EXPECT_EQ(style.find("url("), std::string::npos);
-    EXPECT_EQ(style.find("@import"), std::string::npos);
-    EXPECT_TRUE(contains(page, "content=\"default-src &apos;none&apos;; style-src"));
-}
 
 TEST_F(ReportPage, every_row_has_its_mark_or_its_reason)
 {
@@ -266,16 +44,6 @@ TEST_F(ReportPage, emulated_devices_and_gpus_share_no_chart)
     }
 }
 
-TEST(ReportColours, are_those_of_earlier_pages_and_one_for_each_backend)
-{
-    const std::vector<std::string> first = {"openmp", "embree", "opencl", "vulkan", "cuda", "cuda-host"};
-    for (std::size_t i = 0; i < first.size(); ++i)
-        EXPECT_EQ(api_series(first[i]), i) << first[i];
-    std::set<std::size_t> seen;
-    for (const Backend* backend : all_backends())
-        EXPECT_TRUE(seen.insert(api_series(backend->name())).second) << backend->name();
-}
-
 TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
 {
     json other = bench_json();
@@ -284,16 +52,14 @@ TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
     EXPECT_EQ(drawings_of(rates).size(), 6u);
 }
 
-TEST_F(ReportPage, what_is_not_in_the_results_is_a_sentence)
+TEST(ReportColours, are_those_of_earlier_pages_and_one_for_each_backend)
 {
-    json empty = bench_json();
-    for (const char* const key : {"devices", "rows", "ratios", "scenes"})
-        empty["tetrace"].erase(key);
-    const std::string page = page_of({empty});
-    EXPECT_EQ(page.find("<svg"), std::string::npos);
-    for (const char* const id : {"rates", "ratios", "roofline", "conformance", "paper", "pictures", "times"})
-        EXPECT_TRUE(contains(section_of(page, id), "<p>")) << id;
-    EXPECT_TRUE(contains(section_of(page, "rates"), "No row of these results has a rate"));
+    const std::vector<std::string> first = {"openmp", "embree", "opencl", "vulkan", "cuda", "cuda-host"};
+    for (std::size_t i = 0; i < first.size(); ++i)
+        EXPECT_EQ(api_series(first[i]), i) << first[i];
+    std::set<std::size_t> seen;
+    for (const Backend* backend : all_backends())
+        EXPECT_TRUE(seen.insert(api_series(backend->name())).second) << backend->name();
 }
 
 TEST_F(ReportPage, a_row_of_an_unmeasured_device_is_on_no_roofline)
@@ -326,23 +92,16 @@ TEST_F(ReportPage, numbers_have_the_decimals_of_their_column)
     EXPECT_TRUE(contains(error_of_page(result), "columns[1].decimals: is no number of decimals"));
 }
 
-TEST_F(ReportPage, pictures_are_in_the_page_byte_for_byte)
+TEST_F(ReportPage, what_is_not_in_the_results_is_a_sentence)
 {
-    write_file(folder_ / "bunny-0-normals.png", white_pixel);
-    const std::string page = page_of({bench_json()}, {folder_ / "bunny-0-normals.png"});
-    EXPECT_TRUE(contains(page, "data:image/png;base64," + base64(white_pixel)));
-    json result = reproduce_json();
-    result["tetrace"]["figures"][0]["pictures"] = {"bunny-0-normals.png"};
-    EXPECT_TRUE(contains(section_of(page_of({result}), "paper"), base64(white_pixel))) << "relative to the result";
-}
-
-TEST_F(ReportPage, a_named_picture_that_is_missing_is_a_sentence_and_one_asked_for_an_error)
-{
-    json result = reproduce_json();
-    result["tetrace"]["figures"][0]["pictures"] = {"none.png"};
-    const std::string paper = section_of(page_of({result}), "paper");
-    EXPECT_TRUE(contains(paper, "The picture &apos;none.png&apos;, which the result names, is not shown: there is no"));
-    EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_ / "none.png"}), "missing: reading the picture"));
+    json empty = bench_json();
+    for (const char* const key : {"devices", "rows", "ratios", "scenes"})
+        empty["tetrace"].erase(key);
+    const std::string page = page_of({empty});
+    EXPECT_EQ(page.find("<svg"), std::string::npos);
+    for (const char* const id : {"rates", "ratios", "roofline", "conformance", "paper", "pictures", "times"})
+        EXPECT_TRUE(contains(section_of(page, id), "<p>")) << id;
+    EXPECT_TRUE(contains(section_of(page, "rates"), "No row of these results has a rate"));
 }
 
 TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
@@ -370,81 +129,4 @@ TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
     logarithmic["tetrace"]["figures"][0]["x"]["scale"] = "logarithmic";
     EXPECT_TRUE(contains(error_with(logarithmic, "/figures/0/series/0/points/1/0", 0), "on a logarithmic axis"));
     EXPECT_TRUE(contains(error_with(reproduce_json(), "/tables/0/rows/0/rate", false), "rows[0].rate"));
-}
-
-TEST(Base64, is_that_of_the_standards_examples)
-{
-    EXPECT_EQ(base64(""), "");
-    EXPECT_EQ(base64("f"), "Zg==");
-    EXPECT_EQ(base64("fo"), "Zm8=");
-    EXPECT_EQ(base64("foo"), "Zm9v");
-    EXPECT_EQ(base64("foob"), "Zm9vYg==");
-    EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
-}
-
-namespace {
-
-std::string find_chromium()
-{
-    for (const char* const name : {"chromium", "chromium-headless-shell", "google-chrome", "chrome"})
-        if (std::system(fmt::format("command -v {} > /dev/null 2>&1", name).c_str()) == 0) return name;
-    return {};
-}
-
-/// What a browser makes of a page: its document as text, and what it wrote to its console.
-struct Browsed {
-    std::string document, console;
-};
-
-class ReportInChromium : public ReportPage {
-protected:
-    void SetUp() override
-    {
-        browser_ = find_chromium();
-        if (browser_.empty())
-            GTEST_SKIP() << "no Chromium (Debian's package chromium-headless-shell): the page was opened by nobody";
-    }
-    Browsed browse(const std::string& page)
-    {
-        write_file(folder_ / "page.html", page);
-        const auto document = folder_ / "document", log = folder_ / "log";
-        const std::string command = fmt::format(
-            "HOME='{0}' timeout 60 {1} --headless --no-sandbox --disable-gpu --disable-dev-shm-usage "
-            "--user-data-dir='{0}/profile' --enable-logging=stderr --dump-dom 'file://{0}/page.html' > '{2}' 2> '{3}'",
-            folder_.path().string(), browser_, document.string(), log.string());
-        EXPECT_EQ(std::system(command.c_str()), 0) << read_text(log);
-        Browsed browsed{read_text(document), {}};
-        const std::string text = read_text(log);
-        for (std::size_t at = text.find("CONSOLE"); at != std::string::npos; at = text.find("CONSOLE", at + 1))
-            browsed.console += text.substr(at, text.find('\n', at) - at) + "\n";
-        return browsed;
-    }
-
-    std::string browser_;
-};
-
-} // namespace
-
-TEST_F(ReportInChromium, opens_without_a_word_on_the_console_and_every_chart_has_its_data)
-{
-    write_file(folder_ / "a.png", white_pixel);
-    const Browsed browsed =
-        browse(page_of({bench_json(hostile), check_json(hostile), reproduce_json(hostile)}, {folder_ / "a.png"}));
-    EXPECT_EQ(browsed.console, "");
-    using Rows = std::multiset<std::string>;
-    EXPECT_EQ(rows_of(section_of(browsed.document, "rates"), "mark "), (Rows{"row/openmp", "row/cuda", "row/vulkan"}));
-    EXPECT_EQ(rows_of(section_of(browsed.document, "rates"), "unrated"), (Rows{"row/opencl"}));
-    EXPECT_EQ(rows_of(section_of(browsed.document, "roofline"), "mark ").size(), 3u);
-    EXPECT_EQ(rows_of(section_of(browsed.document, "ratios"), "mark ").size(), 1u);
-    EXPECT_TRUE(contains(section_of(browsed.document, "paper"), "class=\"line\""));
-}
-
-TEST_F(ReportInChromium, a_page_that_loads_or_runs_something_would_be_told)
-{
-    std::string page = page_of({bench_json()});
-    const std::size_t body = page.find("<body>") + 6;
-    page.insert(body, "<script>document.title = 1</script><img src=\"https://example.org/x.png\">");
-    const std::string console = browse(page).console;
-    EXPECT_TRUE(contains(console, "script"));
-    EXPECT_TRUE(contains(console, "example.org"));
 }

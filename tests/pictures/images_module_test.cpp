@@ -1,44 +1,20 @@
 #include "bench/pictures/images.h"
 
-#include "core/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 #include <OpenImageIO/imageio.h>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
+#include <vector>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
-
-/// A folder of the test's own, removed at its end, and the module that the build made.
-class ImagesModule : public testing::Test {
-protected:
-    void SetUp() override
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "tetrace-module-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    [[nodiscard]] std::string refusal(const std::filesystem::path& path, const Pixmap& pixmap) const
-    {
-        try {
-            writer_.write(path, pixmap);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
-            return error.what();
-        }
-        return "no error";
-    }
-
-    std::filesystem::path folder_;
-    ImageWriter writer_;
-};
 
 /// Three by two pixels, all different, so that a swapped axis or channel shows.
 Pixmap sample()
@@ -69,29 +45,41 @@ double encode_srgb(double linear)
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
+/// The module that the build made.
+class ImagesModule : public testing::Test {
+protected:
+    [[nodiscard]] std::string refusal(const std::filesystem::path& path, const Pixmap& pixmap) const
+    {
+        const std::string error = error_of([&] { writer_.write(path, pixmap); });
+        EXPECT_TRUE(error.starts_with("invalid_input: ")) << error;
+        return error;
+    }
+    /// Writes the sample and reads it again: each value is what the format stores for it, within a tolerance.
+    void expect_stored(const std::string& name, const std::function<double(double)>& stored, double tolerance) const
+    {
+        const Pixmap pixmap = sample();
+        writer_.write(folder_ / name, pixmap);
+        const auto values = read_floats(folder_ / name);
+        ASSERT_EQ(values.size(), 18u);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            EXPECT_NEAR(values[i], stored(channel(pixmap, i)), tolerance) << i;
+    }
+
+    TemporaryFolder folder_;
+    ImageWriter writer_;
+};
+
 } // namespace
 
 TEST_F(ImagesModule, png_comes_back_as_srgb_bytes)
 {
-    writer_.write(folder_ / "a.png", sample());
-    const auto values = read_floats(folder_ / "a.png");
-    ASSERT_EQ(values.size(), 18u);
-    const Pixmap pixmap = sample();
-    for (std::size_t i = 0; i < 18; ++i) {
-        const float linear = channel(pixmap, i);
-        EXPECT_NEAR(values[i], encode_srgb(linear), 0.5 / 255 + 1e-6) << i; // half of a byte's step
-    }
+    expect_stored("a.png", encode_srgb, 0.5 / 255 + 1e-6); // half of a byte's step
 }
 
 TEST_F(ImagesModule, exr_comes_back_as_linear_light)
 {
-    writer_.write(folder_ / "a.exr", sample());
-    const auto values = read_floats(folder_ / "a.exr");
-    ASSERT_EQ(values.size(), 18u);
-    const Pixmap pixmap = sample();
-    for (std::size_t i = 0; i < 18; ++i) {
-        EXPECT_EQ(values[i], channel(pixmap, i)) << i; // all are halves
-    }
+    expect_stored(
+        "a.exr", [](double linear) { return linear; }, 0); // all are halves
 }
 
 TEST_F(ImagesModule, colours_beyond_the_screen_are_clamped)
@@ -107,17 +95,17 @@ TEST_F(ImagesModule, colours_beyond_the_screen_are_clamped)
 
 TEST_F(ImagesModule, a_folder_that_is_not_there_is_an_error_with_the_file_name)
 {
-    const auto path = folder_ / "none" / "a.png";
-    EXPECT_NE(refusal(path, sample()).find(path.string()), std::string::npos) << refusal(path, sample());
+    const auto path = folder_ / "none/a.png";
+    EXPECT_TRUE(contains(refusal(path, sample()), path.string()));
 }
 
 TEST_F(ImagesModule, other_endings_are_refused_with_the_accepted_ones)
 {
-    EXPECT_NE(refusal(folder_ / "a.jpg", sample()).find(".png or .exr"), std::string::npos);
+    EXPECT_TRUE(contains(refusal(folder_ / "a.jpg", sample()), ".png or .exr"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a.jpg"));
 }
 
 TEST_F(ImagesModule, an_empty_picture_is_refused)
 {
-    EXPECT_NE(refusal(folder_ / "a.png", Pixmap{}).find("no pixels"), std::string::npos);
+    EXPECT_TRUE(contains(refusal(folder_ / "a.png", Pixmap{}), "no pixels"));
 }

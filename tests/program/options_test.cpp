@@ -3,7 +3,7 @@
 #include "bench/options/option_values.h"
 #include "bench/options/options.h"
 #include "bench/terminal/text.h"
-#include "core/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -11,24 +11,15 @@
 #include <sstream>
 
 using namespace tetrace;
+using namespace tetrace::test;
 
 namespace {
 
 std::string rejection(const std::vector<std::string>& arguments)
 {
-    try {
-        static_cast<void>(parse_options(arguments));
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "accepted";
-    return {};
-}
-
-bool contains(const std::string& text, const std::string& part)
-{
-    return text.find(part) != std::string::npos;
+    const std::string error = error_of([&] { static_cast<void>(parse_options(arguments)); });
+    EXPECT_TRUE(error.starts_with("usage: ")) << (error.empty() ? "accepted" : error);
+    return error;
 }
 
 } // namespace
@@ -70,7 +61,8 @@ TEST(Options, an_unknown_option_is_answered_with_the_accepted_ones)
     const std::set<std::string> of_bench_too = {"--out", "--format",
                                                 "--samples"}; // rows of other verbs have these names
     for (const OptionRow& row : option_table())
-        EXPECT_EQ(contains(text, row.name), takes(Verb::bench, row) || of_bench_too.count(row.name) > 0) << row.name;
+        EXPECT_EQ(bool(contains(text, row.name)), takes(Verb::bench, row) || of_bench_too.count(row.name) > 0)
+            << row.name;
 }
 
 TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)

@@ -1,0 +1,160 @@
+// The builder: how it is found, what it is told, and how each of its ends is reported.
+#include "scenes/builder_exit.h"
+#include "tests/scenes/load_fixture.h"
+
+#include <csignal>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace fs = std::filesystem;
+
+TEST_F(Load, finds_the_builder_in_the_search_path_last)
+{
+    const ScopedVariable unset("TETRACE_BUILDER", nullptr);
+    fs::copy_file(builder, folder / "tetrace-builder");
+    const ScopedVariable path("PATH", "/no/such/folder:" + folder.path().string());
+    const fs::path beside = fs::read_symlink("/proc/self/exe").parent_path() / "tetrace-builder";
+    EXPECT_EQ(find_builder(), fs::exists(beside) ? beside : folder / "tetrace-builder");
+}
+
+TEST_F(Load, names_what_brings_a_missing_builder)
+{
+    const ScopedVariable none("TETRACE_BUILDER", folder / "none");
+    EXPECT_TRUE(find_builder().empty()); // a wrong name is not passed over in silence
+    const std::string error = error_of([&] { (void)load(); });
+    EXPECT_TRUE(contains(error, "missing: building scene thing"));
+    EXPECT_TRUE(contains(error, "libtet1.5-dev"));
+    EXPECT_TRUE(contains(error, "libcgal-dev"));
+    EXPECT_TRUE(contains(error, "TETRACE_BUILDER names " + (folder / "none").string()));
+}
+
+TEST_F(Load, tells_the_builder_all_that_was_asked)
+{
+    request.build = {.domain = DomainKind::wide, .divisions = 5, .switches = "pq3Y"};
+    (void)error_of([&] { (void)load(); });
+    const std::string run = read_text(folder / "runs");
+    EXPECT_TRUE(contains(run, "--mesh " + mesh.string() + " --out "));
+    EXPECT_TRUE(contains(run, " --name thing --domain wide --divisions 5 --switches pq3Y\n"));
+}
+
+TEST_F(Load, hands_on_stages_and_notes)
+{
+    use_builder("echo 'stage: reading' >&2; sleep 0.3; echo 'note: 3 vertices merged' >&2; echo 'stage: tetgen' >&2; "
+                "sleep 0.3");
+    std::vector<std::string> stages;
+    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double fraction) {
+        stages.push_back(stage);
+        EXPECT_LT(fraction, 0);
+    });
+    EXPECT_EQ(loaded.messages, std::vector<std::string>{"3 vertices merged"});
+    for (const std::string start : {"building thing: reading", "building thing: tetgen"})
+        EXPECT_TRUE(std::any_of(stages.begin(), stages.end(), [&](const std::string& s) {
+            return s.starts_with(start);
+        })) << start;
+}
+
+TEST_F(Load, maps_each_exit_code_to_its_own_error)
+{
+    const struct {
+        int code;
+        const char* kind;
+        const char* what;
+    } cases[] = {{BUILDER_USAGE, "usage: ", "an option is not accepted"},
+                 {BUILDER_BAD_MESH, "invalid_input: ", "the mesh cannot be used"},
+                 {BUILDER_MISSING_FILE, "missing: ", "a file is missing"},
+                 {BUILDER_INTERNAL, "internal: ", "its own fault"},
+                 {BUILDER_SELF_INTERSECTION, "invalid_input: ", "the mesh intersects itself"},
+                 {BUILDER_TETGEN_REFUSED, "invalid_input: ", "TetGen refused the mesh"},
+                 {BUILDER_ABSURD_OUTPUT, "invalid_input: ", "TetGen's output failed the checks"},
+                 {BUILDER_OUT_OF_MEMORY, "invalid_input: ", "the builder ran out of memory"},
+                 {77, "internal: ", "exit code 77"}};
+    for (const auto& c : cases) {
+        const std::string error =
+            error_with("echo 'stage: tetgen' >&2; echo 'error: the finding' >&2; exit " + std::to_string(c.code));
+        EXPECT_TRUE(error.starts_with(c.kind)) << error;
+        EXPECT_TRUE(contains(error, c.what));
+        for (const char* part : {"building scene thing from ", "switches pq5Y", ": the finding", "last stage: tetgen"})
+            EXPECT_TRUE(contains(error, part));
+        EXPECT_TRUE(cache_is_clean());
+    }
+}
+
+TEST_F(Load, gives_a_remedy_where_the_builder_has_none)
+{
+    for (const int code : {BUILDER_BAD_MESH, BUILDER_SELF_INTERSECTION, BUILDER_TETGEN_REFUSED, BUILDER_ABSURD_OUTPUT})
+        EXPECT_TRUE(contains(error_with("exit " + std::to_string(code)), "repair the mesh"));
+}
+
+TEST_F(Load, says_each_remedy_once)
+{
+    const std::pair<int, std::string> cases[] = {{BUILDER_TETGEN_REFUSED, std::string(try_other_switches)},
+                                                 {BUILDER_ABSURD_OUTPUT, std::string(try_other_switches)},
+                                                 {BUILDER_OUT_OF_MEMORY, std::string(allow_more_memory)}};
+    for (const auto& [code, remedy] : cases) {
+        const std::string exit = "exit " + std::to_string(code);
+        for (const std::string& script : {"echo \"error: a finding; " + remedy + "\" >&2; " + exit, exit}) {
+            const std::string error = error_with(script);
+            EXPECT_TRUE(contains(error, remedy));
+            EXPECT_EQ(error.find(remedy), error.rfind(remedy)) << error;
+            EXPECT_EQ(error.find("switches ("), error.rfind("switches (")) << error;
+        }
+    }
+}
+
+TEST_F(Load, tells_a_crash)
+{
+    const std::string error = error_with("echo 'stage: tetgen' >&2; echo 'Assertion x failed' >&2; kill -SEGV $$");
+    EXPECT_TRUE(contains(error, "invalid_input: building scene thing"));
+    EXPECT_TRUE(contains(error, "crashed (signal 11"));
+    EXPECT_TRUE(contains(error, "Assertion x failed"));
+    EXPECT_TRUE(contains(error, "--switches"));
+    EXPECT_TRUE(cache_is_clean());
+}
+
+TEST_F(Load, tells_a_hang)
+{
+    request.build.time_limit_s = 0.3;
+    const std::string error = error_with("echo 'stage: tetgen' >&2; sleep 60");
+    EXPECT_TRUE(contains(error, "invalid_input: building scene thing"));
+    EXPECT_TRUE(contains(error, "time limit of 0.3 s"));
+    EXPECT_TRUE(contains(error, "--time-limit"));
+    EXPECT_TRUE(contains(error, "last stage: tetgen"));
+    EXPECT_TRUE(cache_is_clean());
+}
+
+TEST_F(Load, tells_an_interrupt)
+{
+    struct sigaction before {
+    }, ours{};
+    ours.sa_handler = SIG_DFL; // whoever runs the tests may have it ignored
+    ::sigaction(SIGINT, &ours, &before);
+    std::thread sender;
+    use_builder("echo 'stage: tetgen' >&2; sleep 60");
+    const std::string error = error_of([&] {
+        (void)load_scene(request, [&](const std::string& stage, double) {
+            if (!sender.joinable() && stage.find("tetgen") != std::string::npos)
+                sender = std::thread([] { ::kill(::getpid(), SIGINT); });
+        });
+    });
+    sender.join();
+    ::sigaction(SIGINT, &before, nullptr);
+    EXPECT_TRUE(contains(error, "interrupted: building scene thing"));
+    EXPECT_TRUE(cache_is_clean());
+}
+
+TEST_F(Load, trusts_no_builder_that_reports_success)
+{
+    EXPECT_TRUE(contains(error_with("exit 0"), "internal: building scene thing"));
+    EXPECT_TRUE(contains(error_with("exit 0"), "there is no such file"));
+    EXPECT_TRUE(contains(error_with("echo garbage > \"$4\"; exit 0"), "section `header`"));
+    Scene other = expected();
+    other.build.source_hash ^= 1;
+    write_scene(folder / "other.tet", other);
+    EXPECT_TRUE(contains(error_with("cp " + (folder / "other.tet").string() + " \"$4\"; exit 0"), "another mesh"));
+    EXPECT_TRUE(cache_is_clean());
+}
