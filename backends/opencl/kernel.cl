@@ -1,6 +1,6 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS and
-// SEARCH for those tasks; MATH_FAST; TETS_IN_PARTS.
+// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/scene_view_opencl.h"
@@ -22,15 +22,15 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
     uint ray = ray_index(pixel);
     Hit hit = trace_given(scene, launch.trace, rays[ray], rays[ray_count(launch) + ray]);
 #else
+#ifdef STARTS_OUTSIDE
+    launch.trace.start_tet = NO_TET;
+#endif
     Hit hit = trace(scene, launch.trace, primary_ray(launch.trace, pixel.x, pixel.y));
 #endif
-    __global uint* words = output + output_word(launch, pixel);
-    words[0] = hit.face_id;
-    words[1] = hit.tet;
-    words[2] = as_bits(hit.t);
-    words[3] = as_bits(hit.u);
-    words[4] = as_bits(hit.v);
-    words[5] = hit.steps;
+    __global uint2* pairs = (__global uint2*)(output + output_word(launch, pixel));
+    pairs[0] = (uint2)(hit.face_id, hit.tet);
+    pairs[1] = (uint2)(as_bits(hit.t), as_bits(hit.u));
+    pairs[2] = (uint2)(as_bits(hit.v), hit.steps);
 #endif
 }
 

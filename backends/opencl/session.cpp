@@ -41,13 +41,15 @@ cl::Buffer make_uploaded(const cl::Context& context, const cl::CommandQueue& que
 
 OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
-    : context_(std::move(context)), kernel_id_(kernel), tile_height_(tile_height_of(options)),
-      max_buffer_bytes_(largest_buffer(context_->facts(), options)), divisions_(scene.divisions),
-      parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()), launches_(tile_height_)
+    : context_(std::move(context)), kernel_id_(kernel), cache_(options.program_cache),
+      starts_outside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt),
+      tile_height_(tile_height_of(options)), max_buffer_bytes_(largest_buffer(context_->facts(), options)),
+      divisions_(scene.divisions), parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
+      launches_(tile_height_)
 {
     run("making a queue", 0, [&] { queue_ = context_->make_queue(); });
     upload(scene);
-    compile(ProgramCache(options.program_cache));
+    compile();
 }
 
 template <class Work>
@@ -75,7 +77,7 @@ void OpenclSession::upload(const PackedScene& scene)
 }
 
 /// Compiles, and runs the kernel on no pixel: some drivers finish compiling at the first launch.
-void OpenclSession::compile(const ProgramCache& cache)
+void OpenclSession::compile()
 {
     const Stopwatch watch;
     std::string defines = "-DGROUP_ITEMS=" + std::to_string(TILE_WIDTH * tile_height_);
@@ -83,7 +85,8 @@ void OpenclSession::compile(const ProgramCache& cache)
     if (kernel_id_.task == Task::rays) defines += " -DRAYS";
     if (kernel_id_.task == Task::search) defines += " -DSEARCH";
     if (parts_.count > 1) defines += " -DTETS_IN_PARTS";
-    const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache);
+    if (starts_outside_) defines += " -DSTARTS_OUTSIDE";
+    const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache_);
     run("making the kernel", output_bytes(), [&] {
         kernel_ = cl::Kernel(program.handle(), "run_image");
         set_arguments();
@@ -97,6 +100,13 @@ void OpenclSession::compile(const ProgramCache& cache)
     times_.compile_s = watch.seconds();
     times_.compile_cached = program.is_cached();
     program.keep();
+}
+
+void OpenclSession::compile_starts_inside()
+{
+    run("finishing", output_bytes(), [&] { take_times(); }); // launches that still run the old program
+    starts_outside_ = false;
+    compile();
 }
 
 void OpenclSession::set_arguments()
@@ -162,6 +172,7 @@ void OpenclSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
 
 void OpenclSession::launch(const TraceJob& job)
 {
+    if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
     resize_output(output_words(job, kernel_id_.task));
     run("launching", output_bytes(), [&] {
         enqueued_.clear();

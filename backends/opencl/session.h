@@ -26,7 +26,9 @@ public:
 
 private:
     void read_output(std::span<std::uint32_t> words) override;
-    void compile(const ProgramCache& cache);
+    void compile();
+    /// Replaces the program, which cannot start rays in a tet, by one that can.
+    void compile_starts_inside();
     void upload(const PackedScene& scene);
     void set_arguments();
     void resize_output(std::size_t words);
@@ -46,6 +48,8 @@ private:
 
     std::shared_ptr<Context> context_;
     KernelId kernel_id_;
+    ProgramCache cache_;
+    bool starts_outside_; ///< the program has no start in a tet: registers that it would need slow a GPU
     unsigned tile_height_;
     std::uint64_t max_buffer_bytes_;
     std::uint32_t divisions_;

@@ -29,7 +29,7 @@ layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
 layout(set = 0, binding = FIRST_QUADS_BINDING + RAYS_BINDING) uniform usamplerBuffer rays;
 #define RAY_QUAD(index) texelFetch(rays, int(index))
 #else
-layout(std430, set = 0, binding = RAYS_BINDING) readonly buffer Rays
+layout(std430, set = 0, binding = RAYS_BINDING) restrict readonly buffer Rays
 {
     uint4 rays[];
 };

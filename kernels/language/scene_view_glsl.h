@@ -1,7 +1,7 @@
 // How kernels reach a scene's arrays in GLSL: storage buffers by name, and FETCH(). A buffer that is read both as words
 // and as quads is declared twice with one binding.
 #define SCENE_ARRAY(element, name, member, number)                                                                     \
-    layout(std430, set = 0, binding = number) readonly buffer Buffer_##name                                            \
+    layout(std430, set = 0, binding = number) restrict readonly buffer Buffer_##name                                   \
     {                                                                                                                  \
         element name[];                                                                                                \
     };
@@ -21,11 +21,13 @@ STRUCT(SceneView)
 
 // The parts of the tets after the first, which is the scene's array itself.
 #define TET_PART(part)                                                                                                 \
-    layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_words_##part         \
+    layout(std430, set = 0,                                                                                            \
+           binding = SECOND_PART_BINDING - 1u + part) restrict readonly buffer Buffer_tet_words_##part                 \
     {                                                                                                                  \
         uint tet_words_##part[];                                                                                       \
     };                                                                                                                 \
-    layout(std430, set = 0, binding = SECOND_PART_BINDING - 1u + part) readonly buffer Buffer_tet_quads_##part         \
+    layout(std430, set = 0,                                                                                            \
+           binding = SECOND_PART_BINDING - 1u + part) restrict readonly buffer Buffer_tet_quads_##part                 \
     {                                                                                                                  \
         uint4 tet_quads_##part[];                                                                                      \
     };
