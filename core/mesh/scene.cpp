@@ -4,6 +4,11 @@
 
 namespace tetrace {
 
+std::string_view name_of(TetsKind kind)
+{
+    return kind == TetsKind::cdt ? "cdt" : "rays";
+}
+
 std::uint64_t scene_hash(const Scene& scene)
 {
     std::uint64_t hash = hash_of(scene.mesh.vertices);

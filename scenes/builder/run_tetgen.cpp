@@ -45,14 +45,15 @@ void add_facet(tetgenio& input, int index, const std::array<std::uint32_t, 3>& t
     input.facetmarkerlist[index] = marker;
 }
 
-void fill(tetgenio& input, const TriangleMesh& mesh, const TriangleMesh& surface)
+void fill(tetgenio& input, const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points)
 {
     input.firstnumber = 0;
-    input.numberofpoints = static_cast<int>(mesh.vertices.size() + surface.vertices.size());
+    input.numberofpoints = static_cast<int>(mesh.vertices.size() + surface.vertices.size() + points.size());
     input.pointlist = new double[3 * static_cast<std::size_t>(input.numberofpoints)];
     int next = 0;
     add_points(input, mesh.vertices, next);
     add_points(input, surface.vertices, next);
+    add_points(input, points, next);
     input.numberoffacets = static_cast<int>(mesh.triangles.size() + surface.triangles.size());
     input.facetlist = new tetgenio::facet[static_cast<std::size_t>(input.numberoffacets)];
     input.facetmarkerlist = new int[static_cast<std::size_t>(input.numberoffacets)];
@@ -155,12 +156,13 @@ void require_switches(const std::string& switches)
     if (!behavior.parse_commandline(text.data())) fail("is refused by TetGen");
 }
 
-TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& switches)
+TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points,
+                        const std::string& switches)
 {
     // Not on the stack: where TetGen throws, nothing may be unwound.
     auto* const input = new tetgenio;
     auto* const output = new tetgenio;
-    fill(*input, mesh, surface);
+    fill(*input, mesh, surface, points);
     std::string text = switches + our_switches;
     tetgenbehavior behavior;
     behavior.parse_commandline(text.data());

@@ -41,7 +41,7 @@ void expect_faces_inside_their_triangles(const Scene& scene)
 Scene build(const BuilderOptions& options)
 {
     PreparedScene prepared = prepare_scene(options, silence());
-    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, options.switches);
+    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
     return finish_scene(std::move(prepared), output, silence());
 }
 
@@ -61,7 +61,7 @@ class AbsurdOutput : public Builder {
 protected:
     AbsurdOutput() : options_(options(sphere(1), DomainKind::wide, "pq")), prepared_(prepare_scene(options_, silence()))
     {
-        output_ = run_tetgen(prepared_.scene.mesh, prepared_.surface, options_.switches);
+        output_ = run_tetgen(prepared_.scene.mesh, prepared_.surface, prepared_.points, options_.switches);
     }
     void expect_absurd(const std::string& part)
     {
