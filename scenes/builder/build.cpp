@@ -15,8 +15,6 @@ namespace {
 
 using Kind = TetMeshDefect::Kind;
 
-constexpr double most_optimising_s = 300; // half of the builder's usual time
-
 void note_clean_up(const CleanUp& cleaned, const std::string& why, const BuilderTalk& talk)
 {
     const auto note = [&](std::uint64_t count, const char* what) {
@@ -143,16 +141,15 @@ void note_operations(const OptimiserReport& report, const BuilderTalk& talk)
     if (report.out_of_time) talk.note("the optimiser ran out of time; on another machine it may reach other tets");
 }
 
-void optimise_for_rays(Scene& scene, int effort, const BuilderTalk& talk)
+void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const BuilderTalk& talk)
 {
     OptimisedInfo& info = scene.build.optimised;
-    info.effort = effort;
-    if (effort == 0) {
+    info.effort = limits.effort;
+    if (limits.effort == 0) {
         info.reason = "--effort is 0";
         return;
     }
-    OptimisedTets result =
-        optimise(scene.tets, {effort, most_optimising_s}, [&](const std::string& stage, double) { talk.stage(stage); });
+    OptimisedTets result = optimise(scene.tets, limits, [&](const std::string& stage, double) { talk.stage(stage); });
     info.cost_before = result.report.cost_before;
     info.cost_after = result.report.cost_after;
     info.seconds = result.report.seconds;
@@ -197,8 +194,8 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     talk.stage("looking for self-intersections");
     require_no_self_intersection(scene);
     scene.build.optimised.asked = options.tets;
-    prepared.effort = options.tets == TetsKind::rays ? options.effort : 0;
-    if (prepared.effort > 0 && options.switches.find('q') == std::string::npos)
+    prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
+    if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)
         prepared.points = graded_points(scene.mesh, scene.domain);
     return prepared;
 }
@@ -215,7 +212,7 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
             rounding.damaged, rounding.repaired, rounding.moved_points));
     require_sound(scene, output, rounding);
     require_entry_grid(scene);
-    if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, prepared.effort, talk);
+    if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, prepared.limits, talk);
     scene.build.build_s = prepared.watch.seconds();
     return scene;
 }

@@ -23,6 +23,7 @@ struct BuilderOptions {
     std::string switches = "pq5Y";
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
+    double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 
 /// Called with the stage that begins, and with notes for the user, one line each.
@@ -35,7 +36,7 @@ struct PreparedScene {
     Scene scene;
     TriangleMesh surface;       ///< the domain's
     std::vector<Float3> points; ///< more vertices for TetGen; where switches have no q and tets are for rays
-    int effort = default_effort;
+    OptimiserLimits limits;
     Stopwatch watch; ///< since its mesh was read
 };
 

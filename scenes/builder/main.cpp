@@ -92,6 +92,10 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.add_option("--effort", options.effort, "of the optimiser, 0 (none) to 3; default: 2")
         ->check(CLI::Range(0, most_effort).description(""))
         ->type_name("N");
+    app.add_option("--optimise-for", options.optimise_for_s,
+                   "the optimiser stops after so many seconds, with what it has reached; default: 300")
+        ->check(CLI::Range(0.0, 1e6).description(""))
+        ->type_name("S");
     app.footer("Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
                "refused;\n"
                "12 TetGen's output failed a check; 13 out of memory.");

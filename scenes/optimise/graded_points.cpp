@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 namespace tetrace {
 namespace {
@@ -25,6 +26,7 @@ public:
             held_[level].assign(std::size_t{1} << 3 * level, 0);
         for (const auto& [a, b, c] : mesh.triangles)
             add(to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), to_double(mesh.vertices[c]));
+        find_outside();
     }
 
     [[nodiscard]] std::vector<Float3> points() const
@@ -35,8 +37,8 @@ public:
             for (std::uint32_t i = 0; i < n * n * n; ++i) {
                 const Cell cell = {i % n, i / n % n, i / n / n};
                 const Cell parent = {cell[0] / 2, cell[1] / 2, cell[2] / 2};
-                if (!holds(level, cell) && (level == coarsest || holds(level - 1, parent)))
-                    found.push_back(point_in(level, cell));
+                const bool is_leaf = !holds(level, cell) && (level == coarsest || holds(level - 1, parent));
+                if (is_leaf && is_outside(level, cell)) found.push_back(point_in(level, cell));
             }
         }
         return found;
@@ -50,6 +52,41 @@ private:
     [[nodiscard]] bool holds(std::uint32_t level, const Cell& cell) const
     {
         return held_[level][index(level, cell)] != 0;
+    }
+
+    // From the cells on the domain's boundary through faces of empty cells, all of the finest level.
+    void find_outside()
+    {
+        constexpr std::uint32_t n = 1U << finest;
+        outside_.assign(held_[finest].size(), 0);
+        std::vector<Cell> front;
+        const auto reach = [&](const Cell& cell) {
+            if (holds(finest, cell) || std::exchange(outside_[index(finest, cell)], 1) != 0) return;
+            front.push_back(cell);
+        };
+        for (std::uint32_t i = 0; i < n * n; ++i)
+            for (const std::uint32_t end : {0U, n - 1}) {
+                reach({end, i % n, i / n});
+                reach({i % n, end, i / n});
+                reach({i % n, i / n, end});
+            }
+        while (!front.empty()) {
+            const Cell cell = front.back();
+            front.pop_back();
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                for (const bool up : {false, true}) {
+                    Cell next = cell;
+                    next[axis] += up ? 1 : ~0U; // past the low end: far above n
+                    if (next[axis] < n) reach(next);
+                }
+        }
+    }
+    // An empty cell's parts at the finest level are all outside, or none is.
+    [[nodiscard]] bool is_outside(std::uint32_t level, Cell cell) const
+    {
+        for (std::uint32_t& coordinate : cell)
+            coordinate <<= finest - level;
+        return outside_[index(finest, cell)] != 0;
     }
 
     void add_point(Double3 point)
@@ -97,6 +134,7 @@ private:
 
     Double3 low_, size_;
     std::array<std::vector<std::uint8_t>, finest + 1> held_; ///< per level and cell: whether triangles are near it
+    std::vector<std::uint8_t> outside_; ///< of the finest level: reached from the boundary through empty cells
 };
 
 } // namespace
