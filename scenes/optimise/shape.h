@@ -8,8 +8,8 @@
 
 namespace tetrace {
 
-/// The least height of a tet that an operation makes, as a part of its longest edge.
-inline constexpr double least_relative_height = 1e-5;
+/// The least height of a tet that an operation makes, as a part of its longest edge (docs/spec/rays-tets.md, O2).
+inline constexpr double least_relative_height = 1e-3;
 
 [[nodiscard]] inline double squared(Double3 a)
 {

@@ -162,7 +162,8 @@ TEST(TetShape, is_positive_only_with_the_orientation_of_the_meshes_and_some_heig
     EXPECT_FALSE(may_be_made(b, a, c, d));
     EXPECT_FALSE(may_be_made(a, b, c, {0.25, 0.25, 0})) << "flat";
     EXPECT_FALSE(may_be_made(a, b, c, {0.25, 0.25, 0x1p-40})) << "positive, but too thin";
-    EXPECT_TRUE(may_be_made(a, b, c, {0.25, 0.25, 2e-5}));
+    EXPECT_FALSE(may_be_made(a, b, c, {0.25, 0.25, 5e-4}));
+    EXPECT_TRUE(may_be_made(a, b, c, {0.25, 0.25, 1e-3}));
 }
 
 TEST(EdgeRemoval, finds_the_cheapest_of_all_triangulations_of_the_ring)
