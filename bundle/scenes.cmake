@@ -22,13 +22,14 @@ function(pack_scenes names folder variable)
 endfunction()
 
 # scene_file(<name> <variable>): the .tet file of a scene; empty, with the reason as a message, where it cannot be built.
+# CDTs, since the bundle also reproduces the paper.
 function(scene_file name variable)
   set(${variable} "" PARENT_SCOPE)
   if(NOT BUILDER)
     return()
   endif()
   execute_process(COMMAND ${CMAKE_COMMAND} -E env XDG_CACHE_HOME=${CACHE} TETRACE_BUILDER=${BUILDER}
-      ${PROGRAM} build --scene ${name} --views 0 --size 64 --format json
+      ${PROGRAM} build --scene ${name} --tets cdt --views 0 --size 64 --format json
     OUTPUT_VARIABLE result ERROR_VARIABLE messages RESULT_VARIABLE code)
   if(NOT code EQUAL 0)
     message(STATUS "The bundle goes without the scene ${name}: ${messages}")

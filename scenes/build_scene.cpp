@@ -150,12 +150,48 @@ std::string finding(const Report& report)
 std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
                                       const BuildOptions& options)
 {
-    return {"--mesh",      mesh.string(),
-            "--out",       out.string(),
-            "--name",      label,
-            "--domain",    std::string(name_of(options.domain)),
-            "--divisions", std::to_string(options.divisions),
-            "--switches",  options.switches};
+    return {"--mesh",         mesh.string(),
+            "--out",          out.string(),
+            "--name",         label,
+            "--domain",       std::string(name_of(options.domain)),
+            "--divisions",    std::to_string(options.divisions),
+            "--switches",     options.switches,
+            "--tets",         std::string(name_of(options.tets)),
+            "--effort",       std::to_string(options.effort),
+            "--optimise-for", fmt::format("{:g}", options.time_limit_s / 2)};
+}
+
+/// A builder that has ended, and what it said.
+struct Run {
+    ChildOutcome outcome;
+    Report report;
+
+    [[nodiscard]] bool is_good() const
+    {
+        return outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_GOOD;
+    }
+    /// Whether TetGen is to blame, so that other switches may help.
+    [[nodiscard]] bool tetgen_failed() const
+    {
+        if (outcome.end == ChildOutcome::End::signalled) return true;
+        return outcome.end == ChildOutcome::End::exited &&
+               (outcome.code == BUILDER_TETGEN_REFUSED || outcome.code == BUILDER_ABSURD_OUTPUT);
+    }
+};
+
+Run run_builder(const fs::path& builder, const std::vector<std::string>& arguments, const std::string& label,
+                const BuildOptions& options, const Progress& progress)
+{
+    Run run;
+    ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes};
+    // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
+    if (address_space_is_shadowed) limits.memory_bytes = 0;
+    run.outcome = run_child(
+        builder, arguments, limits, [&](const std::string& line) { run.report.take(line); },
+        [&](double) {
+            if (progress) progress(fmt::format("building {}: {}", label, run.report.stage), -1);
+        });
+    return run;
 }
 
 } // namespace
@@ -174,19 +210,24 @@ void build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
 {
     const fs::path builder = find_builder();
     if (builder.empty()) fail_without_builder(label);
-    Report report;
-    ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes};
-    // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
-    if (address_space_is_shadowed) limits.memory_bytes = 0;
-    const ChildOutcome outcome = run_child(
-        builder, arguments_of(mesh, out, label, options), limits, [&](const std::string& line) { report.take(line); },
-        [&](double) {
-            if (progress) progress(fmt::format("building {}: {}", label, report.stage), -1);
-        });
-    notes.insert(notes.end(), report.notes.begin(), report.notes.end());
-    if (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_GOOD) return;
-    fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), options.switches),
-         ending_of(outcome, options), report, outcome.wall_s);
+    BuildOptions tried = options;
+    Run run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
+    if (run.tetgen_failed() && fallback_switches(options) != options.switches) {
+        tried.switches = fallback_switches(options);
+        notes.push_back(fmt::format("{}: TetGen failed with switches {}; built with {} instead", label,
+                                    options.switches, tried.switches));
+        run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
+    }
+    notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
+    if (run.is_good()) return;
+    fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), tried.switches),
+         ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
+}
+
+std::string fallback_switches(const BuildOptions& options)
+{
+    const bool usual = options.tets == TetsKind::rays && options.switches == default_build(TetsKind::rays).switches;
+    return usual ? default_build(TetsKind::cdt).switches : options.switches;
 }
 
 } // namespace tetrace

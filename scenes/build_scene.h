@@ -13,7 +13,12 @@ namespace tetrace {
 /// else in PATH; empty where none can be executed.
 [[nodiscard]] std::filesystem::path find_builder();
 
-/// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`.
+/// The switches that a build tries where TetGen fails with the options' own; those where there are no others. Tets for
+/// rays have others, unless the user chose some: TetGen crashes on some meshes with pY, and not with pq5Y.
+[[nodiscard]] std::string fallback_switches(const BuildOptions& options);
+
+/// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. Where TetGen fails, runs it again
+/// with fallback_switches().
 /// notes: the builder's remarks are appended. progress: called with the stage about ten times a second.
 /// Throws Error; its text says how the builder ended, its switches, its last stage and what to try. Kinds: missing (no
 /// builder, or a file that it needs), interrupted (Ctrl-C), internal (a fault of the builder), usage (switches or

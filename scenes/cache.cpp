@@ -192,9 +192,10 @@ void make_cache_folder(const fs::path& folder)
 
 fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, const BuildOptions& options)
 {
-    const std::string key =
-        fmt::format("version {} mesh {} domain {} divisions {} switches {}", scene_file_version, hash_text(mesh_hash),
-                    name_of(options.domain), options.divisions, options.switches);
+    std::string key = fmt::format("version {} mesh {} domain {} divisions {} switches {} tets {}", scene_file_version,
+                                  hash_text(mesh_hash), name_of(options.domain), options.divisions, options.switches,
+                                  name_of(options.tets));
+    if (options.tets == TetsKind::rays) key += fmt::format(" effort {}", options.effort);
     return cache_directory() / fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));
 }
 

@@ -33,6 +33,17 @@ const std::vector<CatalogueEntry>& catalogue()
     return rows;
 }
 
+BuildOptions default_build(TetsKind tets)
+{
+    BuildOptions build;
+    build.tets = tets;
+    if (tets == TetsKind::rays) {
+        build.divisions = 3;
+        build.switches = "pY";
+    }
+    return build;
+}
+
 std::optional<std::uint32_t> banana_triangles(const std::string& name)
 {
     constexpr std::string_view head = "banana@";

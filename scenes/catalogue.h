@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/mesh/domain.h"
+#include "core/mesh/scene.h"
 
 #include <filesystem>
 #include <optional>
@@ -32,15 +32,25 @@ inline constexpr std::uint32_t least_banana = 500, most_banana = 4'000'000;
 /// not a number in that range.
 [[nodiscard]] std::optional<std::uint32_t> banana_triangles(const std::string& name);
 
-/// How a scene's CDT is to be made. Part of the scene's key.
+/// The optimiser's effort where none is asked for (scenes/optimise/optimise.h).
+inline constexpr int usual_effort = 2;
+
+/// How a scene's tets are to be made. Part of the scene's key. See default_build() for tets for rays.
 struct BuildOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y"; ///< TetGen's, as in its manual; results/switches.md says why these
+    TetsKind tets = TetsKind::cdt;
+    int effort = usual_effort;     ///< of the optimiser, 0 to 3; for TetsKind::rays
     std::uint32_t resolution = 16; ///< of `cubes`: cubes along each axis
     double time_limit_s = 600;     ///< for the builder
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
 };
+
+/// The options of a kind of tets where nothing else is asked for. Tets for rays have fewer divisions, since the
+/// optimiser leaves the domain's sides as they are, and switches without q: their points are another set
+/// (docs/spec/rays-tets.md).
+[[nodiscard]] BuildOptions default_build(TetsKind tets);
 
 /// A scene that the user asked for: a name of the catalogue, `banana@N`, or the path of a mesh file or a `.tet` file.
 struct SceneRequest {

@@ -99,8 +99,13 @@ std::string MeshSceneLoader::mismatch(const Scene& scene) const
     if (scene.build.source_hash != mesh_hash_) return "it was made from another mesh";
     if (scene.domain.kind != asked.domain || scene.domain.divisions != asked.divisions)
         return "its domain is another one";
-    if (scene.build.switches != asked.switches)
+    if (scene.build.switches != asked.switches && scene.build.switches != fallback_switches(asked))
         return fmt::format("it was made with the switches {}, not {}", scene.build.switches, asked.switches);
+    const OptimisedInfo& made = scene.build.optimised;
+    if (made.asked != asked.tets)
+        return fmt::format("its tets are of kind {}, not {}", name_of(made.asked), name_of(asked.tets));
+    if (asked.tets == TetsKind::rays && made.effort != asked.effort)
+        return fmt::format("its tets were optimised with effort {}, not {}", made.effort, asked.effort);
     return "";
 }
 
@@ -123,6 +128,8 @@ bool MeshSceneLoader::read_cached()
         loaded_.messages.push_back(
             fmt::format("reading scene {}: foreign file: {}; built again", file_.string(), difference));
     const BuildInfo& info = loaded_.scene.build;
+    if (difference.empty() && !info.optimised.reason.empty())
+        loaded_.messages.push_back(fmt::format("{}: the tets are TetGen's: {}", label_, info.optimised.reason));
     if (difference.empty() && info.degenerate_triangles + info.duplicate_triangles > 0)
         loaded_.messages.push_back(
             fmt::format("{}: {} degenerate and {} duplicate triangles were removed when it was built", label_,
@@ -179,13 +186,14 @@ void MeshSceneLoader::build()
 struct Unused {
     const BuildOptions& asked;
     std::vector<std::string> options;
-    const BuildOptions standard{};
+    const BuildOptions standard = default_build(asked.tets);
 
     void add_build()
     {
         if (asked.domain != standard.domain) options.emplace_back("--domain");
         if (asked.divisions != standard.divisions) options.emplace_back("--divisions");
         if (asked.switches != standard.switches) options.emplace_back("--switches");
+        if (asked.effort != standard.effort) options.emplace_back("--effort");
     }
     void add_resolution()
     {

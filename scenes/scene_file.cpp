@@ -71,6 +71,33 @@ std::uint64_t header_checksum(const FileHeader& header, const Table& table)
     return hash_of(table, hash_bytes(std::as_bytes(std::span(&header, 1))));
 }
 
+void put_optimised(InformationWriter& out, const OptimisedInfo& info)
+{
+    out.put(static_cast<std::uint32_t>(info.asked));
+    out.put(static_cast<std::uint32_t>(info.tets));
+    out.put(info.reason);
+    out.put(static_cast<std::int32_t>(info.effort));
+    for (const double value : {info.cost_before, info.cost_after, info.seconds})
+        out.put(value);
+}
+
+bool get_optimised(InformationReader& in, OptimisedInfo& info)
+{
+    for (TetsKind* kind : {&info.asked, &info.tets}) {
+        std::uint32_t value = 0;
+        in.get(value);
+        if (value > static_cast<std::uint32_t>(TetsKind::rays)) return false;
+        *kind = static_cast<TetsKind>(value);
+        if (kind == &info.tets) in.get(info.reason);
+    }
+    std::int32_t effort = 0;
+    in.get(effort);
+    info.effort = effort;
+    for (double* value : {&info.cost_before, &info.cost_after, &info.seconds})
+        in.get(*value);
+    return true;
+}
+
 std::vector<char> pack_information(const Scene& scene)
 {
     InformationWriter out;
@@ -87,6 +114,7 @@ std::vector<char> pack_information(const Scene& scene)
     for (const std::uint64_t count :
          {build.merged_vertices, build.degenerate_triangles, build.duplicate_triangles, build.snapped_coordinates})
         out.put(count);
+    put_optimised(out, build.optimised);
     return out.take();
 }
 
@@ -111,7 +139,7 @@ bool unpack_information(std::span<const char> bytes, Scene& scene)
     for (std::uint64_t* count :
          {&build.merged_vertices, &build.degenerate_triangles, &build.duplicate_triangles, &build.snapped_coordinates})
         in.get(*count);
-    return in.finished();
+    return get_optimised(in, build.optimised) && in.finished();
 }
 
 std::vector<float> joined_lines(const Domain& domain)

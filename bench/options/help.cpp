@@ -33,9 +33,11 @@ const VerbHelp verb_help[] = {
      "  tetrace scenes --clear                    empty the cache\n"},
     {Verb::build, "build scenes and report what came out",
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
-     "the rays of a camera set. --domain, --divisions and --switches take lists: every combination is built. A "
+     "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
+     "built. A "
      "combination that fails is a row with its reason; the others are still built, and the exit code is 1.",
      "  tetrace build --scene bunny\n"
+     "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
      "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"},
     {Verb::bench, "verify rows, then measure them",

@@ -167,12 +167,26 @@ std::vector<OptionRow> scene_options()
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
          "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
          building, true, append("--domain", &Options::domains)},
+        {"Scenes", "--tets", "KIND",
+         "How the domain is filled: 'rays', tets that are changed until rays cross few faces, or 'cdt', the "
+         "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes' and .tet files "
+         "have tets of their own. 'build' takes a list. Default: rays; cdt for 'reproduce'.",
+         building, true, append("--tets", &Options::tets)},
+        {"Scenes", "--effort", "N",
+         "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
+         "optimiser takes 5 to 9 times as long, for 0 to 2 % fewer steps). Default: " +
+             std::to_string(usual_effort) + ".",
+         building, false,
+         [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
         {"Scenes", "--divisions", "N",
          "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
-             std::to_string(BuildOptions{}.divisions) + ".",
+             std::to_string(default_build(TetsKind::rays).divisions) + " for --tets rays, " +
+             std::to_string(default_build(TetsKind::cdt).divisions) + " for --tets cdt.",
          building, true, append_count("--divisions", &Options::divisions, 1, 64)},
         {"Scenes", "--switches", "SWITCHES",
-         "TetGen's switches, as in its manual. 'build' takes a list. Default: " + BuildOptions{}.switches + ".",
+         "TetGen's switches, as in its manual. 'build' takes a list. Default: " +
+             default_build(TetsKind::rays).switches + " for --tets rays, " + default_build(TetsKind::cdt).switches +
+             " for --tets cdt.",
          building, true, [](Options& o, const std::string& v) { o.switches.push_back(v); }},
         {"Scenes", "--resolution", "N",
          "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +

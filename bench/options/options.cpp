@@ -80,8 +80,7 @@ void apply_values(Options& options, const OptionRow& row, const std::vector<std:
 void clear_default(Options& options, const std::string& name)
 {
     if (name == "--domain") options.domains.clear();
-    if (name == "--divisions") options.divisions.clear();
-    if (name == "--switches") options.switches.clear();
+    if (name == "--tets") options.tets.clear();
 }
 
 void apply_row(Options& options, const OptionRow& row, CLI::App& app)
@@ -115,6 +114,7 @@ void check_single(const Options& options, const char* name, std::size_t count)
 void check_together(const Options& options)
 {
     check_single(options, "--domain", options.domains.size());
+    check_single(options, "--tets", options.tets.size());
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     static_cast<void>(selected_views(options));
@@ -128,6 +128,7 @@ Options defaults_of(Verb verb)
     if (verb != Verb::reproduce) return options;
     options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};
+    options.tets = {TetsKind::cdt}; // as in the paper
     options.samples = 5;
     return options;
 }
@@ -191,10 +192,11 @@ Options parse_options(const std::vector<std::string>& arguments)
 
 std::vector<SceneRequest> scene_requests(const Options& options)
 {
-    BuildOptions build;
+    BuildOptions build = default_build(options.tets.front());
     build.domain = options.domains.front();
-    build.divisions = options.divisions.front();
-    build.switches = options.switches.front();
+    if (!options.divisions.empty()) build.divisions = options.divisions.front();
+    if (!options.switches.empty()) build.switches = options.switches.front();
+    build.effort = options.effort;
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;
     build.memory_limit_bytes = options.memory_limit_bytes;

@@ -54,8 +54,10 @@ struct Options {
 
     std::vector<std::string> scenes; ///< catalogue names or paths, as given
     std::vector<DomainKind> domains = {BuildOptions{}.domain};
-    std::vector<std::uint32_t> divisions = {BuildOptions{}.divisions};
-    std::vector<std::string> switches = {BuildOptions{}.switches};
+    std::vector<TetsKind> tets = {TetsKind::rays};
+    std::vector<std::uint32_t> divisions; ///< empty: those of default_build()
+    std::vector<std::string> switches;    ///< empty: those of default_build()
+    int effort = usual_effort;
     std::uint32_t resolution = BuildOptions{}.resolution;
     double time_limit_s = BuildOptions{}.time_limit_s;
     std::uint64_t memory_limit_bytes = BuildOptions{}.memory_limit_bytes;
@@ -111,7 +113,8 @@ struct Options {
 [[nodiscard]] Options parse_options(const std::vector<std::string>& arguments);
 
 /// The scenes asked for with their one set of build options; the default scenes where none was named. Precondition: one
-/// domain, one number of divisions, one set of switches (parse_options ensures it, except for `build`).
+/// domain, one kind of tets, at most one number of divisions and set of switches (parse_options ensures it, except for
+/// `build`, which combines them).
 [[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
 
 /// The view numbers asked for, ascending. Throws Error{usage} as parse_views() does.

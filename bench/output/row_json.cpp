@@ -20,6 +20,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"domain", name_of(loaded.scene.domain.kind)},
                              {"divisions", loaded.scene.domain.divisions},
                              {"switches", build.switches},
+                             {"tets_kind", name_of(build.optimised.tets)},
                              {"tool", build.tool},
                              {"build_s", build.build_s},
                              {"from_cache", loaded.from_cache},
@@ -28,6 +29,12 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
+    if (const OptimisedInfo& made = build.optimised; made.asked == TetsKind::rays)
+        object["optimised"] = {{"effort", made.effort},
+                               {"seconds", made.seconds},
+                               {"cost_before", made.cost_before},
+                               {"cost_after", made.cost_after},
+                               {"reason", made.reason}};
     if (!loaded.file.empty()) object["file"] = loaded.file.filename().string();
     return object;
 }

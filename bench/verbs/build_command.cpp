@@ -16,7 +16,8 @@ struct Built {
     SceneRequest request;
     std::optional<nlohmann::json> scene; ///< empty where it failed
     TetMeshCounts counts;
-    std::string switches; ///< as passed; empty where TetGen did not run
+    std::string switches;    ///< as passed; empty where TetGen did not run
+    OptimisedInfo optimised; ///< what the optimiser of tets did
     std::uint64_t bytes = 0;
     double build_s = 0;
     bool from_cache = false;
@@ -24,18 +25,28 @@ struct Built {
     std::string reason; ///< why it failed
 };
 
+template <class T>
+std::vector<T> values(const std::vector<T>& given, const T& otherwise)
+{
+    return given.empty() ? std::vector<T>{otherwise} : given;
+}
+
 std::vector<SceneRequest> combinations(const Options& options)
 {
     std::vector<SceneRequest> requests;
     for (SceneRequest request : scene_requests(options))
-        for (const DomainKind domain : options.domains)
-            for (const std::uint32_t divisions : options.divisions)
-                for (const std::string& switches : options.switches) {
-                    request.build.domain = domain;
-                    request.build.divisions = divisions;
-                    request.build.switches = switches;
-                    requests.push_back(request);
-                }
+        for (const TetsKind tets : options.tets) {
+            const BuildOptions usual = default_build(tets);
+            for (const DomainKind domain : options.domains)
+                for (const std::uint32_t divisions : values(options.divisions, usual.divisions))
+                    for (const std::string& switches : values(options.switches, usual.switches)) {
+                        request.build.tets = tets;
+                        request.build.domain = domain;
+                        request.build.divisions = divisions;
+                        request.build.switches = switches;
+                        requests.push_back(request);
+                    }
+        }
     return requests;
 }
 
@@ -70,6 +81,7 @@ Built build_one(const SceneRequest& request, const Options& options)
         SceneWork scene = load_work(request, options);
         built.counts = scene.counts();
         built.switches = scene.loaded().scene.build.switches;
+        built.optimised = scene.loaded().scene.build.optimised;
         built.build_s = scene.loaded().scene.build.build_s;
         built.from_cache = scene.loaded().from_cache;
         built.request.build.divisions = scene.loaded().scene.domain.divisions;
@@ -90,7 +102,10 @@ std::vector<Cell> table_row(const Built& built)
     const MeanSteps mean = mean_steps(built.totals);
     const auto count = [&](std::uint64_t value) { return good ? Cell(value) : Cell(); };
     const double hits_percent = 100.0 * static_cast<double>(built.totals.hits) / static_cast<double>(built.totals.rays);
+    const OptimisedInfo& optimised = built.optimised;
+    const auto cost = [&](double value) { return good && value > 0 ? Cell(value) : Cell(); };
     return {scene_label(built.request.name),
+            std::string(name_of(good ? optimised.tets : built.request.build.tets)),
             std::string(name_of(built.request.build.domain)),
             std::uint64_t{built.request.build.divisions},
             good && built.switches.empty() ? Cell() : Cell(good ? built.switches : built.request.build.switches),
@@ -99,6 +114,9 @@ std::vector<Cell> table_row(const Built& built)
             count(built.counts.free_faces),
             good ? Cell(1e-6 * static_cast<double>(built.bytes)) : Cell(),
             good ? Cell(built.build_s) : Cell(),
+            cost(optimised.seconds),
+            cost(optimised.cost_before),
+            cost(optimised.cost_after),
             good ? Cell(std::string(built.from_cache ? "yes" : "no")) : Cell(),
             cell_of(mean.all),
             cell_of(mean.hit),
@@ -111,6 +129,7 @@ std::vector<Cell> table_row(const Built& built)
 std::vector<Column> columns(bool with_reason)
 {
     std::vector<Column> list = {{"scene", "scene"},
+                                {"tets_kind", "kind"},
                                 {"domain", "domain"},
                                 {"divisions", "n"},
                                 {"switches", "switches"},
@@ -119,6 +138,9 @@ std::vector<Column> columns(bool with_reason)
                                 {"free_faces", "free"},
                                 {"size_mb", "size", "MB", 1},
                                 {"build_s", "build", "s", 1},
+                                {"optimise_s", "optimise", "s", 1},
+                                {"cost_before", "cost", "before"},
+                                {"cost_after", "cost", "after"},
                                 {"from_cache", "cached"},
                                 {"mean_steps", "steps", "a ray"},
                                 {"mean_steps_hit", "steps", "a hit"},
@@ -146,9 +168,9 @@ std::string reasons_text(const std::vector<Built>& all)
     std::string text;
     for (const Built& built : all)
         if (!built.scene)
-            text += fmt::format("\n{} ({}, {}, {}) failed: {}\n", scene_label(built.request.name),
-                                name_of(built.request.build.domain), built.request.build.divisions,
-                                built.request.build.switches, built.reason);
+            text += fmt::format("\n{} ({}, {}, {}, {}) failed: {}\n", scene_label(built.request.name),
+                                name_of(built.request.build.tets), name_of(built.request.build.domain),
+                                built.request.build.divisions, built.request.build.switches, built.reason);
     return text;
 }
 
@@ -162,8 +184,9 @@ Report build_report(const std::vector<Built>& all, const Options& options)
         if (all[i].scene) section["builds"][i]["scene_record"] = *all[i].scene;
     }
     const std::string rays =
-        fmt::format("\nSteps of primary rays: {} views of {} at {}x{}.\n", selected_views(options).size(),
-                    name_of(options.camera_set), options.width, options.height);
+        fmt::format("\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
+                    "uniform line crosses, before and after optimising.\n",
+                    selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
     return {build_table(all, false).text() + reasons_text(all) + rays, full, {{"tetrace", std::move(section)}}};
 }
 

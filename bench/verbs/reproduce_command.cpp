@@ -101,6 +101,7 @@ SceneBuild papers(SceneBuild build)
 {
     BuildOptions& how = build.request.build;
     how.domain = DomainKind::wide;
+    how.tets = TetsKind::cdt;
     how.divisions = 1;
     how.switches = paper::nearest_switches(build.scene).value();
     build.build = papers_build;
@@ -199,6 +200,8 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                                   {"name", build.request.name},
                                   {"domain", name_of(how.domain)},
                                   {"divisions", how.divisions},
+                                  {"tets", name_of(how.tets)},
+                                  {"effort", how.effort},
                                   {"switches", how.switches},
                                   {"resolution", how.resolution},
                                   {"views", selected_views(options_of_build(build, options))},

@@ -6,8 +6,30 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace tetrace {
+
+/// How the domain was filled with tets. Scene files hold the values.
+enum class TetsKind {
+    cdt = 0,  ///< TetGen's, a constrained Delaunay tetrahedralization; or those of `cubes`, as they are made
+    rays = 1, ///< then changed so that rays cross fewer faces (scenes/optimise); no longer Delaunay
+};
+
+template <>
+inline constexpr auto enum_names<TetsKind> = names_up_to<TetsKind::rays>("cdt", "rays");
+
+/// What the optimiser of tets did. Costs: free faces outside the objects that a uniform line crosses.
+struct OptimisedInfo {
+    TetsKind asked = TetsKind::cdt;
+    TetsKind tets = TetsKind::cdt; ///< what the scene has
+    std::string reason;            ///< why these differ
+    int effort = 0;
+    double cost_before = 0, cost_after = 0; ///< 0 where no optimiser ran
+    double seconds = 0;                     ///< part of BuildInfo::build_s
+
+    friend bool operator==(const OptimisedInfo&, const OptimisedInfo&) = default;
+};
 
 /// How a scene was made; recorded with every result.
 struct BuildInfo {
@@ -21,11 +43,12 @@ struct BuildInfo {
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t duplicate_triangles = 0;
     std::uint64_t snapped_coordinates = 0; ///< coordinates rounded to the 2^-40 grid (only those below 2^-16)
+    OptimisedInfo optimised;
 
     friend bool operator==(const BuildInfo&, const BuildInfo&) = default;
 };
 
-/// A triangle mesh placed in its domain, and the CDT of the two. Independent of any packed layout.
+/// A triangle mesh placed in its domain, and a tetrahedralization of the two. Independent of any packed layout.
 struct Scene {
     std::string name;
     TriangleMesh mesh; ///< the input triangles in domain units: what face_id counts, what Embree and the oracle get

@@ -6,6 +6,7 @@
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"
 #include "scenes/builder/self_intersection.h"
+#include "scenes/optimise/graded_points.h"
 
 #include <fmt/format.h>
 
@@ -110,6 +111,59 @@ void require_entry_grid(const Scene& scene)
     }
 }
 
+// Why optimised tets may not be used; empty where they may.
+std::string objection(const Scene& scene, const OptimisedTets& result)
+{
+    if (result.report.cost_after >= result.report.cost_before) return "the optimiser found nothing to better";
+    auto defect = find_defect(result.mesh, scene.mesh.triangles.size());
+    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
+    if (!defect) defect = find_gap(result.mesh, scene.mesh, size);
+    if (defect)
+        return fmt::format("the optimised tets fail a check: {}: {}; please report it", name_of(defect->kind),
+                           defect->what);
+    try {
+        static_cast<void>(make_entry_grid(scene.domain, result.mesh));
+    } catch (const Error& error) {
+        return fmt::format("the optimised tets fail a check: {}; please report it", error.what());
+    }
+    return "";
+}
+
+void note_operations(const OptimiserReport& report, const BuilderTalk& talk)
+{
+    std::string did;
+    for (const OperationCount& operation : report.operations)
+        did +=
+            fmt::format("{}{} {} (-{:.2f})", did.empty() ? "" : ", ", operation.done, operation.name, operation.gain);
+    talk.note(fmt::format("optimised in {:.1f} s, {} rounds: a uniform line crosses {:.2f} free faces instead of "
+                          "{:.2f}; {}",
+                          report.seconds, report.rounds, report.cost_after, report.cost_before, did));
+    if (report.out_of_time) talk.note("the optimiser ran out of time; on another machine it may reach other tets");
+}
+
+void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const BuilderTalk& talk)
+{
+    OptimisedInfo& info = scene.build.optimised;
+    info.effort = limits.effort;
+    if (limits.effort == 0) {
+        info.reason = "--effort is 0";
+        return;
+    }
+    OptimisedTets result = optimise(scene.tets, limits, [&](const std::string& stage, double) { talk.stage(stage); });
+    info.cost_before = result.report.cost_before;
+    info.cost_after = result.report.cost_after;
+    info.seconds = result.report.seconds;
+    info.reason = objection(scene, result);
+    if (info.reason.empty()) {
+        info.tets = TetsKind::rays;
+        scene.tets = std::move(result.mesh);
+        note_operations(result.report, talk);
+    } else {
+        info.cost_after = info.cost_before;
+        talk.note("TetGen's tets are used: " + info.reason);
+    }
+}
+
 } // namespace
 
 std::string builder_tool()
@@ -139,6 +193,10 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     prepared.surface = domain_surface(scene.domain);
     talk.stage("looking for self-intersections");
     require_no_self_intersection(scene);
+    scene.build.optimised.asked = options.tets;
+    prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
+    if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)
+        prepared.points = graded_points(scene.mesh, scene.domain);
     return prepared;
 }
 
@@ -154,6 +212,7 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
             rounding.damaged, rounding.repaired, rounding.moved_points));
     require_sound(scene, output, rounding);
     require_entry_grid(scene);
+    if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, prepared.limits, talk);
     scene.build.build_s = prepared.watch.seconds();
     return scene;
 }

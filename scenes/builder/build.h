@@ -5,6 +5,7 @@
 #include "scenes/builder/clean.h"
 #include "scenes/builder/convert_tets.h"
 #include "scenes/builder/run_tetgen.h"
+#include "scenes/optimise/optimise.h"
 
 #include <chrono>
 #include <filesystem>
@@ -20,6 +21,9 @@ struct BuilderOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y";
+    TetsKind tets = TetsKind::cdt;
+    int effort = default_effort; ///< of the optimiser, for TetsKind::rays
+    double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 
 /// Called with the stage that begins, and with notes for the user, one line each.
@@ -30,8 +34,10 @@ struct BuilderTalk {
 /// Everything that TetGen needs; scene.tets is empty.
 struct PreparedScene {
     Scene scene;
-    TriangleMesh surface; ///< the domain's
-    Stopwatch watch;      ///< since its mesh was read
+    TriangleMesh surface;       ///< the domain's
+    std::vector<Float3> points; ///< more vertices for TetGen; where switches have no q and tets are for rays
+    OptimiserLimits limits;
+    Stopwatch watch; ///< since its mesh was read
 };
 
 /// This program and the libraries that decide a scene, with their versions.
@@ -42,7 +48,8 @@ struct PreparedScene {
 [[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);
 
 /// Converts TetGen's output and checks it: structure, orientation, every input triangle covered, the domain filled, the
-/// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed.
+/// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed. Then optimises the
+/// tets, where they are for rays; what that cannot better, or what fails a check, stays TetGen's, with the reason.
 [[nodiscard]] Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const BuilderTalk& talk);
 
 } // namespace tetrace

@@ -82,12 +82,27 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
         ->check(CLI::Range(1, 64).description(""))
         ->type_name("N");
     app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
+    std::string tets(name_of(options.tets));
+    const std::string cdt(name_of(TetsKind::cdt)), rays(name_of(TetsKind::rays));
+    app.add_option("--tets", tets,
+                   "cdt: as TetGen makes them; rays: then optimised, so that rays cross fewer faces, from a graded set "
+                   "of points where the switches have no q; default: cdt")
+        ->check(CLI::IsMember({cdt, rays}).description(""))
+        ->type_name(cdt + "|" + rays);
+    app.add_option("--effort", options.effort, "of the optimiser, 0 (none) to 3; default: 2")
+        ->check(CLI::Range(0, most_effort).description(""))
+        ->type_name("N");
+    app.add_option("--optimise-for", options.optimise_for_s,
+                   "the optimiser stops after so many seconds, with what it has reached; default: 300")
+        ->check(CLI::Range(0.0, 1e6).description(""))
+        ->type_name("S");
     app.footer("Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
                "refused;\n"
                "12 TetGen's output failed a check; 13 out of memory.");
     try {
         app.parse(argc, argv);
         options.domain = domain == wide ? DomainKind::wide : DomainKind::tight;
+        options.tets = tets == rays ? TetsKind::rays : TetsKind::cdt;
         return std::nullopt;
     } catch (const CLI::Success& asked) {
         return app.exit(asked);
@@ -121,7 +136,7 @@ int main(int argc, char** argv)
 
     say("stage", "TetGen " + options.switches);
     std::set_terminate(explain_tetgen_failure); // and no handler round the call: see run_tetgen
-    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, options.switches);
+    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
     return guarded([&] {
         const Scene scene = finish_scene(std::move(prepared), output, talk());
         talk().stage("writing " + options.out.filename().string());

@@ -45,6 +45,17 @@ void add_facet(tetgenio& input, int index, const std::array<std::uint32_t, 3>& t
     input.facetmarkerlist[index] = marker;
 }
 
+// Points that TetGen inserts once the triangles are in: as vertices from the start they make its recovery of triangles
+// crash (3torus.off and blob.off of libcgal-demo).
+void fill_points(tetgenio& input, const std::vector<Float3>& points)
+{
+    input.firstnumber = 0;
+    input.numberofpoints = static_cast<int>(points.size());
+    input.pointlist = new double[3 * points.size()];
+    int next = 0;
+    add_points(input, points, next);
+}
+
 void fill(tetgenio& input, const TriangleMesh& mesh, const TriangleMesh& surface)
 {
     input.firstnumber = 0;
@@ -155,18 +166,22 @@ void require_switches(const std::string& switches)
     if (!behavior.parse_commandline(text.data())) fail("is refused by TetGen");
 }
 
-TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& switches)
+TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points,
+                        const std::string& switches)
 {
     // Not on the stack: where TetGen throws, nothing may be unwound.
     auto* const input = new tetgenio;
     auto* const output = new tetgenio;
+    auto* const later = new tetgenio;
     fill(*input, mesh, surface);
-    std::string text = switches + our_switches;
+    fill_points(*later, points);
+    std::string text = switches + our_switches + (points.empty() ? "" : "i");
     tetgenbehavior behavior;
     behavior.parse_commandline(text.data());
-    tetrahedralize(&behavior, input, output);
+    tetrahedralize(&behavior, input, output, later);
     TetgenOutput result = take(*output, static_cast<std::size_t>(input->numberofpoints));
     delete input;
+    delete later;
     delete output;
     return result;
 }

@@ -17,7 +17,7 @@ struct TetgenOutput {
         std::int32_t triangle;
     };
 
-    std::vector<Double3> points; ///< the input's first, in the input's order; then Steiner points
+    std::vector<Double3> points; ///< the input's first (mesh, surface), in its order; then `points` and Steiner points
     std::size_t input_points = 0;
     std::vector<std::array<std::int32_t, 4>> tets;
     std::vector<std::array<std::int32_t, 4>> neighbours; ///< -1 beyond the domain
@@ -29,11 +29,12 @@ struct TetgenOutput {
 /// M T O S D C V X.
 void require_switches(const std::string& switches);
 
-/// Tetrahedralizes the inside of `surface` (the domain's) with every triangle of `mesh` as a constraint.
+/// Tetrahedralizes the inside of `surface` (the domain's) with every triangle of `mesh` as a constraint, and `points`
+/// of its inside as more vertices.
 /// TetGen throws an int where it fails, and libtet cannot be unwound: no caller may catch it or run clean-up. So call
 /// it from main with std::set_terminate(explain_tetgen_failure), or where failure is not expected.
 [[nodiscard]] TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface,
-                                      const std::string& switches);
+                                      const std::vector<Float3>& points, const std::string& switches);
 
 /// A terminate handler: prints one `error:` line about TetGen's int (or std::bad_alloc) and ends the process with
 /// BUILDER_TETGEN_REFUSED or BUILDER_OUT_OF_MEMORY; aborts for anything else.

@@ -41,7 +41,10 @@ TEST(Options, defaults_are_those_of_the_main_job)
     EXPECT_EQ(options.width, 1024u);
     EXPECT_EQ(options.height, 1024u);
     EXPECT_EQ(options.samples, 10u);
-    EXPECT_EQ(options.divisions, std::vector<std::uint32_t>{BuildOptions{}.divisions});
+    EXPECT_EQ(scene_requests(options).front().build.tets, TetsKind::rays);
+    EXPECT_EQ(scene_requests(options).front().build.divisions, default_build(TetsKind::rays).divisions);
+    EXPECT_EQ(scene_requests(parse_options({"reproduce"})).front().build.tets, TetsKind::cdt);
+    EXPECT_EQ(scene_requests(parse_options({"check", "--tets", "cdt"})).front().build.switches, "pq5Y");
     EXPECT_FALSE(options.format.has_value());
 }
 
@@ -97,7 +100,11 @@ TEST(Options, build_takes_lists_where_others_take_one_value)
     EXPECT_EQ(options.switches, (std::vector<std::string>{"p", "pq5Y"}));
     EXPECT_EQ(options.domains, (std::vector<DomainKind>{DomainKind::tight, DomainKind::wide}));
     EXPECT_EQ(options.divisions, (std::vector<std::uint32_t>{4, 8}));
+    EXPECT_EQ(parse_options({"build", "--tets", "cdt,rays"}).tets, (std::vector{TetsKind::cdt, TetsKind::rays}));
     EXPECT_TRUE(contains(rejection({"bench", "--switches", "p,pq5Y"}), "one value"));
+    EXPECT_TRUE(contains(rejection({"bench", "--tets", "cdt,rays"}), "one value"));
+    EXPECT_TRUE(contains(rejection({"bench", "--tets", "delaunay"}), "rays"));
+    EXPECT_TRUE(contains(rejection({"bench", "--effort", "4"}), "--effort"));
     EXPECT_TRUE(contains(rejection({"bench", "--size", "8", "--size", "9"}), "one value"));
 }
 

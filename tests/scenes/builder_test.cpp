@@ -55,6 +55,22 @@ TEST_F(BuilderProgram, writes_a_scene_that_can_be_read_back)
     expect_sound(scene);
 }
 
+TEST_F(BuilderProgram, optimises_tets_for_rays_and_says_so)
+{
+    const auto mesh = write("ball.off", to_off(sphere(3)));
+    const auto ended = run_on(mesh, "--divisions 3 --switches pY --tets rays --effort 1 --optimise-for 60");
+    ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "stage: optimising, round 1: "));
+    EXPECT_TRUE(contains(ended.errors, "note: optimised in "));
+    const Scene scene = read_scene(folder_ / "out.tet");
+    EXPECT_EQ(scene.build.optimised.tets, TetsKind::rays);
+    EXPECT_EQ(scene.build.optimised.effort, 1);
+    EXPECT_LT(scene.build.optimised.cost_after, scene.build.optimised.cost_before);
+    expect_sound(scene);
+    EXPECT_EQ(run_on(mesh, "--tets delaunay").code, BUILDER_USAGE);
+    EXPECT_EQ(run_on(mesh, "--effort 4").code, BUILDER_USAGE);
+}
+
 TEST_F(BuilderProgram, notes_what_it_dropped)
 {
     TriangleMesh mesh = tetrahedron();

@@ -6,6 +6,7 @@
 #include "scenes/builder/run_tetgen.h"
 #include "scenes/builder/steiner_rounding.h"
 #include "tests/support/builder_meshes.h"
+#include "tests/support/sound_tets.h"
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -41,7 +42,7 @@ void expect_faces_inside_their_triangles(const Scene& scene)
 Scene build(const BuilderOptions& options)
 {
     PreparedScene prepared = prepare_scene(options, silence());
-    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, options.switches);
+    const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
     return finish_scene(std::move(prepared), output, silence());
 }
 
@@ -61,7 +62,7 @@ class AbsurdOutput : public Builder {
 protected:
     AbsurdOutput() : options_(options(sphere(1), DomainKind::wide, "pq")), prepared_(prepare_scene(options_, silence()))
     {
-        output_ = run_tetgen(prepared_.scene.mesh, prepared_.surface, options_.switches);
+        output_ = run_tetgen(prepared_.scene.mesh, prepared_.surface, prepared_.points, options_.switches);
     }
     void expect_absurd(const std::string& part)
     {
@@ -126,6 +127,52 @@ TEST_F(Builder, fills_both_domains_round_every_kind_of_mesh)
             }
         }
     }
+}
+
+TEST_F(Builder, optimises_every_kind_of_mesh)
+{
+    const TriangleMesh single{{{0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0.1f}}, {{0, 1, 2}}};
+    const TriangleMesh sliver{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1e-4f, 0}, {0.5f, 0.2f, 0.7f}}, {{0, 1, 2}, {0, 1, 3}}};
+    TriangleMesh sheet; // open, and flat
+    for (std::uint32_t i = 0; i < 81; ++i)
+        sheet.vertices.push_back({static_cast<float>(i % 9) / 8, static_cast<float>(i / 9) / 8, 0});
+    for (std::uint32_t i = 0; i < 72; ++i) {
+        if (i % 9 == 8) continue;
+        sheet.triangles.push_back({i, i + 1, i + 10});
+        sheet.triangles.push_back({i, i + 10, i + 9});
+    }
+    const std::vector<TriangleMesh> meshes = {tetrahedron(), flat_cube(6), sphere(3), single, sliver, sheet};
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        for (const DomainKind domain : {DomainKind::tight, DomainKind::wide})
+            for (const std::string switches : {"pY", "pq5Y"}) {
+                SCOPED_TRACE("mesh " + std::to_string(i) + ", " + std::string(name_of(domain)) + ", " + switches);
+                BuilderOptions asked = options(meshes[i], domain, switches);
+                const Scene plain = build(asked);
+                asked.tets = TetsKind::rays;
+                const Scene scene = build(asked);
+                expect_sound(scene);
+                expect_faces_inside_their_triangles(scene);
+                EXPECT_EQ(scene.mesh, plain.mesh);
+                const OptimisedInfo& made = scene.build.optimised;
+                EXPECT_EQ(made.asked, TetsKind::rays);
+                EXPECT_EQ(made.tets == TetsKind::rays, made.reason.empty());
+                EXPECT_EQ(made.tets == TetsKind::rays, made.cost_after < made.cost_before);
+                if (switches == "pq5Y") { // no points were added: the surfaces are those of the plain build
+                    EXPECT_EQ(fixed_faces(scene.tets), fixed_faces(plain.tets));
+                }
+            }
+}
+
+TEST_F(Builder, leaves_tetgens_tets_with_effort_0)
+{
+    BuilderOptions asked = options(sphere(2), DomainKind::tight, "pq5Y");
+    const Scene plain = build(asked);
+    asked.tets = TetsKind::rays;
+    asked.effort = 0;
+    const Scene scene = build(asked);
+    EXPECT_EQ(scene.tets, plain.tets);
+    EXPECT_EQ(scene.build.optimised.tets, TetsKind::cdt);
+    EXPECT_NE(scene.build.optimised.reason, "");
 }
 
 TEST_F(Builder, keeps_triangles_and_squares_whole_with_y)

@@ -39,7 +39,8 @@ TEST_F(Load, tells_the_builder_all_that_was_asked)
     (void)error_of([&] { (void)load(); });
     const std::string run = read_text(folder / "runs");
     EXPECT_TRUE(contains(run, "--mesh " + mesh.string() + " --out "));
-    EXPECT_TRUE(contains(run, " --name thing --domain wide --divisions 5 --switches pq3Y\n"));
+    EXPECT_TRUE(contains(
+        run, " --name thing --domain wide --divisions 5 --switches pq3Y --tets cdt --effort 2 --optimise-for 300\n"));
 }
 
 TEST_F(Load, hands_on_stages_and_notes)
@@ -104,6 +105,25 @@ TEST_F(Load, says_each_remedy_once)
             EXPECT_EQ(error.find("switches ("), error.rfind("switches (")) << error;
         }
     }
+}
+
+TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
+{
+    request.build = default_build(TetsKind::rays);
+    Scene made = expected();
+    made.domain = make_cubes(3).domain; // three divisions
+    made.build.switches = "pq5Y";
+    made.build.optimised = {TetsKind::rays, TetsKind::rays, "", request.build.effort, 2, 1, 0.1};
+    write_scene(prepared, made);
+    use_builder("case \"$*\" in *'--switches pY '*) kill -SEGV $$;; esac");
+    const LoadedScene loaded = load();
+    EXPECT_EQ(loaded.scene.build.switches, "pq5Y");
+    ASSERT_FALSE(loaded.messages.empty());
+    EXPECT_TRUE(contains(loaded.messages.front(), "TetGen failed with switches pY; built with pq5Y instead"));
+    EXPECT_TRUE(load().from_cache);
+    request.build.switches = "pYM"; // the user's own: no others are tried
+    use_builder("case \"$*\" in *'--switches pYM '*) kill -SEGV $$;; esac");
+    EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "crashed (signal 11"));
 }
 
 TEST_F(Load, tells_a_crash)

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "scenes/optimise/editable_mesh.h"
+
+namespace tetrace {
+
+/// Most tets round an edge that remove_edge() looks at: its work is the cube of their number.
+inline constexpr std::size_t most_around_edge = 8;
+
+/// The tets round an edge, and the vertices across from it: tet i has the edge a b and ring vertices i and i + 1, so
+/// that (a, b, ring[i], ring[i + 1]) is positive.
+struct EdgeRing {
+    std::uint32_t a = 0, b = 0;
+    std::vector<std::uint32_t> tets, vertices;
+};
+
+/// Finds the ring of edge 0..5 (vertices 01 02 03 12 13 23) of a tet. False, where it is not closed (an occlusive or a
+/// boundary face has the edge) or has more than `most` tets.
+bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, EdgeRing& ring);
+
+/// Edge removal: n tets round an edge become the 2 (n - 2) above and below a triangulation of their ring, the cheapest
+/// one whose tets may be made, found by dynamic programming over the ring's chords.
+/// Sources: Klincsek 1980 (minimal triangulations of polygons); Freitag, Ollivier-Gooch 1997 and Shewchuk, "Two
+/// discrete optimization algorithms for the topological improvement of tetrahedral meshes", 2002 (edge removal).
+class EdgeRemoval {
+public:
+    explicit EdgeRemoval(EditableMesh& mesh) : mesh_(mesh) {}
+
+    /// Removes an edge of a tet where cost falls by more than `least`; returns by how much it fell, 0 where it stays.
+    double try_edge(std::uint32_t tet, std::uint32_t edge, double least);
+
+    /// Tets that changed in an earlier round are not visited: an edge is looked at from the first of the others only.
+    std::uint32_t since = 1;
+
+private:
+    [[nodiscard]] bool is_first(std::uint32_t tet) const;
+    void triangulate(double limit);
+    void emit(std::size_t i, std::size_t k);
+    [[nodiscard]] Double3 ring_point(std::size_t i) const { return mesh_.point(ring_.vertices[i]); }
+
+    EditableMesh& mesh_;
+    EdgeRing ring_;
+    /// Of the part i..k of the ring: cost of its cheapest triangulation, chord i k included; its middle vertex.
+    std::array<std::array<double, most_around_edge>, most_around_edge> cost_{};
+    std::array<std::array<std::size_t, most_around_edge>, most_around_edge> middle_{};
+    std::vector<Corners> fresh_;
+};
+
+} // namespace tetrace

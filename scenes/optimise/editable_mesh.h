@@ -1,0 +1,104 @@
+#pragma once
+
+#include "core/mesh/tet_mesh.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tetrace {
+
+/// The vertices of a tet, positive as core/mesh/tet_mesh.h has it.
+using Corners = std::array<std::uint32_t, 4>;
+
+/// A tet mesh whose parts are replaced by others. Everything that changes it keeps it a tetrahedralization of the same
+/// domain with the same occlusive and boundary faces (docs/spec/rays-tets.md, O1). Memory: linear.
+class EditableMesh {
+public:
+    /// mesh: sound (find_defect and find_gap find nothing).
+    explicit EditableMesh(const TetMesh& mesh);
+
+    [[nodiscard]] std::uint32_t tet_slots() const { return static_cast<std::uint32_t>(tets_.size()); }
+    [[nodiscard]] std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(points_.size()); }
+    [[nodiscard]] const Tet& tet(std::uint32_t index) const { return tets_[index]; }
+    [[nodiscard]] Double3 point(std::uint32_t vertex) const { return points_[vertex]; }
+
+    /// A tet that rays from outside reach: a chain of free faces leads from the domain's boundary to it. Operations
+    /// change no other.
+    [[nodiscard]] bool is_reached(std::uint32_t tet) const { return states_[tet] == State::reached; }
+    /// Whether a vertex may move or vanish: it is on no occlusive and no boundary face, and its tets are reached.
+    [[nodiscard]] bool is_free(std::uint32_t vertex) const { return kinds_[vertex] == VertexKind::free; }
+    /// A tet that has the vertex; NO_TET for a slot without a vertex.
+    [[nodiscard]] std::uint32_t tet_of(std::uint32_t vertex) const { return tet_of_[vertex]; }
+
+    /// Sum of the areas of the free faces of the tets that rays reach. What the optimiser lowers.
+    [[nodiscard]] double cost() const;
+    /// Area of the domain's boundary.
+    [[nodiscard]] double boundary_area() const;
+
+    /// Puts `fresh` in the place of `old`, where that is sound: each fresh tet may be made (shape.h), and the fresh
+    /// tets' outer faces are those of the old ones, side by side. Otherwise returns false and changes nothing.
+    /// old: tets that rays reach, each once. Vertices that lose their last tet are dropped.
+    bool replace(std::span<const std::uint32_t> old, std::span<const Corners> fresh);
+
+    /// Moves a free vertex where each tet of `star`, all that have it, may still be made; else changes nothing.
+    /// to: on the grid, as a float.
+    bool move(std::uint32_t vertex, std::span<const std::uint32_t> star, Double3 to);
+
+    /// A free vertex without a tet, for the next replace(); drop it where that fails.
+    [[nodiscard]] std::uint32_t add_vertex(Double3 point);
+    void drop_vertex(std::uint32_t vertex);
+
+    /// The number that tets and vertices are marked with when they change. Starts with 1, and so do their marks.
+    std::uint32_t round = 1;
+    [[nodiscard]] std::uint32_t tet_changed(std::uint32_t tet) const { return tet_changed_[tet]; }
+    [[nodiscard]] std::uint32_t vertex_changed(std::uint32_t vertex) const { return vertex_changed_[vertex]; }
+
+    /// Marks on tets for a moment: unmark_all() is quick.
+    void unmark_all() { ++mark_; }
+    bool mark(std::uint32_t tet) ///< false where it was marked already
+    {
+        if (marks_[tet] == mark_) return false;
+        marks_[tet] = mark_;
+        return true;
+    }
+    [[nodiscard]] bool is_marked(std::uint32_t tet) const { return marks_[tet] == mark_; }
+
+    /// The mesh without unused slots; vertices and tets keep their order.
+    [[nodiscard]] TetMesh take() const;
+
+private:
+    enum class State : std::uint8_t { unused, hidden, reached };
+    enum class VertexKind : std::uint8_t { held, free };
+
+    /// One side of a face. Equal keys: the same face; equal turns: the same side of it.
+    struct Side {
+        std::array<std::uint32_t, 3> key; ///< vertices, ascending
+        bool turn;                        ///< whether an odd permutation sorted them
+        bool fresh;
+        std::uint32_t link; ///< outer: what is beyond it; fresh: index in `fresh` << 2 | local face
+        std::uint32_t triangle;
+    };
+
+    void find_reached();
+    void find_kinds();
+    [[nodiscard]] static Side side_of(const Corners& corners, std::uint32_t face);
+    [[nodiscard]] bool gather_sides(std::span<const std::uint32_t> old, std::span<const Corners> fresh);
+    [[nodiscard]] bool sides_match() const;
+    void choose_slots(std::span<const std::uint32_t> old, std::size_t count);
+    void connect();
+    void connect_fresh(const Side& a, const Side& b);
+
+    std::vector<Double3> points_; ///< of floats
+    std::vector<Tet> tets_;
+    std::vector<State> states_;
+    std::vector<VertexKind> kinds_;
+    std::vector<std::uint32_t> tet_of_, tet_changed_, vertex_changed_, marks_;
+    std::vector<std::uint32_t> unused_tets_, unused_vertices_;
+    std::uint32_t mark_ = 0;
+    std::vector<Side> sides_;                    ///< of the replacement at work
+    std::vector<std::uint32_t> slots_, touched_; ///< where its fresh tets go; vertices of its old ones
+};
+
+} // namespace tetrace

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "scenes/optimise/edge_removal.h"
+#include "scenes/optimise/vertex_star.h"
+
+namespace tetrace {
+
+/// Inserts a vertex near the middle of an edge: the tets round the edge, and others that pay, are replaced by the tets
+/// of the vertex and their outer faces. The cavity grows by the neighbour that lowers cost most, a few steps past the
+/// best too, and the vertex then moves to the cheapest point of it.
+class Insertion {
+public:
+    explicit Insertion(EditableMesh& mesh) : mesh_(mesh) {}
+
+    /// Returns by how much cost fell; 0 where nothing changed, since it would not fall by more than `least`, and
+    /// least_share of the area of the free faces in the cavity.
+    double try_edge(std::uint32_t tet, std::uint32_t edge, double least);
+
+    std::uint32_t since = 1; ///< as in EdgeRemoval
+
+    static constexpr double least_share = 1e-3;
+
+private:
+    struct Candidate {
+        std::uint32_t tet;
+        double change; ///< of cost, if it joins the cavity
+    };
+    [[nodiscard]] bool is_first(std::uint32_t tet) const;
+    [[nodiscard]] bool sees(Double3 at, const Tet& tet, std::uint32_t face) const;
+    [[nodiscard]] double spokes(Double3 at, const Tet& tet, std::uint32_t face) const;
+    [[nodiscard]] double face_area(const Tet& tet, std::uint32_t face) const;
+    [[nodiscard]] double change_by(Double3 at, std::uint32_t tet) const;
+    void add_neighbours(Double3 at, std::uint32_t tet);
+    void join(Double3 at, std::uint32_t tet);
+    [[nodiscard]] double grow(Double3 at);
+    void find_outside();
+    [[nodiscard]] bool may_be_at(Double3 at) const;
+    [[nodiscard]] Double3 better_point(Double3 at) const;
+
+    EditableMesh& mesh_;
+    EdgeRing ring_;
+    std::vector<std::uint32_t> cavity_;
+    std::vector<Candidate> candidates_;
+    VertexStar outside_; ///< of the vertex to be: its edges
+    std::vector<std::array<std::uint32_t, 3>> faces_;
+    double inside_area_ = 0; ///< of the free faces between tets of the cavity
+    std::vector<Corners> fresh_;
+};
+
+} // namespace tetrace

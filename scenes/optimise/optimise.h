@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/mesh/tet_mesh.h"
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace tetrace {
+
+/// How hard the optimiser tries: 0 leaves the tets as they are, 3 is the most.
+inline constexpr int most_effort = 3, default_effort = 2;
+
+struct OptimiserLimits {
+    int effort = default_effort;
+    double time_limit_s = 0; ///< no sweep begins after so many seconds; 0: no limit
+};
+
+/// What an operation did.
+struct OperationCount {
+    std::string_view name;
+    std::uint64_t done = 0;
+    double gain = 0; ///< free faces that a uniform line crosses fewer
+    double seconds = 0;
+};
+
+/// Costs are the expected number of free faces that a uniform line crosses outside the objects, as if they let it
+/// through: 2 (sum of the areas) / (area of the domain's boundary) (docs/spec/rays-tets.md).
+struct OptimiserReport {
+    double cost_before = 0, cost_after = 0;
+    std::array<OperationCount, 5> operations; ///< edges removed, faces removed, vertices moved, collapsed, inserted
+    std::uint32_t rounds = 0;
+    bool out_of_time = false; ///< it ended early; the result then depends on the machine's speed
+    double seconds = 0;
+};
+
+struct OptimisedTets {
+    TetMesh mesh;
+    OptimiserReport report;
+};
+
+/// Changes the tets that rays from outside reach so that these cross fewer faces: edges and faces are removed, vertices
+/// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the domain's boundary and the tets
+/// inside closed objects stay. The same bits on every machine, unless it runs out of time. Memory linear; time linear
+/// per round. mesh: sound (find_defect and find_gap find nothing); so is the result.
+[[nodiscard]] OptimisedTets optimise(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress);
+
+} // namespace tetrace

@@ -1,0 +1,81 @@
+#include "scenes/optimise/vertex_move.h"
+
+#include "core/base/exact.h"
+
+#include <array>
+
+namespace tetrace {
+namespace {
+
+constexpr std::size_t most_moved_tets = 400;
+constexpr int solving_steps = 3, move_halvings = 6;
+constexpr double least_distance = 1e-7; // of a point from a line, in the weights
+
+// A symmetric 3 x 3 matrix, and the right side of the equations.
+struct Equations {
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+    Double3 right;
+
+    // Weighted squared distance from the line through p along the unit vector t.
+    void add_line(Double3 p, Double3 t, double weight)
+    {
+        xx += weight * (1 - t.x * t.x);
+        xy -= weight * t.x * t.y;
+        xz -= weight * t.x * t.z;
+        yy += weight * (1 - t.y * t.y);
+        yz -= weight * t.y * t.z;
+        zz += weight * (1 - t.z * t.z);
+        right = right + (p - t * dot(p, t)) * weight;
+    }
+    // By Cramer's rule; `otherwise` where the matrix is singular.
+    [[nodiscard]] Double3 solve(Double3 otherwise) const
+    {
+        const Double3 column[3] = {{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}};
+        const double determinant = dot(column[0], cross(column[1], column[2]));
+        const double trace = xx + yy + zz;
+        if (!(determinant > 1e-12 * trace * trace * trace)) return otherwise;
+        return Double3{dot(right, cross(column[1], column[2])), dot(column[0], cross(right, column[2])),
+                       dot(column[0], cross(column[1], right))} *
+               (1 / determinant);
+    }
+};
+
+} // namespace
+
+Double3 cheapest_point(const EditableMesh& mesh, std::span<const VertexStar::LinkEdge> edges, Double3 from, int steps)
+{
+    for (int step = 0; step < steps; ++step) {
+        Equations equations;
+        for (const auto& edge : edges) {
+            const Double3 p = mesh.point(edge.p), along = mesh.point(edge.q) - p;
+            const double edge_length = length(along);
+            const Double3 t = along * (1 / edge_length);
+            const Double3 across = (from - p) - t * dot(from - p, t);
+            equations.add_line(p, t, edge_length / std::max(length(across), least_distance));
+        }
+        from = equations.solve(from);
+    }
+    return from;
+}
+
+Double3 rounded_point(Double3 point)
+{
+    return to_double(snap_to_grid(to_float(point)));
+}
+
+double try_move(EditableMesh& mesh, std::uint32_t vertex, double least, VertexStar& scratch)
+{
+    if (!find_star(mesh, vertex, most_moved_tets, scratch)) return 0;
+    const Double3 from = mesh.point(vertex);
+    const double before = scratch.cost(mesh, from);
+    const Double3 way = cheapest_point(mesh, scratch.edges, from, solving_steps) - from;
+    double part = 1;
+    for (int i = 0; i < move_halvings; ++i, part /= 2) {
+        const Double3 to = rounded_point(from + way * part);
+        const double gain = before - scratch.cost(mesh, to);
+        if (gain > least && mesh.move(vertex, scratch.tets, to)) return gain;
+    }
+    return 0;
+}
+
+} // namespace tetrace

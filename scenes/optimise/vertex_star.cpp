@@ -1,0 +1,40 @@
+#include "scenes/optimise/vertex_star.h"
+
+namespace tetrace {
+namespace {
+
+// The faces of a star's tet that have the vertex, each for the one of its two tets with the smaller number.
+void add_edges(const EditableMesh& mesh, std::uint32_t vertex, std::uint32_t index, VertexStar& star)
+{
+    const Tet& tet = mesh.tet(index);
+    for (std::uint32_t face = 0; face < 4; ++face) {
+        const std::uint32_t link = tet.links[face];
+        if (tet.vertices[face] == vertex || link_tet(link) < index) continue;
+        VertexStar::LinkEdge edge{NO_TET, NO_TET, tet.vertices[face],
+                                  mesh.tet(link_tet(link)).vertices[link_face(link)]};
+        for (std::uint32_t i = 0; i < 4; ++i)
+            if (i != face && tet.vertices[i] != vertex) (edge.p == NO_TET ? edge.p : edge.q) = tet.vertices[i];
+        star.edges.push_back(edge);
+    }
+}
+
+} // namespace
+
+bool find_star(EditableMesh& mesh, std::uint32_t vertex, std::size_t most, VertexStar& star)
+{
+    star.tets.assign(1, mesh.tet_of(vertex));
+    star.edges.clear();
+    mesh.unmark_all();
+    mesh.mark(star.tets.front());
+    for (std::size_t i = 0; i < star.tets.size(); ++i) {
+        if (star.tets.size() > most) return false;
+        const Tet& tet = mesh.tet(star.tets[i]);
+        for (std::uint32_t face = 0; face < 4; ++face)
+            if (tet.vertices[face] != vertex && mesh.mark(link_tet(tet.links[face])))
+                star.tets.push_back(link_tet(tet.links[face]));
+        add_edges(mesh, vertex, star.tets[i], star);
+    }
+    return true;
+}
+
+} // namespace tetrace

@@ -1,0 +1,313 @@
+// The mesh under the optimiser: replacing tets is refused unless the result is the same tetrahedralization but for its
+// free faces; and each operation on it lowers the cost by what it says.
+#include "scenes/optimise/collapse.h"
+#include "scenes/optimise/edge_removal.h"
+#include "scenes/optimise/face_removal.h"
+#include "scenes/optimise/insertion.h"
+#include "scenes/optimise/vertex_move.h"
+#include "scenes/procedural.h"
+#include "tests/support/random.h"
+#include "tests/support/sound_tets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+constexpr double anything = -1e9; // as `least`: whatever is possible is done
+
+// n tets round the edge from (0, 0, -1/2) to (0, 0, 1/2), in a box of no more: each has an occlusive or boundary face.
+TetMesh fan(std::uint32_t n, Random& random)
+{
+    TetMesh mesh{{{0, 0, -0.5f}, {0, 0, 0.5f}}, {}};
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const double angle = 2 * std::numbers::pi * i / n, radius = 0.3 + 0.4 * random.unit();
+        mesh.vertices.push_back(
+            snap_to_grid(to_float({radius * std::cos(angle), radius * std::sin(angle), 0.2 * random.unit() - 0.1})));
+    }
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t next = (i + 1) % n, last = (i + n - 1) % n;
+        // (1, 0, ring i, ring i + 1) is positive: faces 3 and 2 are shared with the tets before and behind.
+        mesh.tets.push_back({{1, 0, 2 + i, 2 + next},
+                             {NO_LINK, NO_LINK, make_link(next, 3), make_link(last, 2)},
+                             {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
+    }
+    return mesh;
+}
+
+// Least cost of all triangulations of the ring, tried one by one; impossible where none may be made.
+double cheapest(const EditableMesh& mesh, const EdgeRing& ring, std::size_t i, std::size_t k)
+{
+    if (k - i < 2) return 0;
+    const auto at = [&](std::size_t n) { return mesh.point(ring.vertices[n]); };
+    const Double3 a = mesh.point(ring.a), b = mesh.point(ring.b);
+    const bool chord = k - i + 1 < ring.vertices.size();
+    double best = impossible;
+    for (std::size_t j = i + 1; j < k; ++j) {
+        if (!may_be_made(a, at(i), at(j), at(k)) || !may_be_made(b, at(i), at(k), at(j))) continue;
+        best = std::min(best, cheapest(mesh, ring, i, j) + cheapest(mesh, ring, j, k) + area(at(i), at(j), at(k)));
+    }
+    return best + (chord ? area(a, at(i), at(k)) + area(b, at(i), at(k)) : 0);
+}
+
+std::vector<Corners> corners_of(const EditableMesh& mesh)
+{
+    std::vector<Corners> all;
+    for (const Tet& tet : mesh.take().tets) {
+        all.push_back(tet.vertices);
+        std::sort(all.back().begin(), all.back().end());
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+// The jittered cubes with their ball: occlusive faces, hidden tets, free and held vertices.
+const Scene& cubes()
+{
+    static const Scene scene = make_cubes(8);
+    return scene;
+}
+
+std::uint32_t free_vertex(const EditableMesh& mesh)
+{
+    for (std::uint32_t v = 0; v < mesh.vertex_slots(); ++v)
+        if (mesh.is_free(v)) return v;
+    return NO_TET;
+}
+
+} // namespace
+
+TEST(EditableMesh, gives_back_the_mesh_that_it_was_given)
+{
+    EXPECT_EQ(EditableMesh(cubes().tets).take(), cubes().tets);
+}
+
+TEST(EditableMesh, knows_what_rays_reach_and_what_may_move)
+{
+    const EditableMesh mesh(cubes().tets);
+    std::size_t reached = 0, free = 0;
+    for (std::uint32_t t = 0; t < mesh.tet_slots(); ++t)
+        reached += mesh.is_reached(t) ? 1 : 0;
+    for (std::uint32_t v = 0; v < mesh.vertex_slots(); ++v) {
+        free += mesh.is_free(v) ? 1 : 0;
+        const Double3 p = mesh.point(v), low = to_double(cubes().domain.low()), high = to_double(cubes().domain.high());
+        const bool on_side =
+            p.x == low.x || p.y == low.y || p.z == low.z || p.x == high.x || p.y == high.y || p.z == high.z;
+        EXPECT_FALSE(on_side && mesh.is_free(v));
+    }
+    EXPECT_GT(reached, 0U);
+    EXPECT_LT(reached, mesh.tet_slots()); // the ball is closed
+    EXPECT_GT(free, 0U);
+}
+
+TEST(EditableMesh, refuses_what_is_no_tetrahedralization_and_changes_nothing)
+{
+    EditableMesh mesh(cubes().tets);
+    const std::uint32_t v = free_vertex(mesh);
+    VertexStar star;
+    ASSERT_TRUE(find_star(mesh, v, 400, star));
+    std::vector<Corners> same;
+    for (const std::uint32_t t : star.tets)
+        same.push_back(mesh.tet(t).vertices);
+    const auto refused = [&](std::span<const std::uint32_t> old, const std::vector<Corners>& fresh) {
+        const bool done = mesh.replace(old, fresh);
+        return !done && mesh.take() == cubes().tets;
+    };
+    auto fresh = same;
+    fresh.pop_back();
+    EXPECT_TRUE(refused(star.tets, fresh)) << "a hole";
+    fresh = same;
+    fresh.push_back(same.front());
+    EXPECT_TRUE(refused(star.tets, fresh)) << "one tet twice";
+    fresh = same;
+    std::swap(fresh.front()[0], fresh.front()[1]);
+    EXPECT_TRUE(refused(star.tets, fresh)) << "an inverted tet";
+    fresh = same;
+    fresh.front()[0] = fresh.front()[1];
+    EXPECT_TRUE(refused(star.tets, fresh)) << "a flat tet";
+    auto twice = star.tets;
+    twice.push_back(twice.front());
+    EXPECT_TRUE(refused(twice, same)) << "an old tet named twice";
+    for (std::uint32_t t = 0; t < mesh.tet_slots(); ++t) {
+        if (mesh.is_reached(t)) continue;
+        const std::array<std::uint32_t, 1> hidden = {t};
+        EXPECT_TRUE(refused(hidden, {mesh.tet(t).vertices})) << "a tet inside a closed object";
+        break;
+    }
+    EXPECT_TRUE(mesh.replace(star.tets, same)) << "the same again is sound";
+    EXPECT_EQ(corners_of(mesh), corners_of(EditableMesh(cubes().tets)));
+}
+
+TEST(EditableMesh, refuses_moves_that_invert_a_tet)
+{
+    EditableMesh mesh(cubes().tets);
+    const std::uint32_t v = free_vertex(mesh);
+    VertexStar star;
+    ASSERT_TRUE(find_star(mesh, v, 400, star));
+    const Double3 from = mesh.point(v);
+    EXPECT_FALSE(mesh.move(v, star.tets, from + Double3{0.5, 0.5, 0.5}));
+    EXPECT_FALSE(mesh.move(v, star.tets, mesh.point(star.edges.front().p))) << "onto a neighbour";
+    EXPECT_EQ(mesh.take(), cubes().tets);
+}
+
+TEST(TetShape, is_positive_only_with_the_orientation_of_the_meshes_and_some_height)
+{
+    const Double3 a{0, 0, 0}, b{0, 0.5, 0}, c{0.5, 0, 0}, d{0, 0, 0.5};
+    EXPECT_TRUE(may_be_made(a, b, c, d));
+    EXPECT_FALSE(may_be_made(b, a, c, d));
+    EXPECT_FALSE(may_be_made(a, b, c, {0.25, 0.25, 0})) << "flat";
+    EXPECT_FALSE(may_be_made(a, b, c, {0.25, 0.25, 0x1p-40})) << "positive, but too thin";
+    EXPECT_FALSE(may_be_made(a, b, c, {0.25, 0.25, 5e-4}));
+    EXPECT_TRUE(may_be_made(a, b, c, {0.25, 0.25, 1e-3}));
+}
+
+TEST(EdgeRemoval, finds_the_cheapest_of_all_triangulations_of_the_ring)
+{
+    Random random(1);
+    int removed = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        const std::uint32_t n = 3 + static_cast<std::uint32_t>(trial) % 6;
+        EditableMesh mesh(fan(n, random));
+        EdgeRing ring;
+        ASSERT_TRUE(find_ring(mesh, 0, 0, most_around_edge, ring));
+        ASSERT_EQ(ring.tets.size(), n);
+        const double before = mesh.cost(), expected = cheapest(mesh, ring, 0, n - 1);
+        const double gain = EdgeRemoval(mesh).try_edge(0, 0, anything);
+        if (expected == impossible) {
+            EXPECT_EQ(gain, 0);
+            continue;
+        }
+        ++removed;
+        EXPECT_NEAR(mesh.cost(), expected, 1e-12);
+        EXPECT_NEAR(before - mesh.cost(), gain, 1e-12);
+        EXPECT_EQ(mesh.take().tets.size(), 2 * (n - 2));
+        EXPECT_FALSE(find_defect(mesh.take(), 0));
+    }
+    EXPECT_GT(removed, 100);
+}
+
+TEST(EdgeRemoval, is_undone_by_face_removal)
+{
+    Random random(2);
+    const TetMesh start = fan(3, random);
+    EditableMesh mesh(start);
+    const double gain = EdgeRemoval(mesh).try_edge(0, 0, anything);
+    ASSERT_NE(gain, 0);
+    double back = 0;
+    for (std::uint32_t face = 0; face < 4 && back == 0; ++face)
+        back = try_face(mesh, 0, face, anything);
+    EXPECT_NEAR(back, -gain, 1e-12);
+    EXPECT_EQ(corners_of(mesh), corners_of(EditableMesh(start)));
+}
+
+TEST(VertexMove, ends_where_no_other_point_is_cheaper)
+{
+    EditableMesh mesh(cubes().tets);
+    const std::uint32_t v = free_vertex(mesh);
+    VertexStar star;
+    ASSERT_TRUE(find_star(mesh, v, 400, star));
+    const Double3 best = cheapest_point(mesh, star.edges, mesh.point(v), 500);
+    const double least = star.cost(mesh, best);
+    Random random(3);
+    for (int i = 0; i < 1000; ++i) {
+        const double reach = std::pow(2.0, -i % 16);
+        const Double3 other = best + to_double(random.point(-1, 1)) * reach;
+        EXPECT_GE(star.cost(mesh, other), least * (1 - 1e-6));
+    }
+}
+
+TEST(VertexMove, and_collapse_lower_the_cost_by_what_they_say)
+{
+    EditableMesh mesh(cubes().tets);
+    Collapse collapse(mesh);
+    VertexStar star;
+    for (std::uint32_t v = 0; v < mesh.vertex_slots(); ++v) {
+        if (!mesh.is_free(v)) continue;
+        const double before = mesh.cost();
+        const bool moves = v % 2 == 0;
+        const double gain = moves ? try_move(mesh, v, 0, star) : collapse.try_vertex(v, anything);
+        EXPECT_NEAR(before - mesh.cost(), gain, 1e-10);
+        EXPECT_EQ(mesh.is_free(v), moves || gain == 0);
+    }
+    expect_same_domain(mesh.take(), cubes());
+}
+
+TEST(Collapse, takes_the_neighbour_that_leaves_the_least_cost)
+{
+    const EditableMesh start(cubes().tets);
+    for (std::uint32_t v = 0, tried = 0; v < start.vertex_slots() && tried < 8; ++v) {
+        if (!start.is_free(v)) continue;
+        ++tried;
+        VertexStar star;
+        EditableMesh first(cubes().tets);
+        ASSERT_TRUE(find_star(first, v, 400, star));
+        double best = impossible;
+        for (const auto& edge : star.edges) {
+            EditableMesh mesh(cubes().tets);
+            std::vector<Corners> fresh;
+            for (const std::uint32_t t : star.tets) {
+                Corners corners = mesh.tet(t).vertices;
+                if (std::find(corners.begin(), corners.end(), edge.p) != corners.end()) continue;
+                std::replace(corners.begin(), corners.end(), v, edge.p);
+                fresh.push_back(corners);
+            }
+            if (mesh.replace(star.tets, fresh)) best = std::min(best, mesh.cost());
+        }
+        const double gain = Collapse(first).try_vertex(v, anything);
+        EXPECT_EQ(gain == 0, best == impossible);
+        EXPECT_NEAR(first.cost(), gain == 0 ? start.cost() : best, 1e-12);
+    }
+}
+
+TEST(Insertion, lowers_the_cost_by_what_it_says)
+{
+    EditableMesh mesh(cubes().tets);
+    Insertion insertion(mesh);
+    int inserted = 0;
+    for (std::uint32_t i = 0; i < 6 * cubes().tets.tets.size(); i += 5) {
+        const std::uint32_t t = i / 6;
+        if (!mesh.is_reached(t)) continue;
+        const double before = mesh.cost();
+        const double gain = insertion.try_edge(t, i % 6, i % 2 == 0 ? 0 : anything);
+        ASSERT_NEAR(before - mesh.cost(), gain, 1e-10);
+        inserted += gain != 0 ? 1 : 0;
+    }
+    EXPECT_GT(inserted, 10);
+    expect_same_domain(mesh.take(), cubes());
+}
+
+TEST(EditableMesh, stays_sound_through_many_random_operations)
+{
+    EditableMesh mesh(cubes().tets);
+    EdgeRemoval edges(mesh);
+    Collapse collapse(mesh);
+    Insertion insertion(mesh);
+    VertexStar star;
+    Random random(4);
+    double cost = mesh.cost();
+    int done = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random.bits() % n); };
+        const std::uint32_t t = below(mesh.tet_slots()), v = below(mesh.vertex_slots());
+        double gain = 0;
+        switch (below(8)) {
+        case 0: gain = mesh.is_free(v) ? collapse.try_vertex(v, below(4) == 0 ? anything : 0) : 0; break;
+        case 1: gain = mesh.is_free(v) ? try_move(mesh, v, anything, star) : 0; break;
+        case 2: gain = mesh.is_reached(t) ? insertion.try_edge(t, below(6), below(2) == 0 ? anything : 0) : 0; break;
+        case 3:
+        case 4: gain = mesh.is_reached(t) ? try_face(mesh, t, below(4), anything) : 0; break;
+        default: gain = mesh.is_reached(t) ? edges.try_edge(t, below(6), anything) : 0; break;
+        }
+        done += gain != 0 ? 1 : 0;
+        cost -= gain;
+        if (i % 20'000 == 0) expect_same_domain(mesh.take(), cubes());
+    }
+    EXPECT_NEAR(mesh.cost(), cost, 1e-8);
+    EXPECT_GT(done, 10'000);
+    expect_same_domain(mesh.take(), cubes());
+}
