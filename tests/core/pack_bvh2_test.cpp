@@ -108,7 +108,7 @@ TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
 }
 
 INSTANTIATE_TEST_SUITE_P(each, PackBvh2Of, testing::ValuesIn(meshes_to_pack()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(PackBvh2, boxes_are_the_trees_and_the_margin)
 {

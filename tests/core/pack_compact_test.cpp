@@ -152,7 +152,7 @@ TEST_P(CompactPacking, refuses_tets_that_a_walk_would_not_know_the_vertices_of)
 }
 
 INSTANTIATE_TEST_SUITE_P(each, CompactPacking, testing::Values(Layout::tet20, Layout::tet16),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
+                         [](const auto& tested) { return std::string(name_of(tested.param)); });
 
 TEST(CompactLimits, are_what_32_bits_index_and_links_name)
 {

@@ -160,7 +160,7 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
 }
 
 INSTANTIATE_TEST_SUITE_P(each, PackCwbvhOf, testing::ValuesIn(meshes_to_pack()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)
 {

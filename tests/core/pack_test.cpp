@@ -51,9 +51,9 @@ TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
 INSTANTIATE_TEST_SUITE_P(each, Packing,
                          testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32),
                                           testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
-                         [](const auto& info) {
-                             return std::string(name_of(std::get<0>(info.param))) + "_" +
-                                    std::string(name_of(std::get<1>(info.param)));
+                         [](const auto& tested) {
+                             return std::string(name_of(std::get<0>(tested.param))) + "_" +
+                                    std::string(name_of(std::get<1>(tested.param)));
                          });
 
 TEST(Pack, sizes_are_those_of_the_layout)
