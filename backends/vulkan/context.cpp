@@ -4,6 +4,9 @@
 
 #include <array>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 namespace tetrace::vulkan {
@@ -31,18 +34,26 @@ vk::raii::Device make_device(const FoundDevice& found, Uses uses)
     return {physical_device(found), info.setPEnabledExtensionNames(extensions)};
 }
 
+std::shared_ptr<vk::raii::Device> device_of(const FoundDevice& found, Uses uses)
+{
+    static std::mutex mutex;
+    static std::map<std::pair<VkPhysicalDevice, Uses>, std::weak_ptr<vk::raii::Device>> newest;
+    const std::lock_guard lock(mutex);
+    return made_or_shared(newest[{found.handle, uses}], [&] { return make_device(found, uses); });
+}
+
 } // namespace
 
 Context::Context(const FoundDevice& found, Uses uses) : found_(found)
 {
     if (!found.facts.usable) throw Error(ErrorKind::missing, found.facts.reason);
     run("opening the device", 0, [&] {
-        device_ = make_device(found, uses);
-        queue_ = device_.getQueue(*found.limits.queue_family, 0);
-        pool_ = device_.createCommandPool(vk::CommandPoolCreateInfo{}
-                                              .setQueueFamilyIndex(*found.limits.queue_family)
-                                              .setFlags(vk::CommandPoolCreateFlagBits::eResetCommandBuffer));
-        fence_ = device_.createFence({});
+        device_ = device_of(found, uses);
+        queue_ = device_->getQueue(*found.limits.queue_family, 0);
+        pool_ = device_->createCommandPool(vk::CommandPoolCreateInfo{}
+                                               .setQueueFamilyIndex(*found.limits.queue_family)
+                                               .setFlags(vk::CommandPoolCreateFlagBits::eResetCommandBuffer));
+        fence_ = device_->createFence({});
     });
 }
 
@@ -54,7 +65,7 @@ vk::PhysicalDeviceMemoryProperties Context::memory() const
 vk::raii::CommandBuffer Context::make_commands() const
 {
     const auto info = vk::CommandBufferAllocateInfo{}.setCommandPool(*pool_).setCommandBufferCount(1);
-    return std::move(vk::raii::CommandBuffers(device_, info).front());
+    return std::move(vk::raii::CommandBuffers(*device_, info).front());
 }
 
 void Context::submit(const vk::raii::CommandBuffer& commands) const
@@ -67,11 +78,11 @@ void Context::finish() const
 {
     // An empty submission's fence signals when all that was submitted before has ended.
     queue_.submit({}, *fence_);
-    const vk::Result result = device_.waitForFences(*fence_, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+    const vk::Result result = device_->waitForFences(*fence_, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
     if (result != vk::Result::eSuccess)
         throw Error(ErrorKind::internal,
                     "waiting for '" + facts().name + "': vkWaitForFences gave " + vk::to_string(result));
-    device_.resetFences(*fence_);
+    device_->resetFences(*fence_);
 }
 
 double Context::seconds_of(const vk::raii::QueryPool& times) const

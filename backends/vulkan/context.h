@@ -4,6 +4,7 @@
 #include "backends/vulkan/errors.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace tetrace::vulkan {
@@ -11,7 +12,26 @@ namespace tetrace::vulkan {
 /// What a context is opened for: features beyond compute are enabled only for sessions that need them.
 enum class Uses { compute, ray_queries };
 
-/// A logical device with one queue. It belongs to one session, so that a lost device is lost only to that session.
+/// What make() makes. Where the driver refuses to make one more, the newest that is still in use: NVIDIA's driver makes
+/// 63 devices a process, and rows may be more.
+template <class Handle, class Make>
+[[nodiscard]] std::shared_ptr<Handle> made_or_shared(std::weak_ptr<Handle>& newest, const Make& make)
+{
+    try {
+        const auto made = std::make_shared<Handle>(make());
+        newest = made;
+        return made;
+    } catch (const vk::SystemError& failure) {
+        const auto code = static_cast<vk::Result>(failure.code().value());
+        const bool no_more = code == vk::Result::eErrorInitializationFailed || code == vk::Result::eErrorTooManyObjects;
+        auto shared = no_more ? newest.lock() : nullptr;
+        if (!shared) throw;
+        return shared;
+    }
+}
+
+/// A logical device with one queue. It belongs to one session, so that a lost device is lost only to that session; but
+/// see made_or_shared(). Contexts of one physical device are used by one thread at a time.
 class Context {
 public:
     /// Throws Error where the driver fails. uses: ray_queries only if found.ray_queries has no reason against it.
@@ -19,7 +39,7 @@ public:
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }
     [[nodiscard]] const Device& facts() const { return found_.facts; }
-    [[nodiscard]] const vk::raii::Device& device() const { return device_; }
+    [[nodiscard]] const vk::raii::Device& device() const { return *device_; }
     [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
 
     [[nodiscard]] vk::PhysicalDeviceMemoryProperties memory() const;
@@ -32,7 +52,7 @@ public:
     /// A query pool for the two times of a piece of work.
     [[nodiscard]] vk::raii::QueryPool make_timestamps() const
     {
-        return device_.createQueryPool(
+        return device_->createQueryPool(
             vk::QueryPoolCreateInfo{}.setQueryType(vk::QueryType::eTimestamp).setQueryCount(2));
     }
     /// Seconds between record_begin_time() and record_end_time(), in commands that have finished.
@@ -56,7 +76,7 @@ public:
 
 private:
     FoundDevice found_;
-    vk::raii::Device device_{nullptr};
+    std::shared_ptr<vk::raii::Device> device_;
     vk::raii::Queue queue_{nullptr};
     vk::raii::CommandPool pool_{nullptr};
     vk::raii::Fence fence_{nullptr};

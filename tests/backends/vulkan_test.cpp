@@ -207,6 +207,24 @@ TEST(VulkanLimits, each_is_told_with_its_number)
     EXPECT_TRUE(contains(reason(&Limits::group_height, 4u), "4, 8 are needed"));
 }
 
+TEST(VulkanDevices, are_shared_where_the_driver_makes_no_more)
+{
+    std::weak_ptr<int> newest;
+    const auto refuse = [](vk::Result why) {
+        return [why]() -> int { throw vk::SystemError(vk::make_error_code(why)); };
+    };
+    const auto no_more = refuse(vk::Result::eErrorInitializationFailed);
+    EXPECT_THROW((void)vulkan::made_or_shared(newest, no_more), vk::SystemError); // there is none to share
+    auto first = vulkan::made_or_shared(newest, [] { return 1; });
+    auto second = vulkan::made_or_shared(newest, [] { return 2; });
+    EXPECT_EQ(*first, 1);
+    EXPECT_EQ(vulkan::made_or_shared(newest, no_more), second);
+    EXPECT_EQ(vulkan::made_or_shared(newest, refuse(vk::Result::eErrorTooManyObjects)), second);
+    EXPECT_THROW((void)vulkan::made_or_shared(newest, refuse(vk::Result::eErrorDeviceLost)), vk::SystemError);
+    second.reset();
+    EXPECT_THROW((void)vulkan::made_or_shared(newest, no_more), vk::SystemError);
+}
+
 TEST(VulkanTicks, count_through_a_wrap_and_ignore_invalid_bits)
 {
     using vulkan::ticks_between;
