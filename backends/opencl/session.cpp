@@ -97,7 +97,7 @@ void OpenclSession::compile()
         queue_.finish();
         enqueued_.clear();
     });
-    times_.compile_s = watch.seconds();
+    times_.compile_s += watch.seconds();
     times_.compile_cached = program.is_cached();
     program.keep();
 }

@@ -26,6 +26,7 @@ public:
 
 private:
     void read_output(std::span<std::uint32_t> words) override;
+    /// Adds to the times of the session's set-up.
     void compile();
     /// Replaces the program, which cannot start rays in a tet, by one that can.
     void compile_starts_inside();
