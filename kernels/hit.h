@@ -2,8 +2,17 @@
 
 // A ray's answer, the same for all structures.
 
-// t, u, v on the input triangle with corners v0, v0 + edge_1, v0 + edge_2 (Moeller and Trumbore 1997). A ray within
-// rounding of the triangle's plane gets the centroid.
+// Whether a ray lies in a triangle's plane to within rounding: the determinant may be off by 7 * 2^-24 times the sum of
+// its products' magnitudes, and 16 times is asked for (docs/spec/numbers.md, N3).
+KERNEL_FN bool is_seen_edge_on(real determinant, Vec3 direction, Vec3 edge_1, Vec3 edge_2)
+{
+    real size = dot3(magnitudes(edge_1), cross3_size(magnitudes(direction), magnitudes(edge_2)));
+    PRECISE real least = size * real(9.5367431640625e-7f); // 2^-20
+    return magnitude(determinant) <= least;
+}
+
+// t, u, v on the input triangle with corners v0, v0 + edge_1, v0 + edge_2 (Moeller and Trumbore 1997). A triangle that
+// is seen edge-on gives its centroid.
 KERNEL_FN Hit make_hit(Ray ray, uint triangle, Vec3 v0, Vec3 edge_1, Vec3 edge_2, uint tet, uint steps)
 {
     Vec3 offset = sub3(ray.origin, v0);
@@ -15,7 +24,7 @@ KERNEL_FN Hit make_hit(Ray ray, uint triangle, Vec3 v0, Vec3 edge_1, Vec3 edge_2
     hit.face_id = triangle;
     hit.tet = tet;
     hit.steps = steps;
-    if (determinant == real(0.0f)) {
+    if (is_seen_edge_on(determinant, ray.direction, edge_1, edge_2)) {
         Vec3 diagonal = sub3(edge_2, sub3(VEC3(real(0.0f), real(0.0f), real(0.0f)), edge_1));
         PRECISE real along = dot3(diagonal, ray.direction) / real(3.0f) - dot3(offset, ray.direction);
         PRECISE real t = along / dot3(ray.direction, ray.direction);

@@ -151,11 +151,13 @@ private:
 
     Verdicts judge_anew(const RowKey& key, std::size_t view)
     {
+        const HitFormula formula = is_portable(key.kernel) ? HitFormula::kernels : HitFormula::other;
         if (key.kernel.task == Task::rays)
             return given_oracle().judge(scene_->given_rays().set(*scene_, key.rays, key.ray_order, view), hits,
-                                        key.kernel.structure == Structure::bvh ? Origins::offset : Origins::own);
+                                        key.kernel.structure == Structure::bvh ? Origins::offset : Origins::own,
+                                        formula);
         return oracle_.judge(scene_->view_numbers()[view], scene_->views()[view], scene_->width(), scene_->height(),
-                             hits);
+                             hits, formula);
     }
 
     void compare(const RowRun& row, ImageVerdict& image, std::size_t view)

@@ -140,10 +140,9 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
 {
     const Verdicts sum = all_verdicts(rows);
     if (sum.rays == 0) return "nothing.";
-    std::string text = fmt::format("{} rays against Embree in robust mode, disagreements settled exactly: {} "
-                                   "agree, {} ties",
+    std::string text = fmt::format("{} rays, all by exact arithmetic: {} agree, {} ties",
                                    with_commas(sum.rays), with_commas(sum.agreed), with_commas(sum.ties));
-    if (sum.ties > 0) text += fmt::format(" (at most {:.1e} from an edge)", sum.largest_tie_distance);
+    if (sum.ties > 0) text += fmt::format(" (by curves at most {:.1e} from their rays)", sum.largest_tie_distance);
     if (sum.offset > 0)
         text += fmt::format(", {} right for the offset origins that BVHs start from", with_commas(sum.offset));
     return text + fmt::format(", {} settled for us, {} wrong, {} lost.", with_commas(sum.settled),

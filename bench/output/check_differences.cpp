@@ -95,7 +95,7 @@ std::string different_text(const RowRun& row, const DifferingRay& ray)
 
 std::string wrong_text(const RowRun& row, const WrongRay& ray)
 {
-    return fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:      {}\n  Embree robust: "
+    return fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:  {}\n  exact ray: "
                        "{}, t {:.9g}\n{}\n",
                        row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours),
                        face_text(ray.reference_face), ray.reference_t,

@@ -25,7 +25,7 @@ json wrong_ray_json(const WrongRay& ray)
             {"y", ray.y},
             {"reason", ray.reason},
             {"ours", hit_json(ray.ours)},
-            {"embree", {{"face_id", ray.reference_face}, {"t", ray.reference_t}}}};
+            {"exact", {{"face_id", ray.reference_face}, {"t", ray.reference_t}}}};
 }
 
 json differing_ray_json(const DifferingRay& ray)
@@ -36,9 +36,9 @@ json differing_ray_json(const DifferingRay& ray)
 
 WrongRay wrong_ray_from(const json& object)
 {
-    const json& embree = object.at("embree");
+    const json& exact = object.at("exact");
     return {object.at("view"),    object.at("x"), object.at("y"),     hit_from(object.at("ours")),
-            embree.at("face_id"), embree.at("t"), object.at("reason")};
+            exact.at("face_id"),  exact.at("t"),  object.at("reason")};
 }
 
 DifferingRay differing_ray_from(const json& object)

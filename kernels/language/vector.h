@@ -37,3 +37,17 @@ KERNEL_FN real magnitude(real a)
 {
     return a < real(0.0f) ? -a : a;
 }
+
+KERNEL_FN Vec3 magnitudes(Vec3 a)
+{
+    return VEC3(magnitude(a.x), magnitude(a.y), magnitude(a.z));
+}
+
+// cross3() with all signs positive: what its rounding errors are shares of.
+KERNEL_FN Vec3 cross3_size(Vec3 a, Vec3 b)
+{
+    PRECISE real x = a.y * b.z + a.z * b.y;
+    PRECISE real y = a.z * b.x + a.x * b.z;
+    PRECISE real z = a.x * b.y + a.y * b.x;
+    return VEC3(x, y, z);
+}

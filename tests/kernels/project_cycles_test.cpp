@@ -190,7 +190,7 @@ TEST(ProjectCycles, goes_in_circles_only_from_tets_within_rounding_and_then_begi
             hits += exact != NO_HIT;
             if (hit.face_id == exact) continue;
             const auto settled =
-                grid.settler.settle({line.origin, line.direction}, hit.face_id, exact, tie_bound(line.origin));
+                grid.settler.settle({line.origin, line.direction}, {}, hit.face_id, tie_bound(line.origin));
             EXPECT_NE(settled.kind, Settlement::Kind::wrong)
                 << "ray " << number << ": " << settled.reason << ", ours " << hit.face_id << ", exact " << exact;
         }

@@ -45,7 +45,8 @@ struct Grid {
     Scene scene;
     PackedScene packed = pack(scene, Layout::tet96, TetOrder::hilbert);
     right::SceneView view = right::view_of(packed);
-    Settler settler{scene.mesh};
+    ExactSearch search{scene.mesh};
+    Settler settler{scene.mesh, search};
 
     Grid(const char* title, Scene made) : name(title), scene(std::move(made)) {}
     Grid(const Grid&) = delete;

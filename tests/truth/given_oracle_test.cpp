@@ -1,7 +1,6 @@
 #include "bench/truth/given_oracle.h"
 
 #include "backends/embree/bvh_builder.h"
-#include "bench/truth/settle.h"
 #include "core/base/exact.h"
 #include "core/device/given_quads.h"
 #include "core/pack/pack_bvh.h"
@@ -17,8 +16,6 @@ using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
-
-using Kind = Settlement::Kind;
 
 constexpr RayKind all_kinds[] = {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random};
 
@@ -268,7 +265,7 @@ TEST(GivenOracle, a_hit_beside_a_triangle_s_edge_is_a_tie_within_the_bound)
         set.rays.front().origin.z = 0.125F;
         return GivenOracle(mesh, 1).judge(set, std::vector{Hit{SOME_HIT, NO_TET, 0, 0, 0, 0}}, Origins::own);
     };
-    EXPECT_EQ(beside(0x1p-21F).agreed, 1u);
+    EXPECT_EQ(beside(0x1p-21F).settled, 1u);
     EXPECT_EQ(beside(-0x1p-21F).ties, 1u);
     EXPECT_EQ(beside(-0x1p-18F).wrong, 1u);
 }
@@ -276,28 +273,17 @@ TEST(GivenOracle, a_hit_beside_a_triangle_s_edge_is_a_tie_within_the_bound)
 TEST(GivenOracle, a_triangle_within_the_bound_of_the_start_is_a_tie)
 {
     EXPECT_EQ(judged(0x1p-21F, far_sheet, 0.5F, Origins::own).ties, 1u);
-    EXPECT_EQ(judged(0x1p-21F, near_sheet, 0x1p-21F, Origins::own).agreed, 1u);
+    EXPECT_EQ(judged(0x1p-21F, near_sheet, 0x1p-21F, Origins::own).settled, 1u);
     EXPECT_EQ(judged(0x1p-19F, far_sheet, 0.5F, Origins::own).wrong, 1u);
 }
 
 TEST(GivenOracle, a_triangle_within_the_error_of_t_of_the_end_is_a_tie)
 {
-    // The condition is 1 + 2 |e1| |e2| / (e1 x e2) = 3 here, so that 2^-18 is allowed.
+    // The bound is 2^-19.6 here, and the error of t 2^-21.5.
     EXPECT_EQ(judged(0.25F, NO_HIT, 0, Origins::own, 0.25F + 0x1p-20F, true).ties, 1u);
     EXPECT_EQ(judged(0.25F, NO_HIT, 0, Origins::own, 0.25F + 0x1p-17F, true).wrong, 1u);
-    const float end = 0.25F - 0x1p-20F;
+    const float end = 0.25F - 0x1p-22F;
     EXPECT_EQ(judged(0.25F, near_sheet, end, Origins::own, end, true).ties, 1u) << "its t is rounded";
     const float too_short = 0.25F - 0x1p-17F;
     EXPECT_EQ(judged(0.25F, near_sheet, too_short, Origins::own, too_short, true).wrong, 1u);
-}
-
-TEST(Settle, the_triangle_that_a_ray_starts_on_is_no_candidate)
-{
-    const TriangleMesh mesh = sheets(0.25F);
-    const Settler settler(mesh);
-    const ExactRay ray{{0.25F, 0.25F, 0}, {0, 0, 1}};
-    const double bound = tie_bound(ray.origin);
-    EXPECT_EQ(settler.settle(ray, {start_sheet, NO_END, false}, near_sheet, start_sheet, bound).kind, Kind::ours);
-    EXPECT_EQ(settler.settle(ray, {start_sheet, NO_END, false}, start_sheet, near_sheet, bound).kind, Kind::wrong);
-    EXPECT_EQ(settler.settle(ray, near_sheet, start_sheet, bound).kind, Kind::wrong) << "a ray that starts on none";
 }

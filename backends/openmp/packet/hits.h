@@ -5,8 +5,8 @@ struct Hits {
     Words of[HIT_WORDS];
 };
 
-// The triangle, t, u and v of lanes that hit one, for rays that do not end before it. A ray in its triangle's plane is
-// left to the scalar kernel.
+// The triangle, t, u and v of lanes that hit one, for rays that do not end before it. A ray that sees
+// its triangle edge-on is left to the scalar kernel.
 LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hits& hits)
 {
     LaneWords offsets;
@@ -28,7 +28,8 @@ LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hi
     hits.of[2] = select(mask, as_words(along / determinant), Words{});
     hits.of[3] = select(mask, as_words(dot3(offset, p) / determinant), Words{});
     hits.of[4] = select(mask, as_words(dot3(direction, q) / determinant), Words{});
-    packet.left_to_scalar |= lanes & lanes_of(equal(determinant, Floats{}));
+    const Floats size = dot3(magnitudes(edge_1), cross3_size(magnitudes(direction), magnitudes(edge_2)));
+    packet.left_to_scalar |= lanes & ~lanes_of(greater(magnitude(determinant), size * 0x1p-20f));
 }
 
 // Hits of LANES lanes, each as its first four words and its last two.

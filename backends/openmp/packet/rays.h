@@ -10,6 +10,14 @@ LANE_FN Vectors sub3(const Vectors& a, const Vectors& b)
 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+LANE_FN Vectors magnitudes(const Vectors& a)
+{
+    return {magnitude(a.x), magnitude(a.y), magnitude(a.z)};
+}
+LANE_FN Vectors cross3_size(const Vectors& a, const Vectors& b)
+{
+    return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
+}
 LANE_FN Floats dot3(const Vectors& a, const Vectors& b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "bench/truth/exact_search.h"
+#include "bench/truth/hit_point.h"
+#include "bench/truth/settle.h"
+#include "bench/truth/verdicts.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tetrace {
+
+/// A ray that is judged, and what the exact ray meets first.
+struct JudgedRay {
+    ExactRay ray;
+    ExactRay traced; ///< whose t the hit has: `ray`, or for BVHs one from an origin off the surface
+    RayPart part;
+    FirstHit first;
+    std::uint32_t view, x, y, pixel; ///< to name it by
+};
+
+/// Why an answer is wrong.
+struct Flaw {
+    const char* reason;
+    std::uint32_t first; ///< what the exact ray meets first
+};
+
+/// What both oracles share: one ray's verdict, and the loop over many.
+class Judge {
+public:
+    /// mesh: kept by reference. threads: 0 is all.
+    Judge(const TriangleMesh& mesh, unsigned threads);
+
+    [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
+
+    /// What the part of a ray meets first, if that is clear.
+    [[nodiscard]] FirstHit first(const ExactRay& ray, const RayPart& part) const;
+
+    /// Why an answer is wrong; nothing: it is right, and has been counted.
+    [[nodiscard]] std::optional<Flaw> judge(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit,
+                                            HitFormula formula) const;
+
+    /// Counts a wrong or lost ray.
+    void blame(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit, Flaw flaw) const;
+
+    /// Calls what(verdicts, i) for each i below count, on all threads, and sums up.
+    template <class What>
+    [[nodiscard]] Verdicts for_each(std::size_t count, const What& what) const
+    {
+        constexpr std::size_t rays_at_once = 1024; // one thread judges these, one after the other
+        std::vector<Verdicts> blocks((count + rays_at_once - 1) / rays_at_once);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+        for (std::size_t block = 0; block < blocks.size(); ++block)
+            for (std::size_t i = block * rays_at_once; i < std::min((block + 1) * rays_at_once, count); ++i)
+                what(blocks[block], i);
+        return sum_of(blocks, count);
+    }
+
+private:
+    [[nodiscard]] const char* flaw_of(const JudgedRay& judged, const Hit& hit, HitFormula formula) const;
+    [[nodiscard]] static Verdicts sum_of(std::span<const Verdicts> blocks, std::size_t rays);
+
+    const TriangleMesh& mesh_;
+    int threads_;
+    ExactSearch search_;
+    Settler settler_;
+};
+
+} // namespace tetrace
