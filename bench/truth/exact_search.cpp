@@ -187,7 +187,7 @@ struct ExactSearch::Tube {
         double low = never, high = -never, inside = never, inside_other = never;
         for (const auto& [p, q] : {std::pair{seen.a, seen.b}, {seen.b, seen.c}, {seen.c, seen.a}}) {
             const double side = dot(direction, cross(p, q));
-            const double margin = radius * speed * sum_of(q - p) + lost_share * sum * sum_of(p) * sum_of(q);
+            const double margin = radius * (1 + 1e-9) * length(cross(direction, q - p)) + lost_share * sum * sum_of(p) * sum_of(q);
             low = std::min(low, side + margin);
             high = std::max(high, side - margin);
             inside = std::min(inside, side - margin);

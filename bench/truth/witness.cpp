@@ -78,21 +78,38 @@ Meeting meeting_of(Double3 from, Double3 to, const std::array<Double3, 3>& trian
     return before * after < 0 && (least > 0 || most < 0) ? Meeting::crossed : Meeting::touched;
 }
 
-// The ray's direction and bound, as integers.
+// The ray's direction and bound. Double precision decides what it can.
 struct ExactTube {
     explicit ExactTube(const WitnessQuestion& question)
-        : direction(scaled(to_double(question.ray.direction), direction_bits)), bound(scaled(question.bound, corner_bits))
+        : near_direction(to_double(question.ray.direction)), near_bound(question.bound)
     {
     }
-    [[nodiscard]] bool contains(const Exact3& point) const
+    [[nodiscard]] Exact3 direction() const { return scaled(near_direction, direction_bits); }
+    [[nodiscard]] Integer bound() const { return scaled(near_bound, corner_bits); }
+    [[nodiscard]] bool contains(Double3 corner) const
     {
-        const Exact3 across = cross(point, direction);
-        return dot(across, across) <= bound * bound * dot(direction, direction);
+        // Rounded, the cross product is off by less than that share of its factors.
+        const double reach = near_bound * tetrace::length(near_direction);
+        if (tetrace::length(tetrace::cross(corner, near_direction)) <
+            0.999 * reach - 4e-15 * tetrace::length(corner) * tetrace::length(near_direction))
+            return true;
+        const Exact3 along = direction(), across = cross(scaled(corner, corner_bits), along);
+        return dot(across, across) <= bound() * bound() * dot(along, along);
     }
-    [[nodiscard]] bool ball_contains(const Exact3& point) const { return dot(point, point) <= bound * bound; }
+    [[nodiscard]] bool ball_contains(Double3 corner) const
+    {
+        const Exact3 point = scaled(corner, corner_bits);
+        return dot(point, point) <= bound() * bound();
+    }
+    [[nodiscard]] bool goes_back(Double3 from, Double3 to) const
+    {
+        const double along = tetrace::dot(to - from, near_direction);
+        if (along > 4e-15 * tetrace::length(to - from) * tetrace::length(near_direction)) return false;
+        return sign_of(dot(scaled(to, corner_bits) - scaled(from, corner_bits), direction())) < 0;
+    }
 
-    Exact3 direction;
-    Integer bound;
+    Double3 near_direction;
+    double near_bound;
 };
 
 std::array<Double3, 3> corners_from(const TriangleMesh& mesh, Float3 origin, std::uint32_t triangle)
@@ -105,16 +122,11 @@ std::array<Double3, 3> corners_from(const TriangleMesh& mesh, Float3 origin, std
 bool runs_in_tube(const WitnessQuestion& question, const Witness& witness)
 {
     const ExactTube tube(question);
-    std::vector<Exact3> corners;
-    for (const Double3 corner : witness)
-        corners.push_back(scaled(corner, corner_bits));
-    const bool starts = question.part.start == NO_HIT ? witness.front().x == 0 && witness.front().y == 0 && witness.front().z == 0
-                                                      : tube.ball_contains(corners.front());
-    if (!starts) return false;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        if (!tube.contains(corners[i])) return false;
-        if (i > 0 && sign_of(dot(corners[i] - corners[i - 1], tube.direction)) < 0) return false;
-    }
+    const auto [x, y, z] = witness.front();
+    const bool is_at_origin = x == 0 && y == 0 && z == 0;
+    if (!is_at_origin && (question.part.start == NO_HIT || !tube.ball_contains(witness.front()))) return false;
+    for (std::size_t i = 0; i < witness.size(); ++i)
+        if (!tube.contains(witness[i]) || (i > 0 && tube.goes_back(witness[i - 1], witness[i]))) return false;
     return true;
 }
 
