@@ -9,10 +9,10 @@
 // the ray has no path, or no face of it is left. For an origin in a tet none of whose faces hold the ray.
 // start: the triangle that the ray starts on. The result is the face after the last face of this triangle on the path.
 // If the triangle has no face on the path, and for FREE_FACE, it is the first face crossed in front of the origin, else
-// the path's last face. doubted: the first exit of a walk that may be in a circle, or NO_LINK. The path is then followed
-// to its end. `doubted` is returned if it is on the path, or if the end is too far: only a walk in a circle begins anew.
-// This is tested here because a separate loop would be slow on devices that execute a conditional block even if no lane
-// needs it.
+// the path's last face. doubted: the first exit of a walk that may be in a circle, or NO_LINK. The path is then
+// followed to its end. `doubted` is returned if it is on the path, or if the end is too far: only a walk in a circle
+// begins anew. This is tested here because a separate loop would be slow on devices that execute a conditional block
+// even if no lane needs it.
 KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint doubted)
 {
     COUNT_SEARCH(1);

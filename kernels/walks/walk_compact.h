@@ -153,8 +153,8 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 }
 
 // The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET where the ray has
-// no path. doubted: the first tet of a walk that may be in a circle, or NO_TET. The result's tet is `doubted` if that is
-// on the path, or if the path's end is too far.
+// no path. doubted: the first tet of a walk that may be in a circle, or NO_TET. The result's tet is `doubted` if that
+// is on the path, or if the path's end is too far.
 KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint doubted)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
