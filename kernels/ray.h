@@ -17,6 +17,12 @@ STRUCT(TraceParams)
     uint start_neighbour; // what is behind the face opposite the one with the highest number
 };
 
+// The number of steps after which a walk first asks whether it goes in circles.
+KERNEL_FN uint first_pause(TraceParams params)
+{
+    return params.max_steps < STEPS_BEFORE_DOUBT ? params.max_steps : STEPS_BEFORE_DOUBT;
+}
+
 STRUCT(Ray)
 {
     Vec3 origin;

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/exact.h"
 #include "core/base/hash.h"
+#include "core/mesh/sides.h"
 #include "scenes/information.h"
 
 #include <array>
@@ -304,11 +305,13 @@ void SceneReader::check_domain(const Scene& scene) const
 {
     const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
     if (const auto gap = find_gap(scene.tets, scene.mesh, size)) refuse("tets", gap->what);
+    std::string weak;
     try {
-        static_cast<void>(make_entry_grid(scene.domain, scene.tets));
+        weak = find_weak_side(scene, make_entry_grid(scene.domain, scene.tets));
     } catch (const Error& error) {
         refuse("domain lines", error.what());
     }
+    if (!weak.empty()) refuse("domain lines", weak);
 }
 
 Scene SceneReader::read()

@@ -14,7 +14,7 @@ inline constexpr std::uint32_t scene_file_version = 3;
 void write_scene(const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a scene and checks everything: magic, version, sizes, checksum of each section, scene hash, find_defect,
-/// find_gap, the entry grid; no section may be empty.
+/// find_gap, the entry grid, find_weak_side; no section may be empty.
 /// Throws Error{missing} where the file is missing, else Error{invalid_input} naming file, section and reason. Never
 /// returns a scene that differs from the one written.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);

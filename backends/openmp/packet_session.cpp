@@ -121,7 +121,7 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     result.width = job.width;
     result.height = job.height;
     result.start_tet = job.start_tet;
-    result.max_steps = job.max_steps;
+    result.max_steps = std::min(job.max_steps, STEPS_BEFORE_DOUBT); // the rest is left to the scalar kernel
     if (!rays.given.empty()) {
         result.directions = reinterpret_cast<const std::uint32_t*>(&rays.direction(0));
         result.origins = reinterpret_cast<const std::uint32_t*>(&rays.origin(0));

@@ -6,6 +6,7 @@
 #include "core/device/launch.h"
 
 #include <algorithm>
+#include <charconv>
 #include <thread>
 
 namespace tetrace::vulkan {
@@ -94,6 +95,7 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
                                 .get<vk::PhysicalDeviceDriverProperties>();
         found.facts.driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
         found.facts.implementation = implementation_of(driver.driverName.data(), driver.driverInfo.data());
+        found.facts.most_steps = most_steps_of(found.facts.implementation);
     }
     if (has_extension(extensions, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME))
         found.facts.pci =
@@ -146,6 +148,18 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
 std::string implementation_of(std::string_view driver_name, std::string_view driver_info)
 {
     return implementation_name(driver_name == "llvmpipe" ? "lavapipe" : driver_name, driver_info);
+}
+
+std::uint32_t most_steps_of(std::string_view implementation)
+{
+    constexpr std::string_view lavapipe = "lavapipe";
+    constexpr unsigned first_without_limit = 25;
+    if (!implementation.starts_with(lavapipe)) return 0;
+    unsigned version = 0; // stays 0 where the driver states none
+    if (implementation.size() > lavapipe.size() + 1)
+        std::from_chars(implementation.data() + lavapipe.size() + 1, implementation.data() + implementation.size(),
+                        version);
+    return version >= first_without_limit ? 0 : 28'000;
 }
 
 std::string why_not_usable(const Limits& limits)

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace tetrace {
 
@@ -19,22 +20,29 @@ void poison(std::vector<Hit>& hits)
     std::ranges::fill(hits, Hit{POISON, POISON, 0, 0, 0, 0});
 }
 
+/// Lost rays that took as many steps as the row's device can, if that is fewer than the proof allows.
+std::uint64_t count_lost_at_device_cap(const RowRun& row, std::span<const Hit> hits)
+{
+    const std::uint32_t cap = row.device.most_steps;
+    if (cap == 0 || row.scene->counts().tets < cap) return 0;
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(hits, [cap](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
+}
+
 /// openmp's hits for the kernels of other backends' rows, traced only for the comparison.
 class References {
 public:
     References(SceneWork& scene, const Options& options) : scene_(&scene), options_(&options) {}
 
-    const std::vector<Hit>& hits(const RowKey& key, std::size_t view)
+    const std::vector<Hit>& hits(const RowRun& compared, std::size_t view)
     {
-        Reference& reference = find(*reference_of(key));
-        if (reference.view == view) return reference.hits;
-        RowRun& row = reference.row;
-        if (row.session == nullptr)
-            throw Error(ErrorKind::internal, "openmp, which the row is compared with, failed: " + reason_of(row));
-        reference.hits.resize(ray_count(row, view));
-        poison(reference.hits);
-        static_cast<void>(trace_view(row, view, reference.hits));
-        reference.view = view;
+        Reference& reference = find(*reference_of(compared.key));
+        if (reference.view != view) trace(reference, view, 0);
+        // A walk that is shorter than both caps is the same under either.
+        const std::uint32_t cap = compared.device.most_steps;
+        const bool has_longer =
+            cap != 0 && std::ranges::any_of(reference.hits, [cap](const Hit& hit) { return hit.steps >= cap; });
+        if (has_longer) trace(reference, view, cap);
         return reference.hits;
     }
 
@@ -44,6 +52,20 @@ private:
         std::optional<std::size_t> view;
         std::vector<Hit> hits;
     };
+
+    /// cap: the most steps of the device that is compared; 0: those of openmp.
+    static void trace(Reference& reference, std::size_t view, std::uint32_t cap)
+    {
+        RowRun& row = reference.row;
+        if (row.session == nullptr)
+            throw Error(ErrorKind::internal, "openmp, which the row is compared with, failed: " + reason_of(row));
+        reference.hits.resize(ray_count(row, view));
+        poison(reference.hits);
+        const std::uint32_t own = std::exchange(row.device.most_steps, cap);
+        static_cast<void>(trace_view(row, view, reference.hits));
+        row.device.most_steps = own;
+        reference.view = cap == 0 ? std::optional(view) : std::nullopt;
+    }
 
     Reference& find(const RowKey& key)
     {
@@ -86,6 +108,7 @@ public:
         if (hits.empty()) return image; // given rays, of which this view has none
         trace_timed(row, image, view);
         image.totals = checked_totals(row, view);
+        image.lost_at_device_cap = count_lost_at_device_cap(row, hits);
         image.visits = count_visits(row, view, hits, threads_);
         image.hit_hash = hash_of(hits);
         if (reference_of(row.key)) compare(row, image, view);
@@ -162,7 +185,7 @@ private:
 
     void compare(const RowRun& row, ImageVerdict& image, std::size_t view)
     {
-        reference = references_.hits(row.key, view);
+        reference = references_.hits(row, view);
         const Differences differences = compare_hits(hits, reference, allowance_of(row));
         image.compared = true;
         image.different = differences.count;

@@ -77,7 +77,9 @@ const VerbHelp verb_help[] = {
      "wrong.\n\n"
      "The first differing and the first wrong ray of a row are printed in full. Exits with 1 if a device is wrong or "
      "not exact, or if maria or project, which claim to be robust, have wrong or lost rays (--allow-flawed accepts "
-     "maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06 and Embree are counted, and fail nothing. "
+     "maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06 and Embree, and of math mode fast, which "
+     "is "
+     "held to no proof, are counted, and fail nothing. "
      "By default the rows of maria, of project on half32 and of both BVHs are judged. Other exit-face searches are "
      "judged if --method names them, and Embree if --structure, --method, --layout, --backend, --filter or --require "
      "does.",

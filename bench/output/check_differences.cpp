@@ -32,7 +32,7 @@ TraceJob job_of(const RowRun& row, std::uint32_t view)
 {
     const auto& numbers = row.scene->view_numbers();
     const auto index = static_cast<std::size_t>(std::ranges::find(numbers, view) - numbers.begin());
-    return row.scene->job(index, &row.packed->data);
+    return row.scene->job(index, &row.packed->data, row.device);
 }
 
 /// Whether a ray of the row can be walked again by its pixel. BVHs leave no tets, and a given ray cannot be identified

@@ -46,7 +46,7 @@ private:
 
     [[nodiscard]] TraceJob job_of(const RowRun& row, std::size_t view) const override
     {
-        return run_->scene->job(view, row.packed != nullptr ? &row.packed->data : nullptr);
+        return run_->scene->job(view, row.packed != nullptr ? &row.packed->data : nullptr, row.device);
     }
 
     [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t view) override

@@ -46,7 +46,7 @@ void open_on_scene(RowRun& row, const Options& options)
     open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->data : nullptr}, options);
 }
 
-std::string traced_reason(const Traced& traced)
+std::string traced_reason(const RowRun& row, const Traced& traced)
 {
     std::string text;
     const auto add = [&](std::uint64_t count, const char* what) {
@@ -54,7 +54,12 @@ std::string traced_reason(const Traced& traced)
     };
     add(traced.different, "different from openmp's");
     add(traced.verdicts.lost, "lost");
+    if (traced.lost_at_device_cap > 0)
+        text += fmt::format(" ({} after {} steps, where loops of {} may end early)", traced.lost_at_device_cap,
+                            row.device.most_steps, row.device.implementation);
     add(traced.verdicts.wrong, "wrong");
+    if (row.key.kernel.math == MathMode::fast && !traced.verdicts.clean())
+        text += "; math mode fast is held to no proof";
     return text;
 }
 
@@ -76,6 +81,7 @@ void Traced::add(const ImageVerdict& image)
     different += image.different;
     inexact += image.inexact;
     largest_ulps = std::max(largest_ulps, image.largest_ulps);
+    lost_at_device_cap += image.lost_at_device_cap;
     if (!first_different) first_different = image.first_different;
     kernel_s += image.kernel_s;
     wall_s += image.wall_s;
@@ -120,7 +126,7 @@ std::string reason_of(const RowRun& row)
 {
     if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->reason;
     if (const auto* failed = std::get_if<Failed>(&row.outcome)) return failed->what;
-    return traced_reason(std::get<Traced>(row.outcome));
+    return traced_reason(row, std::get<Traced>(row.outcome));
 }
 
 void guarded(RowRun& row, const std::function<void()>& work)

@@ -48,7 +48,8 @@ struct ImageVerdict {
     std::uint64_t inexact = 0;
     std::uint64_t largest_ulps = 0;
     std::optional<DifferingRay> first_different;
-    std::uint64_t hit_hash = 0; ///< of this image's hits
+    std::uint64_t lost_at_device_cap = 0; ///< as in Traced
+    std::uint64_t hit_hash = 0;           ///< of this image's hits
     double kernel_s = 0, wall_s = 0, download_s = 0;
 };
 
@@ -62,7 +63,8 @@ struct Traced {
     std::uint64_t inexact = 0;      ///< rays that differ from openmp's in some bit, allowed or not
     std::uint64_t largest_ulps = 0; ///< of t, u and v, among those allowed
     std::optional<DifferingRay> first_different;
-    std::uint64_t hit_hash = 0; ///< of all hits, view after view
+    std::uint64_t lost_at_device_cap = 0; ///< lost rays with Device::most_steps steps, fewer than the proof allows
+    std::uint64_t hit_hash = 0;           ///< of all hits, view after view
     std::uint64_t first_view_hash = 0;
     std::uint64_t last_view_hash = 0;
     double kernel_s = 0; ///< device seconds of this first pass

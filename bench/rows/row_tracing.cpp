@@ -32,9 +32,10 @@ std::uint32_t pixel_of_ray(const RowRun& row, std::size_t view, std::size_t ray)
 TraceJob job_of(const RowRun& row, std::size_t view)
 {
     SceneWork& scene = *row.scene;
-    if (row.key.kernel.task == Task::trace) return scene.job(view, row.packed != nullptr ? &row.packed->data : nullptr);
+    if (row.key.kernel.task == Task::trace)
+        return scene.job(view, row.packed != nullptr ? &row.packed->data : nullptr, row.device);
     const RaySet& set = scene.given_rays().set(scene, row.key.rays, row.key.ray_order, view);
-    return given_job(set.rays.size(), scene.max_steps(), set.any_hit);
+    return given_job(set.rays.size(), step_cap(scene.counts().tets, row.device), set.any_hit);
 }
 
 TraceJob prepare_view(RowRun& row, std::size_t view)

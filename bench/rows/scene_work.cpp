@@ -11,14 +11,6 @@
 
 namespace tetrace {
 
-namespace {
-
-/// Some devices end loops silently at 65,535 iterations (lavapipe of Mesa 22.3). The cap stays below that on all
-/// devices.
-constexpr std::uint32_t largest_step_cap = 60'000;
-
-} // namespace
-
 SceneWork::SceneWork(LoadedScene loaded, const Options& options)
     : loaded_(std::move(loaded)), counts_(count_faces(loaded_.scene.tets)), width_(options.width),
       height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
@@ -55,12 +47,7 @@ const BuiltBvh& SceneWork::bvh()
     return *bvh_;
 }
 
-std::uint32_t SceneWork::max_steps() const
-{
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(counts_.tets + 1, largest_step_cap));
-}
-
-TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
+TraceJob SceneWork::job(std::size_t index, const PackedScene* packed, const Device& device) const
 {
     TraceJob job;
     job.view = views_.at(index);
@@ -68,7 +55,7 @@ TraceJob SceneWork::job(std::size_t index, const PackedScene* packed) const
     job.height = height_;
     if (packed != nullptr && structure_of(packed->layout) == Structure::cdt)
         start_in(job, *packed, loaded_.scene, start_tets_[index]);
-    job.max_steps = max_steps();
+    job.max_steps = step_cap(counts_.tets, device);
     return job;
 }
 

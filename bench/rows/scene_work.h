@@ -50,14 +50,13 @@ public:
     /// The tet of the scene that contains a view's origin; NO_TET where the origin is outside the domain.
     [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
 
-    /// A walk of this many steps is lost.
-    [[nodiscard]] std::uint32_t max_steps() const;
-
     /// Host threads used for all work.
     [[nodiscard]] unsigned threads() const { return threads_; }
 
-    /// The job of the view at `index` of views(). packed: null for kernels that are not portable.
-    [[nodiscard]] TraceJob job(std::size_t index, const PackedScene* packed) const;
+    /// The job of the view at `index` of views(). packed: null for kernels that are not portable. device: its loops
+    /// decide the cap of steps.
+    [[nodiscard]] TraceJob job(std::size_t index, const PackedScene* packed,
+                               const Device& device = reference_backend().devices().front()) const;
 
 private:
     LoadedScene loaded_;

@@ -67,7 +67,7 @@ void count_steps(Built& built, SceneWork& scene, const Options& options)
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("counting steps, " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        static_cast<void>(row.session->trace(scene.job(view, &row.packed->data), hits));
+        static_cast<void>(row.session->trace(scene.job(view, &row.packed->data, row.device), hits));
         built.totals.add(count_rays(hits));
     }
     built.bytes = row.session->bytes();

@@ -3,6 +3,7 @@
 #include "bench/pictures/picture_writer.h"
 #include "bench/pictures/shading.h"
 #include "bench/rows/row_run.h"
+#include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 
@@ -49,9 +50,8 @@ RowRun open_first_row(SceneWork& scene, const Options& options)
 
 std::vector<Hit> trace(RowRun& row, std::size_t view)
 {
-    const SceneWork& scene = *row.scene;
-    std::vector<Hit> hits(scene.rays_per_view(), Hit{POISON, NO_TET, 0, 0, 0, 0});
-    static_cast<void>(row.session->trace(scene.job(view, row.packed != nullptr ? &row.packed->data : nullptr), hits));
+    std::vector<Hit> hits(row.scene->rays_per_view(), Hit{POISON, NO_TET, 0, 0, 0, 0});
+    static_cast<void>(row.session->trace(job_of(row, view), hits));
     return hits;
 }
 

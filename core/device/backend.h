@@ -34,6 +34,7 @@ struct Device {
     std::uint64_t max_buffer_bytes = 0; ///< the largest buffer that a kernel can be given; 0: memory is the limit
     unsigned max_group_items = 0;       ///< the most work items of a group; 0: does not apply
     unsigned group_width = 0;           ///< items or rays in lockstep (warp, subgroup, packet); 0: unknown, or none
+    std::uint32_t most_steps = 0;       ///< longer walks may end early, without an error; 0: no limit
     double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
     unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
@@ -67,6 +68,10 @@ struct TraceJob {
     std::uint32_t max_steps = 0;      ///< a walk with this many steps is LOST
     bool any_hit = false;             ///< any hit will do, so the first one found is the answer
 };
+
+/// The cap of walks through so many tets: one step more than there are tets, because a path visits none twice
+/// (docs/spec/project.md, P6); less on a device with most_steps.
+[[nodiscard]] std::uint32_t step_cap(std::uint64_t tets, const Device& device);
 
 /// Lets the job's rays start in a tet.
 /// tet: of the scene that was packed, as its mesh numbers them; NO_TET: rays enter from outside.

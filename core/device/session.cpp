@@ -30,6 +30,12 @@ TraceJob column_of(std::size_t rays)
 
 } // namespace
 
+std::uint32_t step_cap(std::uint64_t tets, const Device& device)
+{
+    const auto proved = static_cast<std::uint32_t>(tets + 1);
+    return device.most_steps == 0 ? proved : std::min(proved, device.most_steps);
+}
+
 void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std::uint32_t tet)
 {
     job.start_tet = tet == NO_TET ? NO_TET : packed.packed_of_mesh.at(tet);

@@ -122,7 +122,7 @@ bool is_portable(const KernelId& kernel)
 
 bool claims_robustness(const KernelId& kernel)
 {
-    return row_of(kernel).is_robust;
+    return kernel.math == MathMode::exact && row_of(kernel).is_robust;
 }
 
 bool is_default(const KernelId& kernel)

@@ -85,7 +85,8 @@ struct KernelId {
 /// Whether the kernel is one of kernels/, the same source on every backend; those of Embree and of drivers are not.
 [[nodiscard]] bool is_portable(const KernelId& kernel);
 
-/// Whether the kernel should lose no ray and get none wrong (kernels/kernel_list.inc). Wrong and lost rays then fail a
+/// Whether the kernel should lose no ray and get none wrong (kernels/kernel_list.inc); none does in math mode fast
+/// (docs/spec/numbers.md, N5). Wrong and lost rays then fail a
 /// run. Those of other kernels are counted and shown with the rate, but fail nothing.
 [[nodiscard]] bool claims_robustness(const KernelId& kernel);
 

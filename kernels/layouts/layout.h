@@ -20,6 +20,9 @@
 //   {direction, link}  {origin, end}
 #define GIVEN_RAY_QUADS 2u
 #define NO_END 3.0e38f // of a ray that goes on for ever
+// A walk that has made this many steps may be in a circle, and asks. Longer walks are rare, and those in circles end
+// soon.
+#define STEPS_BEFORE_DOUBT 4096u
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.
 #define TILE_WIDTH 8u
 

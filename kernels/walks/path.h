@@ -9,17 +9,17 @@
 // the ray has no path, or no face of it is left. For an origin in a tet none of whose faces hold the ray.
 // start: the triangle that the ray starts on. The result is the face after the last face of this triangle on the path.
 // If the triangle has no face on the path, and for FREE_FACE, it is the first face crossed in front of the origin, else
-// the path's last face. lost: the first exit of a walk that was lost, or NO_LINK. The path is then followed to its end.
-// `lost` is returned if it is on the path, or if the end is too far: only a walk that goes in circles is restarted.
-// This is tested here because a separate loop would be slow on devices that execute a conditional block even if no lane
-// needs it.
-KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint lost)
+// the path's last face. doubted: the first exit of a walk that may be in a circle, or NO_LINK. The path is then
+// followed to its end. `doubted` is returned if it is on the path, or if the end is too far: only a walk in a circle
+// begins anew. This is tested here because a separate loop would be slow on devices that execute a conditional block
+// even if no lane needs it.
+KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint doubted)
 {
     COUNT_SEARCH(1);
     uint link = entry_link(scene, entry_anywhere(scene, ray, 0u, 0u));
     uint exit = NO_LINK;
     bool ahead = false;
-    bool to_end = start != FREE_FACE || lost != NO_LINK;
+    bool to_end = start != FREE_FACE || doubted != NO_LINK;
     bool is_on_path = false;
     for (uint steps = 0u; (!ahead || to_end) && link != NO_LINK && steps < params.max_steps; ++steps) {
         uint tet = link >> 2u;
@@ -28,10 +28,10 @@ KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint sta
         bool found = ahead && exit != NO_LINK;
         exit = on_start ? NO_LINK : found ? exit : (tet << 2u) | face;
         ahead = ahead || on_start || is_ahead(scene, tet, face, ray);
-        is_on_path = is_on_path || ((tet << 2u) | face) == lost;
+        is_on_path = is_on_path || ((tet << 2u) | face) == doubted;
         link = face_link(scene, tet, face);
     }
-    return lost != NO_LINK && (is_on_path || link != NO_LINK) ? lost : exit;
+    return doubted != NO_LINK && (is_on_path || link != NO_LINK) ? doubted : exit;
 }
 
 // A tet, or NO_TET, and the face by which the ray leaves it, or NO_EXIT.

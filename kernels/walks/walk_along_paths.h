@@ -6,7 +6,7 @@
 // From a tet and the face by which the ray leaves it to the ray's hit. end: the largest ray parameter of a hit; NO_END
 // for a ray without an end. start: the triangle that a ray from inside starts on, or FREE_FACE; FROM_OUTSIDE for a ray
 // from outside. A ray from inside begins with exit_ahead() if first_face is NO_EXIT, and again if its walk goes in
-// circles.
+// circles, which it asks once, after STEPS_BEFORE_DOUBT steps.
 // Only the loops' own variables are used after the loops; everything else is loaded again, because some compilers lose
 // it.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, uint start, real end)
@@ -15,6 +15,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     bool has_exit = start == FROM_OUTSIDE || first_face != NO_EXIT;
     uint own = has_exit ? (first_tet << 2u) | first_face : NO_LINK;
     bool may_begin_anew = start != FROM_OUTSIDE;
+    uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
     uint tet = first_tet;
     uint face = has_exit ? first_face : 0u;
     uint link = has_exit ? link_beyond(scene, tet, face) : NO_LINK;
@@ -22,7 +23,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     uint steps = 1u;
     for (;;) {
         for (;;) {
-            while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
+            while (triangle == FREE_FACE && link != NO_LINK && steps < pause &&
                    (is_endless || !ends_before(scene, link, ray, end))) {
                 tet = link >> 2u;
                 face = rough_exit_face(scene, tet, link & 3u, ray);
@@ -35,17 +36,19 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
             link = face_link(scene, tet, face);
             triangle = face_triangle(scene, tet, face);
         }
-        bool is_lost = steps >= params.max_steps && link != NO_LINK && triangle == FREE_FACE;
-        if (!may_begin_anew || (own != NO_LINK && !is_lost)) break;
+        bool is_paused = steps >= pause && link != NO_LINK && triangle == FREE_FACE;
+        if (!may_begin_anew || (own != NO_LINK && !is_paused)) break;
         uint exit = exit_ahead(scene, params, ray, start, own);
-        if (exit == own && own != NO_LINK) break;
-        tet = exit >> 2u;
-        if (exit == NO_LINK) break;
-        face = exit & 3u;
-        link = face_link(scene, tet, face);
-        triangle = face_triangle(scene, tet, face);
-        steps = 1u;
+        pause = params.max_steps;
         may_begin_anew = false;
+        if (exit != own || own == NO_LINK) {
+            tet = exit >> 2u;
+            if (exit == NO_LINK) break;
+            face = exit & 3u;
+            link = face_link(scene, tet, face);
+            triangle = face_triangle(scene, tet, face);
+            steps = 1u;
+        }
     }
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     return hit_at_end(scene, params, ray, tet, face, steps, end);

@@ -2,8 +2,10 @@
 // NO_EXIT: the walk is then lost.
 
 // From a tet and the face by which the ray leaves it to the ray's hit. end: the largest ray parameter of a hit; NO_END
-// for a ray without an end.
-// Only the loop's own variables are used after the loop; everything else is loaded again, because some compilers lose
+// for a ray without an end. After STEPS_BEFORE_DOUBT steps the walk halts at each step, and compares the link with the
+// one that it saved at the last power of two (Brent, "An improved Monte Carlo factorization algorithm", BIT 20, 1980):
+// a walk in a circle ends as if it had reached its cap.
+// Only the loops' own variables are used after the loops; everything else is loaded again, because some compilers lose
 // it.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, real end)
 {
@@ -13,13 +15,24 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     uint link = link_beyond(scene, tet, face);
     uint triangle = face_triangle(scene, tet, face & 3u);
     uint steps = 1u;
-    while (triangle == FREE_FACE && link != NO_LINK && steps < params.max_steps &&
-           (is_endless || !ends_before(scene, link, ray, end))) {
-        tet = link >> 2u;
-        face = exit_face(scene, tet, link & 3u, ray);
-        link = link_beyond(scene, tet, face);
-        triangle = face_triangle(scene, tet, face & 3u);
-        ++steps;
+    uint pause = first_pause(params);
+    uint saved = NO_LINK;
+    for (;;) {
+        while (triangle == FREE_FACE && link != NO_LINK && steps < pause &&
+               (is_endless || !ends_before(scene, link, ray, end))) {
+            tet = link >> 2u;
+            face = exit_face(scene, tet, link & 3u, ray);
+            link = link_beyond(scene, tet, face);
+            triangle = face_triangle(scene, tet, face & 3u);
+            ++steps;
+        }
+        if (triangle != FREE_FACE || link == NO_LINK || steps < pause || steps >= params.max_steps) break;
+        pause = steps + 1u;
+        if (link == saved) {
+            steps = params.max_steps;
+            break;
+        }
+        saved = (steps & (steps - 1u)) == 0u ? link : saved;
     }
     if (face == NO_EXIT) return make_no_hit(LOST, tet, steps - 1u);
     return hit_at_end(scene, params, ray, tet, face, steps, end);

@@ -28,10 +28,10 @@ STRUCT(Walker)
     uint steps;
 };
 
-// reach: of the end, as ends_before() of links.h has it.
-KERNEL_FN bool goes_on(Walker at, TraceParams params, bool is_endless, real reach)
+// pause: the number of steps at which the walk halts. reach: of the end, as ends_before() of links.h has it.
+KERNEL_FN bool goes_on(Walker at, uint pause, bool is_endless, real reach)
 {
-    return (at.exit & 3u) != HALF32_END && at.steps < params.max_steps &&
+    return (at.exit & 3u) != HALF32_END && at.steps < pause &&
            (is_endless || at.p0.along <= reach || at.p1.along <= reach || at.p2.along <= reach);
 }
 
@@ -104,6 +104,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     PRECISE real reach = end * dot3(ray.direction, ray.direction);
     Shear shear = shear_of(ray);
     bool may_begin_anew = start != FROM_OUTSIDE;
+    uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
     uint own = face == NO_EXIT ? NO_LINK : (first_tet << 2u) | face;
     uint tet = first_tet;
     uint exit = own << 2u;
@@ -112,25 +113,27 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     Walker at;
     for (;;) {
         at = walker_at(scene, ray, shear, tet, exit, steps);
-        if (goes_on(at, params, is_endless, reach)) {
+        if (goes_on(at, pause, is_endless, reach)) {
             for (;;) {
                 for (;;) {
                     at = next_face(scene, ray, shear, at);
-                    if (at.replaced == UNDECIDED || !goes_on(at, params, is_endless, reach)) break;
+                    if (at.replaced == UNDECIDED || !goes_on(at, pause, is_endless, reach)) break;
                 }
                 if (at.replaced != UNDECIDED) break;
                 at = face_at_tie(scene, ray, shear, at);
-                if (!goes_on(at, params, is_endless, reach)) break;
+                if (!goes_on(at, pause, is_endless, reach)) break;
             }
         }
-        bool is_lost = (at.exit & 3u) != HALF32_END && at.steps >= params.max_steps;
-        if (!may_begin_anew || (own != NO_LINK && !is_lost)) break;
+        bool is_paused = (at.exit & 3u) != HALF32_END && at.steps >= pause;
+        if (!may_begin_anew || (own != NO_LINK && !is_paused)) break;
         uint ahead = exit_ahead(scene, params, ray, start, own);
-        if (ahead == own && own != NO_LINK) break;
-        tet = ahead >> 2u;
-        if (ahead == NO_LINK) break;
-        exit = first_exit(scene, tet, ahead & 3u);
+        pause = params.max_steps;
         may_begin_anew = false;
+        bool stays = ahead == own && own != NO_LINK;
+        tet = stays ? at.before >> 4u : ahead >> 2u;
+        if (!stays && ahead == NO_LINK) break;
+        exit = stays ? at.exit & ~3u : first_exit(scene, tet, ahead & 3u);
+        steps = stays ? at.steps : 1u;
     }
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     tet = at.before >> 4u;

@@ -153,9 +153,9 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 }
 
 // The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET where the ray has
-// no path. lost: the first tet of a walk that was lost, or NO_TET. The result's tet is `lost` if that is on the path,
-// or if the path's end is too far.
-KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint lost)
+// no path. doubted: the first tet of a walk that may be in a circle, or NO_TET. The result's tet is `doubted` if that
+// is on the path, or if the path's end is too far.
+KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint doubted)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
     Gate gate = entry_gate(scene, ray, shear, entry == NO_ENTRY ? 0u : entry);
@@ -166,9 +166,9 @@ KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear sh
         gate = next_gate(scene, ray, shear, opened(scene, gate));
         if (!ahead) found = gate;
         ahead = ahead || is_gate_ahead(scene, ray, gate);
-        done = gate.behind == NO_LINK || gate.tet == lost || (ahead && lost == NO_TET);
+        done = gate.behind == NO_LINK || gate.tet == doubted || (ahead && doubted == NO_TET);
     }
-    if (lost != NO_TET && (gate.tet == lost || !done)) found.tet = lost;
+    if (doubted != NO_TET && (gate.tet == doubted || !done)) found.tet = doubted;
     return found;
 }
 
@@ -181,8 +181,9 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
     Gate gate = first;
     uint steps = first_steps;
     bool may_begin_anew = params.start_tet != NO_TET;
+    uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
     for (;;) {
-        if (gate.behind < OCCLUSIVE && steps < params.max_steps) {
+        if (gate.behind < OCCLUSIVE && steps < pause) {
             for (;;) {
                 for (;;) {
                     CompactTet tet = compact_tet(scene, gate.behind);
@@ -192,21 +193,23 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
                     if (replaced == UNDECIDED) break;
                     gate = gate_beyond(scene, gate, tet, vertex, apex, replaced);
                     ++steps;
-                    if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+                    if (gate.behind >= OCCLUSIVE || steps >= pause) break;
                 }
-                if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+                if (gate.behind >= OCCLUSIVE || steps >= pause) break;
                 gate = next_gate(scene, ray, shear, gate);
                 ++steps;
-                if (gate.behind >= OCCLUSIVE || steps >= params.max_steps) break;
+                if (gate.behind >= OCCLUSIVE || steps >= pause) break;
             }
         }
         if (!may_begin_anew || (has_exit && gate.behind >= OCCLUSIVE)) break;
         Gate ahead = gate_ahead(scene, params, ray, shear, has_exit ? params.start_tet : NO_TET);
-        if (ahead.tet == params.start_tet) break;
-        gate = ahead;
-        if (gate.tet == NO_TET) break;
-        steps = 1u;
+        pause = params.max_steps;
         may_begin_anew = false;
+        if (ahead.tet != params.start_tet) {
+            gate = ahead;
+            if (gate.tet == NO_TET) break;
+            steps = 1u;
+        }
     }
     if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);

@@ -101,14 +101,21 @@ void require_sound(const Scene& scene, const TetgenOutput& output, const Roundin
                                      try_other_switches));
 }
 
-void require_entry_grid(const Scene& scene)
+// What is wrong with the domain's sides; empty where they are sound.
+std::string flaw_of_sides(const Scene& scene)
 {
     try {
-        static_cast<void>(make_entry_grid(scene.domain, scene.tets));
+        return find_weak_side(scene, make_entry_grid(scene.domain, scene.tets));
     } catch (const Error& error) {
-        throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking TetGen's output: the domain's sides: {}; {}",
-                                                                error.what(), try_other_switches));
+        return error.what();
     }
+}
+
+void require_sound_sides(const Scene& scene)
+{
+    if (const std::string flaw = flaw_of_sides(scene); !flaw.empty())
+        throw BuilderFailure(BUILDER_ABSURD_OUTPUT, fmt::format("checking TetGen's output: the domain's sides: {}; {}",
+                                                                flaw, try_other_switches));
 }
 
 // Why optimised tets may not be used; empty where they may.
@@ -211,7 +218,7 @@ Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const Bui
             "{} tets flat or inverted after rounding to float, {} of them mended by moving {} Steiner points",
             rounding.damaged, rounding.repaired, rounding.moved_points));
     require_sound(scene, output, rounding);
-    require_entry_grid(scene);
+    require_sound_sides(scene);
     if (scene.build.optimised.asked == TetsKind::rays) optimise_for_rays(scene, prepared.limits, talk);
     scene.build.build_s = prepared.watch.seconds();
     return scene;

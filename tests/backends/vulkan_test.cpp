@@ -189,6 +189,14 @@ TEST(VulkanImplementation, is_read_from_whatever_drivers_say)
     EXPECT_EQ(implementation_of("", ""), "unknown");
 }
 
+TEST(VulkanImplementation, only_lavapipe_before_mesa_25_limits_the_steps_of_a_walk)
+{
+    for (const char* const limited : {"lavapipe-22.3", "lavapipe-24.3", "lavapipe"})
+        EXPECT_EQ(vulkan::most_steps_of(limited), 28'000u) << limited;
+    for (const char* const free : {"lavapipe-25.0", "lavapipe-26.1", "radv-22.3", "nvidia-580", "unknown"})
+        EXPECT_EQ(vulkan::most_steps_of(free), 0u) << free;
+}
+
 TEST(VulkanLimits, each_is_told_with_its_number)
 {
     const vulkan::Limits good{VK_API_VERSION_1_1, 0, 64, 128, 13, 128, 128, 65535, 1u << 30};

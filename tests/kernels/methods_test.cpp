@@ -217,5 +217,21 @@ TEST(Methods, a_walk_that_goes_in_circles_is_lost_at_its_cap_or_begins_anew)
     }
 }
 
+TEST(Methods, a_circle_is_found_long_before_the_cap)
+{
+    constexpr std::uint32_t for_ever = 0xFFFFFFFF; // steps that would take minutes
+    auto packed = misled();
+    for (std::uint32_t quad : {4u, 5u, 10u, 11u})
+        packed.tets[quad].x = packed.tets[quad].z = quad < TET96_QUADS ? 1u << 2u : 0u;
+    packed.entry_ranges.assign(7, 0);
+    packed.lines.assign(6, 0);
+    for (const CountedMethod& method : methods()) {
+        if (!always_leaves(method) || method.name == std::string("project")) continue;
+        const End end = method.trace(packed, for_ever, inside, outwards);
+        EXPECT_EQ(end.face_id, LOST) << method.name;
+        EXPECT_EQ(end.steps, for_ever) << method.name << ": as at its cap";
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(each, MethodsOf, testing::Range<std::size_t>(0, methods().size()),
                          [](const auto& test) { return std::string(methods()[test.param].name); });

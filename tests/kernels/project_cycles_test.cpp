@@ -18,6 +18,9 @@ using namespace tetrace::test;
 
 namespace {
 
+/// More than a walk makes before it asks whether it goes in circles, and no more than any device can do.
+constexpr std::uint32_t many_steps = 20'000;
+
 /// Of a ray's path from the boundary.
 std::uint32_t tets_on_path(const Grid& grid, const right::Ray& ray)
 {
@@ -107,7 +110,7 @@ std::vector<Hit> hits_from(Session& session, const Grid& grid, const PackedScene
         job.view = {start.line.origin, start.line.direction, {0x1p-9f, 0, 0x1p-11f}, {0, 0x1p-9f, 0x1p-11f}};
         job.width = 8;
         job.height = 2;
-        job.max_steps = packed.tet_count + 1;
+        job.max_steps = many_steps;
         start_in(job, packed, grid.scene, start.tet);
         const auto hits = traced(session, job);
         all.insert(all.end(), hits.begin(), hits.end());
@@ -133,7 +136,7 @@ RaySet given_among_others(const Grid& grid, const std::vector<CyclicStart>& star
 std::vector<Hit> hits_of_given(Session& session, const PackedScene& packed, const RaySet& set)
 {
     session.set_rays(given_quads(set, packed));
-    return traced(session, given_job(set.rays.size(), packed.tet_count + 1, false));
+    return traced(session, given_job(set.rays.size(), many_steps, false));
 }
 
 bool any_is_lost(const std::vector<Hit>& hits)
@@ -204,6 +207,24 @@ TEST(ProjectCycles, goes_in_circles_only_from_tets_within_rounding_and_then_begi
     RecordProperty("longest_cycle", std::to_string(longest));
     RecordProperty("begun_anew", std::to_string(begun_anew));
     RecordProperty("hits", std::to_string(hits));
+}
+
+TEST(ProjectCycles, finds_a_cycle_long_before_its_cap)
+{
+    const Grid grid("cluster", cluster_of(0x1p-24f));
+    const auto starts = cyclic_starts(grid, 1000);
+    ASSERT_GT(starts.size(), 10u);
+    for (const CyclicStart& start : starts) {
+        const std::uint32_t tet = grid.packed.packed_of_mesh[start.tet];
+        auto params = params_of(grid, tet);
+        params.max_steps = 0xFFFFFFFF; // these would take minutes
+        const auto ray = right::make_ray(right::to_vec3(start.line.origin), right::to_vec3(start.line.direction));
+        const Hit hit = to_hit(right::trace(grid.view, params, ray));
+        const Hit at_cap = traced(grid, start.line, tet);
+        EXPECT_EQ(hit.face_id, at_cap.face_id);
+        EXPECT_EQ(hit.tet, at_cap.tet);
+        EXPECT_EQ(hit.steps, at_cap.steps);
+    }
 }
 
 TEST(ProjectCycles, is_on_its_path_where_it_starts_in_a_tet_by_more_than_the_bound)

@@ -182,7 +182,7 @@ TEST(ProjectWalk, has_the_same_bits_on_openmp_and_cuda_host_where_rays_pass_vert
     job.view = {{0.25f, 0, 3}, {-1, -1, -2}, {0.125f, 0, 0}, {0, 0.125f, 0}};
     job.width = job.height = 17;
     job.start_tet = NO_TET;
-    job.max_steps = packed.tet_count + 1;
+    job.max_steps = step_cap(packed.tet_count, {});
     std::vector<std::vector<Hit>> answers;
     for (Backend* backend : all_backends())
         if (backend->name() == "openmp" || backend->name() == "cuda-host")

@@ -211,6 +211,8 @@ TEST(ExitCodes, a_method_that_does_not_claim_robustness_fails_only_where_a_devic
             EXPECT_TRUE(fails(row_with(judged(3, 1, 1), method), passes)) << name_of(method);
         }
     EXPECT_TRUE(claims_robustness({}));
+    for (const Method method : {Method::maria, Method::project})
+        EXPECT_FALSE(claims_robustness({.method = method, .math = MathMode::fast})) << "held to no proof";
     EXPECT_TRUE(claims_robustness({.method = Method::project}));
     EXPECT_TRUE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::cwbvh}));
     for (const Layout theirs : {Layout::embree, Layout::rt})

@@ -2,8 +2,11 @@
 
 #include "core/base/hash.h"
 #include "scenes/procedural.h"
+#include "tests/support/hard_scenes.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
@@ -279,4 +282,35 @@ TEST_F(SceneFile, keeps_the_old_file_and_no_temporary_where_writing_fails)
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
         EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
     EXPECT_EQ(read_scene(path), sample_scene());
+}
+
+TEST_F(SceneFile, refuses_sides_that_rounding_could_fold)
+{
+    const auto expect_refused = [&](const Scene& scene, const std::string& reason) {
+        const std::string error = error_of_written(path, scene);
+        EXPECT_TRUE(contains(error, "invalid_input: reading scene " + path.string() + ": section `domain lines`: "))
+            << error;
+        EXPECT_TRUE(contains(error, reason)) << error;
+        EXPECT_TRUE(contains(error, "make the file again")) << error;
+    };
+    Scene bent = make_cubes(3);
+    const auto on_side = [](Float3 at) { return at.x == 1 && std::abs(at.y) < 1 && std::abs(at.z) < 1; };
+    std::ranges::find_if(bent.tets.vertices, on_side)->x = std::nextafter(1.0f, 0.0f);
+    expect_refused(bent, "has a boundary face that lies on no side of the domain");
+
+    Scene large = make_cubes(3);
+    const auto doubled = [](Float3 at) { return Float3{2 * at.x, 2 * at.y, 2 * at.z}; };
+    std::ranges::transform(large.mesh.vertices, large.mesh.vertices.begin(), doubled);
+    std::ranges::transform(large.tets.vertices, large.tets.vertices.begin(), doubled);
+    for (auto& lines : large.domain.lines)
+        for (float& line : lines)
+            line *= 2;
+    expect_refused(large, "the domain reaches beyond [-1, 1] along axis x; scale mesh and domain by a power of two");
+
+    const auto even = even_lines(4, 1);
+    expect_refused(grid_of({even, even, {-1, -1 + 0x1p-20f, 0, 0.5f, 1}}),
+                   "of the mesh is 9.53674e-07 away from the domain's low z side, rounding asks for");
+    const auto fine = even_lines(8, 1);
+    expect_refused(grid_of({fine, fine, {-1, -1 + 0x1p-20f, -0.5f, -0.25f, 0, 0.25f, 0.5f, 0.75f, 1}}),
+                   "on the domain's low x side, has a height of 9.53674e-07, rounding asks for");
 }

@@ -133,7 +133,7 @@ inline right::TraceParams params_of(const Grid& grid, std::uint32_t start_tet)
 {
     right::TraceParams params{};
     params.start_tet = start_tet;
-    params.max_steps = grid.packed.tet_count + 1; // more than there are tets: who gets there goes in circles
+    params.max_steps = step_cap(grid.packed.tet_count, {}); // the program's own
     return params;
 }
 

@@ -135,6 +135,34 @@ TEST_F(Verify, a_lost_ray_makes_a_row_flawed)
     EXPECT_EQ(traced(row)->verdicts.lost, 2u);
 }
 
+TEST_F(Verify, a_ray_lost_at_the_device_s_own_cap_is_explained)
+{
+    const auto limited = [&](std::uint32_t most_steps, std::uint32_t steps) {
+        RowRun row = open_row({"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert}, scene_, options_);
+        row.device.most_steps = most_steps;
+        row.device.implementation = "a device";
+        row.key.backend = "other";
+        verify_rows({&row}, scene_, options_);
+        EXPECT_EQ(traced(row)->different, 0u) << "openmp is compared under the same cap";
+        EXPECT_EQ(traced(row)->verdicts.lost > 0, steps > 0);
+        return reason_of(row);
+    };
+    EXPECT_EQ(limited(100'000, 0), "") << "more steps than there are tets";
+    const std::string reason = limited(3, 3);
+    EXPECT_NE(reason.find("after 3 steps, where loops of a device may end early"), std::string::npos) << reason;
+}
+
+TEST_F(Verify, of_math_mode_fast_flaws_are_counted_and_fail_nothing)
+{
+    const auto lose = [](std::span<Hit> hits) { hits[0].face_id = LOST; };
+    RowRun row = verified("openmp", lose);
+    EXPECT_TRUE(fails(row, true));
+    row.key.kernel.math = MathMode::fast;
+    EXPECT_EQ(status_of(row), Status::flawed);
+    EXPECT_FALSE(fails(row, false));
+    EXPECT_EQ(reason_of(row), "2 lost; math mode fast is held to no proof");
+}
+
 TEST_F(Verify, a_wrong_parameter_makes_a_row_flawed)
 {
     const RowRun row =
