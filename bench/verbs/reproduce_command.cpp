@@ -47,6 +47,12 @@ bool wants(const Options& options, PaperTarget target)
     return std::ranges::find(options.targets, target) != options.targets.end();
 }
 
+bool wants_build(const Options& options, PaperBuild build)
+{
+    const auto& builds = options.paper_builds;
+    return builds.empty() || std::ranges::find(builds, build) != builds.end();
+}
+
 bool wants_scenes(const Options& options)
 {
     const auto& targets = options.targets;
@@ -91,7 +97,7 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
 /// Whether the scene is one of the paper's, and TetGen makes its tets with the given switches.
 bool has_papers_build(const std::string& name)
 {
-    if (!paper::nearest_switches(scene_label(name))) return false;
+    if (!paper::has_scene(scene_label(name))) return false;
     const CatalogueEntry* entry = find_in_catalogue(name);
     if (entry != nullptr) return entry->source != SceneSource::cubes;
     return std::filesystem::path(name).extension() != ".tet";
@@ -103,12 +109,9 @@ SceneBuild papers(SceneBuild build)
     how.domain = DomainKind::wide;
     how.tets = TetsKind::cdt;
     how.divisions = 1;
-    how.switches = paper::nearest_switches(build.scene).value();
+    how.switches = paper::nearest_build(build.scene).value().switches;
     build.build = papers_build;
     build.label += "-paper";
-    build.robustness = false;
-    build.methods = true;
-    build.rivals = false;
     return build;
 }
 
@@ -123,8 +126,9 @@ std::vector<SceneBuild> paper_builds(const Options& options)
         const std::string label = scene_label(request.name);
         const SceneBuild ours = {
             request, label, our_build, label, table4, table3 || table6 || figure6, table3 || table4 || figure6, table6};
-        builds.push_back(ours);
-        if (table3 && has_papers_build(request.name)) builds.push_back(papers(ours));
+        const bool is_papers = has_papers_build(request.name);
+        if (wants_build(options, PaperBuild::ours) || !is_papers) builds.push_back(ours);
+        if (wants_build(options, PaperBuild::paper) && is_papers) builds.push_back(papers(ours));
     }
     return builds;
 }
@@ -274,23 +278,23 @@ struct Keeping {
 
 void make_tables(Reproduction& all, const Options& options)
 {
-    const SceneRuns ours = all.of_builds({our_build}), papers = all.of_builds({our_build, papers_build});
+    const SceneRuns runs = all.of_builds({our_build, papers_build});
     const auto add_figures = [&](std::vector<PaperFigure> figures) {
         std::ranges::move(figures, std::back_inserter(all.figures));
     };
     if (wants(options, PaperTarget::table3)) {
-        all.tables.push_back(table3(papers));
-        all.tables.push_back(table3_rates(papers));
+        all.tables.push_back(table3(runs));
+        all.tables.push_back(table3_rates(runs));
     }
     if (wants(options, PaperTarget::table4)) {
-        all.tables.push_back(table4(ours, view_count(options.camera_set)));
-        all.figures.push_back(table4_views(ours));
+        all.tables.push_back(table4(runs, view_count(options.camera_set)));
+        all.figures.push_back(table4_views(runs));
     }
     if (all.searches) all.tables.push_back(table5(*all.searches, all.devices));
     if (wants(options, PaperTarget::table6)) {
-        all.tables.push_back(table6(ours));
-        all.tables.push_back(table6_pairs(ours));
-        add_figures(table6_figures(ours));
+        all.tables.push_back(table6(runs));
+        all.tables.push_back(table6_pairs(runs));
+        add_figures(table6_figures(runs));
     }
     if (wants(options, PaperTarget::growth)) {
         const SceneRuns sizes = all.of_builds({growth_build});
@@ -299,8 +303,8 @@ void make_tables(Reproduction& all, const Options& options)
         add_figures(growth_figures(sizes));
     }
     if (wants(options, PaperTarget::figure6)) {
-        all.tables.push_back(figure6_table(ours));
-        add_figures(figure6(ours));
+        all.tables.push_back(figure6_table(runs));
+        add_figures(figure6(runs));
     }
 }
 
@@ -374,8 +378,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked,
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals) run.costs = keeping.costs.of(run.rows);
     run_views(run, options, keeping.journal.get(), all.progress);
-    const bool is_ours = build.build == our_build;
-    if (keeping.pictures != nullptr && is_ours)
+    if (keeping.pictures != nullptr && build.build != growth_build)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
     add_devices(all, run, options, keeping.yardsticks);

@@ -237,7 +237,7 @@ std::string headline(const std::string& id, const std::string& title, const std:
 
 std::optional<double> Quantity::ratio() const
 {
-    if (!paper || *paper == 0) return std::nullopt;
+    if (!paper || *paper == 0 || !is_compared) return std::nullopt;
     return ours.value / *paper;
 }
 
