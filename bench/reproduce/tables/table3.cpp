@@ -81,8 +81,7 @@ Claim counts_claim(const SceneRun& run)
 /// Why the scene's numbers are compared with the paper's, or are not.
 std::string likeness_note(const SceneRun& run)
 {
-    return fmt::format("{}, {} build, {}: {}", run.build.scene, run.build.build, name_of(run.likeness.kind),
-                       run.likeness.reason);
+    return fmt::format("{}, {} build: {}", run.build.scene, run.build.build, run.likeness.reason);
 }
 
 std::string walk_note(const SceneRun& run, const StartWalk& walk)

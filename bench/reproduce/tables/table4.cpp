@@ -64,7 +64,7 @@ const std::vector<Column>& columns()
                                              {"layout", "layout"},
                                              {"device", "device"},
                                              {"views", "views", "", 0},
-                                             {"flawed", "wrong or lost", "rays an image", 3},
+                                             {"flawed", "wrong or lost", "rays an image", 4},
                                              {"wrong_face", "wrong face", "rays an image", 3},
                                              {"lost", "lost", "rays an image", 3},
                                              {"lost_at_cap", "in a cycle", "rays an image", 3},

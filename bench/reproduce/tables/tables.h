@@ -56,6 +56,9 @@ struct MethodRow {
 /// devices: those that the rows ran on, measured.
 [[nodiscard]] PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices);
 
+/// Sections 3.1 and 3.4: operations and side products of a search, counted, with the paper's.
+[[nodiscard]] PaperTable operations_table();
+
 /// Bytes that a search moves besides its tet, which stays in the caches for all of its rays: 32 of the ray's 48,
 /// because no method needs both its origin and its moment, and the face that it writes.
 inline constexpr double bytes_per_search = 32 + 4;
