@@ -243,6 +243,10 @@ json reproduction_json(const Reproduction& all, const Options& options)
         section[key] = json::array();
     for (const SceneRun& run : all.runs) {
         if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
+        if (run.scene != nullptr && run.likeness.kind != LikenessKind::not_its_scene)
+            section["scenes"].back()["likeness"] = {{"kind", name_of(run.likeness.kind)},
+                                                    {"compared", run.likeness.is_compared()},
+                                                    {"reason", run.likeness.reason}};
         section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
     }
     if (all.searches) section["searches"] = all.search_records;

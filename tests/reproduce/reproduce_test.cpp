@@ -166,13 +166,17 @@ TEST_F(Reproduce, builds_choose_the_papers_alone_where_a_scene_has_it)
     const auto builds = [&](const std::string& option) {
         const Ended ended = run(common + option);
         EXPECT_TRUE(ended.code == 0 || ended.code == 3) << ended.errors; // 3: no TetGen is built here
+        const json section = result("r.json"), rows = of_id(section["tables"], "table4")["rows"];
         std::string text;
-        for (const json& row : of_id(result("r.json")["tables"], "table4")["rows"])
+        for (const json& row : rows)
             text += row["scene"].get<std::string>() + ' ' + row["build"].get<std::string>() + "; ";
         if (ended.code == 0 && option.find("ours") == std::string::npos) {
-            const json walk = result("r.json")["scenes"].back()["start_walk"];
+            EXPECT_EQ(section["scenes"].back()["likeness"]["kind"], "other mesh");
+            EXPECT_EQ(section["scenes"].back()["likeness"]["compared"], false);
+            EXPECT_FALSE(section["scenes"].front().contains("likeness"));
+            const json walk = section["scenes"].back()["start_walk"];
             EXPECT_EQ(walk["walked"].get<int>() + walk["located"].get<int>(), 4) << "the wide domain's cameras";
-            EXPECT_FALSE(result("r.json")["scenes"].front().contains("start_walk")) << "the tight one's are outside";
+            EXPECT_FALSE(section["scenes"].front().contains("start_walk")) << "the tight one's are outside";
         }
         return text;
     };

@@ -211,6 +211,8 @@ PaperTable figure6_table(const SceneRuns& runs)
                      paper::figure6_scene, paper::cpu_name, paper::view_a.ms, paper::view_a.mtets, paper::view_b.ms,
                      paper::view_b.mtets, paper::view_a.msteps_per_s(), paper::view_b.msteps_per_s())}};
     table.claims = claims_of({runs.begin(), runs.end()});
+    for (std::string& note : likeness_notes(runs))
+        table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs) {
         for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
         for (std::size_t i = 0; i < run->rows.size(); ++i)

@@ -44,6 +44,15 @@ PaperCell quantity_beside(const Estimate& ours, std::optional<double> paper, con
     return Quantity{ours, paper, run.likeness.is_compared()};
 }
 
+std::vector<std::string> likeness_notes(const SceneRuns& runs)
+{
+    std::vector<std::string> notes;
+    for (const SceneRun* run : runs)
+        if (run->likeness.kind == LikenessKind::other_mesh || run->likeness.kind == LikenessKind::near_counts)
+            notes.push_back(fmt::format("{}, {} build: {}", run->build.scene, run->build.build, run->likeness.reason));
+    return notes;
+}
+
 const SceneRun* judged_run(const SceneRuns& runs, std::string_view scene)
 {
     const SceneRun* found = nullptr;

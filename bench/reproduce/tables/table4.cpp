@@ -236,6 +236,8 @@ std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
                     paper::gpu_name),
         "project is not the paper's: that it has no such ray is this program's own claim, proved in "
         "docs/spec/project.md, P6."};
+    for (std::string& note : likeness_notes(runs))
+        notes.push_back(std::move(note));
     const auto loaded = std::ranges::find_if(runs, [](const auto* run) { return run->scene != nullptr; });
     if (loaded != runs.end())
         notes.push_back(sampling_note((*loaded)->sampling, population)); // all have the same views

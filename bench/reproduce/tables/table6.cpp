@@ -295,6 +295,8 @@ PaperTable table6(const SceneRuns& runs)
          fmt::format("The paper's frames are of its GPU ({}) and its own cameras; they have a ratio beside "
                      "GPUs alone, and none where the mesh is another.",
                      paper::gpu_name)}};
+    for (std::string& note : likeness_notes(runs))
+        table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (is_compared(run->rows[i])) table.rows.push_back(frame_cells(*run, i));

@@ -18,6 +18,10 @@ namespace tetrace {
 /// Our number and the paper's of the same thing; without a ratio where the run's scene is too unlike the paper's.
 [[nodiscard]] PaperCell quantity_beside(const Estimate& ours, std::optional<double> paper, const SceneRun& run);
 
+/// Why the numbers of these scenes are compared with the paper's although they are not its own, or are not compared: a
+/// sentence for each run of another mesh, or of counts that are only near.
+[[nodiscard]] std::vector<std::string> likeness_notes(const SceneRuns& runs);
+
 /// The run that decides what the paper claims of a scene: of its own build where that was traced, else of ours. Null
 /// where the scene was not traced.
 [[nodiscard]] const SceneRun* judged_run(const SceneRuns& runs, std::string_view scene);
