@@ -36,6 +36,12 @@ template <>
 inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::growth>("table3", "table4", "table5", "table6",
                                                                                  "figure6", "growth");
 
+/// A build of the paper's scenes that `reproduce` traces: as the options ask for, or as near to the paper's counts as
+/// known.
+enum class PaperBuild { ours, paper };
+template <>
+inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::paper>("ours", "paper");
+
 /// The number of exit searches behind Table 5. Default: the paper's.
 struct SearchSize {
     std::uint32_t tets = 10'000;
@@ -86,10 +92,11 @@ struct Options {
     unsigned samples = 10;
     double budget_s = 240; ///< for verifying and timing all rows
 
-    std::vector<PaperTarget> targets; ///< of `reproduce`; empty: those of the paper
-    SearchSize searches;              ///< of `reproduce`
-    std::vector<std::uint32_t> sizes; ///< of `reproduce growth`; empty: growth_sizes()
-    bool resume = false;              ///< of `reproduce`: continue from the journal
+    std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper
+    std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: both
+    SearchSize searches;                  ///< of `reproduce`
+    std::vector<std::uint32_t> sizes;     ///< of `reproduce growth`; empty: growth_sizes()
+    bool resume = false;                  ///< of `reproduce`: continue from the journal
 
     std::vector<std::string> required; ///< backends that must have a usable device
     bool allow_flawed = false;

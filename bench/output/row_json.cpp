@@ -35,6 +35,12 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                                {"cost_before", made.cost_before},
                                {"cost_after", made.cost_after},
                                {"reason", made.reason}};
+    if (const auto& walk = scene.start_walk())
+        object["start_walk"] = {{"walked", walk->counts.walked},
+                                {"located", walk->counts.located},
+                                {"steps", walk->counts.steps},
+                                {"most_steps", walk->counts.most_steps},
+                                {"exact_s", walk->exact_s}};
     if (!loaded.file.empty()) object["file"] = loaded.file.filename().string();
     return object;
 }

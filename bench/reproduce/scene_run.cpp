@@ -124,6 +124,7 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
     const auto keys = rows_of_build(build, options);
     try {
         run.scene = std::make_unique<SceneWork>(load_work(build.request, options, build.label));
+        run.likeness = likeness_of(build.scene, run.scene->loaded().scene, run.scene->counts());
         run.sampling = sampling_of(*run.scene, view_count(options.camera_set));
         if (build.robustness) run.flat = std::make_unique<FlatTets>(*run.scene);
         run.verifier = std::make_unique<Verifier>(*run.scene, options);

@@ -2,6 +2,7 @@
 
 #include "bench/measuring/verify.h"
 #include "bench/reproduce/flat_tets.h"
+#include "bench/reproduce/likeness.h"
 #include "bench/reproduce/row_recorder.h"
 #include "bench/reproduce/setup_costs.h"
 
@@ -31,6 +32,7 @@ struct SceneBuild {
 struct SceneRun : RecordedRows {
     SceneBuild build;
     std::unique_ptr<SceneWork> scene; ///< null where it could not be loaded
+    Likeness likeness;                ///< to the paper's
     std::unique_ptr<Verifier> verifier;
     std::unique_ptr<FlatTets> flat; ///< null where nothing needs it
 

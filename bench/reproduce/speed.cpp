@@ -64,7 +64,14 @@ struct Ratios {
              ratio_of_sums(view_seconds(run, a), view_seconds(run, b), run.sampling)});
     }
 
+    /// "Every ratio is above 1."
     void decide(Claim& claim) const
+    {
+        decide(claim, [](const std::vector<Estimate>& estimates) { return judge_above(estimates, 1); });
+    }
+
+    template <class Judge>
+    void decide(Claim& claim, const Judge& judge) const
     {
         claim.evidence = "Times of the same rays: " + text() + ".";
         if (ratios.empty()) {
@@ -74,7 +81,7 @@ struct Ratios {
         std::vector<Estimate> estimates;
         for (const TimeRatio& ratio : ratios)
             estimates.push_back(ratio.estimate);
-        claim.verdict = judge_above(estimates, 1);
+        claim.verdict = judge(estimates);
         if (!missing.empty()) { // the available data may refute the claim, but cannot show it
             claim.evidence += ' ' + missing;
             if (claim.verdict == ClaimVerdict::holds) claim.verdict = ClaimVerdict::not_testable;
@@ -106,14 +113,13 @@ void for_rows_of(Method method, const RecordedRuns& runs, const IsMeant& is_mean
                 visit(*run, run->rows[i]);
 }
 
-/// Rows of the cdt that have a rate on a device of that kind.
-template <class Visit>
-void for_rated_rows(const RecordedRuns& runs, DeviceKind kind, const Visit& visit)
+/// How far off a number is, as a share of another.
+Estimate relative_to(double reference, const Estimate& number)
 {
-    for (const RecordedRows* run : runs)
-        for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (is_cdt(run->rows[i]) && run->rows[i].device.kind == kind && !view_seconds(*run, i).empty())
-                visit(*run, i);
+    const auto share = [&](const std::optional<double>& bound) {
+        return bound ? std::optional(*bound / reference - 1) : std::nullopt;
+    };
+    return {number.value / reference - 1, share(number.low), share(number.high), number.exact};
 }
 
 IsMeant of_kind(DeviceKind kind)
@@ -169,6 +175,16 @@ std::vector<double> view_steps(const RecordedRows& run, std::size_t row)
     return steps;
 }
 
+std::optional<paper::Place> paper_place(const RowRun& row)
+{
+    switch (row.device.kind) {
+    case DeviceKind::cpu: return paper::Place::cpu;
+    case DeviceKind::gpu: return paper::Place::gpu;
+    case DeviceKind::emulated: break;
+    }
+    return std::nullopt;
+}
+
 std::string series_name(const RowRun& row)
 {
     return fmt::format("{} {} {} {}", row.key.scene, name_of(row.key.kernel.method), name_of(row.key.kernel.layout),
@@ -190,6 +206,33 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
     return claim;
 }
 
+Claim fastest_older_claim(Claim claim, const RecordedRuns& runs, Method method, const IsMeant& is_meant)
+{
+    Ratios ratios;
+    for_rows_of(method, runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
+        for (const Method other : older_methods())
+            if (other != method) ratios.add(run, row, other, method);
+    });
+    ratios.decide(claim);
+    return claim;
+}
+
+Claim slower_claim(Claim claim, const RecordedRuns& runs, Method method, double slower, const IsMeant& is_meant)
+{
+    Ratios ratios;
+    for_rows_of(Method::maria, runs, is_meant,
+                [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, method, Method::maria); });
+    ratios.decide(claim, [&](std::vector<Estimate> estimates) {
+        for (Estimate& ratio : estimates)
+            ratio = relative_to(1 + slower, ratio);
+        return judge_within(estimates, slower_tolerance);
+    });
+    if (!ratios.ratios.empty())
+        claim.evidence += fmt::format(" The paper has {:.2f}; within {:.0f} % is taken for equal.", 1 + slower,
+                                      100 * slower_tolerance);
+    return claim;
+}
+
 Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 {
     Ratios ratios;
@@ -206,39 +249,6 @@ std::vector<Claim> speed_claims(const RecordedRuns& runs)
     return {fastest_claim({"maria-is-fastest-on-cpu", "maria is the fastest of the five methods on a CPU"}, runs,
                           of_kind(DeviceKind::cpu)),
             overtaking_claim({"plucker-overtakes-stp-on-gpu", "on a GPU plucker is faster than stp"}, runs)};
-}
-
-Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind)
-{
-    const char* const device = kind == DeviceKind::gpu ? "GPU" : "CPU";
-    Claim claim{fmt::format("time-is-proportional-to-tets-{}", name_of(kind)),
-                fmt::format("time is proportional to the tets traversed, on a {}", device)};
-    std::vector<Estimate> correlations, intercepts;
-    bool noisy = false, is_short = false;
-    for_rated_rows(runs, kind, [&](const RecordedRows& run, std::size_t i) {
-        const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
-        const auto r = correlation(steps, seconds, run.sampling);
-        is_short = is_short || !r;
-        if (!r) return;
-        noisy = noisy || is_noisy(run.rows[i]);
-        correlations.push_back(*r);
-        intercepts.push_back(intercept_share(steps, seconds, run.sampling));
-        claim.evidence +=
-            fmt::format("{}{}: r = {}, at 0 tets {} of the mean time", claim.evidence.empty() ? "" : "; ",
-                        series_name(run.rows[i]), estimate_text(correlations.back()), estimate_text(intercepts.back()));
-    });
-    if (is_short)
-        claim.evidence = fmt::format("It takes {} views that differ.", least_views);
-    else if (correlations.empty())
-        claim.evidence = fmt::format("No row of a {} has a rate.", device);
-    else {
-        claim.verdict =
-            judge_both(judge_above(correlations, proportional_above), judge_within(intercepts, proportional_intercept));
-        claim.evidence += fmt::format(". Proportional: r above {}, and at 0 tets at most {} of the mean time.",
-                                      proportional_above, proportional_intercept);
-        withdraw_if_noisy(claim, noisy);
-    }
-    return claim;
 }
 
 } // namespace tetrace

@@ -2,7 +2,6 @@
 
 #include "bench/terminal/progress.h"
 #include "core/base/stopwatch.h"
-#include "core/mesh/locate.h"
 #include "core/pack/pack_bvh.h"
 
 #include <algorithm>
@@ -16,15 +15,18 @@ SceneWork::SceneWork(LoadedScene loaded, const Options& options)
       height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
 {
     const auto cameras = make_cameras(options.camera_set, bounding_sphere(loaded_.scene.mesh));
-    const Stopwatch watch;
+    std::vector<Float3> origins;
     for (const std::uint32_t number : view_numbers_) {
-        View view = make_view(cameras.at(number), width_, height_);
-        const Start start = find_start(loaded_.scene, view.origin);
-        view.origin = start.origin; // rays of every structure start there
-        views_.push_back(view);
-        start_tets_.push_back(start.tet);
+        views_.push_back(make_view(cameras.at(number), width_, height_));
+        origins.push_back(views_.back().origin);
     }
-    locate_s_ = watch.seconds();
+    const ViewStarts found = find_starts(loaded_.scene, origins);
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+        views_[i].origin = found.starts[i].origin; // rays of every structure start there
+        start_tets_.push_back(found.starts[i].tet);
+    }
+    locate_s_ = found.seconds;
+    start_walk_ = found.walk;
 }
 
 const Packed& SceneWork::packed(Layout layout, TetOrder order)

@@ -3,6 +3,7 @@
 #include "backends/embree/bvh_builder.h"
 #include "bench/options/options.h"
 #include "bench/rows/ray_store.h"
+#include "bench/rows/view_starts.h"
 #include "core/device/backend.h"
 #include "scenes/load.h"
 
@@ -36,6 +37,8 @@ public:
     [[nodiscard]] std::size_t rays_per_view() const { return std::size_t{width_} * height_; }
     /// Seconds for locating the origins of all views.
     [[nodiscard]] double locate_s() const { return locate_s_; }
+    /// How the camera's walk from view to view found them; empty where each was located on its own.
+    [[nodiscard]] const std::optional<StartWalk>& start_walk() const { return start_walk_; }
 
     /// Packs at the first call; later calls return the same object. Throws Error{unsupported} as pack() and pack_bvh()
     /// do.
@@ -66,6 +69,7 @@ private:
     std::vector<View> views_;
     std::vector<std::uint32_t> start_tets_; ///< as the tet mesh numbers them
     double locate_s_ = 0;
+    std::optional<StartWalk> start_walk_;
     unsigned threads_;
     std::optional<BuiltBvh> bvh_;
     std::map<std::pair<Layout, TetOrder>, Packed> packed_;

@@ -2,7 +2,6 @@
 #include "bench/output/bench_report.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_json.h"
-#include "bench/reproduce/paper.h"
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/tables/paper_table.h"
 #include "bench/reproduce/tables/pictures.h"
@@ -10,6 +9,7 @@
 #include "bench/reproduce/yardsticks.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/reproduce_builds.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -42,18 +42,6 @@ struct Reproduction {
     std::vector<std::string> missing_scenes; ///< one sentence each
 };
 
-bool wants(const Options& options, PaperTarget target)
-{
-    return std::ranges::find(options.targets, target) != options.targets.end();
-}
-
-bool wants_scenes(const Options& options)
-{
-    const auto& targets = options.targets;
-    return std::ranges::any_of(
-        targets, [](PaperTarget target) { return target != PaperTarget::table5 && target != PaperTarget::growth; });
-}
-
 /// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
 /// methods that it needs.
 void add_methods(Options& options)
@@ -85,77 +73,6 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
             missing.push_back(fmt::format("{} is left out: {}", name, reason));
     }
     if (options.scenes.empty()) options.scenes = {"cubes"};
-    return options;
-}
-
-/// Whether the scene is one of the paper's, and TetGen makes its tets with the given switches.
-bool has_papers_build(const std::string& name)
-{
-    if (!paper::nearest_switches(scene_label(name))) return false;
-    const CatalogueEntry* entry = find_in_catalogue(name);
-    if (entry != nullptr) return entry->source != SceneSource::cubes;
-    return std::filesystem::path(name).extension() != ".tet";
-}
-
-SceneBuild papers(SceneBuild build)
-{
-    BuildOptions& how = build.request.build;
-    how.domain = DomainKind::wide;
-    how.tets = TetsKind::cdt;
-    how.divisions = 1;
-    how.switches = paper::nearest_switches(build.scene).value();
-    build.build = papers_build;
-    build.label += "-paper";
-    build.robustness = false;
-    build.methods = true;
-    build.rivals = false;
-    return build;
-}
-
-/// The builds of the scenes asked for.
-std::vector<SceneBuild> paper_builds(const Options& options)
-{
-    const bool table3 = wants(options, PaperTarget::table3), table6 = wants(options, PaperTarget::table6);
-    const bool table4 = wants(options, PaperTarget::table4), figure6 = wants(options, PaperTarget::figure6);
-    std::vector<SceneBuild> builds;
-    if (!wants_scenes(options)) return builds;
-    for (const SceneRequest& request : scene_requests(options)) {
-        const std::string label = scene_label(request.name);
-        const SceneBuild ours = {
-            request, label, our_build, label, table4, table3 || table6 || figure6, table3 || table4 || figure6, table6};
-        builds.push_back(ours);
-        if (table3 && has_papers_build(request.name)) builds.push_back(papers(ours));
-    }
-    return builds;
-}
-
-/// Scenes in several sizes: banana and cubes where asked for, else banana.
-void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
-{
-    static const std::vector<std::uint32_t> cubes_sizes = {4, 8, 16, 32, 64};
-    Options of_families = options;
-    std::erase_if(of_families.scenes, [](const std::string& name) { return name != "banana" && name != "cubes"; });
-    if (of_families.scenes.empty()) of_families.scenes = {"banana"};
-    for (const SceneRequest& request : scene_requests(of_families)) {
-        const auto& standard = request.name == "cubes" ? cubes_sizes : growth_sizes();
-        for (SceneBuild& build : growth_builds(request, options.sizes.empty() ? standard : options.sizes))
-            builds.push_back(std::move(build));
-    }
-}
-
-/// The builds that the requested tables need.
-std::vector<SceneBuild> scene_builds(const Options& options)
-{
-    auto builds = paper_builds(options);
-    if (wants(options, PaperTarget::growth)) add_growth_builds(builds, options);
-    return builds;
-}
-
-/// The options with the views that the build is traced from.
-Options options_of_build(const SceneBuild& build, Options options)
-{
-    if (build.build == growth_build && options.views.empty() && options.camera_set == CameraSet::flight)
-        options.views = growth_views;
     return options;
 }
 
@@ -274,23 +191,26 @@ struct Keeping {
 
 void make_tables(Reproduction& all, const Options& options)
 {
-    const SceneRuns ours = all.of_builds({our_build}), papers = all.of_builds({our_build, papers_build});
+    const SceneRuns runs = all.of_builds({our_build, papers_build});
     const auto add_figures = [&](std::vector<PaperFigure> figures) {
         std::ranges::move(figures, std::back_inserter(all.figures));
     };
     if (wants(options, PaperTarget::table3)) {
-        all.tables.push_back(table3(papers));
-        all.tables.push_back(table3_rates(papers));
+        all.tables.push_back(table3(runs));
+        all.tables.push_back(table3_rates(runs));
     }
     if (wants(options, PaperTarget::table4)) {
-        all.tables.push_back(table4(ours, view_count(options.camera_set)));
-        all.figures.push_back(table4_views(ours));
+        all.tables.push_back(table4(runs, view_count(options.camera_set)));
+        all.figures.push_back(table4_views(runs));
     }
-    if (all.searches) all.tables.push_back(table5(*all.searches, all.devices));
+    if (all.searches) {
+        all.tables.push_back(table5(*all.searches, all.devices));
+        all.tables.push_back(operations_table());
+    }
     if (wants(options, PaperTarget::table6)) {
-        all.tables.push_back(table6(ours));
-        all.tables.push_back(table6_pairs(ours));
-        add_figures(table6_figures(ours));
+        all.tables.push_back(table6(runs));
+        all.tables.push_back(table6_pairs(runs));
+        add_figures(table6_figures(runs));
     }
     if (wants(options, PaperTarget::growth)) {
         const SceneRuns sizes = all.of_builds({growth_build});
@@ -299,8 +219,8 @@ void make_tables(Reproduction& all, const Options& options)
         add_figures(growth_figures(sizes));
     }
     if (wants(options, PaperTarget::figure6)) {
-        all.tables.push_back(figure6_table(ours));
-        add_figures(figure6(ours));
+        all.tables.push_back(figure6_table(runs));
+        add_figures(figure6(runs));
     }
 }
 
@@ -323,6 +243,10 @@ json reproduction_json(const Reproduction& all, const Options& options)
         section[key] = json::array();
     for (const SceneRun& run : all.runs) {
         if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
+        if (run.scene != nullptr && run.likeness.kind != LikenessKind::not_its_scene)
+            section["scenes"].back()["likeness"] = {{"kind", name_of(run.likeness.kind)},
+                                                    {"compared", run.likeness.is_compared()},
+                                                    {"reason", run.likeness.reason}};
         section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
     }
     if (all.searches) section["searches"] = all.search_records;
@@ -374,8 +298,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked,
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals) run.costs = keeping.costs.of(run.rows);
     run_views(run, options, keeping.journal.get(), all.progress);
-    const bool is_ours = build.build == our_build;
-    if (keeping.pictures != nullptr && is_ours)
+    if (keeping.pictures != nullptr && build.build != growth_build)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
     add_devices(all, run, options, keeping.yardsticks);

@@ -70,11 +70,12 @@ Float3 nudged(Float3 point, int choice, float by)
 
 } // namespace
 
-std::uint32_t locate(const TetMesh& mesh, Float3 point)
+WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint32_t most_steps)
 {
-    std::uint32_t tet = 0;
+    WalkEnd end{WalkEnd::Kind::too_far, NO_TET, 0};
+    std::uint32_t tet = from;
     std::uint32_t turn = 0; // which face is asked first changes from tet to tet, so that no cycle repeats for ever
-    for (std::size_t step = 0; step < 2 * mesh.tets.size() + 16; ++step) {
+    for (;; ++end.steps) {
         const auto corners = corners_of(mesh, mesh.tets[tet]);
         turn = turn * 1664525u + 1013904223u;
         std::uint32_t beyond = 4;
@@ -82,18 +83,35 @@ std::uint32_t locate(const TetMesh& mesh, Float3 point)
             const std::uint32_t face = (k + (turn >> 30)) & 3u;
             if (side_of_face(corners, face, point) > 0) beyond = face;
         }
-        if (beyond == 4) return tet;
+        if (beyond == 4) return {WalkEnd::Kind::arrived, tet, end.steps};
         const std::uint32_t link = mesh.tets[tet].links[beyond];
-        if (link == NO_LINK) return NO_TET; // the domain is convex
+        if (link == NO_LINK) return {WalkEnd::Kind::outside, NO_TET, end.steps}; // the domain is convex
+        if (end.steps == most_steps) return end;
         tet = link_tet(link);
     }
-    return search_all(mesh, point);
+}
+
+std::uint32_t locate(const TetMesh& mesh, Float3 point)
+{
+    const std::size_t most_steps = std::min<std::size_t>(2 * mesh.tets.size() + 16, UINT32_MAX);
+    const WalkEnd end = walk_to(mesh, 0, point, static_cast<std::uint32_t>(most_steps));
+    return end.kind == WalkEnd::Kind::too_far ? search_all(mesh, point) : end.tet;
+}
+
+bool is_inside(const Scene& scene, const Start& start)
+{
+    return start.tet != NO_TET && clearance(scene.tets, start.tet, start.origin) > 0;
 }
 
 Start find_start(const Scene& scene, Float3 origin)
 {
+    return find_start(scene, origin, [&](Float3 point) { return locate(scene.tets, point); });
+}
+
+Start find_start(const Scene& scene, Float3 origin, const Locator& locator)
+{
     if (!scene.domain.contains(origin)) return {origin, NO_TET};
-    const std::uint32_t tet = locate(scene.tets, origin);
+    const std::uint32_t tet = locator(origin);
     Start best{origin, tet};
     double most = tet == NO_TET ? 0 : clearance(scene.tets, tet, origin);
     for (const float by : nudges) {
@@ -101,7 +119,7 @@ Start find_start(const Scene& scene, Float3 origin)
         for (int choice = 0; choice < 27; ++choice) {
             const Float3 candidate = nudged(origin, choice, by);
             if (!scene.domain.contains(candidate)) continue;
-            const std::uint32_t at = locate(scene.tets, candidate);
+            const std::uint32_t at = locator(candidate);
             const double room = at == NO_TET ? 0 : clearance(scene.tets, at, candidate);
             if (room > most) best = {candidate, at};
             most = std::max(most, room);

@@ -2,6 +2,8 @@
 
 #include "core/mesh/scene.h"
 
+#include <functional>
+
 namespace tetrace {
 
 /// The tet that holds a point, by exact orientation tests (a visibility walk; Devillers, Pion, Teillaud 2002).
@@ -9,15 +11,43 @@ namespace tetrace {
 /// NO_TET where the point is outside the domain.
 [[nodiscard]] std::uint32_t locate(const TetMesh& mesh, Float3 point);
 
+/// How a walk from one tet to that of a point ended.
+struct WalkEnd {
+    enum class Kind {
+        arrived, ///< in a tet that holds the point
+        outside, ///< the point is outside the domain
+        too_far, ///< after as many steps as it may take
+    };
+    Kind kind = Kind::too_far;
+    std::uint32_t tet = NO_TET; ///< where it arrived, else NO_TET
+    std::uint32_t steps = 0;    ///< from tet to tet
+};
+
+/// The same walk from a given tet, which is short where the tet is near the point. Each step crosses a face that
+/// separates its tet from the point, by exact orientation tests.
+/// from: a tet of the mesh. most_steps: it gives up rather than take more.
+[[nodiscard]] WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint32_t most_steps);
+
 /// Where the rays of a view start.
 struct Start {
     Float3 origin;              ///< the camera's origin, or a point near it
     std::uint32_t tet = NO_TET; ///< holds the origin in its interior; NO_TET: outside, rays enter by the entry grid
+
+    friend bool operator==(const Start&, const Start&) = default;
 };
+
+/// Whether the tet holds the start's origin in its interior, so that no other tet does.
+[[nodiscard]] bool is_inside(const Scene& scene, const Start& start);
+
+/// Finds a tet that holds a point in the domain; NO_TET where it finds none.
+using Locator = std::function<std::uint32_t(Float3)>;
 
 /// Locates a camera. A camera nearer than 2^-16 to a face of its tet is within the rounding of a walk's decisions. It
 /// moves by at most 2^-12 in each coordinate, to the candidate with the most clearance. All structures trace from the
 /// moved origin.
 [[nodiscard]] Start find_start(const Scene& scene, Float3 origin);
+/// The same by another way to find tets. The result does not depend on which of the tets that hold a point the locator
+/// names, as long as is_inside() says yes to it.
+[[nodiscard]] Start find_start(const Scene& scene, Float3 origin, const Locator& locator);
 
 } // namespace tetrace

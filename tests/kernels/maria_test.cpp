@@ -1,12 +1,12 @@
+#include "bench/reproduce/operations/counted_methods.h"
 #include "core/base/exact.h"
-#include "tests/support/counted_methods.h"
 #include "tests/support/random_tets.h"
 
 #include <gtest/gtest.h>
 
 using namespace tetrace;
 using namespace tetrace::test;
-using namespace tetrace::test::counted::maria;
+using namespace tetrace::counted::maria;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // What each exit-face search costs, and that it is right, by exact arithmetic, on tets that a random ray stabs.
-#include "tests/support/counted_methods.h"
+#include "bench/reproduce/operations/counted_methods.h"
 #include "tests/support/random_tets.h"
 
 #include <gtest/gtest.h>

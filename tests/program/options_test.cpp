@@ -252,6 +252,15 @@ TEST(Options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
     EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6 or growth"));
 }
 
+TEST(Options, builds_are_ours_and_the_papers_unless_named)
+{
+    EXPECT_TRUE(parse_options({"reproduce"}).paper_builds.empty());
+    EXPECT_EQ(parse_options({"reproduce", "--builds", "paper"}).paper_builds, std::vector{PaperBuild::paper});
+    EXPECT_EQ(parse_options({"reproduce", "--builds", "ours,paper"}).paper_builds.size(), 2u);
+    EXPECT_THROW((void)parse_options({"reproduce", "--builds", "theirs"}), Error);
+    EXPECT_THROW((void)parse_options({"bench", "--builds", "paper"}), Error);
+}
+
 TEST(Options, searches_are_tets_times_rays_and_the_papers_unless_told)
 {
     EXPECT_EQ(parse_options({"reproduce", "table5"}).searches, (SearchSize{10'000, 16'384}));

@@ -193,6 +193,24 @@ TEST(Growth, a_size_without_a_rate_has_no_part_in_the_fit)
     EXPECT_TRUE(is_empty(growth_table(all.all()), 2 * 6 + 2, "ns_a_ray"));
 }
 
+TEST(Growth, the_papers_claim_about_size_is_decided_by_the_exponents)
+{
+    Sizes all;
+    const auto claim = [&] {
+        for (const Claim& one : growth_exponents(all.all()).claims)
+            if (one.id == "growth-bvh-depends-less-on-size-cpu") return one;
+        throw std::runtime_error("no such claim");
+    };
+    for (std::size_t row = 0; row < 6; ++row)
+        all.set_times(row, 1e-8, row < 2 ? 0.4 : 0.1); // the first two are the CDT
+    EXPECT_EQ(claim().verdict, ClaimVerdict::holds) << claim().evidence;
+    for (std::size_t row = 0; row < 2; ++row)
+        all.set_times(row, 1e-8, 0.05);
+    EXPECT_EQ(claim().verdict, ClaimVerdict::does_not_hold);
+    all.runs.back().rows[2].outcome = Failed{ErrorKind::internal, "lost"};
+    EXPECT_EQ(claim().verdict, ClaimVerdict::not_testable) << "bvh2 has two sizes";
+}
+
 TEST(Growth, figures_are_lines_over_the_faces_with_logarithmic_axes)
 {
     const Sizes all;

@@ -2,6 +2,8 @@
 #include "bench/reproduce/tables/paper_table.h"
 #include "tests/support/temporary_folder.h"
 
+#include <cmath>
+
 using namespace tetrace;
 using namespace tetrace::test;
 
@@ -57,13 +59,54 @@ TEST(PaperTable, a_figure_without_its_points_says_where_they_are)
     EXPECT_FALSE(contains(figure_markdown(figure), "points are"));
 }
 
-TEST(Paper, has_three_scenes_and_no_build_of_others)
+TEST(PaperTable, a_number_that_is_not_compared_is_shown_without_a_ratio)
+{
+    PaperTable table = table_of_two_rows();
+    std::get<Quantity>(table.rows[0][2]).is_compared = false;
+    const auto cell = table_json(table)["rows"][0]["rate"];
+    EXPECT_EQ(cell["paper"], 5);
+    EXPECT_FALSE(cell.contains("ratio"));
+    EXPECT_EQ(table_json(table_of_two_rows())["rows"][0]["rate"]["ratio"], 0.5);
+}
+
+TEST(Paper, has_three_scenes_with_every_number_and_a_build_and_no_others)
 {
     for (const char* const scene : {"banana", "bunny", "armadillo"}) {
         EXPECT_TRUE(paper::has_scene(scene));
-        EXPECT_TRUE(paper::nearest_switches(scene).has_value()) << scene;
+        EXPECT_TRUE(paper::nearest_build(scene)) << scene;
+        EXPECT_TRUE(paper::frames_of(scene)) << scene;
+        for (const Method method : {Method::plane, Method::plucker, Method::stp, Method::ms06, Method::maria})
+            EXPECT_TRUE(paper::wrong_rays_of(scene, method)) << scene;
+        EXPECT_FALSE(paper::wrong_rays_of(scene, Method::project)) << "it does not have this method";
     }
     EXPECT_FALSE(paper::has_scene("cubes"));
-    EXPECT_FALSE(paper::nearest_switches("dragon").has_value());
-    EXPECT_EQ(paper::nearest_switches("armadillo"), paper::nearest_switches("bunny")) << "as for bunny";
+    EXPECT_FALSE(paper::nearest_build("dragon"));
+    EXPECT_FALSE(paper::wrong_rays_of("cubes", Method::maria));
+    EXPECT_EQ(paper::nearest_build("banana")->switches, "pq5Y");
+    EXPECT_EQ(paper::nearest_build("armadillo")->switches, paper::nearest_build("bunny")->switches);
+}
+
+// A digit that is copied wrongly shows where the paper prints what its other numbers give.
+TEST(Paper, its_numbers_agree_with_each_other)
+{
+    double cpu = 0, gpu = 0;
+    for (const paper::SceneFigures& scene : paper::scenes()) {
+        EXPECT_EQ(std::floor(96.0 * static_cast<double>(scene.tets) * 0x1p-20), scene.memory_mib) << scene.scene;
+        const auto boundary = 4 * scene.tets - 2 * (scene.occlusive_faces + scene.free_faces);
+        EXPECT_GE(boundary, 76u) << scene.scene;
+        EXPECT_LE(boundary, 104u) << scene.scene;
+        cpu += scene.cpu_mrays / 3, gpu += scene.gpu_mrays / 3;
+    }
+    EXPECT_NEAR(cpu, paper::mean_mrays(paper::Place::cpu), 0.05);
+    EXPECT_NEAR(gpu, paper::mean_mrays(paper::Place::gpu), 0.5);
+    const auto slower = [](paper::Place place) {
+        const Method older = paper::fastest_older(place).method;
+        return *paper::search_ms(older, place) / *paper::search_ms(Method::maria, place) - 1;
+    };
+    EXPECT_NEAR(slower(paper::Place::cpu), paper::fastest_older(paper::Place::cpu).slower, 0.005);
+    EXPECT_NEAR(slower(paper::Place::gpu), paper::fastest_older(paper::Place::gpu).slower, 0.03) << "it prints 59 %";
+    EXPECT_NEAR(paper::view_a.tets_a_ray(), 9.2, 0.05);
+    EXPECT_NEAR(paper::view_b.tets_a_ray(), 21.7, 0.05);
+    EXPECT_NEAR(paper::view_a.msteps_per_s(), 239, 0.5);
+    EXPECT_NEAR(paper::view_b.msteps_per_s(), 186, 0.5);
 }

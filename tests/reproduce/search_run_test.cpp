@@ -2,6 +2,7 @@
 
 #include "backends/openmp/backend.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/timed_runs.h"
 #include "tests/support/wrapped_session.h"
 
 #include <algorithm>
@@ -182,7 +183,8 @@ TEST(SearchRun, a_device_with_one_other_face_a_batch_is_wrong_and_has_no_rate)
     EXPECT_TRUE(contains(text_cell(table, 1, "status"), "wrong: 23 different from openmp's"));
     EXPECT_FALSE(number_cell(table, 1, "msearches_per_s").has_value());
     EXPECT_TRUE(number_cell(table, 0, "msearches_per_s").has_value());
-    EXPECT_TRUE(contains(table.claims[2].evidence, "by 1 row:")) << "the wrong row says nothing of the method";
+    EXPECT_TRUE(contains(claim_of(table, "table5-maria-exact").evidence, "by 1 row:"))
+        << "the wrong row says nothing of the method";
     EXPECT_TRUE(contains(table.notes.back(), "api:other differs first on ray 17 of tet 0: face "));
 }
 
@@ -247,8 +249,7 @@ TEST(SearchRun, wrong_and_lost_faces_are_the_methods_own_where_openmp_has_them)
     const PaperTable table = table5(run, {});
     EXPECT_DOUBLE_EQ(number_cell(table, 0, "lost").value_or(0), 1e6 * 2 * 23 / (45 * 64));
     EXPECT_TRUE(number_cell(table, 0, "msearches_per_s").has_value()) << "flawed rows keep their rate";
-    EXPECT_EQ(table.claims[2].id, "table5-maria-exact");
-    EXPECT_EQ(table.claims[2].verdict, ClaimVerdict::does_not_hold);
+    EXPECT_EQ(claim_of(table, "table5-maria-exact").verdict, ClaimVerdict::does_not_hold);
     EXPECT_TRUE(contains(table.notes.back(), "errs first on ray 3 of tet 0: no face, where the exact one is face "));
     EXPECT_TRUE(fails(run.rows[0], true)) << "maria loses none";
 }
@@ -284,6 +285,59 @@ TEST(SearchRun, the_fastest_is_told_from_the_rows_on_one_thread)
     EXPECT_EQ(table5(run, {}).claims[0].verdict, ClaimVerdict::not_testable) << "not of all five";
 }
 
+TEST(SearchRun, claims_of_older_methods_are_told_from_one_thread_and_tested_against_the_papers_share)
+{
+    SearchRun run;
+    const auto seconds_of = [](Method method) {
+        return method == Method::maria ? 0.1 : method == Method::stp ? 0.183 : 0.3;
+    };
+    for (const KernelId& kernel : kernels_of(Task::search))
+        if (kernel.layout == Layout::tet80 && kernel.math == MathMode::exact) {
+            run.rows.push_back(timed_row(kernel.method, 1, seconds_of(kernel.method)));
+            run.images.push_back(timed_batches(seconds_of(kernel.method)));
+        }
+    const auto verdict = [&](const std::string& id) { return claim_of(table5(run, {}), id).verdict; };
+    const std::string fastest = "table5-stp-is-the-fastest-older-cpu", slower = "table5-stp-is-83-percent-slower-cpu";
+    EXPECT_EQ(verdict(fastest), ClaimVerdict::holds);
+    EXPECT_EQ(verdict(slower), ClaimVerdict::holds);
+    EXPECT_EQ(verdict("table5-ms06-is-the-fastest-older-gpu"), ClaimVerdict::not_testable) << "no GPU";
+    EXPECT_EQ(verdict("table5-ms06-is-59-percent-slower-gpu"), ClaimVerdict::not_testable);
+    EXPECT_EQ(verdict("table5-maria-fastest-gpu"), ClaimVerdict::not_testable);
+    for (std::size_t row = 0; row < run.rows.size(); ++row)
+        if (run.rows[row].key.kernel.method == Method::stp) run.images[row] = timed_batches(0.21);
+    EXPECT_EQ(verdict(fastest), ClaimVerdict::holds);
+    EXPECT_EQ(verdict(slower), ClaimVerdict::does_not_hold) << "2.1 is beyond 1.83 by more than a tenth";
+    for (std::size_t row = 0; row < run.rows.size(); ++row)
+        if (run.rows[row].key.kernel.method == Method::ms06) run.images[row] = timed_batches(0.15);
+    EXPECT_EQ(verdict(fastest), ClaimVerdict::does_not_hold);
+    for (RowRun& row : run.rows)
+        row.device.kind = DeviceKind::gpu;
+    EXPECT_EQ(verdict("table5-ms06-is-the-fastest-older-gpu"), ClaimVerdict::holds);
+    EXPECT_EQ(verdict("table5-ms06-is-59-percent-slower-gpu"), ClaimVerdict::holds) << "1.5 is within a tenth of 1.59";
+}
+
+TEST(SearchRun, times_are_scaled_to_the_papers_searches_and_stand_beside_its_device_of_that_kind)
+{
+    SearchRun run;
+    run.rows.push_back(timed_row(Method::maria, 1, 0.1));
+    run.images.push_back(timed_batches(0.1));
+    const auto cell = [&] {
+        const PaperTable table = table5(run, {});
+        for (std::size_t c = 0; c < table.columns.size(); ++c)
+            if (table.columns[c].key == "all_ms") return std::get<Quantity>(table.rows.at(0).at(c));
+        throw std::runtime_error("no such column");
+    };
+    const double all_ms = 1e3 * 0.1 * paper::searches / static_cast<double>(traced(run.rows[0])->totals.rays);
+    EXPECT_NEAR(cell().ours.value, all_ms, 1e-9 * all_ms);
+    EXPECT_EQ(cell().paper, 2663);
+    run.rows[0].key.threads = 0;
+    EXPECT_FALSE(cell().paper) << "its CPU has one thread there";
+    run.rows[0].device.kind = DeviceKind::gpu;
+    EXPECT_EQ(cell().paper, 13);
+    run.rows[0].device.kind = DeviceKind::emulated;
+    EXPECT_FALSE(cell().paper);
+}
+
 TEST(SearchRun, a_gpu_decides_whether_plucker_overtakes_stp)
 {
     class Gpu : public DamagedBackend {
@@ -298,8 +352,8 @@ TEST(SearchRun, a_gpu_decides_whether_plucker_overtakes_stp)
         std::vector<Device> devices_;
     } gpu;
     const PaperTable table = table5(run_on({&gpu}, "stp,plucker,maria"), {});
-    EXPECT_TRUE(contains(table.claims[1].evidence, "stp / plucker "));
-    EXPECT_TRUE(contains(table.claims[1].evidence, "random-tets tet80 gpu"));
+    EXPECT_TRUE(contains(claim_of(table, "table5-plucker-overtakes-stp-gpu").evidence, "stp / plucker "));
+    EXPECT_TRUE(contains(claim_of(table, "table5-plucker-overtakes-stp-gpu").evidence, "random-tets tet80 gpu"));
 }
 
 TEST(SearchRun, no_wrong_one_among_the_papers_number_of_searches_makes_the_claim_hold)
@@ -311,13 +365,14 @@ TEST(SearchRun, no_wrong_one_among_the_papers_number_of_searches_makes_the_claim
     result.verdicts.ties = 5;
     result.verdicts.agreed = run.size.count() - 5;
     run.rows[0].outcome = result;
-    EXPECT_EQ(table5(run, {}).claims[2].verdict, ClaimVerdict::holds);
-    EXPECT_TRUE(contains(table5(run, {}).claims[2].evidence, "163,840,000 searches by 1 row: 0 wrong, 0 lost, 5 ties"));
+    EXPECT_EQ(claim_of(table5(run, {}), "table5-maria-exact").verdict, ClaimVerdict::holds);
+    EXPECT_TRUE(contains(claim_of(table5(run, {}), "table5-maria-exact").evidence,
+                         "163,840,000 searches by 1 row: 0 wrong, 0 lost, 5 ties"));
     run.size.tets -= 1;
-    EXPECT_EQ(table5(run, {}).claims[2].verdict, ClaimVerdict::not_testable);
+    EXPECT_EQ(claim_of(table5(run, {}), "table5-maria-exact").verdict, ClaimVerdict::not_testable);
     result.verdicts.wrong = 1;
     run.rows[0].outcome = result;
-    EXPECT_EQ(table5(run, {}).claims[2].verdict, ClaimVerdict::does_not_hold);
+    EXPECT_EQ(claim_of(table5(run, {}), "table5-maria-exact").verdict, ClaimVerdict::does_not_hold);
 }
 
 TEST(SearchRun, rays_that_no_buffer_holds_end_a_row_as_unsupported)

@@ -25,6 +25,23 @@ std::string source()
     return fmt::format("{}, Figure 6", paper::citation);
 }
 
+/// Millions of tets that the rays of an image of the paper's size traverse.
+double mtets_an_image(double tets_a_ray)
+{
+    return 1e-6 * tets_a_ray * paper::image_pixels;
+}
+
+/// The time of as many rays as an image of the paper's size has.
+double image_ms(const SceneRun& run, double view_s)
+{
+    return 1e3 * view_s * paper::image_pixels / static_cast<double>(run.scene->rays_per_view());
+}
+
+bool has_papers_times(const RowRun& row)
+{
+    return row.key.kernel.method == Method::maria && paper_place(row) == paper::Place::cpu;
+}
+
 std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
@@ -33,26 +50,34 @@ std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
     const auto [shortest, longest] = std::ranges::minmax_element(seconds);
     const auto r = correlation(steps, seconds, run.sampling);
     const auto rays = static_cast<double>(run.scene->rays_per_view());
-    const auto beside_ours = [&](double number) {
-        return paper::has_scene(run.build.scene) ? std::optional(number) : std::nullopt;
-    };
     const Line line = r ? fit_line(steps, seconds) : Line{};
-    auto cells = label_cells({run.build.scene}, row);
+    const auto beside = [&](double ours, double papers, bool is_papers) {
+        return quantity_beside({ours, {}, {}, true}, is_papers ? std::optional(papers) : std::nullopt, run);
+    };
+    // The paper's image, and times of its method on its CPU.
+    const bool has_tets = run.build.scene == paper::figure6_scene, has_times = has_tets && has_papers_times(row);
+    auto cells = label_cells({run.build.scene, run.build.build}, row);
     cells.insert(cells.end(),
-                 {exact_cell(static_cast<double>(steps.size())),
-                  exact_cell(*fewest, beside_ours(paper::least_tets_a_ray)),
-                  exact_cell(*most, beside_ours(paper::most_tets_a_ray)), exact_cell(1e3 * *shortest),
-                  exact_cell(1e3 * *longest), exact_cell(figures_of(row)->msteps_per_s.value_or(0)),
-                  r ? PaperCell(Quantity{*r, {}}) : PaperCell(), r ? exact_cell(1e9 * line.slope / rays) : PaperCell(),
-                  r ? exact_cell(1e3 * line.intercept) : PaperCell()});
+                 {exact_cell(static_cast<double>(steps.size())), exact_cell(*fewest), exact_cell(*most),
+                  beside(mtets_an_image(*fewest), paper::view_a.mtets, has_tets),
+                  beside(mtets_an_image(*most), paper::view_b.mtets, has_tets),
+                  beside(image_ms(run, *shortest), paper::view_a.ms, has_times),
+                  beside(image_ms(run, *longest), paper::view_b.ms, has_times),
+                  exact_cell(figures_of(row)->msteps_per_s.value_or(0)), r ? PaperCell(Quantity{*r, {}}) : PaperCell(),
+                  r ? exact_cell(1e9 * line.slope / rays) : PaperCell(),
+                  r ? exact_cell(image_ms(run, line.intercept)) : PaperCell(),
+                  std::string(name_of(run.likeness.kind))});
     return cells;
 }
 
 std::vector<Claim> claims_of(const RecordedRuns& runs)
 {
-    auto claims = speed_claims(runs);
-    claims.insert(claims.begin(),
-                  {proportional_claim(runs, DeviceKind::cpu), proportional_claim(runs, DeviceKind::gpu)});
+    std::vector<Claim> claims;
+    for (const DeviceKind kind : {DeviceKind::cpu, DeviceKind::gpu})
+        for (auto* const claim_of : {proportional_claim, linear_claim, slower_tets_claim})
+            claims.push_back(claim_of(runs, kind));
+    for (Claim& claim : speed_claims(runs))
+        claims.push_back(std::move(claim));
     return claims;
 }
 
@@ -101,7 +126,7 @@ PaperFigure::Series series_of(const SceneRun& run, std::size_t i, const std::str
     PaperFigure::Series series{name, {}};
     const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
     for (std::size_t view = 0; view < steps.size(); ++view)
-        series.points.emplace_back(steps[view], 1e3 * seconds[view]);
+        series.points.emplace_back(steps[view], image_ms(run, seconds[view]));
     return series;
 }
 
@@ -111,17 +136,22 @@ PaperFigure figure_of(const SceneRun& run, std::optional<DeviceKind> kind)
 {
     const std::string kind_text(kind ? name_of(*kind) : "");
     PaperFigure figure{
-        fmt::format("figure6-{}{}{}", run.build.scene, kind ? "-" : "", kind_text),
-        fmt::format("Time and tets traversed, a point a view: {}{}{}", run.build.scene, kind ? ", " : "", kind_text),
+        fmt::format("figure6-{}{}{}", run.build.label, kind ? "-" : "", kind_text),
+        fmt::format("Time and tets traversed, a point a view: {}, {} build{}{}", run.build.scene, run.build.build,
+                    kind ? ", " : "", kind_text),
         source(),
         {"tets traversed", "a ray"},
-        {"time of an image", "ms"},
-        {"Times are medians of a view's samples, device seconds of the kernel alone; a view's rows are "
-         "interleaved."}};
+        {"time of an image of 1024 x 1024", "ms"},
+        {"Times are medians of a view's samples, device seconds of the kernel alone, for as many rays as the paper's "
+         "images have; a view's rows are interleaved."}};
     const auto rows = kind ? rated_rows(run, *kind) : std::vector<std::size_t>();
     const auto names = distinct_names(run, rows);
     for (std::size_t i = 0; i < rows.size(); ++i)
         figure.series.push_back(series_of(run, rows[i], names[i]));
+    if (kind == DeviceKind::cpu && run.build.scene == paper::figure6_scene && run.likeness.is_compared())
+        figure.series.push_back(
+            {fmt::format("the paper's views A and B, on its {}", paper::cpu_name),
+             {{paper::view_a.tets_a_ray(), paper::view_a.ms}, {paper::view_b.tets_a_ray(), paper::view_b.ms}}});
     return figure;
 }
 
@@ -150,30 +180,39 @@ std::vector<PaperFigure> figure6(const SceneRuns& runs)
 
 PaperTable figure6_table(const SceneRuns& runs)
 {
-    PaperTable table{"figure6",
-                     "Time and tets traversed over the views",
-                     source(),
-                     {{"scene", "scene"},
-                      {"method", "method"},
-                      {"layout", "layout"},
-                      {"device", "device"},
-                      {"type", "type"},
-                      {"views", "views", "", 0},
-                      {"fewest_tets", "fewest tets", "a ray", 1},
-                      {"most_tets", "most tets", "a ray", 1},
-                      {"shortest_ms", "shortest", "ms"},
-                      {"longest_ms", "longest", "ms"},
-                      {"msteps_per_s", "Msteps/s", "", 1},
-                      {"correlation", "r", "", 3},
-                      {"slope_ns", "slope", "ns a tet and ray"},
-                      {"intercept_ms", "intercept", "ms"}},
-                     {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
-                      "views. Emulations of GPUs are in no claim.",
-                      fmt::format("The paper: {} to {} tets a ray over its 1,282 views, of cameras that it does not "
-                                  "give, and {} to {} Msteps/s on its CPU. {}",
-                                  paper::least_tets_a_ray, paper::most_tets_a_ray, paper::least_cpu_msteps,
-                                  paper::most_cpu_msteps, paper::rest_is_there)}};
+    PaperTable table{
+        "figure6",
+        "Time and tets traversed over the views",
+        source(),
+        {{"scene", "scene"},
+         {"build", "build"},
+         {"method", "method"},
+         {"layout", "layout"},
+         {"device", "device"},
+         {"type", "type"},
+         {"views", "views", "", 0},
+         {"fewest_tets", "fewest tets", "a ray", 1},
+         {"most_tets", "most tets", "a ray", 1},
+         {"fewest_mtets", "fewest", "Mtets an image"},
+         {"most_mtets", "most", "Mtets an image"},
+         {"shortest_ms", "shortest", "ms an image"},
+         {"longest_ms", "longest", "ms an image"},
+         {"msteps_per_s", "Msteps/s", "", 1},
+         {"correlation", "r", "", 3},
+         {"slope_ns", "slope", "ns a tet and ray"},
+         {"intercept_ms", "intercept", "ms an image"},
+         {"likeness", "like the paper's"}},
+        {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
+         "views. Emulations of GPUs are in no claim.",
+         fmt::format("An image has 1024 x 1024 rays; counts and times of smaller ones are scaled to that. "
+                     "The paper has one scene, {}, from 1,282 views of cameras that it does not give, on "
+                     "its {}: {} ms and {} million tets in its view A, {} ms and {} million in B, {:.0f} "
+                     "and {:.0f} Msteps/s.",
+                     paper::figure6_scene, paper::cpu_name, paper::view_a.ms, paper::view_a.mtets, paper::view_b.ms,
+                     paper::view_b.mtets, paper::view_a.msteps_per_s(), paper::view_b.msteps_per_s())}};
     table.claims = claims_of({runs.begin(), runs.end()});
+    for (std::string& note : likeness_notes(runs))
+        table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs) {
         for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
         for (std::size_t i = 0; i < run->rows.size(); ++i)

@@ -23,6 +23,7 @@ struct GrowthLine {
     const RowRun* row = nullptr; ///< at the first of them
     std::string family;          ///< the scene's name without its size
     std::vector<Growing> points;
+    bool noisy = false; ///< at one of the sizes
 };
 
 std::string family_of(const SceneRun& run)
@@ -72,8 +73,9 @@ std::vector<GrowthLine> lines_of(const SceneRuns& runs)
                 return line.family == family_of(*run) && is_one_kernel(*line.row, run->rows[i]);
             };
             auto line = std::ranges::find_if(lines, same);
-            if (line == lines.end()) line = lines.insert(line, {&run->rows[i], family_of(*run), {}});
+            if (line == lines.end()) line = lines.insert(line, {&run->rows[i], family_of(*run), {}, false});
             line->points.push_back(growing(*run, i));
+            line->noisy = line->noisy || is_noisy(run->rows[i]);
         }
     }
     return lines;
@@ -101,7 +103,7 @@ std::vector<PaperCell> size_cells(const SceneRun& run, std::size_t i)
 }
 
 /// The exponent of a line's values, over the sizes at which it has them.
-PaperCell exponent_cell(const GrowthLine& line, std::optional<double> Growing::*member)
+std::optional<PowerLaw> law_of(const GrowthLine& line, std::optional<double> Growing::*member)
 {
     std::vector<double> faces, values;
     for (const Growing& point : line.points)
@@ -109,7 +111,12 @@ PaperCell exponent_cell(const GrowthLine& line, std::optional<double> Growing::*
             faces.push_back(point.faces);
             values.push_back(*value);
         }
-    const auto law = fit_power_law(faces, values);
+    return fit_power_law(faces, values);
+}
+
+PaperCell exponent_cell(const GrowthLine& line, std::optional<double> Growing::*member)
+{
+    const auto law = law_of(line, member);
     return law ? PaperCell(Quantity{law->exponent, {}}) : PaperCell();
 }
 
@@ -186,6 +193,44 @@ PaperFigure visits_figure(const std::vector<GrowthLine>& lines, const std::strin
         add_series(figure, series_of(line, layout + ", triangles", &Growing::triangles));
     }
     return figure;
+}
+
+/// "The BVH's cost depends less on the size of the input" (the paper, Table 6): the exponent of bvh2's time is below
+/// that of each layout of maria, on each device of the kind.
+Claim size_claim(const std::vector<GrowthLine>& lines, DeviceKind kind)
+{
+    const char* const device = kind == DeviceKind::gpu ? "GPU" : "CPU";
+    Claim claim{fmt::format("growth-bvh-depends-less-on-size-{}", name_of(kind)),
+                fmt::format("on a {}, the BVH's time depends less than the CDT's on the size of the input", device)};
+    std::vector<ClaimVerdict> verdicts;
+    bool noisy = false;
+    for (const GrowthLine& bvh : lines) {
+        if (bvh.row->key.kernel.layout != Layout::bvh2 || bvh.row->device.kind != kind) continue;
+        const auto least = law_of(bvh, &Growing::ns_a_ray);
+        std::vector<Estimate> others;
+        for (const GrowthLine& cdt : lines)
+            if (cdt.family == bvh.family && is_cdt(*cdt.row) && same_place(cdt.row->key, bvh.row->key))
+                if (const auto law = law_of(cdt, &Growing::ns_a_ray)) {
+                    others.push_back(law->exponent);
+                    noisy = noisy || cdt.noisy;
+                    claim.evidence += fmt::format("{}{}: faces^{}", claim.evidence.empty() ? "" : "; ", line_name(cdt),
+                                                  estimate_text(law->exponent));
+                }
+        if (!least || others.empty()) continue;
+        noisy = noisy || bvh.noisy;
+        claim.evidence += fmt::format("; {}: faces^{}", line_name(bvh), estimate_text(least->exponent));
+        verdicts.push_back(judge_less(least->exponent, others));
+    }
+    if (verdicts.empty()) {
+        claim.evidence = fmt::format("No {} has rates of the CDT and of bvh2 in three sizes.", device);
+        return claim;
+    }
+    claim.verdict = verdicts.front();
+    for (const ClaimVerdict verdict : verdicts)
+        claim.verdict = judge_both(claim.verdict, verdict);
+    claim.evidence += ".";
+    withdraw_if_noisy(claim, noisy);
+    return claim;
 }
 
 std::vector<std::string> families_of(const std::vector<GrowthLine>& lines)
@@ -273,8 +318,11 @@ PaperTable growth_exponents(const SceneRuns& runs)
         {"cost ~ faces^x, x by least squares on logarithms, from 3 sizes on, with Student's 95 % interval: "
          "it tells how well a power fits these sizes, whose deviations it takes as independent. A cost "
          "that grows as a logarithm has a small x, which falls with the sizes."}};
-    for (const GrowthLine& line : lines_of(runs))
+    const auto lines = lines_of(runs);
+    for (const GrowthLine& line : lines)
         table.rows.push_back(exponent_cells(line));
+    for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu})
+        table.claims.push_back(size_claim(lines, kind));
     return table;
 }
 

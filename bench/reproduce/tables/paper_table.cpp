@@ -237,7 +237,7 @@ std::string headline(const std::string& id, const std::string& title, const std:
 
 std::optional<double> Quantity::ratio() const
 {
-    if (!paper || *paper == 0) return std::nullopt;
+    if (!paper || *paper == 0 || !is_compared) return std::nullopt;
     return ours.value / *paper;
 }
 
@@ -320,7 +320,7 @@ Table with_paper_columns(const PaperTable& table)
             std::ranges::any_of(table.rows, [&](const auto& row) { return has_interval(row.at(c)); });
         add(column, intervals ? cells(interval_cell) : cells(plain_cell), true);
         add({column.key + "_paper", "paper", {}, column.decimals}, cells(paper_cell), false);
-        add({column.key + "_ratio", "ratio"}, cells(ratio_cell), false);
+        add({column.key + "_ratio", "ratio", {}, 3}, cells(ratio_cell), false);
     }
     Table result(std::move(columns));
     for (auto& row : rows)

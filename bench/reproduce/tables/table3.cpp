@@ -5,18 +5,28 @@
 #include "bench/reproduce/speed.h"
 #include "bench/terminal/text.h"
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 
 namespace tetrace {
 
 namespace {
 
-/// Counts of one mesh vary by 0.2 % with the order of its triangles, and more between versions of TetGen.
-constexpr double count_tolerance = 0.01;
-
-double megabytes(SceneWork& scene, Layout layout)
+std::string capitalised(std::string sentence)
 {
-    return 1e-6 * static_cast<double>(scene.packed(layout, TetOrder::hilbert).data.bytes());
+    if (!sentence.empty()) sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+    return sentence;
+}
+
+std::string milliseconds(double seconds)
+{
+    return fmt::format("{:.2g} ms", 1e3 * seconds);
+}
+
+double mebibytes(SceneWork& scene, Layout layout)
+{
+    return 0x1p-20 * static_cast<double>(scene.packed(layout, TetOrder::hilbert).data.bytes());
 }
 
 std::vector<PaperCell> scene_cells(const SceneRun& run)
@@ -24,70 +34,87 @@ std::vector<PaperCell> scene_cells(const SceneRun& run)
     SceneWork& scene = *run.scene;
     const Scene& loaded = scene.loaded().scene;
     const TetMeshCounts& counts = scene.counts();
-    const auto paper = paper::counts_of(run.build.scene);
-    const auto of_paper = [&](std::uint64_t paper::SceneCounts::*member) {
-        return paper ? std::optional(static_cast<double>((*paper).*member)) : std::nullopt;
+    const auto paper = paper::figures_of(run.build.scene);
+    const auto count_cell = [&](std::uint64_t ours, std::uint64_t paper::SceneFigures::*member) {
+        return quantity_beside({static_cast<double>(ours), {}, {}, true},
+                               paper ? std::optional(static_cast<double>((*paper).*member)) : std::nullopt, run);
     };
     return {run.build.scene,
             run.build.build,
             fmt::format("{} {}x{}", name_of(loaded.domain.kind), loaded.domain.divisions, loaded.domain.divisions),
             loaded.build.switches.empty() ? PaperCell() : PaperCell("-" + loaded.build.switches),
-            exact_cell(static_cast<double>(loaded.mesh.triangles.size()), of_paper(&paper::SceneCounts::triangles)),
-            exact_cell(static_cast<double>(counts.tets), of_paper(&paper::SceneCounts::tets)),
-            exact_cell(static_cast<double>(counts.occlusive_faces), of_paper(&paper::SceneCounts::occlusive_faces)),
-            exact_cell(static_cast<double>(counts.free_faces)),
-            exact_cell(megabytes(scene, Layout::tet80)),
-            exact_cell(megabytes(scene, Layout::tet96)),
+            std::string(name_of(run.likeness.kind)),
+            exact_cell(static_cast<double>(loaded.mesh.triangles.size())),
+            count_cell(counts.tets, &paper::SceneFigures::tets),
+            count_cell(counts.occlusive_faces, &paper::SceneFigures::occlusive_faces),
+            count_cell(counts.free_faces, &paper::SceneFigures::free_faces),
+            exact_cell(mebibytes(scene, Layout::tet80)),
+            quantity_beside({mebibytes(scene, Layout::tet96), {}, {}, true},
+                            paper ? std::optional(paper->memory_mib) : std::nullopt, run),
             exact_cell(loaded.build.build_s)};
 }
 
 /// Whether we get the paper's counts where its mesh is built in the nearest way.
 Claim counts_claim(const SceneRun& run)
 {
-    const auto paper = paper::counts_of(run.build.scene);
     Claim claim{run.build.scene + "-has-the-papers-counts",
-                fmt::format("{} has the paper's tets and occlusive faces", run.build.scene)};
-    if (!paper || run.scene == nullptr) {
-        claim.evidence = paper ? "The scene could not be loaded." : "The paper's counts are not known to this program.";
+                fmt::format("{} has the paper's tets, occlusive and free faces", run.build.scene)};
+    if (run.scene == nullptr) {
+        claim.evidence = "The scene could not be loaded.";
         return claim;
     }
     const auto triangles = run.scene->loaded().scene.mesh.triangles.size();
-    const TetMeshCounts& counts = run.scene->counts();
-    claim.evidence =
-        fmt::format("{} tets and {} occlusive faces of {} triangles; the paper has {} and {} of {}.",
-                    with_commas(counts.tets), with_commas(counts.occlusive_faces), with_commas(triangles),
-                    with_commas(paper->tets), with_commas(paper->occlusive_faces), with_commas(paper->triangles));
-    if (triangles != paper->triangles) {
-        claim.evidence += " This is another mesh of the same thing.";
+    const auto papers = paper::nearest_build(run.build.scene).value().triangles;
+    claim.evidence = capitalised(run.likeness.reason);
+    if (!is_within(static_cast<double>(triangles), static_cast<double>(papers), equal_counts_tolerance)) {
+        if (run.likeness.kind != LikenessKind::other_mesh)
+            claim.evidence += fmt::format(" This is another mesh of the same thing, of {} triangles: the paper's "
+                                          "counts come from {}.",
+                                          with_commas(triangles), with_commas(papers));
         return claim;
     }
-    const auto is_equal = [](std::uint64_t ours, std::uint64_t papers) {
-        return judge_equal(static_cast<double>(ours), static_cast<double>(papers), count_tolerance) ==
-               ClaimVerdict::holds;
-    };
-    const bool equal = is_equal(counts.tets, paper->tets) && is_equal(counts.occlusive_faces, paper->occlusive_faces);
-    claim.verdict = equal ? ClaimVerdict::holds : ClaimVerdict::does_not_hold;
-    claim.evidence += fmt::format(" Within {:.0f} % is taken for equal.", 100 * count_tolerance);
+    claim.verdict =
+        run.likeness.kind == LikenessKind::papers_counts ? ClaimVerdict::holds : ClaimVerdict::does_not_hold;
     return claim;
 }
 
-std::string unknown_counts_note(const std::string& scene)
+/// Why the scene's numbers are compared with the paper's, or are not.
+std::string likeness_note(const SceneRun& run)
 {
-    const auto switches = paper::nearest_switches(scene);
-    return fmt::format("{}, paper's build: the paper's counts are not known to this program; switches {}{}.", scene,
-                       switches ? fmt::format("-{}", *switches) : "none",
-                       switches == paper::nearest_switches("bunny") ? ", as for bunny" : "");
+    return fmt::format("{}, {} build: {}", run.build.scene, run.build.build, run.likeness.reason);
+}
+
+std::string walk_note(const SceneRun& run, const StartWalk& walk)
+{
+    return fmt::format("{}, {} build: the camera's start tets were found by walking from view to view in {}, {} walks "
+                       "of {:.1f} steps on average, {} views located exactly; exact location of all takes {}, and "
+                       "names the same tets.",
+                       run.build.scene, run.build.build, milliseconds(run.scene->locate_s()),
+                       with_commas(walk.counts.walked),
+                       static_cast<double>(walk.counts.steps) / std::max(walk.counts.walked, 1u), walk.counts.located,
+                       milliseconds(walk.exact_s));
+}
+
+/// The rate of the paper's method on its device of the row's kind.
+std::optional<double> papers_mrays(const SceneRun& run, const RowRun& row)
+{
+    const auto figures = paper::figures_of(run.build.scene);
+    const auto place = paper_place(row);
+    if (!figures || !place || row.key.kernel.method != Method::maria) return std::nullopt;
+    return figures->mrays(*place);
 }
 
 std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRun& row)
 {
     auto cells = label_cells({run.build.scene, run.build.build}, row);
-    if (const auto figures = figures_of(row))
-        for (const double number : {mean_steps(traced(row)->totals).all.value_or(0), figures->mrays_per_s,
-                                    figures->msteps_per_s.value_or(0), 100 * figures->kernel_s.spread()})
-            cells.push_back(exact_cell(number));
-    else
+    if (const auto figures = figures_of(row)) {
+        cells.push_back(exact_cell(mean_steps(traced(row)->totals).all.value_or(0)));
+        cells.push_back(quantity_beside({figures->mrays_per_s, {}, {}, true}, papers_mrays(run, row), run));
+        cells.push_back(exact_cell(figures->msteps_per_s.value_or(0)));
+        cells.push_back(exact_cell(100 * figures->kernel_s.spread()));
+    } else
         cells.resize(cells.size() + 4);
+    cells.emplace_back(std::string(name_of(run.likeness.kind)));
     cells.emplace_back(status_with_reason(row));
     return cells;
 }
@@ -108,27 +135,28 @@ PaperTable table3(const SceneRuns& runs)
                       {"build", "build"},
                       {"domain", "domain"},
                       {"switches", "switches"},
+                      {"likeness", "like the paper's"},
                       {"triangles", "triangles", "", 0},
                       {"tets", "tets", "", 0},
                       {"occlusive_faces", "occlusive faces", "", 0},
                       {"free_faces", "free faces", "", 0},
-                      {"tet80_mb", "tet80", "MB", 1},
-                      {"tet96_mb", "tet96", "MB", 1},
+                      {"tet80_mib", "tet80", "MiB", 1},
+                      {"tet96_mib", "tet96", "MiB", 1},
                       {"build_s", "built in", "s", 1}},
                      {"Build: paper's, of the paper's scenes alone, a domain of 3 radii that holds the cameras, uncut, "
-                      "and the switches that come nearest to the paper's counts, where those are known; ours, as asked "
-                      "for by --domain, --divisions and --switches. A "
-                      "face counts once, the domain's boundary as neither.",
-                      std::string(paper::rest_is_there)}};
+                      "and the switches that come nearest to the paper's counts; ours, as asked for by --domain, "
+                      "--divisions and --switches. A face counts once, the domain's boundary as neither.",
+                      "The paper's memory, printed as MB, is 96 bytes a tet in MiB."}};
     for (const SceneRun* run : runs) {
         if (run->scene != nullptr)
             table.rows.push_back(scene_cells(*run));
         else
             table.notes.push_back(fmt::format("{}, {} build, could not be had: {}", run->build.scene, run->build.build,
                                               run->rows.empty() ? "" : reason_of(run->rows.front())));
-        if (run->build.build != papers_build) continue;
-        table.claims.push_back(counts_claim(*run));
-        if (!paper::counts_of(run->build.scene)) table.notes.push_back(unknown_counts_note(run->build.scene));
+        if (!run->likeness.reason.empty()) table.notes.push_back(likeness_note(*run));
+        if (run->scene != nullptr && run->scene->start_walk())
+            table.notes.push_back(walk_note(*run, *run->scene->start_walk()));
+        if (run->build.build == papers_build) table.claims.push_back(counts_claim(*run));
     }
     return table;
 }
@@ -148,12 +176,18 @@ PaperTable table3_rates(const SceneRuns& runs)
                       {"mrays_per_s", "Mrays/s"},
                       {"msteps_per_s", "Msteps/s", "", 1},
                       {"spread_percent", "spread", "%", 1},
+                      {"likeness", "like the paper's"},
                       {"status", "status"}},
                      {fmt::format("A sample is all views traced once, device seconds of the kernel alone; rates are of "
-                                  "the median sample, spread is its interquartile range over the median. The paper has "
-                                  "{} to {} Msteps/s on its CPU. {}",
-                                  paper::least_cpu_msteps, paper::most_cpu_msteps, paper::rest_is_there)}};
+                                  "the median sample, spread is its interquartile range over the median. The paper's "
+                                  "rates are of its method on its CPU ({}) and its GPU ({}), of cameras that it does "
+                                  "not give; no emulation of a GPU is compared with them.",
+                                  paper::cpu_name, paper::gpu_name),
+                      "like the paper's: whether mesh and tets are; without a ratio where the mesh is another. Table 3 "
+                      "has the reasons."}};
     table.claims = speed_claims({runs.begin(), runs.end()});
+    for (const paper::Place place : {paper::Place::cpu, paper::Place::gpu})
+        table.claims.push_back(mean_rate_claim(runs, place));
     for (const SceneRun* run : runs)
         for (const RowRun& row : run->rows)
             if (is_cdt(row)) table.rows.push_back(rate_cells(*run, row));

@@ -62,16 +62,6 @@ std::string rival_name(const RowRun& row)
     return fmt::format("{} {}", name_of(row.key.kernel.method), name_of(row.key.kernel.layout));
 }
 
-/// Frames of the paper's size a second, view by view.
-std::vector<double> view_frames(const SceneRun& run, std::size_t row)
-{
-    const double share = static_cast<double>(run.scene->rays_per_view()) / double{paper::image_pixels};
-    std::vector<double> frames;
-    for (const double seconds : view_seconds(run, row))
-        frames.push_back(share / seconds);
-    return frames;
-}
-
 /// The paper's range for the row's structure, on the paper's GPU; its BVH corresponds to bvh2.
 std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, const RowRun& row)
 {
@@ -86,12 +76,13 @@ std::string papers_frames_text(const SceneRun& run, const RowRun& row)
     if (!paper::has_scene(run.build.scene)) return "not its scene";
     if (!is_cdt(row) && row.key.kernel.layout != Layout::bvh2) return "not its BVH";
     const auto frames = papers_frames(run, row);
-    return frames ? fmt::format("{} to {}, a GPU", frames->first, frames->second) : "not known here";
+    return frames ? fmt::format("{} to {}, a GPU", frames->first, frames->second) : "";
 }
 
 const std::vector<Column>& frame_columns()
 {
     static const std::vector<Column> list = {{"scene", "scene"},
+                                             {"build", "build"},
                                              {"method", "method"},
                                              {"layout", "layout"},
                                              {"device", "device"},
@@ -106,6 +97,7 @@ const std::vector<Column>& frame_columns()
                                              {"pack_s", "packed in", "s", 3},
                                              {"memory_mb", "memory", "MB", 1},
                                              {"spread_percent", "spread", "%", 1},
+                                             {"likeness", "like the paper's"},
                                              {"status", "status"}};
     return list;
 }
@@ -115,15 +107,18 @@ std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
     const RowRun& row = run.rows[i];
     const auto figures = figures_of(row);
     const auto cost = cost_of(run, i);
-    auto cells = label_cells({run.build.scene}, row);
+    auto cells = label_cells({run.build.scene, run.build.build}, row);
     if (figures) {
         const auto frames = view_frames(run, i);
         const auto [least, most] = std::ranges::minmax_element(frames);
         const auto papers = row.device.kind == DeviceKind::gpu ? papers_frames(run, row) : std::nullopt;
         cells.push_back(exact_cell(static_cast<double>(frames.size())));
         cells.push_back(Quantity{median_of_views(frames, run.sampling), {}});
-        cells.push_back(exact_cell(*least, papers ? std::optional(papers->first) : std::nullopt));
-        cells.push_back(exact_cell(*most, papers ? std::optional(papers->second) : std::nullopt));
+        const auto beside = [&](double ours, double std::pair<double, double>::*member) {
+            return quantity_beside({ours, {}, {}, true}, papers ? std::optional((*papers).*member) : std::nullopt, run);
+        };
+        cells.push_back(beside(*least, &std::pair<double, double>::first));
+        cells.push_back(beside(*most, &std::pair<double, double>::second));
     } else
         cells.resize(cells.size() + 4);
     cells.emplace_back(papers_frames_text(run, row));
@@ -132,6 +127,7 @@ std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
     cells.push_back(cost ? exact_cell(cost->pack_s) : PaperCell());
     cells.push_back(cost ? exact_cell(1e-6 * static_cast<double>(cost->bytes)) : PaperCell());
     cells.push_back(figures ? exact_cell(100 * figures->kernel_s.spread()) : PaperCell());
+    cells.emplace_back(std::string(name_of(run.likeness.kind)));
     cells.emplace_back(status_with_reason(row));
     return cells;
 }
@@ -139,6 +135,7 @@ std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
 const std::vector<Column>& pair_columns()
 {
     static const std::vector<Column> list = {{"scene", "scene"},
+                                             {"build", "build"},
                                              {"layout", "CDT"},
                                              {"rival", "BVH"},
                                              {"device", "device"},
@@ -174,6 +171,7 @@ std::vector<PaperCell> pair_cells(const RowPair& pair)
 {
     const RowRun &cdt = pair.run->rows[pair.cdt], &bvh = pair.run->rows[pair.bvh];
     return {pair.run->build.scene,
+            pair.run->build.build,
             std::string(name_of(cdt.key.kernel.layout)),
             rival_name(bvh),
             device_label(cdt.key),
@@ -184,78 +182,6 @@ std::vector<PaperCell> pair_cells(const RowPair& pair)
             exact_cell(100 * pair.ratio.won),
             break_even_cell(pair),
             ahead_text(pair)};
-}
-
-Estimate inverse(const Estimate& estimate)
-{
-    const auto over = [](const std::optional<double>& bound) {
-        return bound ? std::optional(1 / *bound) : std::nullopt;
-    };
-    return {1 / estimate.value, over(estimate.high), over(estimate.low), estimate.exact};
-}
-
-/// The pairs that the paper has, bvh2 and the device's fastest layout of the CDT, on devices of a kind.
-std::vector<RowPair> papers_pairs(const SceneRuns& runs, std::string_view scene, DeviceKind kind)
-{
-    std::vector<RowPair> pairs;
-    for (const SceneRun* run : runs)
-        if (run->build.scene == scene)
-            for (RowPair& pair : fastest_pairs(*run))
-                if (const RowRun& bvh = run->rows[pair.bvh];
-                    bvh.key.kernel.layout == Layout::bvh2 && bvh.device.kind == kind)
-                    pairs.push_back(std::move(pair));
-    return pairs;
-}
-
-std::string pair_evidence(const RowPair& pair)
-{
-    const RowRun& cdt = pair.run->rows[pair.cdt];
-    const auto cdt_frames = view_frames(*pair.run, pair.cdt), bvh_frames = view_frames(*pair.run, pair.bvh);
-    const auto range = [](const std::vector<double>& frames) {
-        const auto [least, most] = std::ranges::minmax_element(frames);
-        return fmt::format("{:.4g} to {:.4g}", *least, *most);
-    };
-    return fmt::format("{} {}: the time of bvh2 is {} of the CDT's, median of {} views, {:.3g} to {:.3g}; {:.1f} % of "
-                       "the views are the CDT's; {} against {} frames/s.",
-                       name_of(cdt.key.kernel.layout), device_label(cdt.key), estimate_text(pair.ratio.median),
-                       pair.ratio.views.size(), pair.ratio.lowest, pair.ratio.highest, 100 * pair.ratio.won,
-                       range(cdt_frames), range(bvh_frames));
-}
-
-Claim pair_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, DeviceKind kind)
-{
-    const bool is_gpu = kind == DeviceKind::gpu;
-    Claim claim{fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene,
-                            name_of(kind)),
-                fmt::format("on {}, the {} is faster than the {} on {}",
-                            is_gpu ? "a GPU"
-                                   : "this CPU (the paper's claim is of "
-                                     "a GPU)",
-                            outcome.cdt_is_faster ? "CDT" : "BVH", outcome.cdt_is_faster ? "BVH" : "CDT",
-                            outcome.scene)};
-    std::vector<Estimate> ratios;
-    bool noisy = false;
-    for (const RowPair& pair : papers_pairs(runs, outcome.scene, kind)) {
-        ratios.push_back(outcome.cdt_is_faster ? pair.ratio.median : inverse(pair.ratio.median));
-        noisy = noisy || is_noisy(pair.run->rows[pair.cdt]) || is_noisy(pair.run->rows[pair.bvh]);
-        claim.evidence += (claim.evidence.empty() ? "" : " ") + pair_evidence(pair);
-    }
-    claim.verdict = judge_above(ratios, 1);
-    if (ratios.empty())
-        claim.evidence =
-            fmt::format("No {} has rates of the CDT and of bvh2 on {}.", is_gpu ? "GPU" : "CPU", outcome.scene);
-    else
-        withdraw_if_noisy(claim, noisy);
-    return claim;
-}
-
-std::vector<Claim> pair_claims(const SceneRuns& runs)
-{
-    std::vector<Claim> claims;
-    for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu})
-        for (const paper::PairOutcome& outcome : paper::outcomes())
-            claims.push_back(pair_claim(runs, outcome, kind));
-    return claims;
 }
 
 /// "cwbvh opencl:1", preceded by "single" or "packet16" for Embree's; without the device where all have the same one.
@@ -281,15 +207,15 @@ PaperFigure::Series curve_of(const RowPair& pair, bool with_device)
 
 PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector<RowPair>& pairs)
 {
-    PaperFigure figure{
-        fmt::format("table6-{}-{}", run.build.scene, name_of(kind)),
-        fmt::format("Time of a BVH over the CDT's, view by view: {}, {}", run.build.scene, name_of(kind)),
-        source(),
-        {"views that have at most this ratio", "%"},
-        {"time of the BVH over the CDT's", "", true},
-        {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
-         "the share of the "
-         "views in which the BVH is faster. The CDT has its device's fastest layout."}};
+    PaperFigure figure{fmt::format("table6-{}-{}", run.build.label, name_of(kind)),
+                       fmt::format("Time of a BVH over the CDT's, view by view: {}, {} build, {}", run.build.scene,
+                                   run.build.build, name_of(kind)),
+                       source(),
+                       {"views that have at most this ratio", "%"},
+                       {"time of the BVH over the CDT's", "", true},
+                       {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
+                        "the share of the "
+                        "views in which the BVH is faster. The CDT has its device's fastest layout."}};
     const RowKey& first = run.rows[pairs.front().cdt].key;
     const bool one_device =
         std::ranges::all_of(pairs, [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
@@ -300,6 +226,15 @@ PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector
 }
 
 } // namespace
+
+std::vector<double> view_frames(const SceneRun& run, std::size_t row)
+{
+    const double share = static_cast<double>(run.scene->rays_per_view()) / double{paper::image_pixels};
+    std::vector<double> frames;
+    for (const double seconds : view_seconds(run, row))
+        frames.push_back(share / seconds);
+    return frames;
+}
 
 std::vector<RowPair> row_pairs(const SceneRun& run)
 {
@@ -347,18 +282,21 @@ std::optional<BreakEven> break_even(const RowPair& pair)
 
 PaperTable table6(const SceneRuns& runs)
 {
-    PaperTable table{"table6",
-                     "CDT and BVHs: frames a second, build time and memory",
-                     source(),
-                     frame_columns(),
-                     {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
-                      "alone: the median over the views with its interval (order statistics), the least and the most.",
-                      "Built in: TetGen for the CDT, the builder of the BVH, which is Embree's, for bvh2 and cwbvh, "
-                      "Embree itself for its own rows; TetGen uses one thread, the others all. Memory: all that a "
-                      "session holds of the scene.",
-                      fmt::format("The paper's frames are of its GPU, its own cameras and its own meshes; they have a "
-                                  "ratio beside GPUs alone. {}",
-                                  paper::rest_is_there)}};
+    PaperTable table{
+        "table6",
+        "CDT and BVHs: frames a second, build time and memory",
+        source(),
+        frame_columns(),
+        {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
+         "alone: the median over the views with its interval (order statistics), the least and the most.",
+         "Built in: TetGen for the CDT, the builder of the BVH, which is Embree's, for bvh2 and cwbvh, "
+         "Embree itself for its own rows; TetGen uses one thread, the others all. Memory: all that a "
+         "session holds of the scene.",
+         fmt::format("The paper's frames are of its GPU ({}) and its own cameras; they have a ratio beside "
+                     "GPUs alone, and none where the mesh is another.",
+                     paper::gpu_name)}};
+    for (std::string& note : likeness_notes(runs))
+        table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (is_compared(run->rows[i])) table.rows.push_back(frame_cells(*run, i));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/measuring/row_devices.h"
+#include "bench/reproduce/paper.h"
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/search_run.h"
 #include "bench/reproduce/tables/paper_table.h"
@@ -14,11 +15,26 @@ namespace tetrace {
 
 // Each table and figure is made in a file of its own name.
 
+/// Our number and the paper's of the same thing; without a ratio where the run's scene is too unlike the paper's.
+[[nodiscard]] PaperCell quantity_beside(const Estimate& ours, std::optional<double> paper, const SceneRun& run);
+
+/// Why the numbers of these scenes are compared with the paper's although they are not its own, or are not compared: a
+/// sentence for each run of another mesh, or of counts that are only near.
+[[nodiscard]] std::vector<std::string> likeness_notes(const SceneRuns& runs);
+
+/// The run that decides what the paper claims of a scene: of its own build where that was traced, else of ours. Null
+/// where the scene was not traced.
+[[nodiscard]] const SceneRun* judged_run(const SceneRuns& runs, std::string_view scene);
+
 /// Table 3: tets, faces and memory of each scene in each build.
 [[nodiscard]] PaperTable table3(const SceneRuns& runs);
 
 /// The speed of those builds: rates of every row.
 [[nodiscard]] PaperTable table3_rates(const SceneRuns& runs);
+
+/// "On average 9 Mrays/s on the CPU, 280 on the GPU": at least as many, for the mean over the paper's three scenes of
+/// maria's fastest rows on a device of that kind. Not testable unless each of them is like the paper's.
+[[nodiscard]] Claim mean_rate_claim(const SceneRuns& runs, paper::Place place);
 
 /// Table 4: rays with a wrong result per image of 1024 x 1024, by method, scene and device, split by what went wrong.
 /// It compares the paper's methods with project, which the paper does not have.
@@ -44,6 +60,9 @@ struct MethodRow {
 /// devices: those that the rows ran on, measured.
 [[nodiscard]] PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices);
 
+/// Sections 3.1 and 3.4: operations and side products of a search, counted, with the paper's.
+[[nodiscard]] PaperTable operations_table();
+
 /// Bytes that a search moves besides its tet, which stays in the caches for all of its rays: 32 of the ray's 48,
 /// because no method needs both its origin and its moment, and the face that it writes.
 inline constexpr double bytes_per_search = 32 + 4;
@@ -64,6 +83,13 @@ struct RowPair {
 /// The number of rays from which the CDT, or the BVH, takes less time in total, including its build; first is the CDT.
 /// Empty where the interval of the ratio of their times contains 1, or a build time is unknown.
 [[nodiscard]] std::optional<BreakEven> break_even(const RowPair& pair);
+
+/// Frames of 1024 x 1024 a second, view by view.
+[[nodiscard]] std::vector<double> view_frames(const SceneRun& run, std::size_t row);
+
+/// What the paper claims of these pairs, on a GPU and on the CPU: which structure is faster on each of its scenes,
+/// whose times have the larger amplitude over the views, and whose depend less on the size of the scene.
+[[nodiscard]] std::vector<Claim> pair_claims(const SceneRuns& runs);
 
 /// Table 6: frames of 1024 x 1024 a second, build time and memory of the CDT and of each BVH.
 [[nodiscard]] PaperTable table6(const SceneRuns& runs);

@@ -1,9 +1,9 @@
 #pragma once
 
-namespace tetrace::test {
+namespace tetrace {
 
-/// A number that counts what is done with it: the kernels' `real` in tests of their operations. Comparisons and changes
-/// of sign are free.
+/// A number that counts what is done with it: the kernels' `real` where their operations are counted. Comparisons and
+/// changes of sign are free.
 struct Counted {
     float value = 0;
     static inline int operations = 0;
@@ -22,4 +22,4 @@ struct Counted {
     friend bool operator>=(Counted a, Counted b) { return a.value >= b.value; }
 };
 
-} // namespace tetrace::test
+} // namespace tetrace

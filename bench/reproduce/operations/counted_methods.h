@@ -3,8 +3,8 @@
 // The exit-face methods on layout tet96, compiled as host C++ with numbers that count their operations; a namespace
 // each.
 
+#include "bench/reproduce/operations/counted.h"
 #include "core/device/backend.h"
-#include "tests/support/counted.h"
 
 #include <bit>
 #include <cassert>
@@ -12,13 +12,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#define KERNEL_REAL tetrace::test::Counted
+#define KERNEL_REAL tetrace::Counted
 #define KERNEL_REAL_HAS_NO_BITS
 #define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
 #define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/tet96.h"
 
-namespace tetrace::test::counted {
+namespace tetrace::counted {
 
 #define KERNEL_METHOD_HEADER "kernels/methods/plane.h"
 namespace plane {
@@ -57,7 +57,7 @@ namespace project {
 }
 #undef KERNEL_METHOD_HEADER
 
-} // namespace tetrace::test::counted
+} // namespace tetrace::counted
 
 #undef KERNEL_REAL
 #undef KERNEL_REAL_HAS_NO_BITS

@@ -1,0 +1,209 @@
+#include "bench/reproduce/speed.h"
+#include "bench/reproduce/tables/tables.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace tetrace {
+
+namespace {
+
+Estimate inverse(const Estimate& estimate)
+{
+    const auto over = [](const std::optional<double>& bound) {
+        return bound ? std::optional(1 / *bound) : std::nullopt;
+    };
+    return {1 / estimate.value, over(estimate.high), over(estimate.low), estimate.exact};
+}
+
+/// The pairs that the paper has, bvh2 and the device's fastest layout of the CDT, on devices of a kind.
+std::vector<RowPair> papers_pairs(const SceneRun* run, DeviceKind kind)
+{
+    std::vector<RowPair> pairs;
+    if (run == nullptr) return pairs;
+    for (RowPair& pair : fastest_pairs(*run))
+        if (const RowRun& bvh = run->rows[pair.bvh]; bvh.key.kernel.layout == Layout::bvh2 && bvh.device.kind == kind)
+            pairs.push_back(std::move(pair));
+    return pairs;
+}
+
+bool is_noisy(const RowPair& pair)
+{
+    return is_noisy(pair.run->rows[pair.cdt]) || is_noisy(pair.run->rows[pair.bvh]);
+}
+
+std::string device_of(const RowPair& pair)
+{
+    return device_label(pair.run->rows[pair.cdt].key);
+}
+
+const char* on_text(DeviceKind kind)
+{
+    return kind == DeviceKind::gpu ? "a GPU" : "this CPU (the paper's claim is of a GPU)";
+}
+
+std::string no_pair_text(DeviceKind kind)
+{
+    return fmt::format("No {} has rates of the CDT and of bvh2", kind == DeviceKind::gpu ? "GPU" : "CPU");
+}
+
+std::string pair_evidence(const RowPair& pair)
+{
+    const RowRun& cdt = pair.run->rows[pair.cdt];
+    const auto cdt_frames = view_frames(*pair.run, pair.cdt), bvh_frames = view_frames(*pair.run, pair.bvh);
+    const auto range = [](const std::vector<double>& frames) {
+        const auto [least, most] = std::ranges::minmax_element(frames);
+        return fmt::format("{:.4g} to {:.4g}", *least, *most);
+    };
+    return fmt::format("{} {}: the time of bvh2 is {} of the CDT's, median of {} views, {:.3g} to {:.3g}; {:.1f} % of "
+                       "the views are the CDT's; {} against {} frames/s.",
+                       name_of(cdt.key.kernel.layout), device_label(cdt.key), estimate_text(pair.ratio.median),
+                       pair.ratio.views.size(), pair.ratio.lowest, pair.ratio.highest, 100 * pair.ratio.won,
+                       range(cdt_frames), range(bvh_frames));
+}
+
+Claim faster_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, DeviceKind kind)
+{
+    const char *const first = outcome.cdt_is_faster ? "CDT" : "BVH", *const second =
+                                                                         outcome.cdt_is_faster ? "BVH" : "CDT";
+    Claim claim{fmt::format("table6-{}-is-faster-on-{}-{}", outcome.cdt_is_faster ? "cdt" : "bvh", outcome.scene,
+                            name_of(kind)),
+                fmt::format("on {}, the {} is faster than the {} on {}", on_text(kind), first, second, outcome.scene)};
+    const SceneRun* const run = judged_run(runs, outcome.scene);
+    std::vector<Estimate> ratios;
+    bool noisy = false;
+    for (const RowPair& pair : papers_pairs(run, kind)) {
+        ratios.push_back(outcome.cdt_is_faster ? pair.ratio.median : inverse(pair.ratio.median));
+        noisy = noisy || is_noisy(pair);
+        claim.evidence += (claim.evidence.empty() ? "" : " ") + pair_evidence(pair);
+    }
+    if (ratios.empty()) {
+        claim.evidence = fmt::format("{} on {}.", no_pair_text(kind), outcome.scene);
+        return claim;
+    }
+    if (!run->likeness.is_compared()) {
+        claim.evidence += fmt::format(" It is {}", run->likeness.reason);
+        return claim;
+    }
+    claim.verdict = judge_above(ratios, 1);
+    withdraw_if_noisy(claim, noisy);
+    return claim;
+}
+
+/// Those of the paper's scenes that its claims may be decided by, in its order.
+std::vector<const SceneRun*> compared_runs(const SceneRuns& runs)
+{
+    std::vector<const SceneRun*> found;
+    for (const paper::SceneFigures& figures : paper::scenes())
+        if (const SceneRun* run = judged_run(runs, figures.scene); run != nullptr && run->likeness.is_compared())
+            found.push_back(run);
+    return found;
+}
+
+/// The most of a row's view times over the least; and the same without the extreme view at either end, which bounds
+/// how much of it is owed to single views.
+struct Amplitude {
+    double whole = 0, inner = 0;
+};
+
+Amplitude amplitude_of(std::vector<double> seconds)
+{
+    std::ranges::sort(seconds);
+    return {seconds.back() / seconds.front(), seconds[seconds.size() - 2] / seconds[1]};
+}
+
+/// "The CDT's timings have the larger amplitude": its amplitude over the BVH's is above 1.
+Claim amplitude_claim(const SceneRuns& runs, DeviceKind kind)
+{
+    Claim claim{
+        fmt::format("table6-cdt-has-the-larger-amplitude-{}", name_of(kind)),
+        fmt::format("on {}, the CDT's times over the views have a larger amplitude than the BVH's", on_text(kind))};
+    std::vector<Estimate> ratios;
+    bool noisy = false;
+    for (const SceneRun* run : compared_runs(runs))
+        for (const RowPair& pair : papers_pairs(run, kind)) {
+            const auto cdt_s = view_seconds(*run, pair.cdt), bvh_s = view_seconds(*run, pair.bvh);
+            const Amplitude cdt = cdt_s.size() < 3 ? Amplitude{1, 1} : amplitude_of(cdt_s),
+                            bvh = cdt_s.size() < 3 ? Amplitude{1, 1} : amplitude_of(bvh_s);
+            Estimate ratio{cdt.whole / bvh.whole, {}, {}, false};
+            if (cdt_s.size() >= least_views && run->sampling != Sampling::chosen) {
+                ratio.low = cdt.inner / bvh.whole;
+                ratio.high = cdt.whole / bvh.inner;
+            }
+            ratios.push_back(ratio);
+            noisy = noisy || is_noisy(pair);
+            claim.evidence += fmt::format("{}{} {}: the most over the least {:.3g} of the CDT, {:.3g} of bvh2",
+                                          claim.evidence.empty() ? "" : "; ", run->build.scene, device_of(pair),
+                                          cdt.whole, bvh.whole);
+        }
+    if (ratios.empty()) {
+        claim.evidence = no_pair_text(kind) + " on a scene that is like the paper's.";
+        return claim;
+    }
+    claim.verdict = judge_above(ratios, 1);
+    claim.evidence += ". Bounds leave out the extreme view at either end.";
+    withdraw_if_noisy(claim, noisy);
+    return claim;
+}
+
+Estimate quotient(const Estimate& a, const Estimate& b)
+{
+    const auto over = [](const std::optional<double>& x, const std::optional<double>& y) {
+        return x && y ? std::optional(*x / *y) : std::nullopt;
+    };
+    return {a.value / b.value, over(a.low, b.high), over(a.high, b.low), false};
+}
+
+Estimate time_ratio(const RowPair& pair)
+{
+    return ratio_of_sums(view_seconds(*pair.run, pair.bvh), view_seconds(*pair.run, pair.cdt), pair.run->sampling);
+}
+
+/// "The BVH's cost depends less on the size of the input": from the smallest to the largest scene the CDT's time grows
+/// by more than the BVH's.
+Claim size_claim(const SceneRuns& runs, DeviceKind kind)
+{
+    Claim claim{
+        fmt::format("table6-bvh-depends-less-on-size-{}", name_of(kind)),
+        fmt::format("on {}, the BVH's cost depends less than the CDT's on the size of the input", on_text(kind))};
+    const auto scenes = compared_runs(runs);
+    std::vector<Estimate> ratios;
+    bool noisy = false;
+    if (scenes.size() > 1)
+        for (const RowPair& small : papers_pairs(scenes.front(), kind))
+            for (const RowPair& large : papers_pairs(scenes.back(), kind)) {
+                if (device_of(small) != device_of(large)) continue;
+                const Estimate before = time_ratio(small), after = time_ratio(large);
+                ratios.push_back(quotient(before, after));
+                noisy = noisy || is_noisy(small) || is_noisy(large);
+                claim.evidence +=
+                    fmt::format("{}{}: bvh2 takes {} of the CDT's time on {} and {} on {}",
+                                claim.evidence.empty() ? "" : "; ", device_of(small), estimate_text(before),
+                                small.run->build.scene, estimate_text(after), large.run->build.scene);
+            }
+    if (ratios.empty()) {
+        claim.evidence = no_pair_text(kind) + " on two scenes that are like the paper's.";
+        return claim;
+    }
+    claim.verdict = judge_above(ratios, 1);
+    claim.evidence += ".";
+    withdraw_if_noisy(claim, noisy);
+    return claim;
+}
+
+} // namespace
+
+std::vector<Claim> pair_claims(const SceneRuns& runs)
+{
+    std::vector<Claim> claims;
+    for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu}) {
+        for (const paper::PairOutcome& outcome : paper::outcomes())
+            claims.push_back(faster_claim(runs, outcome, kind));
+        claims.push_back(amplitude_claim(runs, kind));
+        claims.push_back(size_claim(runs, kind));
+    }
+    return claims;
+}
+
+} // namespace tetrace
