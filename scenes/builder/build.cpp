@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/mesh/sides.h"
 #include "scenes/builder/failure.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"
