@@ -140,8 +140,8 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
 {
     const Verdicts sum = all_verdicts(rows);
     if (sum.rays == 0) return "nothing.";
-    std::string text = fmt::format("{} rays, all by exact arithmetic: {} agree, {} ties",
-                                   with_commas(sum.rays), with_commas(sum.agreed), with_commas(sum.ties));
+    std::string text = fmt::format("{} rays, all by exact arithmetic: {} agree, {} ties", with_commas(sum.rays),
+                                   with_commas(sum.agreed), with_commas(sum.ties));
     if (sum.ties > 0) text += fmt::format(" (by curves at most {:.1e} from their rays)", sum.largest_tie_distance);
     if (sum.offset > 0)
         text += fmt::format(", {} right for the offset origins that BVHs start from", with_commas(sum.offset));

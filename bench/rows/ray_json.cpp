@@ -37,8 +37,8 @@ json differing_ray_json(const DifferingRay& ray)
 WrongRay wrong_ray_from(const json& object)
 {
     const json& exact = object.at("exact");
-    return {object.at("view"),    object.at("x"), object.at("y"),     hit_from(object.at("ours")),
-            exact.at("face_id"),  exact.at("t"),  object.at("reason")};
+    return {object.at("view"),   object.at("x"), object.at("y"),     hit_from(object.at("ours")),
+            exact.at("face_id"), exact.at("t"),  object.at("reason")};
 }
 
 DifferingRay differing_ray_from(const json& object)

@@ -187,7 +187,8 @@ struct ExactSearch::Tube {
         double low = never, high = -never, inside = never, inside_other = never;
         for (const auto& [p, q] : {std::pair{seen.a, seen.b}, {seen.b, seen.c}, {seen.c, seen.a}}) {
             const double side = dot(direction, cross(p, q));
-            const double margin = radius * (1 + 1e-9) * length(cross(direction, q - p)) + lost_share * sum * sum_of(p) * sum_of(q);
+            const double margin =
+                radius * (1 + 1e-9) * length(cross(direction, q - p)) + lost_share * sum * sum_of(p) * sum_of(q);
             low = std::min(low, side + margin);
             high = std::max(high, side - margin);
             inside = std::min(inside, side - margin);
@@ -252,9 +253,10 @@ public:
         const Double3 e1 = b - a, e2 = c - a, normal = cross(e1, e2);
         const double determinant = dot(tube_.direction, normal);
         const double t = dot(a, normal) / determinant;
-        const double error = lost_share * sum_of(e1) * sum_of(e2) * (sum_of(a) + std::abs(t) * tube_.sum) /
-                             std::abs(determinant);
-        const double reach = (tube_.radius / tube_.speed) * (1 + length(normal) * tube_.speed / std::abs(determinant)) + error;
+        const double error =
+            lost_share * sum_of(e1) * sum_of(e2) * (sum_of(a) + std::abs(t) * tube_.sum) / std::abs(determinant);
+        const double reach =
+            (tube_.radius / tube_.speed) * (1 + length(normal) * tube_.speed / std::abs(determinant)) + error;
         if (t + reach < 0 || is_beyond_end(triangle, t)) return;
         if (t - reach <= 0 || is_at_end(triangle, t)) {
             keep(t - reach);
@@ -267,10 +269,7 @@ public:
         }
     }
 
-    [[nodiscard]] FirstHit result() const
-    {
-        return {best_, nearest_other_ > tube_.end || nearest_other_ == never};
-    }
+    [[nodiscard]] FirstHit result() const { return {best_, nearest_other_ > tube_.end || nearest_other_ == never}; }
 
 private:
     // The end is compared with a rounded t.
@@ -282,7 +281,10 @@ private:
     {
         return part_.has_end() && t >= static_cast<double>(part_.end) - end_error(triangle);
     }
-    [[nodiscard]] double end_error(std::uint32_t triangle) const { return end_error_of(mesh_, ray_, triangle, tube_.radius); }
+    [[nodiscard]] double end_error(std::uint32_t triangle) const
+    {
+        return end_error_of(mesh_, ray_, triangle, tube_.radius);
+    }
 
     void take(std::uint32_t triangle, double t, double error, double reach)
     {

@@ -48,9 +48,9 @@ private:
     void add_facet(std::uint32_t triangle)
     {
         const auto& [a, b, c] = mesh_.triangles[triangle];
-        facets_.push_back({triangle,
-                           {frame_.local(mesh_.vertices[a]), frame_.local(mesh_.vertices[b]),
-                            frame_.local(mesh_.vertices[c])}});
+        facets_.push_back(
+            {triangle,
+             {frame_.local(mesh_.vertices[a]), frame_.local(mesh_.vertices[b]), frame_.local(mesh_.vertices[c])}});
     }
 
     // The lines of edges within the bound: the answer's own first, then the nearest.
@@ -84,8 +84,8 @@ private:
             lines_.push_back(edge.line);
     }
 
-    // A point of the answer's triangle inside the tube, between where its edges enter and leave that; the places on both
-    // sides of it meet a triangle that is seen edge-on, at that depth.
+    // A point of the answer's triangle inside the tube, between where its edges enter and leave that; the places on
+    // both sides of it meet a triangle that is seen edge-on, at that depth.
     void add_answer_places()
     {
         for (const Facet& facet : facets_) {
@@ -100,7 +100,9 @@ private:
                     ++count;
                 }
             if (count == 0) return;
-            const Double3 middle = sum * (1 / count);
+            Double3 middle = sum * (1 / count); // maybe on an edge: moved inwards
+            const Double3 inwards = (first + second + third) * (1.0 / 3) - middle;
+            middle = middle + inwards * std::min(0.25, radius_ / (64 * std::max(length(across(inwards)), 1e-300)));
             const Double2 slope = across(cross(second - first, third - first));
             const Double2 aside = slope * (radius_ / (1024 * std::max(length(slope), 1e-300)));
             for (const Double2 place : {across(middle), across(middle) + aside, across(middle) - aside})
@@ -153,8 +155,14 @@ private:
             }
             std::ranges::sort(cuts);
             for (std::size_t k = 1; k < cuts.size(); ++k)
-                if (cuts[k] > cuts[k - 1]) add_both_sides(line, foot + line.along * ((cuts[k] + cuts[k - 1]) / 2), count);
+                if (cuts[k] > cuts[k - 1])
+                    add_both_sides(line, foot + line.along * ((cuts[k] + cuts[k - 1]) / 2), count);
         }
+        // On a line double precision cannot tell what is met.
+        std::erase_if(places_, [&](Double2 place) {
+            return std::ranges::any_of(
+                lines_, [&](const EdgeLine& line) { return std::abs(line.side(place)) < radius_ * 1e-9; });
+        });
     }
 
     void add_both_sides(const EdgeLine& line, Double2 middle, std::size_t count)
@@ -164,7 +172,8 @@ private:
             double clear = radius_ / 16;
             for (std::size_t j = 0; j < count; ++j) {
                 const double approach = cross(lines_[j].along, normal), side = lines_[j].side(middle);
-                if (std::abs(side) < radius_ * 1e-9 || approach * side >= 0) continue; // that line itself, or moving away
+                if (std::abs(side) < radius_ * 1e-9 || approach * side >= 0)
+                    continue; // that line itself, or moving away
                 clear = std::min(clear, -side / approach);
             }
             const Double2 place = middle + normal * (clear / 2);
@@ -225,10 +234,11 @@ private:
     {
         Witness witness;
         if (question_.part.start == NO_HIT) witness.push_back({});
-        double depth = -never;
+        double least = question_.part.start == NO_HIT ? 4e-15 : -never; // rounding must not turn the curve back
         for (const auto& [place, wanted] : points) {
-            depth = std::max(wanted, depth + 4e-15 * (1 + std::abs(depth))); // rounding must not turn it back
+            const double depth = std::max(wanted, least);
             witness.push_back(frame_.corner(place, depth));
+            least = depth + 4e-15 * (1 + std::abs(depth));
         }
         return is_witness(mesh_, question_, witness) ? witness : Witness{};
     }
@@ -244,7 +254,7 @@ private:
                 const auto end = finish(gaps, gap);
                 if (!end) continue;
                 const double begin = from == gaps[gap].from || to == gaps[gap].to ? (from + to) / 2 : to;
-                Witness found = checked({{place, begin + (question_.part.start == NO_HIT ? 1e-14 : 0)}, {place, *end}});
+                Witness found = checked({{place, begin}, {place, *end}});
                 if (!found.empty()) return found;
             }
         }
@@ -276,8 +286,8 @@ private:
                 const Gap& here = gaps.back()[gap];
                 const double from = std::max(here.from, start.from), to = std::min(here.to, start.to);
                 Node node{place, gap};
-                const bool starts = question_.part.start != NO_HIT ? from < to
-                                                                   : from <= to && is_free({}, at(place, 1e-14));
+                const bool starts =
+                    question_.part.start != NO_HIT ? from < to : from <= to && is_free({}, at(place, 1e-14));
                 if (starts) node.arrival = from == here.from ? from + (to - from) / 1024 : from;
                 nodes.push_back(node);
             }
@@ -319,8 +329,9 @@ private:
         return met;
     }
 
-    // Moves across at one depth, early or late, where the gaps overlap; or onwards from a gap that ends before the other.
-    // Returns a witness where the move meets the answer's triangle: one that is seen edge-on is met from its side alone.
+    // Moves across at one depth, early or late, where the gaps overlap; or onwards from a gap that ends before the
+    // other. Returns a witness where the move meets the answer's triangle: one that is seen edge-on is met from its
+    // side alone.
     [[nodiscard]] Witness move(const std::vector<Node>& nodes, std::size_t from, Node& to,
                                const std::vector<std::vector<Gap>>& gaps) const
     {

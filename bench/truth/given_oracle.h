@@ -11,8 +11,8 @@ namespace tetrace {
 /// Where the traced rays started: at the set's origins (given_quads), or offset, as BVHs get them (given_quads_offset).
 enum class Origins { own, offset };
 
-/// Judges the answers to given rays, as Oracle judges those to primary rays, by the set's own origins. The triangle that
-/// a ray starts on is left out. For any-hit kinds, the triangle in the answer must be met before the ray's end.
+/// Judges the answers to given rays, as Oracle judges those to primary rays, by the set's own origins. The triangle
+/// that a ray starts on is left out. For any-hit kinds, the triangle in the answer must be met before the ray's end.
 class GivenOracle {
 public:
     /// mesh: the scene's, kept by reference. threads: 0 is all.

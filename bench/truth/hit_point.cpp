@@ -89,7 +89,8 @@ HitPoint point_on(const Triangle& triangle, const ExactRay& ray)
         const double before_division = (numerator_error + size * determinant_error) / least;
         return before_division + 8 * e * (size + before_division); // devices' divisions are off by up to 2.5 units
     };
-    HitPoint point{dot(e2, q) / determinant, dot(offset, p) / determinant, dot(direction, q) / determinant, 0, 0, 0, false};
+    HitPoint point{
+        dot(e2, q) / determinant, dot(offset, p) / determinant, dot(direction, q) / determinant, 0, 0, 0, false};
     point.may_be_edge_on = std::abs(determinant) <= 24 * (determinant_error / 7); // 16 are asked for, and 7 may be lost
     point.t_error = error(point.t, 8 * e * dot_magnitude(e2, q_magnitude));
     point.u_error = error(point.u, 7 * e * dot_magnitude(offset, p_magnitude));

@@ -38,7 +38,8 @@ const char* Judge::flaw_of(const JudgedRay& judged, const Hit& hit, HitFormula f
     if (hit.face_id >= mesh_.triangles.size()) return "it names no triangle (was the hit written at all?)";
     if (hit.face_id == judged.part.start) return "it is the triangle that the ray starts on";
     const double bound = tie_bound(judged.traced.origin);
-    if (!names_right_point(mesh_, judged.traced, hit, formula, bound)) return "its t, u and v are not those of the point";
+    if (!names_right_point(mesh_, judged.traced, hit, formula, bound))
+        return "its t, u and v are not those of the point";
     if (point_of(mesh_, judged.traced, hit.face_id).may_be_edge_on) return nullptr; // t is that of its centroid
     if (hit.t > judged.part.end) return "its t lies beyond the ray's end";
     const double error = end_error_of(mesh_, judged.traced, hit.face_id, bound);
@@ -75,9 +76,8 @@ void Judge::blame(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit, F
     verdicts.flawed.push_back(judged.pixel);
     if (verdicts.first_wrong) return;
     const double t = flaw.first == NO_HIT ? 0 : point_of(mesh_, judged.ray, flaw.first).t;
-    verdicts.first_wrong =
-        WrongRay{judged.view, judged.x, judged.y, hit, flaw.first, std::isfinite(t) ? static_cast<float>(t) : 0,
-                 flaw.reason};
+    verdicts.first_wrong = WrongRay{
+        judged.view, judged.x, judged.y, hit, flaw.first, std::isfinite(t) ? static_cast<float>(t) : 0, flaw.reason};
 }
 
 Verdicts Judge::sum_of(std::span<const Verdicts> blocks, std::size_t rays)

@@ -92,7 +92,8 @@ Settlement Settler::settle_any(const Case& question) const
         if (!may_be(triangle)) continue;
         const double t = point_of(mesh_, question.ray, triangle).t;
         if (question.part.has_end() && std::isfinite(t) && t > end + question.end_error(mesh_, triangle)) continue;
-        settlement.witness = find_witness(mesh_, {question.ray, question.part, triangle, question.bound, {&triangle, 1}});
+        settlement.witness =
+            find_witness(mesh_, {question.ray, question.part, triangle, question.bound, {&triangle, 1}});
         if (settlement.witness.empty()) continue;
         settlement.kind = Kind::tie;
         settlement.reason = "a curve near the ray meets its triangle";
@@ -124,9 +125,9 @@ Settlement Settler::settle_first(const Case& question) const
     }
     for (const Met& one : met)
         if (one.triangle != answer)
-            is_exact = is_exact && (one.is_edge_on || answer == NO_HIT || !is_met
-                                        ? one.t > answer_t
-                                        : !is_before(ray, one.triangle, answer));
+            is_exact =
+                is_exact && (one.is_edge_on || answer == NO_HIT || !is_met ? one.t > answer_t
+                                                                           : !is_before(ray, one.triangle, answer));
     if (is_exact && (answer == NO_HIT || (is_met && answer_t <= end))) {
         settlement.kind = Kind::exact;
         return settlement;
@@ -141,7 +142,7 @@ Settlement Settler::settle_first(const Case& question) const
     settlement.kind = settlement.witness.empty() ? Kind::wrong : Kind::tie;
     settlement.reason = !settlement.witness.empty() ? "a curve near the ray meets that first"
                         : answer == NO_HIT          ? "all curves near the ray meet a triangle"
-                                           : "no curve near the ray meets its triangle first";
+                                                    : "no curve near the ray meets its triangle first";
     for (const Double3 corner : settlement.witness)
         settlement.distance = std::max(settlement.distance, distance_from_line(ray, corner));
     return settlement;

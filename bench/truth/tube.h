@@ -120,8 +120,8 @@ inline std::vector<Double3> clipped(Double3 from, Double3 to, double radius)
     return {from + (to - from) * first, from + (to - from) * last};
 }
 
-/// Least and most depth, within a radius of the ray, of a facet that covers all that lies within it; for any other facet
-/// an infinite range.
+/// Least and most depth, within a radius of the ray, of a facet that covers all that lies within it; for any other
+/// facet an infinite range.
 inline std::pair<double, double> depths_across(const Facet& facet, double radius)
 {
     const auto& [a, b, c] = facet.corners;

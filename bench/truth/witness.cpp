@@ -59,8 +59,8 @@ int side_of(Double3 a, Double3 b, Double3 c, Double3 d)
     // Twelve roundings of products of three factors that are themselves rounded.
     if (std::abs(estimate) > 4e-15 * size(u) * size(v) * size(w)) return estimate > 0 ? 1 : -1;
     const Exact3 first = scaled(a, corner_bits);
-    return sign_of(dot(scaled(b, corner_bits) - first,
-                       cross(scaled(c, corner_bits) - first, scaled(d, corner_bits) - first)));
+    return sign_of(
+        dot(scaled(b, corner_bits) - first, cross(scaled(c, corner_bits) - first, scaled(d, corner_bits) - first)));
 }
 
 enum class Meeting { none, touched, crossed };
@@ -155,7 +155,8 @@ bool is_witness(const TriangleMesh& mesh, const WitnessQuestion& question, const
             if (is_answer && meeting == Meeting::crossed) crosses_answer = true;
             if (meeting != Meeting::none && !(is_answer && crosses_answer)) return false;
         }
-        const double farthest = std::max({dot(corners[0], direction), dot(corners[1], direction), dot(corners[2], direction)});
+        const double farthest =
+            std::max({dot(corners[0], direction), dot(corners[1], direction), dot(corners[2], direction)});
         if (question.answer == NO_HIT && last <= farthest && !is_at_end) return false;
     }
     return crosses_answer == (question.answer != NO_HIT);

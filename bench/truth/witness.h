@@ -17,8 +17,8 @@ using Witness = std::vector<Double3>;
 struct WitnessQuestion {
     ExactRay ray;
     RayPart part;
-    std::uint32_t answer = NO_HIT; ///< a triangle, or NO_HIT: the curve meets none up to the end
-    double bound = 0;              ///< in domain units
+    std::uint32_t answer = NO_HIT;            ///< a triangle, or NO_HIT: the curve meets none up to the end
+    double bound = 0;                         ///< in domain units
     std::span<const std::uint32_t> obstacles; ///< all triangles near the ray, that of the answer too
 };
 

@@ -49,8 +49,7 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
         all.verdicts.add(verdicts);
         for (const std::uint32_t ray : verdicts.flawed) {
             ++all.flawed[(first + ray) % hard_kinds];
-            if (all.first.empty())
-                all.first = fmt::format("ray {}: {}", first + ray, verdicts.first_wrong->reason);
+            if (all.first.empty()) all.first = fmt::format("ray {}: {}", first + ray, verdicts.first_wrong->reason);
         }
     }
     return all;
@@ -78,10 +77,9 @@ Judged judged_on_openmp(const Scene& scene, std::uint64_t count)
 void expect_none_wrong_or_lost(const Scene& scene, const char* name)
 {
     const auto [verdicts, flawed, first] = judged_on_openmp(scene, rays_wanted(40'000));
-    const std::string counts =
-        fmt::format("{}: {} rays: {} agree, {} settled for us, {} ties, {} lost, {} wrong; flawed by kind {}", name,
-                    verdicts.rays, verdicts.agreed, verdicts.settled, verdicts.ties, verdicts.lost, verdicts.wrong,
-                    fmt::join(flawed, " "));
+    const std::string counts = fmt::format(
+        "{}: {} rays: {} agree, {} settled for us, {} ties, {} lost, {} wrong; flawed by kind {}", name, verdicts.rays,
+        verdicts.agreed, verdicts.settled, verdicts.ties, verdicts.lost, verdicts.wrong, fmt::join(flawed, " "));
     fmt::print("{}\n", counts);
     EXPECT_EQ(verdicts.lost, 0u) << counts << "; " << first;
     EXPECT_EQ(verdicts.wrong, 0u) << counts << "; " << first;

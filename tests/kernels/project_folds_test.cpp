@@ -167,7 +167,7 @@ Counts count_folds(const Grid& grid, std::uint32_t number, const MakeLine& make_
         if (crossed.folded == 0 && !differs && counts.rays % 16 != 0) continue; // exact arithmetic takes its time
         const std::uint32_t exact = nearest_triangle(grid.scene.mesh, line);
         if (ours == exact) continue;
-        const auto settled = grid.settler.settle({line.origin, line.direction}, ours, exact, tie_bound(line.origin));
+        const auto settled = grid.settler.settle({line.origin, line.direction}, {}, ours, tie_bound(line.origin));
         counts.wrong += settled.kind == Settlement::Kind::wrong;
     }
     return counts;

@@ -112,8 +112,7 @@ TEST(ProjectWalk, is_right_by_exact_arithmetic_or_within_rounding_of_an_edge)
             const std::uint32_t exact = nearest_triangle(grid->scene.mesh, line);
             hits += exact != NO_HIT;
             if (ours == exact) continue;
-            const auto settled =
-                grid->settler.settle({line.origin, line.direction}, {}, ours, tie_bound(line.origin));
+            const auto settled = grid->settler.settle({line.origin, line.direction}, {}, ours, tie_bound(line.origin));
             ties += settled.kind == Settlement::Kind::tie;
             EXPECT_NE(settled.kind, Settlement::Kind::wrong)
                 << grid->name << ", ray " << i << ": " << settled.reason << ", ours " << ours << ", exact " << exact;

@@ -57,7 +57,8 @@ TEST(ExactSearch, finds_what_brute_force_finds_and_says_where_that_is_not_clear)
             const BruteForce expected = brute_force(scene.mesh, ray, {}, 2 * radius); // margins are generous
             const FirstHit first = search.first(ray, {}, radius);
             ASSERT_TRUE(!first.is_clear || first.face == expected.first) << name << ", ray " << i;
-            unclear += !first.is_clear && !expected.is_near_an_edge; // beyond a sharp corner, near both its edges' lines
+            unclear +=
+                !first.is_clear && !expected.is_near_an_edge; // beyond a sharp corner, near both its edges' lines
             clear += first.is_clear;
             near += !first.is_clear;
         }

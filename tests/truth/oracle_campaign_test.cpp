@@ -85,16 +85,20 @@ private:
         if (std::isfinite(point.t))
             return {face, 0, static_cast<float>(point.t), static_cast<float>(point.u), static_cast<float>(point.v), 0};
         const auto& [a, b, c] = mesh_.triangles[face];
-        const Double3 centre = (to_double(mesh_.vertices[a]) + to_double(mesh_.vertices[b]) + to_double(mesh_.vertices[c])) * (1.0 / 3);
+        const Double3 centre =
+            (to_double(mesh_.vertices[a]) + to_double(mesh_.vertices[b]) + to_double(mesh_.vertices[c])) * (1.0 / 3);
         const Double3 way = to_double(ray.direction);
-        return {face, 0, static_cast<float>(dot(centre - to_double(ray.origin), way) / dot(way, way)), 1.0f / 3, 1.0f / 3, 0};
+        return {face,     0,        static_cast<float>(dot(centre - to_double(ray.origin), way) / dot(way, way)),
+                1.0f / 3, 1.0f / 3, 0};
     }
 
     void falsify(Counts& counts, std::uint32_t number) const
     {
         const ExactRay ray = rays_.ray(number);
         const auto found = layers(ray);
-        const auto with = [&](Falsified kind, const Hit& hit) { judge(counts[static_cast<std::size_t>(kind)], ray, hit); };
+        const auto with = [&](Falsified kind, const Hit& hit) {
+            judge(counts[static_cast<std::size_t>(kind)], ray, hit);
+        };
         if (found.empty()) return;
         with(Falsified::no_hit, {NO_HIT, NO_TET, 0, 0, 0, 0});
         if (found.size() > 1) with(Falsified::next_layer, hit_on(ray, found[1]));
@@ -168,8 +172,10 @@ private:
             RTCRayHit query = embree::query_of(origin, ray.direction, 0, NO_END);
             embree_.intersect(query, embree::Coherence::incoherent);
             if (hit.face_id != (query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? NO_HIT : query.hit.primID)) continue;
-            if (settler_.settle({origin, ray.direction}, {}, hit.face_id, 0x1p-40).kind != Settlement::Kind::exact) continue;
-            ADD_FAILURE() << "origin moved by " << length(to_double(origin) - to_double(ray.origin)) << " of " << tie_bound(ray.origin);
+            if (settler_.settle({origin, ray.direction}, {}, hit.face_id, 0x1p-40).kind != Settlement::Kind::exact)
+                continue;
+            ADD_FAILURE() << "origin moved by " << length(to_double(origin) - to_double(ray.origin)) << " of "
+                          << tie_bound(ray.origin);
             return true;
         }
         return false;
@@ -186,9 +192,8 @@ private:
     [[nodiscard]] bool shares_vertex(std::uint32_t a, std::uint32_t b) const
     {
         const auto& corners = mesh_.triangles[a];
-        return std::ranges::any_of(mesh_.triangles[b], [&](std::uint32_t v) {
-            return std::ranges::find(corners, v) != corners.end();
-        });
+        return std::ranges::any_of(mesh_.triangles[b],
+                                   [&](std::uint32_t v) { return std::ranges::find(corners, v) != corners.end(); });
     }
 
     const TriangleMesh& mesh_;
@@ -204,8 +209,8 @@ void expect_all_caught(const char* name, const TriangleMesh& mesh, std::uint32_t
     const Counts counts = Campaign(mesh).run(rays);
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
         const Count& count = counts[kind];
-        fmt::print("{}: {}: {} falsified, {} caught, {} with a witness, {} right\n", name, kinds[kind],
-                   count.falsified, count.caught, count.excused, count.exact);
+        fmt::print("{}: {}: {} falsified, {} caught, {} with a witness, {} right\n", name, kinds[kind], count.falsified,
+                   count.caught, count.excused, count.exact);
         EXPECT_EQ(count.caught + count.excused + count.exact, count.falsified);
         EXPECT_EQ(count.overlooked, 0u) << name << ", " << kinds[kind] << ": a ray nearby explains what was caught";
         const bool is_point = kind >= static_cast<std::size_t>(Falsified::t_off);

@@ -256,7 +256,8 @@ TEST(Witness, is_refused_unless_it_proves_what_it_is_for)
     EXPECT_FALSE(holds(straight_down(0x1p-21, -2.5), NO_HIT));
     EXPECT_FALSE(holds(straight_down(0x1p-21, -1.5), NO_HIT)) << "it ends before the last triangle";
     EXPECT_FALSE(holds({{0, 0, -1.5}, {0x1p-21, 0, -1.5}, {0x1p-21, 0, -2.5}}, behind)) << "it starts elsewhere";
-    EXPECT_FALSE(holds({{0, 0, 0}, {0x1p-21, 0, 0}, {0x1p-21, 0, -1.5}, {0x1p-21, 0, -1.25}, {0x1p-21, 0, -2.5}}, behind))
+    EXPECT_FALSE(
+        holds({{0, 0, 0}, {0x1p-21, 0, 0}, {0x1p-21, 0, -1.5}, {0x1p-21, 0, -1.25}, {0x1p-21, 0, -2.5}}, behind))
         << "it goes back";
     EXPECT_FALSE(holds({}, behind));
 }
