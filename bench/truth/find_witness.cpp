@@ -39,9 +39,13 @@ public:
             if (Witness straight = straight_witness(); !straight.empty()) return straight;
             if (lines_.size() <= most) break;
         }
-        places_.clear();
-        choose_places(6);
-        return bent_witness();
+        for (const std::size_t most : {std::size_t{6}, std::size_t{16}}) {
+            places_.clear();
+            choose_places(most);
+            if (Witness bent = bent_witness(); !bent.empty()) return bent;
+            if (lines_.size() <= most) break;
+        }
+        return {};
     }
 
 private:
@@ -265,7 +269,6 @@ private:
         std::size_t place, gap;
         double arrival = never;
         std::size_t before = SIZE_MAX;
-        double left_at = 0; // depth on the line of `before`
         bool is_done = false;
     };
 
@@ -292,7 +295,8 @@ private:
                 nodes.push_back(node);
             }
         }
-        for (int moves_left = 20'000; moves_left > 0;) {
+        int moves_left = 60'000;
+        while (moves_left > 0) {
             std::size_t next = SIZE_MAX;
             for (std::size_t i = 0; i < nodes.size(); ++i)
                 if (!nodes[i].is_done && nodes[i].arrival < (next == SIZE_MAX ? never : nodes[next].arrival)) next = i;
@@ -304,8 +308,7 @@ private:
             }
             for (Node& other : nodes) {
                 if (other.is_done || other.place == nodes[next].place) continue;
-                if (Witness found = move(nodes, next, other, gaps); !found.empty()) return found;
-                --moves_left;
+                if (Witness found = move(nodes, next, other, gaps, moves_left); !found.empty()) return found;
             }
         }
         return {};
@@ -329,11 +332,10 @@ private:
         return met;
     }
 
-    // Moves across at one depth, early or late, where the gaps overlap; or onwards from a gap that ends before the
-    // other. Returns a witness where the move meets the answer's triangle: one that is seen edge-on is met from its
-    // side alone.
+    // Moves across at one depth, early or late, where the gaps overlap. Returns a witness where the move meets the
+    // answer's triangle: one that is seen edge-on is met from its side alone.
     [[nodiscard]] Witness move(const std::vector<Node>& nodes, std::size_t from, Node& to,
-                               const std::vector<std::vector<Gap>>& gaps) const
+                               const std::vector<std::vector<Gap>>& gaps, int& moves_left) const
     {
         const Node& node = nodes[from];
         const Gap& here = gaps[node.place][node.gap];
@@ -342,30 +344,24 @@ private:
         double late = std::min(here.to, there.to);
         if (late == never) late = early + 4 * question_.bound;
         Witness found;
-        const auto try_move = [&](double leave, double arrive) {
-            const bool may_meet_answer = arrive >= answer_from_ && leave <= answer_to_;
-            if (arrive >= to.arrival && !may_meet_answer) return;
-            const Meets met = meets(at(node.place, leave), at(to.place, arrive));
+        const auto try_move = [&](double depth) {
+            const bool may_meet_answer = depth >= answer_from_ && depth <= answer_to_;
+            if (depth >= to.arrival && !may_meet_answer) return;
+            --moves_left;
+            const Meets met = meets(at(node.place, depth), at(to.place, depth));
             if (met == Meets::answer && found.empty()) {
-                auto way = way_to(nodes, from, leave);
-                way.emplace_back(places_[to.place], arrive);
+                auto way = way_to(nodes, from, depth);
+                way.emplace_back(places_[to.place], depth);
                 found = checked(way);
             }
-            if (met != Meets::nothing || arrive >= to.arrival) return;
-            to.arrival = arrive;
+            if (met != Meets::nothing || depth >= to.arrival) return;
+            to.arrival = depth;
             to.before = from;
-            to.left_at = leave;
         };
         if (early < late) {
-            for (const double share : {1.0 / 1024, 0.5, 1023.0 / 1024}) {
-                const double depth = early + (late - early) * share;
-                try_move(depth, depth);
-            }
-            if (answer_depth_ > early && answer_depth_ < std::min(here.to, there.to))
-                try_move(answer_depth_, answer_depth_);
-        } else if (there.from >= here.to && node.arrival < here.to) {
-            const double most = there.to == never ? there.from + 4 * question_.bound : there.to;
-            try_move((std::max(node.arrival, here.from) + here.to) / 2, there.from + (most - there.from) / 1024);
+            for (const double share : {1.0 / 1024, 0.5, 1023.0 / 1024})
+                try_move(early + (late - early) * share);
+            if (answer_depth_ > early && answer_depth_ < std::min(here.to, there.to)) try_move(answer_depth_);
         }
         return found;
     }
@@ -377,7 +373,7 @@ private:
         for (std::size_t i = last; i != SIZE_MAX; i = nodes[i].before) {
             points.emplace_back(places_[nodes[i].place], nodes[i].arrival);
             if (nodes[i].before != SIZE_MAX)
-                points.emplace_back(places_[nodes[nodes[i].before].place], nodes[i].left_at);
+                points.emplace_back(places_[nodes[nodes[i].before].place], nodes[i].arrival);
         }
         std::ranges::reverse(points);
         return points;

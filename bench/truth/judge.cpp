@@ -40,10 +40,8 @@ const char* Judge::flaw_of(const JudgedRay& judged, const Hit& hit, HitFormula f
     const double bound = tie_bound(judged.traced.origin);
     if (!names_right_point(mesh_, judged.traced, hit, formula, bound))
         return "its t, u and v are not those of the point";
-    if (point_of(mesh_, judged.traced, hit.face_id).may_be_edge_on) return nullptr; // t is that of its centroid
-    if (hit.t > judged.part.end) return "its t lies beyond the ray's end";
-    const double error = end_error_of(mesh_, judged.traced, hit.face_id, bound);
-    return -static_cast<double>(hit.t) > error ? "its t lies before the ray's start" : nullptr;
+    const bool is_beyond = hit.t > judged.part.end && !point_of(mesh_, judged.traced, hit.face_id).may_be_edge_on;
+    return is_beyond ? "its t lies beyond the ray's end" : nullptr;
 }
 
 std::optional<Flaw> Judge::judge(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit, HitFormula formula) const
