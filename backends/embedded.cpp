@@ -5,6 +5,7 @@
 #include <lzma.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace tetrace {
