@@ -58,7 +58,7 @@ std::string traced_reason(const RowRun& row, const Traced& traced)
         text += fmt::format(" ({} after {} steps, where loops of {} may end early)", traced.lost_at_device_cap,
                             row.device.most_steps, row.device.implementation);
     add(traced.verdicts.wrong, "wrong");
-    if (row.key.kernel.math == MathMode::fast && !traced.verdicts.clean())
+    if (row.key.kernel.math == MathMode::fast && is_portable(row.key.kernel) && !traced.verdicts.clean())
         text += "; math mode fast is held to no proof";
     return text;
 }

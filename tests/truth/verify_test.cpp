@@ -161,6 +161,9 @@ TEST_F(Verify, of_math_mode_fast_flaws_are_counted_and_fail_nothing)
     EXPECT_EQ(status_of(row), Status::flawed);
     EXPECT_FALSE(fails(row, false));
     EXPECT_EQ(reason_of(row), "2 lost; math mode fast is held to no proof");
+    row.key.kernel = {
+        .structure = Structure::bvh, .method = Method::single, .layout = Layout::embree, .math = MathMode::fast};
+    EXPECT_EQ(reason_of(row), "2 lost") << "Embree has no modes";
 }
 
 TEST_F(Verify, a_wrong_parameter_makes_a_row_flawed)
