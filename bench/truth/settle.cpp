@@ -33,9 +33,31 @@ struct Settler::Case {
     double bound;
     std::vector<std::uint32_t> near; // what lies within the bound of the ray
 
-    [[nodiscard]] double end_error(const TriangleMesh& mesh, std::uint32_t triangle) const
+    // The part's end, and the triangle's t: each may be off, but no more than the triangle and the bound allow.
+    [[nodiscard]] bool is_beyond_end(const TriangleMesh& mesh, std::uint32_t triangle) const
     {
-        return end_error_of(mesh, ray, triangle, bound);
+        if (!part.has_end()) return false;
+        const double end = static_cast<double>(part.end), t = point_of(mesh, ray, triangle).t;
+        return (std::isfinite(t) && t > end + end_error_of(mesh, ray, triangle, bound)) ||
+               depths(mesh, triangle).first > end + bound / length(to_double(ray.direction));
+    }
+    [[nodiscard]] bool may_be_beyond_end(const TriangleMesh& mesh, std::uint32_t triangle) const
+    {
+        if (!part.has_end()) return false;
+        const double end = static_cast<double>(part.end);
+        return !(point_of(mesh, ray, triangle).t < end - end_error_of(mesh, ray, triangle, bound)) &&
+               depths(mesh, triangle).second >= end - bound / length(to_double(ray.direction));
+    }
+    // Ray parameters of the triangle's nearest and farthest corner.
+    [[nodiscard]] std::pair<double, double> depths(const TriangleMesh& mesh, std::uint32_t triangle) const
+    {
+        const Double3 direction = to_double(ray.direction);
+        std::pair<double, double> range{HUGE_VAL, -HUGE_VAL};
+        for (const Float3 corner : corners_of(mesh, triangle)) {
+            const double t = dot(to_double(corner) - to_double(ray.origin), direction) / dot(direction, direction);
+            range = {std::min(range.first, t), std::max(range.second, t)};
+        }
+        return range;
     }
 };
 
@@ -50,7 +72,6 @@ bool Settler::is_before(const ExactRay& ray, std::uint32_t a, std::uint32_t b) c
 std::vector<Settler::Met> Settler::met_by(const Case& question) const
 {
     std::vector<Met> met;
-    const Double3 direction = to_double(question.ray.direction);
     for (const std::uint32_t triangle : question.near) {
         const auto corners = corners_of(mesh_, triangle);
         const auto crossing =
@@ -58,12 +79,8 @@ std::vector<Settler::Met> Settler::met_by(const Case& question) const
         const auto& side = crossing.edge_side;
         if (crossing.met)
             met.push_back({triangle, crossing.t, false});
-        else if (side[0] == 0 && side[1] == 0 && side[2] == 0) {
-            double least = HUGE_VAL;
-            for (const Float3 corner : corners)
-                least = std::min(least, dot(to_double(corner) - to_double(question.ray.origin), direction));
-            met.push_back({triangle, least / dot(direction, direction), true});
-        }
+        else if (side[0] == 0 && side[1] == 0 && side[2] == 0)
+            met.push_back({triangle, question.depths(mesh_, triangle).first, true});
     }
     return met;
 }
@@ -89,9 +106,7 @@ Settlement Settler::settle_any(const Case& question) const
         if (may_be(met.triangle)) return {.kind = Kind::exact, .first = met.triangle};
     }
     for (const std::uint32_t triangle : question.near) {
-        if (!may_be(triangle)) continue;
-        const double t = point_of(mesh_, question.ray, triangle).t;
-        if (question.part.has_end() && std::isfinite(t) && t > end + question.end_error(mesh_, triangle)) continue;
+        if (!may_be(triangle) || question.is_beyond_end(mesh_, triangle)) continue;
         settlement.witness =
             find_witness(mesh_, {question.ray, question.part, triangle, question.bound, {&triangle, 1}});
         if (settlement.witness.empty()) continue;
@@ -118,8 +133,7 @@ Settlement Settler::settle_first(const Case& question) const
             settlement.first = one.triangle;
     }
     const double answer_t = answer == NO_HIT ? end : point_of(mesh_, ray, answer).t;
-    if (answer != NO_HIT && part.has_end() && std::isfinite(answer_t) &&
-        answer_t > end + question.end_error(mesh_, answer)) {
+    if (answer != NO_HIT && question.is_beyond_end(mesh_, answer)) {
         settlement.reason = "the ray ends before its triangle";
         return settlement;
     }
@@ -133,11 +147,8 @@ Settlement Settler::settle_first(const Case& question) const
         return settlement;
     }
     std::vector<std::uint32_t> obstacles;
-    for (const std::uint32_t triangle : near) {
-        const bool is_at_end = answer == NO_HIT && part.has_end() &&
-                               point_of(mesh_, ray, triangle).t >= end - question.end_error(mesh_, triangle);
-        if (!is_at_end) obstacles.push_back(triangle);
-    }
+    for (const std::uint32_t triangle : near)
+        if (answer != NO_HIT || !question.may_be_beyond_end(mesh_, triangle)) obstacles.push_back(triangle);
     settlement.witness = find_witness(mesh_, {ray, part, answer, bound, obstacles});
     settlement.kind = settlement.witness.empty() ? Kind::wrong : Kind::tie;
     settlement.reason = !settlement.witness.empty() ? "a curve near the ray meets that first"

@@ -230,6 +230,20 @@ TEST(Settle, a_part_ends_within_the_bound_of_its_end)
     EXPECT_EQ(ends(0.5f, 0), Kind::wrong);
 }
 
+TEST(Settle, a_triangle_that_is_seen_edge_on_beyond_the_end_is_not_met)
+{
+    const Settled wall({{{0, -1, -1}, {0, 1, -1}, {0, 0, 0}}, {{0, 1, 2}}});
+    for (const bool any_hit : {false, true}) {
+        const auto ends = [&](float end, std::uint32_t answer) {
+            return wall.along({{0, 0, 1}, {0, 0, -1}}, answer, {.end = end, .any_hit = any_hit}).kind;
+        };
+        EXPECT_EQ(ends(1.5f, 0), Kind::tie);
+        EXPECT_EQ(ends(0.5f, 0), Kind::wrong);
+        EXPECT_EQ(ends(0.5f, NO_HIT), Kind::exact);
+        EXPECT_EQ(ends(1.5f, NO_HIT), Kind::tie);
+    }
+}
+
 namespace {
 
 Witness straight_down(double x, double to)
