@@ -145,8 +145,8 @@ std::vector<OptionRow> reproduce_options()
              ". Default: all except growth, which is not in the paper.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--builds", "LIST",
-         "The builds of banana, bunny and armadillo: 'ours', as the options of scenes say, and 'paper', as close to the "
-         "paper's counts as known, in a domain that holds the cameras. Other scenes have ours alone. Default: both.",
+         "Which builds of banana, bunny and armadillo: 'ours', as the options of scenes say, and 'paper', near the "
+         "paper's counts, in a domain that holds the cameras. Other scenes have ours alone. Default: both.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
