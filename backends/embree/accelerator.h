@@ -37,7 +37,7 @@ enum class Coherence { coherent, incoherent };
 /// A triangle mesh in an Embree scene of its own device, built with quality high.
 class Accelerator {
 public:
-    /// robust: Embree's watertight mode, which the oracle uses. threads: of the build.
+    /// robust: Embree's watertight mode, which tests compare the oracle with. threads: of the build.
     /// Throws Error{internal} with Embree's reason.
     Accelerator(const TriangleMesh& mesh, bool robust, unsigned threads);
     ~Accelerator();

@@ -106,6 +106,22 @@ TEST(ExactSearch, heeds_where_a_ray_starts_and_ends)
     EXPECT_FALSE(first(1, {.end = 1 + 0x1p-21f}).is_clear) << "it ends there";
 }
 
+TEST(ExactSearch, is_not_clear_where_another_triangle_is_first_beside_the_ray)
+{
+    // Behind the slope where the ray meets that, and before it at half of the radius to the left.
+    constexpr float radius = 0x1p-18f;
+    const TriangleMesh mesh{{{-1, -1, -1},
+                             {1, -1, 1},
+                             {0, 2, 0},
+                             {-radius / 2, -1, -radius / 4},
+                             {-radius / 2, 1, -radius / 4},
+                             {-1, 0, 0}},
+                            {{0, 1, 2}, {3, 4, 5}}};
+    const ExactRay ray{{0, 0, 1}, {0, 0, -1}};
+    EXPECT_FALSE(ExactSearch(mesh).first(ray, {}, double{radius}).is_clear);
+    EXPECT_TRUE(ExactSearch(mesh).first(ray, {}, double{radius} / 4).is_clear);
+}
+
 TEST(ExactSearch, of_triangles_in_one_place_and_of_none_ends)
 {
     TriangleMesh heap{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}};

@@ -111,7 +111,7 @@ TEST(Oracle, the_other_view_is_traced_anew)
     EXPECT_FALSE(oracle.judge(1, second.job.view, size, size, first.hits).clean());
 }
 
-TEST(Walk, cameras_on_vertices_edges_and_faces_see_what_embree_sees)
+TEST(Walk, cameras_on_vertices_edges_and_faces_see_what_the_exact_rays_meet)
 {
     Traced traced;
     const TetMesh& mesh = traced.scene.tets;

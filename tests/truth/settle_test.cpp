@@ -239,8 +239,25 @@ TEST(Settle, a_triangle_that_is_seen_edge_on_beyond_the_end_is_not_met)
         };
         EXPECT_EQ(ends(1.5f, 0), Kind::tie);
         EXPECT_EQ(ends(0.5f, 0), Kind::wrong);
+        EXPECT_EQ(ends(0.97f, 0), Kind::wrong) << "so near that it is gathered";
         EXPECT_EQ(ends(0.5f, NO_HIT), Kind::exact);
         EXPECT_EQ(ends(1.5f, NO_HIT), Kind::tie);
+    }
+}
+
+TEST(Settle, a_wall_that_is_seen_edge_on_closes_the_way_between_two_layers)
+{
+    // One layer left of the ray and one right of it, a unit farther, joined by a wall in the plane of the ray.
+    const TriangleMesh step{{{0, -4, 0}, {0, 4, 0}, {-4, 0, 0}, {0, -4, -1}, {0, 4, -1}, {4, 0, -1}},
+                            {{0, 1, 2}, {3, 4, 5}, {0, 1, 3}, {1, 4, 3}}};
+    for (const TriangleMesh& mesh : {step, mirrored(step)}) {
+        const Settled closed(mesh);
+        const ExactRay ray{{0, 0, 1}, {0, 0, -1}};
+        EXPECT_EQ(closed.along(ray, NO_HIT).kind, Kind::wrong);
+        EXPECT_EQ(closed.along(ray, NO_HIT, {.end = 3}).kind, Kind::wrong) << "no t says that the wall is before 3";
+        TriangleMesh open = mesh;
+        open.triangles.resize(2);
+        EXPECT_EQ(Settled(open).along(ray, NO_HIT).kind, Kind::tie) << "without the wall";
     }
 }
 
@@ -290,6 +307,22 @@ TEST(HitPoint, t_u_and_v_are_held_to_the_error_of_the_formula)
     EXPECT_FALSE(is_right(1, 0.375f + 0x1p-12f, 0.25f));
     EXPECT_FALSE(is_right(1, 0.375f, 0.25f + 0x1p-12f));
     EXPECT_FALSE(is_right(std::numeric_limits<float>::quiet_NaN(), 0.375f, 0.25f));
+}
+
+TEST(HitPoint, of_a_well_shaped_triangle_is_right_to_some_units)
+{
+    const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    const ExactRay ray{{0.25f, 0.5f, 1}, {0, 0, -1}};
+    const auto is_right = [&](float t, float u, float v) {
+        return names_right_point(mesh, ray, {0, 0, t, u, v, 0}, HitFormula::kernels, bound);
+    };
+    constexpr float few = 0x1p-23f, many = 0x1p-19f;
+    for (const float sense : {-1.0f, 1.0f}) {
+        EXPECT_TRUE(is_right(1 + sense * few, 0.25f + sense * few, 0.5f + sense * few));
+        EXPECT_FALSE(is_right(1 + sense * many, 0.25f, 0.5f));
+        EXPECT_FALSE(is_right(1, 0.25f + sense * many, 0.5f));
+        EXPECT_FALSE(is_right(1, 0.25f, 0.5f + sense * many));
+    }
 }
 
 TEST(HitPoint, of_a_triangle_seen_edge_on_lies_in_it)

@@ -221,9 +221,10 @@ std::string sampling_note(Sampling sampling, std::size_t population)
 std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
 {
     std::vector<std::string> notes = {
-        "Every image is compared with Embree in robust mode; each disagreement is settled by exact arithmetic on the "
-        "original triangles. Wrong face: another triangle, or none, without an edge so close that float32 may decide "
-        "either way, or t, u and v that name no point; ties are those that have one, and are not counted as wrong. "
+        "Every ray is judged by exact arithmetic on the original triangles. Wrong face: another triangle, or none, "
+        "than the exact ray and all curves within rounding of it meet first, or t, u and v that are not those of the "
+        "point. "
+        "Ties are what such a curve gives, and are not counted as wrong. "
         "Lost: no exit face was found, or, in a cycle, the walk took as many steps as it may.",
         "The oracle judges what openmp answers; each device's hits are compared with openmp's ray by ray, and images "
         "of one hash are judged once.",
