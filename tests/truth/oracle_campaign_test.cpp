@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <string>
@@ -42,29 +42,44 @@ public:
     {
     }
 
-    /// Falsifies the answers to so many rays; each kind gets those that it applies to.
-    [[nodiscard]] Counts run(std::uint32_t count) const
+    /// Falsifies answers until each kind has `wanted` of them, a block of rays at a time; fewer of kinds that apply to
+    /// less than one ray in eight.
+    [[nodiscard]] Counts run(std::uint32_t wanted) const
     {
         Counts counts{};
+        const std::uint32_t block = std::clamp(wanted / 8, 64u, 65'536u);
+        for (std::uint32_t first = 0; first < 8 * wanted; first += block) {
+            Kinds asked{};
+            for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+                asked[kind] = counts[kind].falsified < wanted;
+            if (asked == Kinds{}) break;
 #pragma omp parallel
-        {
-            Counts mine{};
-#pragma omp for schedule(dynamic, 256)
-            for (std::uint32_t number = 0; number < count; ++number)
-                falsify(mine, number);
+            {
+                Counts mine{};
+#pragma omp for schedule(dynamic, 64)
+                for (std::uint32_t number = first; number < first + block; ++number)
+                    falsify(mine, number, asked);
 #pragma omp critical
-            for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-                counts[kind].falsified += mine[kind].falsified;
-                counts[kind].caught += mine[kind].caught;
-                counts[kind].excused += mine[kind].excused;
-                counts[kind].exact += mine[kind].exact;
-                counts[kind].overlooked += mine[kind].overlooked;
+                add(counts, mine);
             }
         }
         return counts;
     }
 
 private:
+    using Kinds = std::array<bool, kinds.size()>; // those that answers are still wanted of
+
+    static void add(Counts& counts, const Counts& mine)
+    {
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+            counts[kind].falsified += mine[kind].falsified;
+            counts[kind].caught += mine[kind].caught;
+            counts[kind].excused += mine[kind].excused;
+            counts[kind].exact += mine[kind].exact;
+            counts[kind].overlooked += mine[kind].overlooked;
+        }
+    }
+
     // What Embree finds along a ray: up to three layers.
     [[nodiscard]] std::vector<std::uint32_t> layers(const ExactRay& ray) const
     {
@@ -92,12 +107,13 @@ private:
                 1.0f / 3, 1.0f / 3, 0};
     }
 
-    void falsify(Counts& counts, std::uint32_t number) const
+    void falsify(Counts& counts, std::uint32_t number, const Kinds& asked) const
     {
         const ExactRay ray = rays_.ray(number);
         const auto found = layers(ray);
         const auto with = [&](Falsified kind, const Hit& hit) {
-            judge(counts[static_cast<std::size_t>(kind)], ray, hit);
+            const auto index = static_cast<std::size_t>(kind);
+            if (asked[index]) judge(counts[index], ray, hit, number % 64 == 0);
         };
         if (found.empty()) return;
         with(Falsified::no_hit, {NO_HIT, NO_TET, 0, 0, 0, 0});
@@ -133,14 +149,14 @@ private:
         if (std::abs(static_cast<double>(hit.v) - point.v) > 2 * point.v_error) with(Falsified::v_outside, hit);
     }
 
-    void judge(Count& count, const ExactRay& ray, const Hit& hit) const
+    void judge(Count& count, const ExactRay& ray, const Hit& hit, bool asks_nearby) const
     {
         ++count.falsified;
         const JudgedRay judged{ray, ray, {}, judge_.first(ray, {}), 0, 0, 0, 0};
         Verdicts verdicts;
         if (judge_.judge(verdicts, judged, hit, HitFormula::kernels)) {
             ++count.caught;
-            if (count.falsified % 64 == 0 && is_met_nearby(ray, hit)) ++count.overlooked;
+            if (asks_nearby && is_met_nearby(ray, hit)) ++count.overlooked;
             return;
         }
         count.excused += verdicts.ties;
@@ -204,9 +220,9 @@ private:
     embree::Accelerator embree_;
 };
 
-void expect_all_caught(const char* name, const TriangleMesh& mesh, std::uint32_t rays)
+void expect_all_caught(const char* name, const TriangleMesh& mesh, std::uint32_t answers)
 {
-    const Counts counts = Campaign(mesh).run(rays);
+    const Counts counts = Campaign(mesh).run(answers);
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
         const Count& count = counts[kind];
         fmt::print("{}: {}: {} falsified, {} caught, {} with a witness, {} right\n", name, kinds[kind], count.falsified,
@@ -226,14 +242,14 @@ class OracleCampaignOn : public testing::TestWithParam<std::string> {};
 TEST(OracleCampaign, falsified_answers_on_hard_meshes_are_caught_unless_they_have_a_witness)
 {
     for (const auto& [name, scene] : make_hard_scenes())
-        expect_all_caught(name, scene.mesh, wanted(1'200));
+        expect_all_caught(name, scene.mesh, wanted(400));
 }
 
 TEST_P(OracleCampaignOn, falsified_answers_are_caught_unless_they_have_a_witness)
 {
     const std::string name = GetParam();
     if (const std::string reason = why_not_available(name); !reason.empty()) GTEST_SKIP() << reason;
-    expect_all_caught(name.c_str(), load_scene({name, {}}, {}).scene.mesh, wanted(4'000));
+    expect_all_caught(name.c_str(), load_scene({name, {}}, {}).scene.mesh, wanted(1'500));
 }
 
 INSTANTIATE_TEST_SUITE_P(each, OracleCampaignOn, testing::Values("bunny", "armadillo"),
