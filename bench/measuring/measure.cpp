@@ -5,6 +5,7 @@
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
+#include "core/base/whole_file.h"
 
 #include <algorithm>
 #include <functional>
@@ -134,16 +135,12 @@ std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostr
     return std::make_unique<RowReporter>(std::move(receivers));
 }
 
-/// Google Benchmark opens --benchmark_out itself and gives its stream only to the file reporter: the inner reporter
-/// writes to a string first.
+/// Keeps what is to be written to the file of --benchmark_out. Google Benchmark gives the stream of that option only
+/// to the file reporter; read_benchmark_flags() lets it lead nowhere.
 class FileReporter : public RowReporter {
 public:
     explicit FileReporter(const std::string& format) : FileReporter(format, std::make_unique<std::ostringstream>()) {}
-    void Finalize() override
-    {
-        RowReporter::Finalize();
-        GetOutputStream() << text_->str();
-    }
+    [[nodiscard]] std::string text() const { return text_->str(); }
 
 private:
     FileReporter(const std::string& format, std::unique_ptr<std::ostringstream> text)
@@ -160,6 +157,15 @@ private:
 
     std::unique_ptr<std::ostringstream> text_;
 };
+
+/// Google Benchmark looks at no stream's state.
+void require_printed(const BenchmarkFlags& flags)
+{
+    std::cout.flush();
+    if (flags.format && !std::cout)
+        throw Error(ErrorKind::invalid_input, "writing the output of --benchmark_format to standard output failed; "
+                                              "check that there is space left, or use --benchmark_out FILE");
+}
 
 /// Precondition: a view of the row has rays.
 std::size_t last_view_with_rays(const RowRun& row)
@@ -215,6 +221,8 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     // The filter was applied to the rows themselves, under the reported names.
     benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
     progress_line().clear();
+    require_printed(flags);
+    if (file != nullptr) write_whole(flags.out, file->text());
     check_rows_after(rows);
     result.google_benchmark = nlohmann::json::parse(json.str());
     result.wall_s = watch.seconds();

@@ -24,7 +24,8 @@ struct Measurement {
 /// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
 /// of each. One sample traces all selected views once; its seconds are the sum of the device's. Afterwards the hits of
 /// the last view must still equal the verified ones. Rows that fail end with their reason, and so do rows for which the
-/// budget has no time.
+/// budget has no time. Writes the file of --benchmark_out. Throws Error{invalid_input} where that, or what Google
+/// Benchmark prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget());
 

@@ -5,11 +5,9 @@
 #include "bench/results/result_file.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
 
 namespace tetrace {
 
@@ -43,12 +41,6 @@ std::string in_format(const Report& report, Format format, const Options& option
     throw Error(ErrorKind::internal, "in_format: no such format");
 }
 
-[[noreturn]] void reject_file(const char* option, const std::filesystem::path& path)
-{
-    throw Error(ErrorKind::invalid_input, fmt::format("writing the result to '{}': {}; name another file with {}",
-                                                      path.string(), std::strerror(errno), option));
-}
-
 } // namespace
 
 void check_output(const Options& options)
@@ -71,22 +63,16 @@ void check_not_an_input(const std::filesystem::path& out, const std::vector<std:
 
 void check_writable(const char* option, const std::filesystem::path& path)
 {
-    const bool existed = std::filesystem::exists(path);
-    if (!std::ofstream(path, std::ios::app)) reject_file(option, path);
-    if (!existed) std::filesystem::remove(path);
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text)
-{
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file << text;
-    file.close();
-    if (!file) reject_file("--out", path);
+    try {
+        require_writable(path);
+    } catch (const Error& error) {
+        throw Error(error.kind(), fmt::format("{}: {}", option, error.what()));
+    }
 }
 
 void deliver_to_file(const Options& options, const Report& report)
 {
-    write_text(*options.out, in_format(report, format_of_file(options), options));
+    write_whole(*options.out, in_format(report, format_of_file(options), options));
 }
 
 void deliver(const Options& options, const Report& report)

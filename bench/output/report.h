@@ -42,7 +42,4 @@ void deliver_to_file(const Options& options, const Report& report);
 /// The head of every tetrace result: schema version, program, machine, time, and command line.
 [[nodiscard]] nlohmann::json result_head(const Options& options);
 
-/// Writes a file. Throws Error{invalid_input} naming it and the system's reason.
-void write_text(const std::filesystem::path& path, const std::string& text);
-
 } // namespace tetrace

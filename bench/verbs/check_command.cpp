@@ -8,6 +8,7 @@
 #include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "core/base/whole_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -127,7 +128,7 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options)
     for (const RowRun& row : rows)
         failed.push_back(fails_check(row, options));
     const std::string xml = junit_xml(rows, failed);
-    write_text(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
+    write_whole(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
 }
 
 /// Rows of Embree's own BVH and of drivers' are judged only where asked for: they make no claim to break.
