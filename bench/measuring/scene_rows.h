@@ -25,6 +25,10 @@ struct SceneRows {
 [[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
                                         const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 
+/// A run without an answer from any device must not look like one that went well. Throws Error{missing} with a reason
+/// where every row is skipped or unsupported. done: "checked" or "measured".
+void require_answers(const std::vector<RowRun>& rows, const char* done);
+
 /// Result of verifying all rows.
 [[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);
 

@@ -212,12 +212,19 @@ TEST_F(Program, check_shows_rows_against_devices_and_writes_junit)
     EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
 }
 
-TEST_F(Program, a_check_of_which_no_row_could_run_does_not_pass)
+TEST_F(Program, a_run_of_which_no_row_could_run_does_not_pass)
 {
-    ::setenv("CUDA_VISIBLE_DEVICES", "", 1); // where there is a GPU, CUDA has none for this program
-    const Ended ended = run("check --backend cuda --scene cubes --resolution 6 --size 24");
-    EXPECT_EQ(ended.code, 3) << ended.out;
-    EXPECT_TRUE(contains(ended.errors, "nothing was checked")) << ended.errors;
+    const ScopedVariable none("CUDA_VISIBLE_DEVICES", ""); // where there is a GPU, CUDA has none for this program
+    const auto expect_missing = [&](const char* verb, const char* text) {
+        const Ended ended =
+            run(std::string(verb) + " --backend cuda --scene cubes --resolution 6 --size 24 --out a.json");
+        EXPECT_EQ(ended.code, 3) << ended.out;
+        EXPECT_TRUE(contains(ended.errors, text)) << ended.errors;
+        const auto row = nlohmann::json::parse(file("a.json"))["tetrace"]["rows"][0];
+        EXPECT_TRUE(contains(ended.errors, row["reason"].get<std::string>())) << ended.errors;
+    };
+    expect_missing("check", "nothing was checked");
+    expect_missing("bench", "nothing was measured");
 }
 
 TEST_F(Program, checks_embree_where_it_is_asked_for)
