@@ -233,7 +233,8 @@ std::vector<OptionRow> row_options()
          reproducing, true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
-         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Default: all.",
+         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT means no usable "
+         "device. Default: all.",
          reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "

@@ -227,6 +227,17 @@ TEST_F(Program, a_run_of_which_no_row_could_run_does_not_pass)
     expect_missing("bench", "nothing was measured");
 }
 
+TEST_F(Program, a_device_that_is_missing_is_told_in_one_line)
+{
+    for (const char* const verb : {"check", "bench", "render"}) {
+        const Ended ended = run(std::string(verb) + " --scene cubes --backend openmp,embree --device nvidia");
+        EXPECT_EQ(ended.code, 3) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "no device's name contains nvidia")) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "(openmp, embree)")) << ended.errors;
+        EXPECT_EQ(std::count(ended.errors.begin(), ended.errors.end(), '\n'), 1) << ended.errors;
+    }
+}
+
 TEST_F(Program, checks_embree_where_it_is_asked_for)
 {
     const auto rows_of = [&](const std::string& options) { return run("check --scene cubes --list" + options).out; };
