@@ -81,19 +81,29 @@ struct Suite {
         if (const Traced* result = traced(row)) time_s += result->wall_s;
     }
 
+    void add_problem(const std::string& problem)
+    {
+        cases += fmt::format("    <testcase classname=\"tetrace.check\" name=\"has a result\">\n"
+                             "      <error message=\"{}\"/>\n    </testcase>\n",
+                             xml_text(problem));
+        ++tests;
+        ++errors;
+    }
+
     [[nodiscard]] std::string xml() const
     {
-        return fmt::format("  <testsuite name=\"tetrace check {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+        return fmt::format("  <testsuite name=\"tetrace check{}{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
                            "skipped=\"{}\" time=\"{:.6f}\">\n{}  </testsuite>\n",
-                           xml_text(scene), tests, failures, errors, skipped, time_s, cases);
+                           scene.empty() ? "" : " ", xml_text(scene), tests, failures, errors, skipped, time_s, cases);
     }
 };
 
 } // namespace
 
-std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed)
+std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed, const std::string& problem)
 {
     std::vector<Suite> suites;
+    if (!problem.empty()) suites.emplace_back().add_problem(problem);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.emplace_back().scene = rows[i].key.scene;
         suites.back().add(rows[i], failed[i]);

@@ -121,13 +121,14 @@ Report check_report(const Checked& checked, const Options& options)
     return report;
 }
 
-void write_junit(const std::vector<RowRun>& rows, const Options& options)
+/// problem: why the check ended early, or fails although no row does; empty where neither is so.
+void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem = {})
 {
     if (!options.junit) return;
     std::vector<bool> failed;
     for (const RowRun& row : rows)
         failed.push_back(fails_check(row, options));
-    const std::string xml = junit_xml(rows, failed);
+    const std::string xml = junit_xml(rows, failed, problem);
     write_whole(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
 }
 
@@ -167,24 +168,14 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
     }
 }
 
-} // namespace
-
-int check_command(const Options& asked)
+/// checked: also what there is of it where the check ends early.
+int check(const Options& options, Checked& checked)
 {
-    const Options options = with_default_layouts(asked);
-    if (!options.list) require_devices(options.required); // first: its reason for an empty selection is better
+    require_devices(options.required); // first: its reason for an empty selection is better
     const auto keys = selected_rows(options, [](const std::string&) { return true; });
-    if (options.list) {
-        for (const RowKey& key : keys)
-            print(row_name(key) + "\n");
-        return 0;
-    }
-    check_output(options);
-    if (options.junit) check_writable("--junit", *options.junit);
     require_selected(keys, options.required);
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
-    Checked checked;
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
     checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
@@ -197,6 +188,31 @@ int check_command(const Options& asked)
     require_answers(rows, "checked");
     if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); })) return 1;
     return exit_code(rows, options.allow_flawed);
+}
+
+int list_selected(const Options& options)
+{
+    for (const RowKey& key : selected_rows(options, [](const std::string&) { return true; }))
+        print(row_name(key) + "\n");
+    return 0;
+}
+
+} // namespace
+
+int check_command(const Options& asked)
+{
+    const Options options = with_default_layouts(asked);
+    if (options.list) return list_selected(options);
+    check_output(options);
+    if (options.junit) check_writable("--junit", *options.junit);
+    Checked checked;
+    try {
+        return check(options, checked);
+    } catch (const Error& error) {
+        // Whoever reads the XML alone must not take a check without a result for a good one.
+        if (error.kind() != ErrorKind::interrupted) write_junit(checked.run.rows, options, error.what());
+        throw;
+    }
 }
 
 } // namespace tetrace

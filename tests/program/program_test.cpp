@@ -1,3 +1,4 @@
+#include "bench/terminal/text.h"
 #include "tests/support/program_fixture.h"
 
 #include <algorithm>
@@ -225,6 +226,23 @@ TEST_F(Program, a_run_of_which_no_row_could_run_does_not_pass)
     };
     expect_missing("check", "nothing was checked");
     expect_missing("bench", "nothing was measured");
+}
+
+TEST_F(Program, a_check_that_ends_early_says_why_in_its_junit_and_on_standard_error)
+{
+    const ScopedVariable none("CUDA_VISIBLE_DEVICES", "");
+    const std::string tiny = " --scene cubes --resolution 3 --size 8 --junit check.xml";
+    for (const char* const arguments :
+         {"check --require cuda", "check --require embree --backend openmp", "check --backend openmp --device nvidia",
+          "check --backend openmp --scene no-such-scene", "check --backend cuda"}) {
+        std::filesystem::remove(folder_ / "check.xml");
+        const Ended ended = run(arguments + tiny);
+        EXPECT_NE(ended.code, 0) << arguments;
+        const std::string reason = ended.errors.substr(0, ended.errors.find('\n'));
+        ASSERT_TRUE(reason.starts_with("tetrace: ")) << arguments << ended.errors;
+        EXPECT_TRUE(contains(file("check.xml"), "<error message=\"" + xml_text(reason.substr(9)))) << file("check.xml");
+        EXPECT_TRUE(contains(file("check.xml"), "errors=\"1\"")) << file("check.xml");
+    }
 }
 
 TEST_F(Program, a_device_that_is_missing_is_told_in_one_line)
