@@ -211,6 +211,8 @@ TEST_F(Program, check_shows_rows_against_devices_and_writes_junit)
     EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
     EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
     EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+    EXPECT_TRUE(contains(file("check.xml"), "classname=\"tetrace.openmp."));
+    EXPECT_TRUE(contains(file("check.xml"), "<property name=\"tetrace.version\""));
 }
 
 TEST_F(Program, a_run_of_which_no_row_could_run_does_not_pass)
