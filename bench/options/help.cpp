@@ -133,14 +133,16 @@ const VerbHelp verb_help[] = {
      "of the rates (of the medians; above 1, B is faster) with its interval, and a verdict: 'SAME', the interval lies "
      "within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', it contains 1 and reaches "
      "beyond the tolerance, or there are too few samples for an interval, so that more samples would decide. Rows that "
-     "only one of them timed are 'FAILED' (wrong or in error in B), 'MISSING' (not in B, or skipped or unsupported "
-     "there) or 'NEW'; they have no part in the geometric mean.\n\n"
+     "both timed are 'DIFFERENT', and not compared, if scenes, views or hit hashes differ: Embree's hits, and those of "
+     "math mode fast, depend on the processor. Rows that only one of them timed are 'FAILED' (wrong or in error in B), "
+     "'MISSING' (not in B, or skipped or unsupported there) or 'NEW'. Neither these nor DIFFERENT rows have a part in "
+     "the geometric mean.\n\n"
      "The intervals come from ranks, and assume of the noise only that samples are independent. If nothing changed, "
      "the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from 10 samples a row "
      "on; with fewer, down to 5, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples "
      "do not show: that is what the tolerance is for.\n\n"
      "Exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing). Exits with "
-     "2, and names the rows, if scenes, views or hit hashes differ, since times of different work do not compare.",
+     "2, and names the rows, if all are DIFFERENT.",
      "  tetrace compare before.json after.json\n"
      "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
      "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},

@@ -175,6 +175,8 @@ std::string summary_text(const ResultComparison& comparison)
             text += fmt::format("{}{} {}", separator, count, name_of(verdict));
             separator = ", ";
         }
+    if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
+        text += fmt::format("; {} DIFFERENT, not compared", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
         text += fmt::format("; {} with too few samples for an interval", count);
     if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);

@@ -134,6 +134,21 @@ TEST_F(Compare, says_so_where_samples_are_too_few_to_tell)
     EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
 }
 
+TEST_F(Compare, compares_other_machines_in_what_did_the_same_work)
+{
+    const std::string results = TETRACE_RESULTS;
+    const Ended ended = run("compare " + results + "/amd-epyc-zen3-2-cores/2026-11-21-afdb7f9.json " + results +
+                            "/amd-epyc-zen5-2-cores/2026-11-22-7a91a68.json --out c.json");
+    EXPECT_LE(ended.code, 1) << ended.errors;
+    EXPECT_TRUE(contains(unwrapped(ended), "16 of 36 rows: ")) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "4 DIFFERENT, not compared")) << ended.out;
+    for (const Json& row : Json::parse(file("c.json"))["tetrace"]["comparison"]["rows"])
+        if (row["verdict"] == "DIFFERENT") {
+            EXPECT_TRUE(contains(row["name"].get<std::string>(), "api:embree")) << row;
+            EXPECT_TRUE(contains(row["note"].get<std::string>(), "hit hash")) << row;
+        }
+}
+
 TEST_F(Compare, never_replaces_what_it_compares)
 {
     ASSERT_EQ(compare_with([](Json&) {}).code, 0);
