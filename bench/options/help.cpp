@@ -132,7 +132,7 @@ const VerbHelp verb_help[] = {
      "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "
      "of the rates (of the medians; above 1, B is faster) with its interval, and a verdict: 'SAME', the interval lies "
      "within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', it contains 1 and reaches "
-     "beyond the tolerance, or there are too few samples for an interval, so that more samples would decide. Rows that "
+     "beyond the tolerance, or there are fewer than 5 samples, which give no interval: more would decide. Rows that "
      "both timed are 'DIFFERENT', and not compared, if scenes, views or hit hashes differ: Embree's hits, and those of "
      "math mode fast, depend on the processor. Rows that only one of them timed are 'FAILED' (wrong or in error in B), "
      "'MISSING' (not in B, or skipped or unsupported there) or 'NEW'. Neither these nor DIFFERENT rows have a part in "

@@ -304,13 +304,15 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples a row, 3 to 10000; a sample traces all selected views once. Default: 10.", bit(Verb::bench), false,
+         "Samples a row, 3 to 10000; a sample traces all selected views once. Fewer than 5 give no interval, neither here "
+         "nor in 'compare'. Default: 10.",
+         bit(Verb::bench), false,
          set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
-         "(if as many are asked for), since intervals from fewer are too narrow. If 5 do not fit, the slowest rows are "
+         "(if as many are asked for), since fewer give no interval. If 5 do not fit, the slowest rows are "
          "skipped, and the result names the budget that they need. A run takes at most a quarter longer. Loading "
          "scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},

@@ -19,11 +19,12 @@ std::string timed_sentence(const BenchResult& result, const Options& options)
     const std::string instead = measurement.lowered ? fmt::format(" ({} asked for; --budget {})", options.samples,
                                                                   seconds_text(options.budget_s))
                                                     : "";
+    const char* const few = measurement.samples < fewest_samples ? " Fewer than 5 samples give no interval." : "";
     return fmt::format(
         "medians of {} samples a row{}, rows interleaved at random, {} in all. A sample is {} views of {} "
-        "at {}x{} on {} threads.",
+        "at {}x{} on {} threads.{}",
         measurement.samples, instead, seconds_text(measurement.wall_s), selected_views(options).size(),
-        name_of(options.camera_set), options.width, options.height, resolved_threads(options));
+        name_of(options.camera_set), options.width, options.height, resolved_threads(options), few);
 }
 
 /// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.

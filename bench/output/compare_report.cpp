@@ -178,7 +178,8 @@ std::string summary_text(const ResultComparison& comparison)
     if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
         text += fmt::format("; {} DIFFERENT, not compared", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
-        text += fmt::format("; {} with too few samples for an interval", count);
+        text += fmt::format("; {} with fewer than {} samples, so no interval", count,
+                            fewest_samples);
     if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);
     return text + ".";
 }
@@ -199,7 +200,7 @@ std::string promise_text(const ResultComparison& comparison)
                                    "the chance that any of these rows is called FASTER or SLOWER is at most {:.2g} %",
                                    100 * error);
     if (error > 1.000001 * comparison_error || error == 0)
-        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %, fewer than 5 tell nothing",
+        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %",
                             samples_needed(compared), compared);
     return text + ". What differs between runs, apart from noise, no interval knows: the tolerance is for that.";
 }
@@ -208,9 +209,9 @@ std::string verdicts_text(double tolerance)
 {
     return fmt::format(
         "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
-        "1. UNSURE: it does, and reaches beyond the tolerance, or there are too few samples for an interval; more "
-        "would tell.",
-        1 / (1 + tolerance), 1 + tolerance);
+        "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no interval; "
+        "more would tell.",
+        1 / (1 + tolerance), 1 + tolerance, fewest_samples);
 }
 
 std::string closing_text(const ResultComparison& comparison, const Options& options)

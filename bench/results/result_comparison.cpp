@@ -1,5 +1,6 @@
 #include "bench/results/result_comparison.h"
 
+#include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -142,8 +143,8 @@ std::string ComparedRow::verdict() const
 std::string ComparedRow::note() const
 {
     if (has_too_few_samples())
-        return fmt::format("too few samples for an interval: {} in A and {} in B", before->samples_s.size(),
-                           after->samples_s.size());
+        return fmt::format("fewer than {} samples, so no interval: {} in A and {} in B", fewest_samples,
+                           before->samples_s.size(), after->samples_s.size());
     if (outcome == RowOutcome::different) return difference;
     const std::string a = why_untimed("A", before), b = why_untimed("B", after);
     return a + (a.empty() || b.empty() ? "" : "; ") + b;

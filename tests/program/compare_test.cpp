@@ -130,8 +130,22 @@ TEST_F(Compare, says_so_where_samples_are_too_few_to_tell)
         section["rows"][1]["times"]["samples_s"] = {10.00, 10.01, 10.02};
     });
     EXPECT_EQ(ended.code, 0);
-    EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: too few samples for an interval: 7 in A and 3 in B"));
-    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with too few samples for an interval;"));
+    EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: fewer than 5 samples, so no interval: 7 in A and 3 in B"));
+    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with fewer than 5 samples, so no interval;"));
+}
+
+TEST_F(Compare, has_an_interval_exactly_where_bench_has_one)
+{
+    const auto intervals = [&](const char* samples) {
+        const std::string bench = "bench --backend openmp,cuda-host --layout half32 --scene cubes --resolution 3 --size 16 ";
+        EXPECT_EQ(run(bench + "--samples " + samples + " --out a.json").code, 0);
+        const Json ratio = Json::parse(file("a.json"))["tetrace"]["ratios"].at(0);
+        EXPECT_LE(run("compare a.json a.json --out c.json").code, 1);
+        const Json row = Json::parse(file("c.json"))["tetrace"]["comparison"]["rows"].at(0);
+        return std::pair(ratio.contains("low"), row.contains("low"));
+    };
+    EXPECT_EQ(intervals("4"), std::pair(false, false));
+    EXPECT_EQ(intervals("5"), std::pair(true, true));
 }
 
 TEST_F(Compare, compares_other_machines_in_what_did_the_same_work)
