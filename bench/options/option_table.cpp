@@ -4,7 +4,6 @@
 #include "core/device/backend.h"
 
 #include <algorithm>
-#include <regex>
 
 namespace tetrace {
 
@@ -82,17 +81,6 @@ ApplyOption append_backend(const std::string& option, std::vector<std::string> O
     };
 }
 
-void set_filter(Options& options, const std::string& text)
-{
-    try {
-        const std::regex check(text);
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
-    }
-    options.filter = text;
-}
-
 ApplyOption set(bool Options::*flag)
 {
     return [=](Options& options, const std::string&) { options.*flag = true; };
@@ -118,23 +106,6 @@ ApplyOption set_path(const std::string& option, std::optional<std::filesystem::p
         if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
         options.*path = text;
     };
-}
-
-void set_tile(Options& options, const std::string& text)
-{
-    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
-    options.tile_height = text == "8x4" ? 4 : 8;
-}
-
-void set_packet_lanes(Options& options, const std::string& text)
-{
-    std::vector<std::string> accepted;
-    for (const unsigned lanes : packet_widths) {
-        accepted.push_back(std::to_string(lanes));
-        if (text == accepted.back()) options.packet_lanes = lanes;
-    }
-    if (std::ranges::find(accepted, text) == accepted.end())
-        reject_value("--packet-lanes", text, join_alternatives(accepted));
 }
 
 std::vector<OptionRow> reproduce_options()
@@ -261,7 +232,7 @@ std::vector<OptionRow> row_options()
          tracing, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match, for example 'tet96.*openmp'. Default: all.",
-         measuring | bit(Verb::compare), false, set_filter},
+         measuring | bit(Verb::compare), false, [](Options& o, const std::string& v) { o.filter = parse_filter(v); }},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
 }
@@ -286,11 +257,11 @@ std::vector<OptionRow> ray_options()
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {"Rays", "--tile", "WxH",
          "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
-         false, set_tile},
+         false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
         {"Rays", "--packet-lanes", "N",
          "Rays of a packet, for rows of schedule 'packets': 4, 8 or 16. If the processor or the build lacks that "
          "width, those rows are unsupported. Default: the widest available.",
-         tracing, false, set_packet_lanes},
+         tracing, false, [](Options& o, const std::string& v) { o.packet_lanes = parse_packet_lanes(v); }},
         {"Rays", "--buffer-limit", "SIZE",
          "Limit the buffers of every device to this size: bytes, or a number followed by K, M, G or T. The array of "
          "tets is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
@@ -365,6 +336,11 @@ std::vector<OptionRow> output_options()
          "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
          "the table. The table still goes to standard output.",
          reporting, false, set_path("--out", &Options::out)},
+        {"Output", "--label", "TEXT",
+         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. Default: the "
+         "processor's name, family, model and stepping.",
+         measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::reproduce), false,
+         [](Options& o, const std::string& v) { o.label = parse_label(v); }},
         {"Output", "--anonymous", "",
          "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
          false, set(&Options::anonymous)},

@@ -1,11 +1,14 @@
 #include "bench/options/option_values.h"
 
+#include "core/device/backend.h"
 #include "kernels/layouts/layout.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <regex>
 #include <set>
 
 namespace tetrace {
@@ -130,6 +133,42 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, co
     if (!read || width < 1 || height < 1 || width > largest || height > largest)
         reject_value(option, text, fmt::format("WxH or N, each from 1 to {}", largest));
     return {width, height};
+}
+
+unsigned parse_tile_height(const std::string& text)
+{
+    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
+    return text == "8x4" ? 4 : 8;
+}
+
+unsigned parse_packet_lanes(const std::string& text)
+{
+    std::vector<std::string> accepted;
+    for (const unsigned lanes : packet_widths) {
+        accepted.push_back(std::to_string(lanes));
+        if (text == accepted.back()) return lanes;
+    }
+    reject_value("--packet-lanes", text, join_alternatives(accepted));
+}
+
+std::string parse_filter(const std::string& text)
+{
+    try {
+        const std::regex check(text);
+    } catch (const std::regex_error& problem) {
+        throw Error(ErrorKind::usage,
+                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
+    }
+    return text;
+}
+
+std::string parse_label(const std::string& text)
+{
+    constexpr std::size_t longest = 100;
+    const auto breaks_line = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    if (text.empty() || text.size() > longest || std::ranges::any_of(text, breaks_line))
+        reject_value("--label", text, "one line of 1 to 100 bytes");
+    return text;
 }
 
 SearchSize parse_searches(const std::string& text)

@@ -74,12 +74,13 @@ Table flat_rows(const ResultComparison& comparison)
 std::string source_text(const ResultFile& file)
 {
     return fmt::format("{}: {} by tetrace {} ({}) on {}, {}", file.path.string(), file.head.date, file.head.version,
-                       file.head.commit, file.head.cpu, file.head.system);
+                       file.head.commit, file.head.machine, file.head.system);
 }
 
-std::string device_text(const ResultRow& row)
+std::string device_text(const ResultFile& file, const ResultRow& row)
 {
-    return row.driver.empty() ? row.device : row.device + ", " + row.driver;
+    const std::string& device = file.head.shown(row.device);
+    return row.driver.empty() ? device : device + ", " + row.driver;
 }
 
 /// A sentence for each device that the compared rows ran on, in their order.
@@ -88,7 +89,7 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
     std::vector<std::string> sentences;
     for (const ComparedRow& row : comparison.rows) {
         if (row.outcome != RowOutcome::compared) continue;
-        const std::string a = device_text(*row.before), b = device_text(*row.after);
+        const std::string a = device_text(*comparison.before, *row.before), b = device_text(*comparison.after, *row.after);
         const std::string devices = a == b ? a + " in both" : fmt::format("{} in A; {} in B", a, b);
         std::string sentence = fmt::format("{}: {}.", row.before->api(), devices);
         if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
@@ -114,7 +115,11 @@ std::string differences_text(const ResultComparison& comparison)
                               {"/commit", "the commit"},
                               {"/compiler", "the compiler"},
                               {"/flags", "the compiler's flags"},
+                              {"/label", "the label"},
                               {"/host/cpu", "the processor"},
+                              {"/host/family", "the processor's family"},
+                              {"/host/model", "the processor's model"},
+                              {"/host/stepping", "the processor's stepping"},
                               {"/host/system", "the system"},
                               {"/host/threads", "the threads that the process may use"},
                               {"/threads", "the threads that it used"},
@@ -124,7 +129,7 @@ std::string differences_text(const ResultComparison& comparison)
         if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))
             differences.emplace_back(fact.name);
     for (const ComparedRow& row : comparison.rows)
-        if (row.outcome == RowOutcome::compared && device_text(*row.before) != device_text(*row.after)) {
+        if (row.outcome == RowOutcome::compared && (row.before->device != row.after->device || row.before->driver != row.after->driver)) {
             differences.emplace_back("devices or their drivers");
             break;
         }

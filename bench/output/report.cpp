@@ -111,6 +111,11 @@ nlohmann::json result_head(const Options& options)
                            {"compiler", build.compiler},
                            {"flags", build.flags},
                            {"host", {{"cpu", host.cpu}, {"system", host.system}, {"threads", host.threads}}}};
+    const std::pair<const char*, std::optional<unsigned>> numbers[] = {
+        {"family", host.family}, {"model", host.model}, {"stepping", host.stepping}};
+    for (const auto& [key, number] : numbers)
+        if (number) head["host"][key] = *number;
+    if (!options.label.empty()) head["label"] = options.label;
     if (options.packet_lanes != 0) head["packet_lanes"] = options.packet_lanes;
     return head;
 }

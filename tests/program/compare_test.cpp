@@ -109,6 +109,17 @@ TEST_F(Compare, tells_what_else_differs)
     EXPECT_TRUE(contains(unwrapped(ended), "(fedcba9)"));
 }
 
+TEST_F(Compare, calls_machines_by_their_labels)
+{
+    ASSERT_EQ(bench("--label 'Zen 3, 2 cores' --layout tet80 --samples 5 --out a.json").code, 0);
+    ASSERT_EQ(bench("--label 'Zen 5, 2 cores' --layout tet80 --samples 5 --out b.json").code, 0);
+    const std::string told = unwrapped(run("compare a.json b.json"));
+    EXPECT_TRUE(contains(told, "on Zen 3, 2 cores,")) << told;
+    EXPECT_TRUE(contains(told, "openmp: Zen 3, 2 cores")) << told;
+    EXPECT_TRUE(contains(told, "in A; Zen 5, 2 cores")) << told;
+    EXPECT_EQ(bench("--label ''").code, 2);
+}
+
 TEST_F(Compare, tells_of_threads_compiler_flags_and_version)
 {
     const Ended ended = compare_with([](Json& section) {

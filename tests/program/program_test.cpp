@@ -335,6 +335,16 @@ TEST_F(Program, google_benchmarks_context_is_added_once)
     EXPECT_FALSE(contains(ended.errors, "ontext")) << ended.errors;
 }
 
+TEST_F(Program, a_result_tells_the_processors_family_model_and_stepping)
+{
+    const std::string processor = read_text("/proc/cpuinfo");
+    if (!contains(processor, "cpu family")) GTEST_SKIP() << "this system does not tell them of its processor";
+    const auto host = nlohmann::json::parse(run("devices --format json").out)["tetrace"]["host"];
+    EXPECT_TRUE(contains(processor, fmt::format("cpu family\t: {}\n", host["family"].get<unsigned>())));
+    EXPECT_TRUE(contains(processor, fmt::format("model\t\t: {}\n", host["model"].get<unsigned>())));
+    EXPECT_TRUE(contains(processor, fmt::format("stepping\t: {}\n", host["stepping"].get<unsigned>())));
+}
+
 TEST_F(Program, a_result_tells_the_threads_that_worked)
 {
     const auto threads = [&](const std::string& more) {
