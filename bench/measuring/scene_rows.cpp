@@ -33,6 +33,7 @@ void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRe
         result.scenes.push_back(std::move(scene));
     } catch (const Error& error) {
         if (!ends_rows(error)) throw;
+        say(fmt::format("{}: {}", scene_label(request.name), error.what()));
         for (const RowKey& key : keys)
             result.rows.push_back(failed_row(key, error));
     }
@@ -48,6 +49,7 @@ void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& op
         verify_rows(pointers, scene, options, image_seen, budget);
     } catch (const Error& error) {
         if (!ends_rows(error)) throw;
+        say(fmt::format("{}: {}", scene.label(), error.what()));
         for (RowRun* row : pointers)
             *row = failed_row(row->key, error);
     }

@@ -34,8 +34,8 @@ const VerbHelp verb_help[] = {
     {Verb::build, "build scenes and report what came out",
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
      "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
-     "built. A "
-     "combination that fails is a row with its reason; the others are still built, and the exit code is 1.",
+     "built. A combination that fails is a row without numbers, and standard error has the reason. The others are still "
+     "built; the exit code is that of the first failure, as in 'bench': 2 if the mesh cannot be used.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
@@ -161,8 +161,8 @@ const VerbHelp verb_help[] = {
 
 const char* const exit_codes = "Exit codes\n"
                                "  0  good\n"
-                               "  1  a wrong result, a scene that could not be built, or a regression\n"
-                               "  2  a command line or an input that is not accepted\n"
+                               "  1  a wrong result, or a regression\n"
+                               "  2  a command line, a mesh or another input that is not accepted\n"
                                "  3  something required is missing or not supported here\n"
                                "  4  an internal error\n";
 

@@ -6,6 +6,7 @@
 #include "bench/output/row_json.h"
 #include "bench/terminal/text.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <set>
 
@@ -88,6 +89,14 @@ std::string closing_lines(const BenchResult& result, const Options& options)
     return text;
 }
 
+/// Of a row whose scene could not be loaded only the beginning of the reason: standard error has had all of it.
+std::string failure_text(const RowRun& row, Status status)
+{
+    std::string reason = reason_of(row);
+    if (row.scene == nullptr) reason = reason.substr(0, reason.find('\n'));
+    return fmt::format("{}: {}", name_of(status), reason);
+}
+
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -152,12 +161,26 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
 
 std::string failure_lines(const std::vector<RowRun>& rows)
 {
-    std::string text;
+    struct Failure {
+        const RowRun* first;
+        std::string what;
+        std::size_t count = 0;
+    };
+    std::vector<Failure> failures;
     for (const RowRun& row : rows) {
         const Status status = status_of(row);
-        if (status != Status::ok && status != Status::flawed)
-            text += fmt::format("{}: {}: {}\n", row_name(row.key), name_of(status), reason_of(row));
+        if (status == Status::ok || status == Status::flawed) continue;
+        const std::string what = failure_text(row, status);
+        const auto same = std::ranges::find_if(failures, [&](const Failure& failure) {
+            return failure.what == what && failure.first->key.scene == row.key.scene;
+        });
+        ++(same == failures.end() ? failures.emplace_back(Failure{&row, what}) : *same).count;
     }
+    std::string text;
+    for (const Failure& failure : failures)
+        text += failure.count == 1 ? fmt::format("{}: {}\n", row_name(failure.first->key), failure.what)
+                                   : fmt::format("{} rows of {}, such as {}: {}\n", failure.count,
+                                                 failure.first->key.scene, row_name(failure.first->key), failure.what);
     return text.empty() ? text : text + "\n";
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 
 namespace tetrace {
 
@@ -147,11 +148,17 @@ std::string head_text(const ResultComparison& comparison)
     return text;
 }
 
+/// Each note, for all rows that have it: "FAILED" or "MISSING" of many rows has one cause as a rule.
 std::string notes_text(const ResultComparison& comparison)
 {
-    std::string text;
+    std::map<std::string, std::vector<const ComparedRow*>> notes;
     for (const ComparedRow& row : comparison.rows)
-        if (!row.note().empty()) text += fmt::format("{}: {}: {}\n", row.name(), row.verdict(), row.note());
+        if (!row.note().empty()) notes[row.verdict() + ": " + row.note()].push_back(&row);
+    std::string text;
+    for (const auto& [note, rows] : notes)
+        text += rows.size() == 1
+                    ? fmt::format("{}: {}\n", rows.front()->name(), note)
+                    : fmt::format("{} rows, such as {}: {}\n", rows.size(), rows.front()->name(), note);
     return text.empty() ? text : text + "\n";
 }
 
@@ -189,11 +196,25 @@ std::string summary_text(const ResultComparison& comparison)
     return text + ".";
 }
 
-std::string regression_text(const ComparedRow& row, double tolerance)
+/// A line for each row that has become slower, one for all that failed, and one for all that are missing.
+std::string regressions_text(const ResultComparison& comparison, bool allow_missing)
 {
-    if (!row.change) return fmt::format("{}: {}, and A has its rate.", row.name(), row.verdict());
-    return fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row.name(),
-                       100 * (1 / row.change->ratio - 1), 100 * tolerance);
+    std::string text;
+    std::map<std::string, std::vector<std::string>> without_rate;
+    for (const ComparedRow* row : comparison.regressions(allow_missing)) {
+        if (!row->change)
+            without_rate[row->verdict()].push_back(row->name());
+        else
+            text += labelled("Regressed", fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.",
+                                                      row->name(), 100 * (1 / row->change->ratio - 1),
+                                                      100 * comparison.tolerance));
+    }
+    for (const auto& [verdict, names] : without_rate)
+        text += labelled("Regressed",
+                         names.size() == 1
+                             ? fmt::format("{}: {}, and A has its rate.", names.front(), verdict)
+                             : fmt::format("{} rows are {}, and A has their rates.", names.size(), verdict));
+    return text;
 }
 
 std::string promise_text(const ResultComparison& comparison)
@@ -222,8 +243,7 @@ std::string verdicts_text(double tolerance)
 std::string closing_text(const ResultComparison& comparison, const Options& options)
 {
     std::string text = labelled("Compared", summary_text(comparison));
-    for (const ComparedRow* row : comparison.regressions(options.allow_missing))
-        text += labelled("Regressed", regression_text(*row, comparison.tolerance));
+    text += regressions_text(comparison, options.allow_missing);
     if (comparison.count(RowOutcome::compared) > 0)
         text += labelled("B / A", promise_text(comparison)) + labelled("Verdicts", verdicts_text(comparison.tolerance));
     if (options.out) text += labelled("Result", options.out->string());

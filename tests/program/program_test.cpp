@@ -270,7 +270,7 @@ TEST_F(Program, builds_every_combination_and_goes_on_after_a_failure)
 {
     std::ofstream(folder_.path() / "broken.tet") << "no scene";
     const Ended ended = run("build --scene cubes,broken.tet --resolution 6 --size 24 --format json");
-    EXPECT_EQ(ended.code, 1) << ended.errors;
+    EXPECT_EQ(ended.code, 2) << ended.errors;
     const auto builds = nlohmann::json::parse(ended.out)["tetrace"]["builds"];
     ASSERT_EQ(builds.size(), 2u);
     EXPECT_EQ(builds[0]["status"], "ok");
