@@ -2,6 +2,7 @@
 
 #include "bench/measuring/reporters.h"
 #include "bench/rows/row_tracing.h"
+#include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
@@ -11,16 +12,17 @@
 #include <functional>
 #include <iostream>
 #include <sstream>
+#include <unistd.h>
 
 namespace tetrace {
 
 namespace {
 
-/// The same counters for every row: otherwise Google Benchmark's CSV ends the program. Steps are in our own section.
+/// The same counters for every row: otherwise Google Benchmark's CSV ends the program. Steps are in our own section. No
+/// counter that is a rate by its flags: of these the console shows "/s" once more.
 void set_counters(benchmark::State& state, const RowRun& row)
 {
-    state.counters["Mrays/s"] =
-        benchmark::Counter(1e-6 * static_cast<double>(traced(row)->totals.rays), benchmark::Counter::kIsRate);
+    state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced(row)->totals.rays) / row.samples_s.back();
 }
 
 /// Counts the repetitions of all rows, for the progress line.
@@ -127,11 +129,19 @@ void register_rows(std::vector<RowRun>& rows, unsigned samples, Sweep& sweep)
                 ->Unit(benchmark::kMillisecond);
 }
 
+/// As Google Benchmark chooses them, but that NO_COLOR is honoured.
+benchmark::ConsoleReporter::OutputOptions console_options(const BenchmarkFlags& flags)
+{
+    using Console = benchmark::ConsoleReporter;
+    const int colour = flags.colour.value_or(has_colour(STDOUT_FILENO)) ? Console::OO_Color : Console::OO_None;
+    return static_cast<Console::OutputOptions>(colour | (flags.tabular ? Console::OO_Tabular : Console::OO_None));
+}
+
 std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& json)
 {
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
     receivers.push_back(make_reporter("json", json));
-    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout));
+    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout, console_options(flags)));
     return std::make_unique<RowReporter>(std::move(receivers));
 }
 

@@ -40,7 +40,7 @@ Table rows_table(const ResultComparison& comparison)
                  {"before", "A", "Mrays/s"},
                  {"after", "B", "Mrays/s"},
                  {"ratio", "B / A"},
-                 {"verdict", "verdict"}});
+                 {.key = "verdict", .title = "verdict", .coloured = true}});
     for (const ComparedRow& row : comparison.rows)
         table.add({row.name(), rate_of(row.before), rate_of(row.after),
                    row.change ? Cell(ratio_text(*row.change)) : Cell(), row.verdict()});

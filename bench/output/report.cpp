@@ -3,11 +3,13 @@
 #include "bench/options/anonymous.h"
 #include "bench/options/identity.h"
 #include "bench/results/result_file.h"
+#include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace tetrace {
 
@@ -33,7 +35,7 @@ std::string in_format(const Report& report, Format format, const Options& option
         return options.anonymous ? anonymous_text(text, options) : text;
     };
     switch (format) {
-    case Format::table: return shown(report.text);
+    case Format::table: return shown(without_colour(report.text));
     case Format::json: return (options.anonymous ? anonymous_json(report.json, options) : report.json).dump(2) + "\n";
     case Format::csv: return shown(report.table.csv());
     case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
@@ -79,7 +81,10 @@ void deliver(const Options& options, const Report& report)
 {
     if (options.out) deliver_to_file(options, report);
     const Format format = options.format.value_or(Format::table);
-    if (format == Format::table || !options.out) print(in_format(report, format, options));
+    if (format == Format::table && has_colour(STDOUT_FILENO))
+        print(options.anonymous ? anonymous_text(report.text, options) : report.text);
+    else if (format == Format::table || !options.out)
+        print(in_format(report, format, options));
 }
 
 nlohmann::json to_json(const Table& table)

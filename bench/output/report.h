@@ -10,7 +10,7 @@ namespace tetrace {
 
 /// A verb's result, in each form that can be requested.
 struct Report {
-    std::string text; ///< for people
+    std::string text; ///< for people; may be in colour
     Table table;      ///< flat, for CSV and Markdown
     nlohmann::json json;
     std::string markdown = {}; ///< where it has more than the table's JSON; empty: the table's

@@ -1,9 +1,14 @@
 // What the program says: each thing once, where it belongs.
 #include "tests/support/program_fixture.h"
 
+#include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <thread>
+#include <unistd.h>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -27,6 +32,41 @@ protected:
         write_file(folder_ / "builder", "#!/bin/sh\necho 'error: 7 pairs of triangles intersect' >&2\nexit 10\n");
         std::filesystem::permissions(folder_ / "builder", std::filesystem::perms::owner_all);
     }
+};
+
+/// A terminal whose screen is a string.
+class Terminal {
+public:
+    Terminal()
+    {
+        master_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+        if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) return;
+        name_ = ::ptsname(master_);
+        slave_ = ::open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC); // else reading ends before the program begins
+        reader_ = std::thread([this] {
+            char piece[4096];
+            for (ssize_t size; (size = ::read(master_, piece, sizeof piece)) > 0;)
+                screen_.append(piece, static_cast<std::size_t>(size));
+        });
+    }
+    ~Terminal() { static_cast<void>(screen()); }
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// All that was written to it; closes it.
+    const std::string& screen()
+    {
+        if (slave_ >= 0) ::close(std::exchange(slave_, -1));
+        if (reader_.joinable()) reader_.join();
+        if (master_ >= 0) ::close(std::exchange(master_, -1));
+        return screen_;
+    }
+
+private:
+    int master_ = -1, slave_ = -1;
+    std::string name_, screen_;
+    std::thread reader_;
 };
 
 } // namespace
@@ -70,4 +110,41 @@ TEST_F(Messages, compare_says_of_many_rows_at_once_what_holds_of_all)
     EXPECT_EQ(times_in(missing.out, "B: no such row"), 1u) << missing.out;
     EXPECT_EQ(times_in(missing.out, "Regressed"), 1u) << missing.out;
     EXPECT_TRUE(contains(missing.out, "7 rows are MISSING")) << missing.out;
+}
+
+TEST_F(Messages, tables_are_in_colour_on_terminals_and_nowhere_else)
+{
+    ASSERT_EQ(bench("--samples 5 --out a.json").code, 0);
+    ASSERT_EQ(bench("--samples 5 --layout tet80 --out b.json").code, 0);
+    const auto shown = [&](const std::string& more) {
+        Terminal terminal;
+        if (terminal.name().empty()) return std::string("no terminal");
+        run("compare a.json b.json " + more + " > " + terminal.name() + " 2> /dev/null #");
+        return terminal.screen();
+    };
+    const ScopedVariable term("TERM", "xterm");
+    {
+        const ScopedVariable none("NO_COLOR", static_cast<const char*>(nullptr));
+        const std::string screen = shown("--out c.txt");
+        if (screen == "no terminal") GTEST_SKIP() << "this system has no pseudo-terminals";
+        EXPECT_TRUE(contains(screen, "\x1b[33mMISSING\x1b[0m")) << screen;
+        EXPECT_FALSE(contains(file("c.txt"), "\x1b")) << "a file has none";
+        EXPECT_FALSE(contains(run("compare a.json b.json").out, "\x1b"));
+    }
+    const ScopedVariable refused("NO_COLOR", "1");
+    EXPECT_FALSE(contains(shown(""), "\x1b"));
+    EXPECT_TRUE(contains(shown(""), "MISSING"));
+}
+
+TEST_F(Messages, google_benchmarks_console_obeys_and_has_its_units_right)
+{
+    const auto console = [&](const std::string& more) { return bench("--layout tet80 --benchmark_format=console " + more); };
+    const Ended plain = console("");
+    ASSERT_EQ(plain.code, 0) << plain.errors;
+    EXPECT_FALSE(contains(plain.out + plain.errors, "\x1b")) << plain.out;
+    EXPECT_FALSE(contains(plain.out + plain.errors, "DEBUG")) << plain.errors;
+    EXPECT_TRUE(contains(plain.errors, "Run on (")) << "the rest of what it says of the machine stays";
+    EXPECT_TRUE(std::regex_search(plain.out, std::regex("Mrays/s=[0-9.]+[a-zA-Z]?\\s"))) << plain.out;
+    EXPECT_TRUE(contains(console("--benchmark_color=true").out, "\x1b["));
+    EXPECT_FALSE(contains(console("--benchmark_color=false").out, "\x1b["));
 }
