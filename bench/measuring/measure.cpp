@@ -217,6 +217,7 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget)
 {
     Measurement result;
+    const LoadMeter meter;
     const double sweep_s = warm_up_rows(rows, budget);
     result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
     result.lowered = !flags.repetitions && result.samples < options.samples;
@@ -230,6 +231,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
     // The filter was applied to the rows themselves, under the reported names.
     benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    result.load = meter.load();
     progress_line().clear();
     require_printed(flags);
     if (file != nullptr) write_whole(flags.out, file->text());

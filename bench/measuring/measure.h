@@ -1,10 +1,12 @@
 #pragma once
 
 #include "bench/measuring/budget.h"
+#include "bench/measuring/machine_load.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/rows/row_run.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 namespace tetrace {
@@ -15,6 +17,7 @@ struct Measurement {
     bool lowered = false;            ///< fewer than asked for, because of the budget
     nlohmann::json google_benchmark; ///< its own JSON: context and benchmarks; null where nothing was timed
     double wall_s = 0;
+    std::optional<MachineLoad> load; ///< while warming up and timing; empty where the system does not tell
 };
 
 /// Number of samples that fit the budget: the number asked for, or fewer, but at least 5 where at least 5 were asked

@@ -1,6 +1,7 @@
 #include "bench/output/bench_report.h"
 
 #include "bench/measuring/figures.h"
+#include "bench/output/bench_answer.h"
 #include "bench/output/bench_tables.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_json.h"
@@ -85,6 +86,7 @@ std::string closing_lines(const BenchResult& result, const Options& options)
         text += labelled("Missing", sentence);
     for (const std::string& sentence : result.missing_scenes)
         text += labelled("Missing", sentence);
+    text += answer_text(result);
     if (options.out) text += labelled("Result", options.out->string());
     return text;
 }
@@ -103,6 +105,8 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     section["samples_a_row"] = result.measurement.samples;
     section["samples_lowered"] = result.measurement.lowered;
     section["threads"] = resolved_threads(options);
+    if (const auto& load = result.measurement.load)
+        section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
     section["missing_scenes"] = result.missing_scenes;
     section["scenes"] = nlohmann::json::array();
     for (const auto& scene : result.run.scenes)
