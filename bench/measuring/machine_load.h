@@ -8,8 +8,8 @@ namespace tetrace {
 
 /// How busy the machine was with other work while rows were timed.
 struct MachineLoad {
-    double others = 0;       ///< processors' worth of work of other processes, and of the host that a virtual machine is on
-    double average = 0;      ///< the system's load average over the last minute, our own work included
+    double others = 0;  ///< processors' worth of work of other processes, and of the host that a virtual machine is on
+    double average = 0; ///< the system's load average over the last minute, our own work included
     unsigned processors = 1; ///< that this process may use
 
     /// Whether the others took too little to move the rates: at most a tenth of a processor for each.

@@ -20,8 +20,8 @@ struct SceneRows {
                                                 const std::function<bool(const std::string&)>& keeps);
 
 /// Loads all scenes, opens their rows, skips those that do not fit the budget, and verifies the others (see verify.h).
-/// A scene that cannot be loaded or judged ends its rows with the reason, said once, on standard error. Throws Error{usage} for a name that means no scene, and
-/// as Budget::plan() does.
+/// A scene that cannot be loaded or judged ends its rows with the reason, said once, on standard error. Throws
+/// Error{usage} for a name that means no scene, and as Budget::plan() does.
 [[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
                                         const ImageSeen& image_seen = {}, Budget& budget = no_budget());
 

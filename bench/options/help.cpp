@@ -34,7 +34,8 @@ const VerbHelp verb_help[] = {
     {Verb::build, "build scenes and report what came out",
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
      "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
-     "built. A combination that fails is a row without numbers, and standard error has the reason. The others are still "
+     "built. A combination that fails is a row without numbers, and standard error has the reason. The others are "
+     "still "
      "built; the exit code is that of the first failure, as in 'bench': 2 if the mesh cannot be used.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene bunny --tets cdt,rays\n"

@@ -275,10 +275,10 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples a row, 3 to 10000; a sample traces all selected views once. Fewer than 5 give no interval, neither here "
+         "Samples a row, 3 to 10000; a sample traces all selected views once. Fewer than 5 give no interval, neither "
+         "here "
          "nor in 'compare'. Default: 10.",
-         bit(Verb::bench), false,
-         set_count("--samples", &Options::samples, 3, 10000)},
+         bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--budget", "TIME",
@@ -337,7 +337,8 @@ std::vector<OptionRow> output_options()
          "the table. The table still goes to standard output.",
          reporting, false, set_path("--out", &Options::out)},
         {"Output", "--label", "TEXT",
-         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. Default: the "
+         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. Default: "
+         "the "
          "processor's name, family, model and stepping.",
          measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) { o.label = parse_label(v); }},

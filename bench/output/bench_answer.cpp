@@ -34,7 +34,9 @@ struct Contest {
 std::vector<Contest> contests_of(const BenchResult& result)
 {
     std::vector<Contest> contests;
-    const auto hardware_of = [&](const RowRun& row) { return result.devices.at(*device_of(row, result.devices)).hardware; };
+    const auto hardware_of = [&](const RowRun& row) {
+        return result.devices.at(*device_of(row, result.devices)).hardware;
+    };
     for (const RowRun& row : result.run.rows) {
         if (!figures_of(row) || !device_of(row, result.devices) || row.device.kind == DeviceKind::emulated) continue;
         const auto same = std::ranges::find_if(contests, [&](const Contest& other) {
@@ -65,8 +67,9 @@ std::string row_text(const RowRun& row)
 template <class Phrase>
 std::string joined(const std::vector<Contest>& contests, const Phrase& phrase)
 {
-    const bool with_device = std::ranges::any_of(
-        contests, [&](const Contest& contest) { return contest.any->device.name != contests.front().any->device.name; });
+    const bool with_device = std::ranges::any_of(contests, [&](const Contest& contest) {
+        return contest.any->device.name != contests.front().any->device.name;
+    });
     std::vector<std::string> parts;
     for (const Contest& contest : contests)
         if (const std::string text = phrase(contest); !text.empty())
@@ -79,7 +82,7 @@ std::string structures_text(const std::vector<Contest>& contests)
     return joined(contests, [](const Contest& contest) -> std::string {
         const RowRun *cdt = contest.best(Structure::cdt), *bvh = contest.best(Structure::bvh);
         if (cdt == nullptr || bvh == nullptr) return {};
-        return fmt::format("the best CDT has {:.2f} of the rate of the best BVH, {}",
+        return fmt::format("the fastest CDT has {:.2f} of the rate of the fastest BVH, {}",
                            Contest::rate_of(*cdt) / Contest::rate_of(*bvh), row_text(*bvh));
     });
 }
@@ -98,7 +101,8 @@ std::string apis_text(const BenchResult& result)
         std::vector<std::string> of_one;
         for (const auto& [api, list] : apis)
             of_one.push_back(fmt::format("{} {:.2f}", api, quantile(list, 0.5)));
-        parts.push_back(fmt::format("of {}'s rate, median over the kernels: {}", reference, fmt::join(of_one, ", ")));
+        parts.push_back(
+            fmt::format("APIs by {}'s rate, medians over the kernels: {}", reference, fmt::join(of_one, ", ")));
     }
     return fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -127,10 +131,11 @@ std::string answer_text(const BenchResult& result)
     const auto contests = contests_of(result);
     std::string text;
     if (!contests.empty())
-        text += labelled("Fastest", joined(contests, [](const Contest& contest) {
-                             const RowRun& best = *contest.best();
-                             return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
-                         }) + ".");
+        text +=
+            labelled("Fastest", joined(contests, [](const Contest& contest) {
+                                    const RowRun& best = *contest.best();
+                                    return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
+                                }) + ".");
     std::string compared = structures_text(contests);
     if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;
     if (!compared.empty()) text += labelled("Compared", compared + ".");

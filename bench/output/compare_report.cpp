@@ -90,7 +90,8 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
     std::vector<std::string> sentences;
     for (const ComparedRow& row : comparison.rows) {
         if (row.outcome != RowOutcome::compared) continue;
-        const std::string a = device_text(*comparison.before, *row.before), b = device_text(*comparison.after, *row.after);
+        const std::string a = device_text(*comparison.before, *row.before),
+                          b = device_text(*comparison.after, *row.after);
         const std::string devices = a == b ? a + " in both" : fmt::format("{} in A; {} in B", a, b);
         std::string sentence = fmt::format("{}: {}.", row.before->api(), devices);
         if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
@@ -130,7 +131,8 @@ std::string differences_text(const ResultComparison& comparison)
         if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))
             differences.emplace_back(fact.name);
     for (const ComparedRow& row : comparison.rows)
-        if (row.outcome == RowOutcome::compared && (row.before->device != row.after->device || row.before->driver != row.after->driver)) {
+        if (row.outcome == RowOutcome::compared &&
+            (row.before->device != row.after->device || row.before->driver != row.after->driver)) {
             differences.emplace_back("devices or their drivers");
             break;
         }
@@ -156,9 +158,8 @@ std::string notes_text(const ResultComparison& comparison)
         if (!row.note().empty()) notes[row.verdict() + ": " + row.note()].push_back(&row);
     std::string text;
     for (const auto& [note, rows] : notes)
-        text += rows.size() == 1
-                    ? fmt::format("{}: {}\n", rows.front()->name(), note)
-                    : fmt::format("{} rows, such as {}: {}\n", rows.size(), rows.front()->name(), note);
+        text += rows.size() == 1 ? fmt::format("{}: {}\n", rows.front()->name(), note)
+                                 : fmt::format("{} rows, such as {}: {}\n", rows.size(), rows.front()->name(), note);
     return text.empty() ? text : text + "\n";
 }
 
@@ -190,8 +191,7 @@ std::string summary_text(const ResultComparison& comparison)
     if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
         text += fmt::format("; {} DIFFERENT, not compared", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
-        text += fmt::format("; {} with fewer than {} samples, so no interval", count,
-                            fewest_samples);
+        text += fmt::format("; {} with fewer than {} samples, so no interval", count, fewest_samples);
     if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);
     return text + ".";
 }
@@ -205,15 +205,15 @@ std::string regressions_text(const ResultComparison& comparison, bool allow_miss
         if (!row->change)
             without_rate[row->verdict()].push_back(row->name());
         else
-            text += labelled("Regressed", fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.",
-                                                      row->name(), 100 * (1 / row->change->ratio - 1),
-                                                      100 * comparison.tolerance));
+            text += labelled("Regressed",
+                             fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row->name(),
+                                         100 * (1 / row->change->ratio - 1), 100 * comparison.tolerance));
     }
     for (const auto& [verdict, names] : without_rate)
-        text += labelled("Regressed",
-                         names.size() == 1
-                             ? fmt::format("{}: {}, and A has its rate.", names.front(), verdict)
-                             : fmt::format("{} rows are {}, and A has their rates.", names.size(), verdict));
+        text +=
+            labelled("Regressed", names.size() == 1
+                                      ? fmt::format("{}: {}, and A has its rate.", names.front(), verdict)
+                                      : fmt::format("{} rows are {}, and A has their rates.", names.size(), verdict));
     return text;
 }
 
@@ -226,8 +226,8 @@ std::string promise_text(const ResultComparison& comparison)
                                    "the chance that any of these rows is called FASTER or SLOWER is at most {:.2g} %",
                                    100 * error);
     if (error > 1.000001 * comparison_error || error == 0)
-        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %",
-                            samples_needed(compared), compared);
+        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %", samples_needed(compared),
+                            compared);
     return text + ". What differs between runs, apart from noise, no interval knows: the tolerance is for that.";
 }
 
@@ -235,7 +235,8 @@ std::string verdicts_text(double tolerance)
 {
     return fmt::format(
         "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
-        "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no interval; "
+        "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no "
+        "interval; "
         "more would tell.",
         1 / (1 + tolerance), 1 + tolerance, fewest_samples);
 }

@@ -122,8 +122,7 @@ struct Suite {
     {
         std::string text;
         for (const auto& [name, value] : properties)
-            text +=
-                fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", xml_text(name), xml_text(value));
+            text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", xml_text(name), xml_text(value));
         return "    <properties>\n" + text + "    </properties>\n";
     }
 

@@ -56,9 +56,8 @@ std::string ImageEncoder::bytes(const std::string& ending, const Pixmap& pixmap)
         static_cast<std::string*>(receiver)->assign(data, size);
     };
     std::array<char, 512> reason{};
-    if (encode_image_(ending.c_str(), pixmap.width, pixmap.height,
-                      reinterpret_cast<const float*>(pixmap.pixels.data()), take, &bytes, reason.data(),
-                      static_cast<unsigned>(reason.size())) != 0) {
+    if (encode_image_(ending.c_str(), pixmap.width, pixmap.height, reinterpret_cast<const float*>(pixmap.pixels.data()),
+                      take, &bytes, reason.data(), static_cast<unsigned>(reason.size())) != 0) {
         throw Error(ErrorKind::invalid_input, fmt::format("making a picture ({}): {}", ending, reason.data()));
     }
     return bytes;

@@ -13,10 +13,10 @@ namespace tetrace {
 enum class RowOutcome {
     compared,  ///< timed in both
     different, ///< timed in both, but not of the same work: scene, views, size or hits differ
-    failed,   ///< timed before; wrong or in error after
-    missing,  ///< timed before; missing, skipped, unsupported or without samples after
-    added,    ///< timed after alone
-    untimed,  ///< timed in neither
+    failed,    ///< timed before; wrong or in error after
+    missing,   ///< timed before; missing, skipped, unsupported or without samples after
+    added,     ///< timed after alone
+    untimed,   ///< timed in neither
 };
 
 /// A row of two results. Refers to them.

@@ -54,8 +54,7 @@ TEST(Junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
     rows.push_back(skipped_row(""));
     rows[1].outcome = Failed{ErrorKind::internal, "device lost"};
     const std::string xml = junit_xml(rows, {false, false});
-    EXPECT_TRUE(
-        contains(xml, "<testsuites name=\"tetrace check\" tests=\"2\" failures=\"0\" errors=\"1\">"));
+    EXPECT_TRUE(contains(xml, "<testsuites name=\"tetrace check\" tests=\"2\" failures=\"0\" errors=\"1\">"));
     EXPECT_TRUE(contains(xml, "errors=\"1\" skipped=\"1\" time="));
     EXPECT_TRUE(contains(xml, "<skipped message=\"unsupported: buffers of 3 &lt; 4 &amp; 5 ? GB\"/>"));
     EXPECT_TRUE(contains(xml, "<error message=\"error: device lost\"/>"));
@@ -82,7 +81,8 @@ TEST(Junit, classes_have_no_version_and_properties_have_them)
     };
     for (const char* const name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe (LLVM 19.1.7, 128 bits)"})
         EXPECT_TRUE(contains(xml_of(name, ""), "classname=\"tetrace.vulkan.llvmpipe\""));
-    EXPECT_TRUE(contains(xml_of("Intel(R) UHD Graphics 620", ""), "classname=\"tetrace.vulkan.Intel-UHD-Graphics-620\""));
+    EXPECT_TRUE(
+        contains(xml_of("Intel(R) UHD Graphics 620", ""), "classname=\"tetrace.vulkan.Intel-UHD-Graphics-620\""));
     EXPECT_TRUE(contains(xml_of("", ""), "classname=\"tetrace.vulkan\""));
     const std::string xml = xml_of("llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa 22.3.6");
     EXPECT_TRUE(contains(xml, "<property name=\"vulkan.device\" value=\"llvmpipe (LLVM 15.0.6, 256 bits)\"/>"));

@@ -20,9 +20,10 @@ protected:
     {
         write_file(folder_ / "script", "trap '' XFSZ\n" + first + "\nexec '" TETRACE_PROGRAM "' \"$@\"\n");
         const std::string errors = (folder_ / "stderr").string();
-        const int status = std::system(fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' sh ./script {1} > {2} 2> {3}",
-                                                   folder_.path().string(), arguments, out, errors)
-                                           .c_str());
+        const int status =
+            std::system(fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' sh ./script {1} > {2} 2> {3}",
+                                    folder_.path().string(), arguments, out, errors)
+                            .c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {}, read_text(errors)};
     }
 

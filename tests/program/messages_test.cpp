@@ -75,9 +75,9 @@ TEST_F(Messages, a_mesh_that_intersects_itself_is_told_once_with_one_exit_code)
 {
     give_mesh_that_intersects_itself();
     const ScopedVariable builder("TETRACE_BUILDER", folder_ / "builder");
-    for (const char* const arguments : {"bench --backend openmp --scene knot.off", "check --backend openmp --scene knot.off",
-                                        "build --scene knot.off", "build --scene knot.off --domain tight,tight",
-                                        "render --scene knot.off"}) {
+    for (const char* const arguments :
+         {"bench --backend openmp --scene knot.off", "check --backend openmp --scene knot.off",
+          "build --scene knot.off", "build --scene knot.off --domain tight,tight", "render --scene knot.off"}) {
         const Ended ended = run(arguments);
         EXPECT_EQ(ended.code, 2) << arguments << ended.errors;
         EXPECT_EQ(times_in(ended.errors, "7 pairs of triangles"), 1u) << arguments << ended.errors;
@@ -95,7 +95,8 @@ TEST_F(Messages, a_reason_that_many_rows_share_is_one_line)
     const Ended ended = run("bench --backend openmp,cuda --scene cubes --resolution 3 --size 16 --samples 3");
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_EQ(times_in(ended.out, ": skipped: "), 1u) << ended.out;
-    EXPECT_TRUE(contains(ended.out, " rows of cubes, such as cdt/maria/tet80/cubes/primary/math:exact/api:cuda: skipped: "))
+    EXPECT_TRUE(
+        contains(ended.out, " rows of cubes, such as cdt/maria/tet80/cubes/primary/math:exact/api:cuda: skipped: "))
         << ended.out;
 }
 
@@ -138,7 +139,9 @@ TEST_F(Messages, tables_are_in_colour_on_terminals_and_nowhere_else)
 
 TEST_F(Messages, google_benchmarks_console_obeys_and_has_its_units_right)
 {
-    const auto console = [&](const std::string& more) { return bench("--layout tet80 --benchmark_format=console " + more); };
+    const auto console = [&](const std::string& more) {
+        return bench("--layout tet80 --benchmark_format=console " + more);
+    };
     const Ended plain = console("");
     ASSERT_EQ(plain.code, 0) << plain.errors;
     EXPECT_FALSE(contains(plain.out + plain.errors, "\x1b")) << plain.out;

@@ -68,8 +68,8 @@ Bytes encoded_by_ending(const std::string& ending, unsigned width, unsigned heig
 } // namespace
 
 extern "C" int tetrace_encode_image(const char* ending, unsigned width, unsigned height, const float* linear_rgb,
-                                    void (*take)(void* receiver, const char* bytes, unsigned long size),
-                                    void* receiver, char* error, unsigned error_size)
+                                    void (*take)(void* receiver, const char* bytes, unsigned long size), void* receiver,
+                                    char* error, unsigned error_size)
 {
     try {
         const Bytes bytes = encoded_by_ending(ending, width, height, linear_rgb);
