@@ -4,6 +4,7 @@
 #include "bench/output/row_json.h"
 #include "bench/terminal/text.h"
 #include "tests/support/fake_backend.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <regex>

@@ -7,7 +7,7 @@ using namespace tetrace;
 namespace {
 
 // Of Linux: user, nice, system, idle, waiting, interrupts, soft interrupts, stolen, and guests once more.
-constexpr const char* stat = "cpu  111 0 0 900 0 0 0 0 0 0\n"
+constexpr const char* shown = "cpu  111 0 0 900 0 0 0 0 0 0\n"
                              "cpu0 10 2 3 400 50 1 1 4 0 0\n"
                              "cpu1 100 0 0 400 50 0 0 0 7 7\n"
                              "intr 12345\n";
@@ -16,13 +16,13 @@ constexpr const char* stat = "cpu  111 0 0 900 0 0 0 0 0 0\n"
 
 TEST(MachineLoad, counts_all_work_but_neither_idling_nor_waiting)
 {
-    EXPECT_EQ(busy_ticks(stat, {0}), 21.0);
-    EXPECT_EQ(busy_ticks(stat, {0, 1}), 121.0);
+    EXPECT_EQ(busy_ticks(shown, {0}), 21.0);
+    EXPECT_EQ(busy_ticks(shown, {0, 1}), 121.0);
 }
 
 TEST(MachineLoad, is_unknown_where_the_system_shows_no_such_processor)
 {
-    EXPECT_FALSE(busy_ticks(stat, {2}).has_value());
+    EXPECT_FALSE(busy_ticks(shown, {2}).has_value());
     EXPECT_FALSE(busy_ticks("", {0}).has_value());
 }
 
