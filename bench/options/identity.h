@@ -19,8 +19,8 @@ struct HostIdentity {
     std::string cpu;
     std::optional<unsigned> family, model, stepping; ///< of the processor, where the system tells: names may say no
                                                      ///< more than "AMD EPYC"
-    std::string system;   ///< the distribution's name and the kernel's release
-    unsigned threads = 1; ///< that this process may use
+    std::string system;                              ///< the distribution's name and the kernel's release
+    unsigned threads = 1;                            ///< that this process may use
 };
 [[nodiscard]] HostIdentity host_identity();
 

@@ -100,6 +100,13 @@ ApplyOption append_count(const std::string& option, std::vector<unsigned> Option
     };
 }
 
+void set_result_file(Options& options, const std::string& text)
+{
+    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
+    options.out.reset();
+    if (text != "-") options.out = text;
+}
+
 ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
 {
     return [=](Options& options, const std::string& text) {
@@ -334,12 +341,13 @@ std::vector<OptionRow> output_options()
          reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
         {"Output", "--out", "FILE",
          "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
-         "the table. The table still goes to standard output.",
-         reporting, false, set_path("--out", &Options::out)},
-        {"Output", "--label", "TEXT",
-         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. Default: "
+         "the table. The table still goes to standard output. '-' means no file: standard output gets the result, in "
          "the "
-         "processor's name, family, model and stepping.",
+         "form of --format.",
+         reporting, false, set_result_file},
+        {"Output", "--label", "TEXT",
+         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. "
+         "Default: the processor's name, family, model and stepping.",
          measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::reproduce), false,
          [](Options& o, const std::string& v) { o.label = parse_label(v); }},
         {"Output", "--anonymous", "",
@@ -349,15 +357,17 @@ std::vector<OptionRow> output_options()
          "Continue the run whose journal is FILE.journal, for FILE of --out: views and batches of searches that it has "
          "are not repeated. If there is no journal, begin one.",
          bit(Verb::reproduce), false, set(&Options::resume)},
-        {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, one test case a row. Default: none.",
+        {"Output", "--junit", "FILE",
+         "Also write the result to FILE as JUnit XML, one test case a row; '-' means standard output, "
+         "in place of the table. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
          "Write the picture to FILE, which ends in .png, .exr or .ppm. With several pictures, scene, view and kind are "
          "inserted before the ending. If FILE is a folder, the pictures in it are called SCENE-VIEW-KIND.png, or .ppm "
          "if OpenImageIO is missing (PPM needs no library). Default: the current folder.",
          bit(Verb::render), false, set_path("--out", &Options::out)},
-        {"Output", "--out", "FILE", "Write the page to FILE. Default: report.html.", bit(Verb::report), false,
-         set_path("--out", &Options::out)},
+        {"Output", "--out", "FILE", "Write the page to FILE; '-' means standard output. Default: report.html.",
+         bit(Verb::report), false, set_path("--out", &Options::out)},
     };
 }
 

@@ -18,6 +18,11 @@ namespace tetrace {
 
 namespace {
 
+bool on_standard_output(const std::optional<std::filesystem::path>& file)
+{
+    return file && *file == "-";
+}
+
 RowFacts check_facts(const RowRun& row)
 {
     RowFacts facts(row);
@@ -103,7 +108,7 @@ std::string closing_text(const Checked& checked, const Options& options)
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             text += labelled("Picture", file.string());
-    if (options.junit) text += labelled("JUnit", options.junit->string());
+    if (options.junit && !on_standard_output(options.junit)) text += labelled("JUnit", options.junit->string());
     if (options.out) text += labelled("Result", options.out->string());
     return text;
 }
@@ -128,8 +133,12 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options, const 
     std::vector<bool> failed;
     for (const RowRun& row : rows)
         failed.push_back(fails_check(row, options));
-    const std::string xml = junit_xml(rows, failed, problem);
-    write_whole(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
+    std::string xml = junit_xml(rows, failed, problem);
+    if (options.anonymous) xml = anonymous_text(xml, options);
+    if (on_standard_output(options.junit))
+        print(xml);
+    else
+        write_whole(*options.junit, xml);
 }
 
 /// Rows of Embree's own BVH and of drivers' are judged only where asked for: they make no claim to break.
@@ -182,8 +191,10 @@ int check(const Options& options, Checked& checked)
         if (checked.pictures != nullptr) checked.pictures->see(image);
     });
     const auto& rows = checked.run.rows;
-    write_junit(rows, options);
-    deliver(options, check_report(checked, options));
+    if (!on_standard_output(options.junit))
+        deliver(options, check_report(checked, options));
+    else if (options.out)
+        deliver_to_file(options, check_report(checked, options));
     require_judged(rows, options.required);
     require_answers(rows, "checked");
     if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); })) return 1;
@@ -204,15 +215,18 @@ int check_command(const Options& asked)
     const Options options = with_default_layouts(asked);
     if (options.list) return list_selected(options);
     check_output(options);
-    if (options.junit) check_writable("--junit", *options.junit);
+    if (options.junit && !on_standard_output(options.junit)) check_writable("--junit", *options.junit);
     Checked checked;
+    int code = 0;
     try {
-        return check(options, checked);
+        code = check(options, checked);
     } catch (const Error& error) {
         // Whoever reads the XML alone must not take a check without a result for a good one.
         if (error.kind() != ErrorKind::interrupted) write_junit(checked.run.rows, options, error.what());
         throw;
     }
+    write_junit(checked.run.rows, options);
+    return code;
 }
 
 } // namespace tetrace

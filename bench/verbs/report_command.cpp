@@ -15,6 +15,10 @@ int report_command(const Options& options)
     check_not_an_input(out, options.files);
     check_not_an_input(out, options.report_pictures);
     const std::string page = report_page(read_report_input(options.files, options.report_pictures));
+    if (out == "-") {
+        print(page);
+        return 0;
+    }
     write_whole(out, page);
     say(fmt::format("{}: {}, from {} {}", out.string(), size_text(page.size()), options.files.size(),
                     options.files.size() == 1 ? "result" : "results"));

@@ -71,6 +71,31 @@ TEST_F(Files, results_are_whole_or_not_written)
     expect_refusal("devices --out a.json", "a.json");
 }
 
+TEST_F(Files, a_dash_means_standard_output)
+{
+    const std::string bench = std::string("bench --samples 3 --format json --out -") + tiny;
+    EXPECT_EQ(run(bench).out.rfind("{", 0), 0u);
+    const Ended check = run(std::string("check --junit - --out check.json") + tiny);
+    EXPECT_EQ(check.code, 0) << check.errors;
+    EXPECT_EQ(check.out.rfind("<?xml", 0), 0u) << check.out;
+    EXPECT_TRUE(check.out.ends_with("</testsuites>\n")) << check.out;
+    EXPECT_TRUE(contains(file("check.json"), "\"rows\""));
+    const Ended report = run("report check.json --out -");
+    EXPECT_EQ(report.out.rfind("<!DOCTYPE html>", 0), 0u) << report.out.substr(0, 100);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "-"));
+}
+
+TEST_F(Files, one_exit_code_tells_of_every_missing_file)
+{
+    for (const char* const arguments :
+         {"report none.json", "compare none.json none.json", "bench --backend openmp --scene none.ply",
+          "check --backend openmp --scene none.tet", "build --scene none.ply", "render --scene none.off"}) {
+        const Ended ended = run(arguments);
+        EXPECT_EQ(ended.code, 3) << arguments << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "none.")) << ended.errors;
+    }
+}
+
 TEST_F(Files, what_cannot_be_printed_is_an_error)
 {
     for (const char* const arguments : {"check", "bench --samples 3 --benchmark_format=json"}) {

@@ -8,9 +8,9 @@ namespace {
 
 // Of Linux: user, nice, system, idle, waiting, interrupts, soft interrupts, stolen, and guests once more.
 constexpr const char* shown = "cpu  111 0 0 900 0 0 0 0 0 0\n"
-                             "cpu0 10 2 3 400 50 1 1 4 0 0\n"
-                             "cpu1 100 0 0 400 50 0 0 0 7 7\n"
-                             "intr 12345\n";
+                              "cpu0 10 2 3 400 50 1 1 4 0 0\n"
+                              "cpu1 100 0 0 400 50 0 0 0 7 7\n"
+                              "intr 12345\n";
 
 } // namespace
 
