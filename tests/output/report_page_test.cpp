@@ -59,6 +59,14 @@ TEST_F(ReportPage, processors_of_one_name_are_told_apart)
     }
 }
 
+TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
+{
+    json busy = bench_json();
+    busy["tetrace"]["load"] = {{"others", 1.25}, {"average", 3.5}, {"processors", 2}};
+    EXPECT_TRUE(contains(section_of(page_of({busy}), "machines"), "1.25"));
+    EXPECT_FALSE(contains(section_of(page_of({bench_json()}), "machines"), "others"));
+}
+
 TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
 {
     json other = bench_json();
