@@ -10,7 +10,7 @@ namespace tetrace {
 
 namespace {
 
-struct Colour {
+struct Tint {
     std::string_view code;
     std::array<std::string_view, 6> beginnings;
 };
@@ -18,7 +18,7 @@ struct Colour {
 constexpr std::string_view end_of_colour = "\x1b[0m";
 
 // Red, yellow, green: colours that terminals show legibly on black and on white.
-constexpr std::array<Colour, 3> colours = {{
+constexpr std::array<Tint, 3> tints = {{
     {"\x1b[31m", {"wrong", "error", "not exact", "FAILED", "SLOWER"}},
     {"\x1b[33m", {"flawed", "ok, noisy", "UNSURE", "MISSING", "DIFFERENT"}},
     {"\x1b[32m", {"FASTER"}},
@@ -28,10 +28,10 @@ constexpr std::array<Colour, 3> colours = {{
 
 std::string in_colour(const std::string& words)
 {
-    for (const Colour& colour : colours)
-        for (const std::string_view beginning : colour.beginnings)
+    for (const Tint& tint : tints)
+        for (const std::string_view beginning : tint.beginnings)
             if (!beginning.empty() && words.starts_with(beginning))
-                return std::string(colour.code).append(words).append(end_of_colour);
+                return std::string(tint.code).append(words).append(end_of_colour);
     return words;
 }
 
@@ -42,8 +42,8 @@ std::string without_colour(const std::string& text)
         for (std::size_t at = plain.find(code); at != std::string::npos; at = plain.find(code, at))
             plain.erase(at, code.size());
     };
-    for (const Colour& colour : colours)
-        erase_all(colour.code);
+    for (const Tint& tint : tints)
+        erase_all(tint.code);
     erase_all(end_of_colour);
     return plain;
 }

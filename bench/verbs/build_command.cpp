@@ -4,6 +4,7 @@
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <optional>
 

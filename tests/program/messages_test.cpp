@@ -9,6 +9,7 @@
 #include <regex>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 
 using namespace tetrace;
 using namespace tetrace::test;
