@@ -251,7 +251,8 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     std::string names;
     for (const CatalogueEntry& entry : catalogue())
         names += (names.empty() ? "" : ", ") + entry.name;
-    throw Error(ErrorKind::usage,
+    const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
+    throw Error(is_path ? ErrorKind::missing : ErrorKind::usage,
                 fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these "
                             "names, or the path of a mesh (.ply, .obj, .off, .stl) or of a .tet file",
                             name, names));

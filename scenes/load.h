@@ -16,8 +16,8 @@ struct LoadedScene {
 };
 
 /// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` is made in place.
-/// Throws Error{usage} for a name that is neither in the catalogue nor a file (lists the accepted ones) and for
-/// switches that the builder does not accept, Error{missing} for a mesh that is not available here,
+/// Throws Error{usage} for a name that is neither in the catalogue nor a path (lists the accepted ones) and for
+/// switches that the builder does not accept, Error{missing} for a file or a mesh that is not available here,
 /// Error{invalid_input} with the builder's finding, Error{interrupted} after Ctrl-C (the builder is ended too).
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
 

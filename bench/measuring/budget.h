@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/rows/row_tracing.h"
+#include "bench/statistics/statistics.h"
 
 #include <limits>
 #include <string>
@@ -8,11 +9,8 @@
 
 namespace tetrace {
 
-/// The least number of samples of a row: with fewer, intervals of ratios are too wide to trust (results/README.md).
-inline constexpr unsigned fewest_samples = 5;
-
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
-/// more, a warm-up pass, and its least number of samples. Where the rows need more than is left, the slowest end as
+/// more, a warm-up pass, and fewest_samples samples. Where the rows need more than is left, the slowest end as
 /// skipped; their text gives their cost and the --budget that runs them. The others get all the time that they need,
 /// whatever the order of the rows. openmp's rows that others are compared with are skipped last, and only once rows are
 /// being timed.

@@ -2,6 +2,9 @@
 
 #include "bench/measuring/figures.h"
 #include "bench/rows/physical_device.h"
+#include "bench/statistics/median_ratio.h"
+
+#include <algorithm>
 
 namespace tetrace {
 
@@ -37,6 +40,15 @@ const RowRun* find_reference(const std::vector<RowRun>& rows, const std::vector<
     return first;
 }
 
+Comparison compared(const RowRun& reference, const RowRun& row)
+{
+    const MedianRatio rate = ratio_of_medians(reference.samples_s, row.samples_s);
+    Comparison comparison{&reference, rate.value, {}};
+    if (std::min(reference.samples_s.size(), row.samples_s.size()) >= fewest_samples)
+        comparison.interval = FactorInterval{rate.low, rate.high};
+    return comparison;
+}
+
 } // namespace
 
 std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& rows)
@@ -47,7 +59,7 @@ std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& r
         if (!is_portable(rows[i].key.kernel) || !figures_of(rows[i])) continue;
         const RowRun* reference = find_reference(rows, hardware, i);
         if (reference == nullptr || reference == &rows[i]) continue;
-        result[i] = Comparison{reference, ratio_of_medians(reference->samples_s, rows[i].samples_s)};
+        result[i] = compared(*reference, rows[i]);
     }
     return result;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/rows/row_run.h"
-#include "bench/statistics/median_ratio.h"
+#include "bench/statistics/rank_interval.h"
 
 #include <optional>
 #include <vector>
@@ -11,7 +11,8 @@ namespace tetrace {
 /// The speed of a row compared with its reference.
 struct Comparison {
     const RowRun* reference = nullptr;
-    MedianRatio rate; ///< row's rate over reference's, from medians of device seconds; above 1 the row is faster
+    double ratio = 0; ///< row's rate over reference's, from medians of device seconds; above 1 the row is faster
+    std::optional<FactorInterval> interval; ///< of the ratio, 95 %; empty where either has fewer than fewest_samples
 };
 
 /// The reference of each row, row by row: the same kernel on the same scene and the same hardware (see

@@ -2,24 +2,27 @@
 
 #include "bench/measuring/reporters.h"
 #include "bench/rows/row_tracing.h"
+#include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
+#include "core/base/whole_file.h"
 
 #include <algorithm>
 #include <functional>
 #include <iostream>
 #include <sstream>
+#include <unistd.h>
 
 namespace tetrace {
 
 namespace {
 
-/// The same counters for every row: otherwise Google Benchmark's CSV ends the program. Steps are in our own section.
+/// The same counters for every row: otherwise Google Benchmark's CSV ends the program. Steps are in our own section. No
+/// counter that is a rate by its flags: of these the console shows "/s" once more.
 void set_counters(benchmark::State& state, const RowRun& row)
 {
-    state.counters["Mrays/s"] =
-        benchmark::Counter(1e-6 * static_cast<double>(traced(row)->totals.rays), benchmark::Counter::kIsRate);
+    state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced(row)->totals.rays) / row.samples_s.back();
 }
 
 /// Counts the repetitions of all rows, for the progress line.
@@ -126,24 +129,28 @@ void register_rows(std::vector<RowRun>& rows, unsigned samples, Sweep& sweep)
                 ->Unit(benchmark::kMillisecond);
 }
 
+/// As Google Benchmark chooses them, but that NO_COLOR is honoured.
+benchmark::ConsoleReporter::OutputOptions console_options(const BenchmarkFlags& flags)
+{
+    using Console = benchmark::ConsoleReporter;
+    const int colour = flags.colour.value_or(has_colour(STDOUT_FILENO)) ? Console::OO_Color : Console::OO_None;
+    return static_cast<Console::OutputOptions>(colour | (flags.tabular ? Console::OO_Tabular : Console::OO_None));
+}
+
 std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& json)
 {
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
     receivers.push_back(make_reporter("json", json));
-    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout));
+    if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout, console_options(flags)));
     return std::make_unique<RowReporter>(std::move(receivers));
 }
 
-/// Google Benchmark opens --benchmark_out itself and gives its stream only to the file reporter: the inner reporter
-/// writes to a string first.
+/// Keeps what is to be written to the file of --benchmark_out. Google Benchmark gives the stream of that option only
+/// to the file reporter; read_benchmark_flags() lets it lead nowhere.
 class FileReporter : public RowReporter {
 public:
     explicit FileReporter(const std::string& format) : FileReporter(format, std::make_unique<std::ostringstream>()) {}
-    void Finalize() override
-    {
-        RowReporter::Finalize();
-        GetOutputStream() << text_->str();
-    }
+    [[nodiscard]] std::string text() const { return text_->str(); }
 
 private:
     FileReporter(const std::string& format, std::unique_ptr<std::ostringstream> text)
@@ -160,6 +167,15 @@ private:
 
     std::unique_ptr<std::ostringstream> text_;
 };
+
+/// Google Benchmark looks at no stream's state.
+void require_printed(const BenchmarkFlags& flags)
+{
+    std::cout.flush();
+    if (flags.format && !std::cout)
+        throw Error(ErrorKind::invalid_input, "writing the output of --benchmark_format to standard output failed; "
+                                              "check that there is space left, or use --benchmark_out FILE");
+}
 
 /// Precondition: a view of the row has rays.
 std::size_t last_view_with_rays(const RowRun& row)
@@ -201,6 +217,7 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget)
 {
     Measurement result;
+    const LoadMeter meter;
     const double sweep_s = warm_up_rows(rows, budget);
     result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
     result.lowered = !flags.repetitions && result.samples < options.samples;
@@ -214,7 +231,10 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
     // The filter was applied to the rows themselves, under the reported names.
     benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    result.load = meter.load();
     progress_line().clear();
+    require_printed(flags);
+    if (file != nullptr) write_whole(flags.out, file->text());
     check_rows_after(rows);
     result.google_benchmark = nlohmann::json::parse(json.str());
     result.wall_s = watch.seconds();

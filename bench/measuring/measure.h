@@ -1,10 +1,12 @@
 #pragma once
 
 #include "bench/measuring/budget.h"
+#include "bench/measuring/machine_load.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/rows/row_run.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 namespace tetrace {
@@ -15,6 +17,7 @@ struct Measurement {
     bool lowered = false;            ///< fewer than asked for, because of the budget
     nlohmann::json google_benchmark; ///< its own JSON: context and benchmarks; null where nothing was timed
     double wall_s = 0;
+    std::optional<MachineLoad> load; ///< while warming up and timing; empty where the system does not tell
 };
 
 /// Number of samples that fit the budget: the number asked for, or fewer, but at least 5 where at least 5 were asked
@@ -24,7 +27,8 @@ struct Measurement {
 /// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
 /// of each. One sample traces all selected views once; its seconds are the sum of the device's. Afterwards the hits of
 /// the last view must still equal the verified ones. Rows that fail end with their reason, and so do rows for which the
-/// budget has no time.
+/// budget has no time. Writes the file of --benchmark_out. Throws Error{invalid_input} where that, or what Google
+/// Benchmark prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget());
 

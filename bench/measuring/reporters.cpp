@@ -2,13 +2,34 @@
 
 #include "core/base/error.h"
 
+#include <sstream>
+
 namespace tetrace {
+
+namespace {
+
+std::string without_debug_warning(const std::string& text)
+{
+    std::istringstream lines(text);
+    std::string kept;
+    for (std::string line; std::getline(lines, line);)
+        if (line.find("Library was built as DEBUG") == std::string::npos) kept += line + "\n";
+    return kept;
+}
+
+} // namespace
 
 bool RowReporter::ReportContext(const Context& context)
 {
     bool go_on = true;
-    for (const auto& receiver : receivers_)
+    for (const auto& receiver : receivers_) {
+        std::ostream& errors = receiver->GetErrorStream();
+        std::ostringstream told;
+        receiver->SetErrorStream(&told);
         go_on = receiver->ReportContext(context) && go_on;
+        receiver->SetErrorStream(&errors);
+        errors << without_debug_warning(told.str());
+    }
     return go_on;
 }
 
@@ -30,10 +51,11 @@ void RowReporter::Finalize()
         receiver->Finalize();
 }
 
-std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& format, std::ostream& stream)
+std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& format, std::ostream& stream,
+                                                            benchmark::ConsoleReporter::OutputOptions options)
 {
     std::unique_ptr<benchmark::BenchmarkReporter> reporter;
-    if (format == "console") reporter = std::make_unique<benchmark::ConsoleReporter>();
+    if (format == "console") reporter = std::make_unique<benchmark::ConsoleReporter>(options);
     if (format == "json") reporter = std::make_unique<benchmark::JSONReporter>();
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations" // of the console's CSV; the flag still accepts it

@@ -10,7 +10,8 @@ namespace tetrace {
 
 /// Passes Google Benchmark's reports on to several reporters, under the bare row names. It removes the suffixes
 /// "/iterations:1/manual_time", which are the same for all rows and would make names depend on the number of
-/// measurements.
+/// measurements. Leaves out the warning that the library was built for debugging: what it times here is one call, by
+/// our own clock.
 class RowReporter : public benchmark::BenchmarkReporter {
 public:
     explicit RowReporter(std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers)
@@ -26,8 +27,9 @@ private:
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers_;
 };
 
-/// Google Benchmark's own reporter for a format: "console", "json" or "csv".
-[[nodiscard]] std::unique_ptr<benchmark::BenchmarkReporter> make_reporter(const std::string& format,
-                                                                          std::ostream& stream);
+/// Google Benchmark's own reporter for a format: "console", "json" or "csv". Its options are those of the console's.
+[[nodiscard]] std::unique_ptr<benchmark::BenchmarkReporter>
+make_reporter(const std::string& format, std::ostream& stream,
+              benchmark::ConsoleReporter::OutputOptions options = benchmark::ConsoleReporter::OO_None);
 
 } // namespace tetrace

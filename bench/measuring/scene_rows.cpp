@@ -33,6 +33,7 @@ void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRe
         result.scenes.push_back(std::move(scene));
     } catch (const Error& error) {
         if (!ends_rows(error)) throw;
+        say(fmt::format("{}: {}", scene_label(request.name), error.what()));
         for (const RowKey& key : keys)
             result.rows.push_back(failed_row(key, error));
     }
@@ -48,6 +49,7 @@ void verify_scene(std::vector<RowRun>& rows, SceneWork& scene, const Options& op
         verify_rows(pointers, scene, options, image_seen, budget);
     } catch (const Error& error) {
         if (!ends_rows(error)) throw;
+        say(fmt::format("{}: {}", scene.label(), error.what()));
         for (RowRun* row : pointers)
             *row = failed_row(row->key, error);
     }
@@ -96,6 +98,18 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
     for (const auto& scene : result.scenes)
         verify_scene(result.rows, *scene, options, image_seen, budget);
     return result;
+}
+
+void require_answers(const std::vector<RowRun>& rows, const char* done)
+{
+    const auto unanswered = [](const RowRun& row) {
+        const Status status = status_of(row);
+        return status == Status::skipped || status == Status::unsupported;
+    };
+    if (std::ranges::all_of(rows, unanswered))
+        throw Error(ErrorKind::missing,
+                    fmt::format("nothing was {}: no selected row could run here, for example {}: {}", done,
+                                row_name(rows.front().key), reason_of(rows.front())));
 }
 
 Verdicts all_verdicts(const std::vector<RowRun>& rows)

@@ -20,10 +20,14 @@ struct SceneRows {
                                                 const std::function<bool(const std::string&)>& keeps);
 
 /// Loads all scenes, opens their rows, skips those that do not fit the budget, and verifies the others (see verify.h).
-/// A scene that cannot be loaded ends its rows with the reason. Throws Error{usage} for a name that means no scene, and
-/// as Budget::plan() does.
+/// A scene that cannot be loaded or judged ends its rows with the reason, said once, on standard error. Throws
+/// Error{usage} for a name that means no scene, and as Budget::plan() does.
 [[nodiscard]] SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& options,
                                         const ImageSeen& image_seen = {}, Budget& budget = no_budget());
+
+/// A run without an answer from any device must not look like one that went well. Throws Error{missing} with a reason
+/// where every row is skipped or unsupported. done: "checked" or "measured".
+void require_answers(const std::vector<RowRun>& rows, const char* done);
 
 /// Result of verifying all rows.
 [[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);

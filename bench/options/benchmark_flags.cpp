@@ -76,7 +76,10 @@ BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments)
         const std::string value = equals == std::string::npos ? "" : argument.substr(equals + 1);
         if (take_flag(flags, name, value)) continue;
         if (name == "--benchmark_out") flags.out = value;
-        handed_on.push_back(argument);
+        if (name == "--benchmark_color" && value != "auto") flags.colour = is_true(value);
+        if (name == "--benchmark_counters_tabular") flags.tabular = is_true(value);
+        // Google Benchmark does not notice a full disk: measure_rows() writes the file.
+        handed_on.push_back(name == "--benchmark_out" && !value.empty() ? "--benchmark_out=/dev/null" : argument);
     }
     static_cast<void>(benchmark_filter_keeps(flags.filter, "")); // checks that it is an expression
     initialize_benchmark(handed_on);

@@ -13,6 +13,8 @@ struct BenchmarkFlags {
     std::optional<unsigned> repetitions; ///< --benchmark_repetitions: the number of samples, whatever the budget
     std::optional<std::string> format;   ///< --benchmark_format: its output on standard output instead of the table
     std::string out;                     ///< --benchmark_out
+    std::optional<bool> colour;          ///< --benchmark_color; empty: on terminals, unless NO_COLOR is set
+    bool tabular = false;                ///< --benchmark_counters_tabular
     std::string out_format = "json";     ///< --benchmark_out_format
 };
 

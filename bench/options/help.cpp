@@ -34,8 +34,9 @@ const VerbHelp verb_help[] = {
     {Verb::build, "build scenes and report what came out",
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
      "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
-     "built. A "
-     "combination that fails is a row with its reason; the others are still built, and the exit code is 1.",
+     "built. A combination that fails is a row without numbers, and standard error has the reason. The others are "
+     "still "
+     "built; the exit code is that of the first failure, as in 'bench': 2 if the mesh cannot be used.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
@@ -132,15 +133,17 @@ const VerbHelp verb_help[] = {
      "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "
      "of the rates (of the medians; above 1, B is faster) with its interval, and a verdict: 'SAME', the interval lies "
      "within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', it contains 1 and reaches "
-     "beyond the tolerance, or there are too few samples for an interval, so that more samples would decide. Rows that "
-     "only one of them timed are 'FAILED' (wrong or in error in B), 'MISSING' (not in B, or skipped or unsupported "
-     "there) or 'NEW'; they have no part in the geometric mean.\n\n"
+     "beyond the tolerance, or there are fewer than 5 samples, which give no interval: more would decide. Rows that "
+     "both timed are 'DIFFERENT', and not compared, if scenes, views or hit hashes differ: Embree's hits, and those of "
+     "math mode fast, depend on the processor. Rows that only one of them timed are 'FAILED' (wrong or in error in B), "
+     "'MISSING' (not in B, or skipped or unsupported there) or 'NEW'. Neither these nor DIFFERENT rows have a part in "
+     "the geometric mean.\n\n"
      "The intervals come from ranks, and assume of the noise only that samples are independent. If nothing changed, "
      "the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from 10 samples a row "
      "on; with fewer, down to 5, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples "
      "do not show: that is what the tolerance is for.\n\n"
      "Exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing). Exits with "
-     "2, and names the rows, if scenes, views or hit hashes differ, since times of different work do not compare.",
+     "2, and names the rows, if all are DIFFERENT.",
      "  tetrace compare before.json after.json\n"
      "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
      "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},
@@ -159,8 +162,8 @@ const VerbHelp verb_help[] = {
 
 const char* const exit_codes = "Exit codes\n"
                                "  0  good\n"
-                               "  1  a wrong result, a scene that could not be built, or a regression\n"
-                               "  2  a command line or an input that is not accepted\n"
+                               "  1  a wrong result, or a regression\n"
+                               "  2  a command line, a mesh or another input that is not accepted\n"
                                "  3  something required is missing or not supported here\n"
                                "  4  an internal error\n";
 
@@ -205,8 +208,8 @@ std::string program_text()
     for (const VerbHelp& entry : verb_help)
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
     text += "\n'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options.\n"
-            "Results go to standard output, or to --out FILE.\n"
-            "Messages and progress go to standard error; NO_COLOR is honoured.\n\n"
+            "Results go to standard output, or to --out FILE. A file appears whole, or not at all with exit code 2.\n"
+            "Messages and progress go to standard error. Terminals get colours unless NO_COLOR is set.\n\n"
             "Examples\n"
             "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"

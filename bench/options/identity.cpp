@@ -2,6 +2,7 @@
 
 #include "bench/options/commit.h"
 
+#include <charconv>
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fstream>
@@ -26,6 +27,15 @@ std::string value_in(const char* file, const std::string& key, char separator)
     return "unknown";
 }
 
+/// A number of /proc/cpuinfo; empty where there is none, as on ARM. The key ends in a tab there.
+std::optional<unsigned> processor_number(const std::string& key)
+{
+    const std::string text = value_in("/proc/cpuinfo", key + "\t", ':');
+    unsigned number = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return problem == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
 } // namespace
 
 BuildIdentity build_identity()
@@ -47,6 +57,9 @@ HostIdentity host_identity()
     CPU_ZERO(&allowed);
     const bool known = sched_getaffinity(0, sizeof(allowed), &allowed) == 0;
     return {value_in("/proc/cpuinfo", "model name", ':'),
+            processor_number("cpu family"),
+            processor_number("model"),
+            processor_number("stepping"),
             fmt::format("{}, {} {}", value_in("/etc/os-release", "PRETTY_NAME=", '='), system.sysname, system.release),
             known ? static_cast<unsigned>(CPU_COUNT(&allowed)) : 1u};
 }

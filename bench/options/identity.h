@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace tetrace {
@@ -16,8 +17,10 @@ struct BuildIdentity {
 /// The machine that it runs on.
 struct HostIdentity {
     std::string cpu;
-    std::string system;   ///< the distribution's name and the kernel's release
-    unsigned threads = 1; ///< that this process may use
+    std::optional<unsigned> family, model, stepping; ///< of the processor, where the system tells: names may say no
+                                                     ///< more than "AMD EPYC"
+    std::string system;                              ///< the distribution's name and the kernel's release
+    unsigned threads = 1;                            ///< that this process may use
 };
 [[nodiscard]] HostIdentity host_identity();
 

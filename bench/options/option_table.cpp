@@ -4,7 +4,6 @@
 #include "core/device/backend.h"
 
 #include <algorithm>
-#include <regex>
 
 namespace tetrace {
 
@@ -82,17 +81,6 @@ ApplyOption append_backend(const std::string& option, std::vector<std::string> O
     };
 }
 
-void set_filter(Options& options, const std::string& text)
-{
-    try {
-        const std::regex check(text);
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
-    }
-    options.filter = text;
-}
-
 ApplyOption set(bool Options::*flag)
 {
     return [=](Options& options, const std::string&) { options.*flag = true; };
@@ -112,29 +100,19 @@ ApplyOption append_count(const std::string& option, std::vector<unsigned> Option
     };
 }
 
+void set_result_file(Options& options, const std::string& text)
+{
+    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
+    options.out.reset();
+    if (text != "-") options.out = text;
+}
+
 ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
 {
     return [=](Options& options, const std::string& text) {
         if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
         options.*path = text;
     };
-}
-
-void set_tile(Options& options, const std::string& text)
-{
-    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
-    options.tile_height = text == "8x4" ? 4 : 8;
-}
-
-void set_packet_lanes(Options& options, const std::string& text)
-{
-    std::vector<std::string> accepted;
-    for (const unsigned lanes : packet_widths) {
-        accepted.push_back(std::to_string(lanes));
-        if (text == accepted.back()) options.packet_lanes = lanes;
-    }
-    if (std::ranges::find(accepted, text) == accepted.end())
-        reject_value("--packet-lanes", text, join_alternatives(accepted));
 }
 
 std::vector<OptionRow> reproduce_options()
@@ -233,7 +211,8 @@ std::vector<OptionRow> row_options()
          reproducing, true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
-         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Default: all.",
+         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT means no usable "
+         "device. Default: all.",
          reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
@@ -260,7 +239,7 @@ std::vector<OptionRow> row_options()
          tracing, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match, for example 'tet96.*openmp'. Default: all.",
-         measuring | bit(Verb::compare), false, set_filter},
+         measuring | bit(Verb::compare), false, [](Options& o, const std::string& v) { o.filter = parse_filter(v); }},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
 }
@@ -285,11 +264,11 @@ std::vector<OptionRow> ray_options()
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {"Rays", "--tile", "WxH",
          "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
-         false, set_tile},
+         false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
         {"Rays", "--packet-lanes", "N",
          "Rays of a packet, for rows of schedule 'packets': 4, 8 or 16. If the processor or the build lacks that "
          "width, those rows are unsupported. Default: the widest available.",
-         tracing, false, set_packet_lanes},
+         tracing, false, [](Options& o, const std::string& v) { o.packet_lanes = parse_packet_lanes(v); }},
         {"Rays", "--buffer-limit", "SIZE",
          "Limit the buffers of every device to this size: bytes, or a number followed by K, M, G or T. The array of "
          "tets is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
@@ -303,13 +282,15 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples a row, 3 to 10000; a sample traces all selected views once. Default: 10.", bit(Verb::bench), false,
-         set_count("--samples", &Options::samples, 3, 10000)},
+         "Samples a row, 3 to 10000; a sample traces all selected views once. Fewer than 5 give no interval, neither "
+         "here "
+         "nor in 'compare'. Default: 10.",
+         bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
-         "(if as many are asked for), since intervals from fewer are too narrow. If 5 do not fit, the slowest rows are "
+         "(if as many are asked for), since fewer give no interval. If 5 do not fit, the slowest rows are "
          "skipped, and the result names the budget that they need. A run takes at most a quarter longer. Loading "
          "scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
@@ -360,8 +341,15 @@ std::vector<OptionRow> output_options()
          reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
         {"Output", "--out", "FILE",
          "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
-         "the table. The table still goes to standard output.",
-         reporting, false, set_path("--out", &Options::out)},
+         "the table. The table still goes to standard output. '-' means no file: standard output gets the result, in "
+         "the "
+         "form of --format.",
+         reporting, false, set_result_file},
+        {"Output", "--label", "TEXT",
+         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. "
+         "Default: the processor's name, family, model and stepping.",
+         measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::reproduce), false,
+         [](Options& o, const std::string& v) { o.label = parse_label(v); }},
         {"Output", "--anonymous", "",
          "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
          false, set(&Options::anonymous)},
@@ -369,15 +357,17 @@ std::vector<OptionRow> output_options()
          "Continue the run whose journal is FILE.journal, for FILE of --out: views and batches of searches that it has "
          "are not repeated. If there is no journal, begin one.",
          bit(Verb::reproduce), false, set(&Options::resume)},
-        {"Output", "--junit", "FILE", "Also write the result to FILE as JUnit XML, one test case a row. Default: none.",
+        {"Output", "--junit", "FILE",
+         "Also write the result to FILE as JUnit XML, one test case a row; '-' means standard output, "
+         "in place of the table. Default: none.",
          bit(Verb::check), false, set_path("--junit", &Options::junit)},
         {"Output", "--out", "FILE",
          "Write the picture to FILE, which ends in .png, .exr or .ppm. With several pictures, scene, view and kind are "
          "inserted before the ending. If FILE is a folder, the pictures in it are called SCENE-VIEW-KIND.png, or .ppm "
          "if OpenImageIO is missing (PPM needs no library). Default: the current folder.",
          bit(Verb::render), false, set_path("--out", &Options::out)},
-        {"Output", "--out", "FILE", "Write the page to FILE. Default: report.html.", bit(Verb::report), false,
-         set_path("--out", &Options::out)},
+        {"Output", "--out", "FILE", "Write the page to FILE; '-' means standard output. Default: report.html.",
+         bit(Verb::report), false, set_path("--out", &Options::out)},
     };
 }
 

@@ -1,11 +1,14 @@
 #include "bench/options/option_values.h"
 
+#include "core/device/backend.h"
 #include "kernels/layouts/layout.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <regex>
 #include <set>
 
 namespace tetrace {
@@ -38,6 +41,26 @@ bool read_range(std::string_view text, ViewRange& range)
     return read_whole(text.substr(dash + 1), range.last) && range.first <= range.last;
 }
 
+/// The least number of letters left out, added, or replaced, and of neighbours exchanged, that turns one text into the
+/// other: the restricted distance of Damerau, "A technique for computer detection and correction of spelling errors"
+/// (1964).
+std::size_t slips_between(std::string_view a, std::string_view b)
+{
+    std::vector<std::vector<std::size_t>> slips(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i)
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                slips[i][j] = i + j;
+                continue;
+            }
+            const std::size_t replaced = slips[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            slips[i][j] = std::min({replaced, slips[i - 1][j] + 1, slips[i][j - 1] + 1});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                slips[i][j] = std::min(slips[i][j], slips[i - 2][j - 2] + 1);
+        }
+    return slips[a.size()][b.size()];
+}
+
 } // namespace
 
 std::string join_alternatives(const std::vector<std::string>& names)
@@ -48,6 +71,18 @@ std::string join_alternatives(const std::vector<std::string>& names)
         text += names[i];
     }
     return text;
+}
+
+std::string did_you_mean(const std::string& text, const std::vector<std::string>& names)
+{
+    std::size_t nearest = std::min<std::size_t>(2, text.size() / 3) + 1;
+    std::string found;
+    for (const std::string& name : names)
+        if (const std::size_t slips = slips_between(text, name); slips < nearest) {
+            nearest = slips;
+            found = name;
+        }
+    return found.empty() ? found : fmt::format("; did you mean {}?", found);
 }
 
 std::vector<std::string> split_list(const std::string& option, const std::string& text)
@@ -130,6 +165,42 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, co
     if (!read || width < 1 || height < 1 || width > largest || height > largest)
         reject_value(option, text, fmt::format("WxH or N, each from 1 to {}", largest));
     return {width, height};
+}
+
+unsigned parse_tile_height(const std::string& text)
+{
+    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
+    return text == "8x4" ? 4 : 8;
+}
+
+unsigned parse_packet_lanes(const std::string& text)
+{
+    std::vector<std::string> accepted;
+    for (const unsigned lanes : packet_widths) {
+        accepted.push_back(std::to_string(lanes));
+        if (text == accepted.back()) return lanes;
+    }
+    reject_value("--packet-lanes", text, join_alternatives(accepted));
+}
+
+std::string parse_filter(const std::string& text)
+{
+    try {
+        const std::regex check(text);
+    } catch (const std::regex_error& problem) {
+        throw Error(ErrorKind::usage,
+                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
+    }
+    return text;
+}
+
+std::string parse_label(const std::string& text)
+{
+    constexpr std::size_t longest = 100;
+    const auto breaks_line = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    if (text.empty() || text.size() > longest || std::ranges::any_of(text, breaks_line))
+        reject_value("--label", text, "one line of 1 to 100 bytes");
+    return text;
 }
 
 SearchSize parse_searches(const std::string& text)

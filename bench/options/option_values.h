@@ -14,6 +14,10 @@ namespace tetrace {
 /// "a, b or c".
 [[nodiscard]] std::string join_alternatives(const std::vector<std::string>& names);
 
+/// "; did you mean --samples?": the name that one or two slips of the hand turn into the text. Empty where none is so
+/// near.
+[[nodiscard]] std::string did_you_mean(const std::string& text, const std::vector<std::string>& names);
+
 /// Splits at commas. Throws Error{usage} naming the option where a part is empty.
 [[nodiscard]] std::vector<std::string> split_list(const std::string& option, const std::string& text);
 
@@ -55,6 +59,18 @@ template <class T>
 
 /// "WxH", or "N" for N x N; each from 1 to 16384. Throws Error{usage}.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(const std::string& option, const std::string& text);
+
+/// "8x4" or "8x8": the height. Throws Error{usage}.
+[[nodiscard]] unsigned parse_tile_height(const std::string& text);
+
+/// One of packet_widths. Throws Error{usage}.
+[[nodiscard]] unsigned parse_packet_lanes(const std::string& text);
+
+/// The expression as it is. Throws Error{usage} where it is no regular expression (ECMAScript).
+[[nodiscard]] std::string parse_filter(const std::string& text);
+
+/// The label as it is: one line. Throws Error{usage}.
+[[nodiscard]] std::string parse_label(const std::string& text);
 
 /// "TETSxRAYS" for --searches: at most 1,000,000 tets with 1,048,576 rays each, a multiple of 8. Throws Error{usage}.
 [[nodiscard]] SearchSize parse_searches(const std::string& text);

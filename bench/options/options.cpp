@@ -18,6 +18,14 @@ std::vector<Verb> all_verbs()
     return verbs;
 }
 
+std::vector<std::string> names_of_verbs()
+{
+    std::vector<std::string> names;
+    for (const Verb verb : all_verbs())
+        names.emplace_back(name_of(verb));
+    return names;
+}
+
 bool is_google_benchmark_flag(const std::string& argument)
 {
     return argument.rfind("--benchmark_", 0) == 0;
@@ -41,6 +49,18 @@ std::vector<std::string> accepted_options(Verb verb)
     names.emplace_back("--help");
     if (verb == Verb::bench) names.emplace_back("--benchmark_* (Google Benchmark's own)");
     return names;
+}
+
+/// What the first unknown option may have been meant to be.
+std::string guess(Verb verb, const std::vector<std::string>& arguments)
+{
+    const auto accepted = accepted_options(verb);
+    for (const std::string& argument : arguments) {
+        const std::string name = argument.substr(0, argument.find('='));
+        if (name.starts_with("--") && std::ranges::find(accepted, name) == accepted.end())
+            return did_you_mean(name, accepted);
+    }
+    return {};
 }
 
 [[noreturn]] void reject_command_line(Verb verb, const std::string& reason)
@@ -151,7 +171,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
         options.help_topic = name_of(verb);
         return options;
     } catch (const CLI::ParseError& problem) {
-        reject_command_line(verb, problem.what());
+        reject_command_line(verb, std::string(problem.what()).append(guess(verb, arguments)));
     }
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
@@ -185,9 +205,9 @@ Options parse_options(const std::vector<std::string>& arguments)
     if (first == "--help" || first == "-h" || first == "help") return parse_help(rest);
     for (const Verb verb : all_verbs())
         if (name_of(verb) == first) return parse_verb(verb, rest);
-    throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb; accepted: {}, --help or --version\n"
+    throw Error(ErrorKind::usage, fmt::format("'{}' is not a verb{}; accepted: {}, --help or --version\n"
                                               "'tetrace help' describes them",
-                                              first, join_names(all_verbs())));
+                                              first, did_you_mean(first, names_of_verbs()), join_names(all_verbs())));
 }
 
 std::vector<SceneRequest> scene_requests(const Options& options)

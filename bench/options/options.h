@@ -111,6 +111,7 @@ struct Options {
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;
+    std::string label;                        ///< what the user calls the machine, or this run of it
     bool anonymous = false;                   ///< no host name and no folders in results
     std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given
 };

@@ -1,11 +1,13 @@
 #include "bench/output/bench_report.h"
 
 #include "bench/measuring/figures.h"
+#include "bench/output/bench_answer.h"
 #include "bench/output/bench_tables.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_json.h"
 #include "bench/terminal/text.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <set>
 
@@ -19,11 +21,12 @@ std::string timed_sentence(const BenchResult& result, const Options& options)
     const std::string instead = measurement.lowered ? fmt::format(" ({} asked for; --budget {})", options.samples,
                                                                   seconds_text(options.budget_s))
                                                     : "";
+    const char* const few = measurement.samples < fewest_samples ? " Fewer than 5 samples give no interval." : "";
     return fmt::format(
         "medians of {} samples a row{}, rows interleaved at random, {} in all. A sample is {} views of {} "
-        "at {}x{} on {} threads.",
+        "at {}x{} on {} threads.{}",
         measurement.samples, instead, seconds_text(measurement.wall_s), selected_views(options).size(),
-        name_of(options.camera_set), options.width, options.height, resolved_threads(options));
+        name_of(options.camera_set), options.width, options.height, resolved_threads(options), few);
 }
 
 /// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.
@@ -83,8 +86,17 @@ std::string closing_lines(const BenchResult& result, const Options& options)
         text += labelled("Missing", sentence);
     for (const std::string& sentence : result.missing_scenes)
         text += labelled("Missing", sentence);
+    text += answer_text(result);
     if (options.out) text += labelled("Result", options.out->string());
     return text;
+}
+
+/// Of a row whose scene could not be loaded only the beginning of the reason: standard error has had all of it.
+std::string failure_text(const RowRun& row, Status status)
+{
+    std::string reason = reason_of(row);
+    if (row.scene == nullptr) reason = reason.substr(0, reason.find('\n'));
+    return fmt::format("{}: {}", name_of(status), reason);
 }
 
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
@@ -93,6 +105,8 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     section["samples_a_row"] = result.measurement.samples;
     section["samples_lowered"] = result.measurement.lowered;
     section["threads"] = resolved_threads(options);
+    if (const auto& load = result.measurement.load)
+        section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
     section["missing_scenes"] = result.missing_scenes;
     section["scenes"] = nlohmann::json::array();
     for (const auto& scene : result.run.scenes)
@@ -151,12 +165,26 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
 
 std::string failure_lines(const std::vector<RowRun>& rows)
 {
-    std::string text;
+    struct Failure {
+        const RowRun* first;
+        std::string what;
+        std::size_t count = 0;
+    };
+    std::vector<Failure> failures;
     for (const RowRun& row : rows) {
         const Status status = status_of(row);
-        if (status != Status::ok && status != Status::flawed)
-            text += fmt::format("{}: {}: {}\n", row_name(row.key), name_of(status), reason_of(row));
+        if (status == Status::ok || status == Status::flawed) continue;
+        const std::string what = failure_text(row, status);
+        const auto same = std::ranges::find_if(failures, [&](const Failure& failure) {
+            return failure.what == what && failure.first->key.scene == row.key.scene;
+        });
+        ++(same == failures.end() ? failures.emplace_back(Failure{&row, what}) : *same).count;
     }
+    std::string text;
+    for (const Failure& failure : failures)
+        text += failure.count == 1 ? fmt::format("{}: {}\n", row_name(failure.first->key), failure.what)
+                                   : fmt::format("{} rows of {}, such as {}: {}\n", failure.count,
+                                                 failure.first->key.scene, row_name(failure.first->key), failure.what);
     return text.empty() ? text : text + "\n";
 }
 

@@ -28,7 +28,7 @@ struct BenchResult {
 /// The oracle's findings over all rows, in one sentence.
 [[nodiscard]] std::string verdict_sentence(const std::vector<RowRun>& rows);
 
-/// Rows without an answer, each with its reason, one per line.
+/// Rows without an answer and their reasons: a line for all rows of a scene that have the same one.
 [[nodiscard]] std::string failure_lines(const std::vector<RowRun>& rows);
 
 } // namespace tetrace

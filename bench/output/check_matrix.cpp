@@ -70,7 +70,7 @@ std::string matrix_text(const std::string& scene, const std::vector<RowRun>& all
     const auto devices = names_of(rows, device_label);
     std::vector<Column> columns = {{"row", "row"}};
     for (const std::string& device : devices)
-        columns.push_back({device, device});
+        columns.push_back({.key = device, .title = device, .coloured = true});
     Table table(columns);
     for (const std::string& kernel : names_of(rows, kernel_title)) {
         std::vector<Cell> cells = {kernel};

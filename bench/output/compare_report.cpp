@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 
 namespace tetrace {
 
@@ -39,7 +40,7 @@ Table rows_table(const ResultComparison& comparison)
                  {"before", "A", "Mrays/s"},
                  {"after", "B", "Mrays/s"},
                  {"ratio", "B / A"},
-                 {"verdict", "verdict"}});
+                 {.key = "verdict", .title = "verdict", .coloured = true}});
     for (const ComparedRow& row : comparison.rows)
         table.add({row.name(), rate_of(row.before), rate_of(row.after),
                    row.change ? Cell(ratio_text(*row.change)) : Cell(), row.verdict()});
@@ -74,12 +75,13 @@ Table flat_rows(const ResultComparison& comparison)
 std::string source_text(const ResultFile& file)
 {
     return fmt::format("{}: {} by tetrace {} ({}) on {}, {}", file.path.string(), file.head.date, file.head.version,
-                       file.head.commit, file.head.cpu, file.head.system);
+                       file.head.commit, file.head.machine, file.head.system);
 }
 
-std::string device_text(const ResultRow& row)
+std::string device_text(const ResultFile& file, const ResultRow& row)
 {
-    return row.driver.empty() ? row.device : row.device + ", " + row.driver;
+    const std::string& device = file.head.shown(row.device);
+    return row.driver.empty() ? device : device + ", " + row.driver;
 }
 
 /// A sentence for each device that the compared rows ran on, in their order.
@@ -88,7 +90,8 @@ std::vector<std::string> device_sentences(const ResultComparison& comparison)
     std::vector<std::string> sentences;
     for (const ComparedRow& row : comparison.rows) {
         if (row.outcome != RowOutcome::compared) continue;
-        const std::string a = device_text(*row.before), b = device_text(*row.after);
+        const std::string a = device_text(*comparison.before, *row.before),
+                          b = device_text(*comparison.after, *row.after);
         const std::string devices = a == b ? a + " in both" : fmt::format("{} in A; {} in B", a, b);
         std::string sentence = fmt::format("{}: {}.", row.before->api(), devices);
         if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(std::move(sentence));
@@ -114,7 +117,11 @@ std::string differences_text(const ResultComparison& comparison)
                               {"/commit", "the commit"},
                               {"/compiler", "the compiler"},
                               {"/flags", "the compiler's flags"},
+                              {"/label", "the label"},
                               {"/host/cpu", "the processor"},
+                              {"/host/family", "the processor's family"},
+                              {"/host/model", "the processor's model"},
+                              {"/host/stepping", "the processor's stepping"},
                               {"/host/system", "the system"},
                               {"/host/threads", "the threads that the process may use"},
                               {"/threads", "the threads that it used"},
@@ -124,7 +131,8 @@ std::string differences_text(const ResultComparison& comparison)
         if (recorded(*comparison.before, fact.pointer) != recorded(*comparison.after, fact.pointer))
             differences.emplace_back(fact.name);
     for (const ComparedRow& row : comparison.rows)
-        if (row.outcome == RowOutcome::compared && device_text(*row.before) != device_text(*row.after)) {
+        if (row.outcome == RowOutcome::compared &&
+            (row.before->device != row.after->device || row.before->driver != row.after->driver)) {
             differences.emplace_back("devices or their drivers");
             break;
         }
@@ -142,11 +150,16 @@ std::string head_text(const ResultComparison& comparison)
     return text;
 }
 
+/// Each note, for all rows that have it: "FAILED" or "MISSING" of many rows has one cause as a rule.
 std::string notes_text(const ResultComparison& comparison)
 {
-    std::string text;
+    std::map<std::string, std::vector<const ComparedRow*>> notes;
     for (const ComparedRow& row : comparison.rows)
-        if (!row.note().empty()) text += fmt::format("{}: {}: {}\n", row.name(), row.verdict(), row.note());
+        if (!row.note().empty()) notes[row.verdict() + ": " + row.note()].push_back(&row);
+    std::string text;
+    for (const auto& [note, rows] : notes)
+        text += rows.size() == 1 ? fmt::format("{}: {}\n", rows.front()->name(), note)
+                                 : fmt::format("{} rows, such as {}: {}\n", rows.size(), rows.front()->name(), note);
     return text.empty() ? text : text + "\n";
 }
 
@@ -175,17 +188,33 @@ std::string summary_text(const ResultComparison& comparison)
             text += fmt::format("{}{} {}", separator, count, name_of(verdict));
             separator = ", ";
         }
+    if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
+        text += fmt::format("; {} DIFFERENT, not compared", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
-        text += fmt::format("; {} with too few samples for an interval", count);
+        text += fmt::format("; {} with fewer than {} samples, so no interval", count, fewest_samples);
     if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);
     return text + ".";
 }
 
-std::string regression_text(const ComparedRow& row, double tolerance)
+/// A line for each row that has become slower, one for all that failed, and one for all that are missing.
+std::string regressions_text(const ResultComparison& comparison, bool allow_missing)
 {
-    if (!row.change) return fmt::format("{}: {}, and A has its rate.", row.name(), row.verdict());
-    return fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row.name(),
-                       100 * (1 / row.change->ratio - 1), 100 * tolerance);
+    std::string text;
+    std::map<std::string, std::vector<std::string>> without_rate;
+    for (const ComparedRow* row : comparison.regressions(allow_missing)) {
+        if (!row->change)
+            without_rate[row->verdict()].push_back(row->name());
+        else
+            text += labelled("Regressed",
+                             fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row->name(),
+                                         100 * (1 / row->change->ratio - 1), 100 * comparison.tolerance));
+    }
+    for (const auto& [verdict, names] : without_rate)
+        text +=
+            labelled("Regressed", names.size() == 1
+                                      ? fmt::format("{}: {}, and A has its rate.", names.front(), verdict)
+                                      : fmt::format("{} rows are {}, and A has their rates.", names.size(), verdict));
+    return text;
 }
 
 std::string promise_text(const ResultComparison& comparison)
@@ -197,8 +226,8 @@ std::string promise_text(const ResultComparison& comparison)
                                    "the chance that any of these rows is called FASTER or SLOWER is at most {:.2g} %",
                                    100 * error);
     if (error > 1.000001 * comparison_error || error == 0)
-        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %, fewer than 5 tell nothing",
-                            samples_needed(compared), compared);
+        text += fmt::format("; {} samples a row and more, for {} rows, bring it to 1 %", samples_needed(compared),
+                            compared);
     return text + ". What differs between runs, apart from noise, no interval knows: the tolerance is for that.";
 }
 
@@ -206,16 +235,16 @@ std::string verdicts_text(double tolerance)
 {
     return fmt::format(
         "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
-        "1. UNSURE: it does, and reaches beyond the tolerance, or there are too few samples for an interval; more "
-        "would tell.",
-        1 / (1 + tolerance), 1 + tolerance);
+        "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no "
+        "interval; "
+        "more would tell.",
+        1 / (1 + tolerance), 1 + tolerance, fewest_samples);
 }
 
 std::string closing_text(const ResultComparison& comparison, const Options& options)
 {
     std::string text = labelled("Compared", summary_text(comparison));
-    for (const ComparedRow* row : comparison.regressions(options.allow_missing))
-        text += labelled("Regressed", regression_text(*row, comparison.tolerance));
+    text += regressions_text(comparison, options.allow_missing);
     if (comparison.count(RowOutcome::compared) > 0)
         text += labelled("B / A", promise_text(comparison)) + labelled("Verdicts", verdicts_text(comparison.tolerance));
     if (options.out) text += labelled("Result", options.out->string());

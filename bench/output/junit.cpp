@@ -1,11 +1,14 @@
 #include "bench/output/junit.h"
 
 #include "bench/measuring/conformity.h"
+#include "bench/options/identity.h"
 #include "bench/output/check_differences.h"
 #include "bench/terminal/text.h"
 #include "core/base/hash.h"
 
+#include <cctype>
 #include <fmt/format.h>
+#include <map>
 
 namespace tetrace {
 
@@ -42,31 +45,51 @@ std::string outcome_xml(const RowRun& row, CaseOutcome outcome)
     return {};
 }
 
-std::string property_xml(const char* name, const std::string& value)
+/// A device's name as a part of a class name, without what changes with the driver or the machine's memory: what stands
+/// in brackets goes, and a dash replaces what is neither letter nor digit. "llvmpipe (LLVM 15.0.6, 256 bits)" becomes
+/// "llvmpipe".
+std::string stable_name(const std::string& device)
 {
-    return fmt::format("        <property name=\"{}\" value=\"{}\"/>\n", name, xml_text(value));
+    std::string name;
+    int depth = 0;
+    for (const char c : device) {
+        depth += c == '(';
+        const bool kept = depth == 0 && std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (kept)
+            name += c;
+        else if (!name.empty() && name.back() != '-')
+            name += '-';
+        depth -= c == ')' && depth > 0;
+    }
+    name.erase(name.find_last_not_of('-') + 1);
+    return name;
 }
 
-std::string properties_xml(const RowRun& row)
+/// CI systems keep a test's history by class and name: both stay the same from one driver to the next.
+std::string class_name(const RowRun& row)
 {
-    std::string text = property_xml("conformity", conformity_text(row));
-    if (const Traced* result = traced(row)) text += property_xml("hit_hash", hash_text(result->hit_hash));
-    if (row.self_test) text += property_xml("self_test", row.self_test->text());
-    if (!row.device.driver.empty()) text += property_xml("driver", row.device.driver);
-    return "      <properties>\n" + text + "      </properties>\n";
+    const std::string device = stable_name(row.device.name);
+    return fmt::format("tetrace.{}{}{}", row.key.backend, device.empty() ? "" : ".", device);
+}
+
+std::string output_xml(const RowRun& row)
+{
+    std::string text = "conformity: " + conformity_text(row);
+    if (const Traced* result = traced(row)) text += "\nhit_hash: " + hash_text(result->hit_hash);
+    return fmt::format("      <system-out>{}</system-out>\n", xml_text(text));
 }
 
 std::string case_xml(const RowRun& row, CaseOutcome outcome)
 {
     const Traced* result = traced(row);
-    const std::string device = device_label(row.key) + (row.device.name.empty() ? "" : " " + row.device.name);
     return fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\">\n{}{}    </testcase>\n",
-                       xml_text(device), xml_text(row_name(row.key)), result ? result->wall_s : 0.0,
-                       properties_xml(row), outcome_xml(row, outcome));
+                       xml_text(class_name(row)), xml_text(row_name(row.key)), result ? result->wall_s : 0.0,
+                       outcome_xml(row, outcome), output_xml(row));
 }
 
 struct Suite {
     std::string scene, cases;
+    std::map<std::string, std::string> properties;
     int tests = 0, failures = 0, errors = 0, skipped = 0;
     double time_s = 0;
 
@@ -79,37 +102,71 @@ struct Suite {
         errors += outcome == CaseOutcome::error;
         skipped += outcome == CaseOutcome::skipped;
         if (const Traced* result = traced(row)) time_s += result->wall_s;
+        const std::string device = device_label(row.key);
+        if (!row.device.name.empty()) properties[device + ".device"] = row.device.name;
+        if (!row.device.driver.empty()) properties[device + ".driver"] = row.device.driver;
+        if (row.self_test)
+            properties[fmt::format("{}.self_test.{}", device, name_of(row.key.kernel.math))] = row.self_test->text();
+    }
+
+    void add_problem(const std::string& problem)
+    {
+        cases += fmt::format("    <testcase classname=\"tetrace.check\" name=\"has a result\" time=\"0.000000\">\n"
+                             "      <error message=\"{}\"/>\n    </testcase>\n",
+                             xml_text(problem));
+        ++tests;
+        ++errors;
+    }
+
+    [[nodiscard]] std::string properties_xml() const
+    {
+        std::string text;
+        for (const auto& [name, value] : properties)
+            text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", xml_text(name), xml_text(value));
+        return "    <properties>\n" + text + "    </properties>\n";
     }
 
     [[nodiscard]] std::string xml() const
     {
-        return fmt::format("  <testsuite name=\"tetrace check {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
-                           "skipped=\"{}\" time=\"{:.6f}\">\n{}  </testsuite>\n",
-                           xml_text(scene), tests, failures, errors, skipped, time_s, cases);
+        return fmt::format("  <testsuite name=\"tetrace check{}{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
+                           "skipped=\"{}\" time=\"{:.6f}\">\n{}{}  </testsuite>\n",
+                           scene.empty() ? "" : " ", xml_text(scene), tests, failures, errors, skipped, time_s,
+                           properties_xml(), cases);
     }
 };
 
+std::map<std::string, std::string> program_properties()
+{
+    const BuildIdentity build = build_identity();
+    const HostIdentity host = host_identity();
+    return {{"tetrace.version", build.version},
+            {"tetrace.commit", build.commit},
+            {"host.cpu", host.cpu},
+            {"host.system", host.system}};
+}
+
 } // namespace
 
-std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed)
+std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed, const std::string& problem)
 {
     std::vector<Suite> suites;
+    if (!problem.empty()) suites.emplace_back().add_problem(problem);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.emplace_back().scene = rows[i].key.scene;
         suites.back().add(rows[i], failed[i]);
     }
     Suite sum;
     std::string text;
-    for (const Suite& suite : suites) {
+    for (Suite& suite : suites) {
+        suite.properties.merge(program_properties());
         sum.tests += suite.tests;
         sum.failures += suite.failures;
         sum.errors += suite.errors;
-        sum.skipped += suite.skipped;
         text += suite.xml();
     }
     return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"tetrace check\" tests=\"{}\" "
-                       "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}</testsuites>\n",
-                       sum.tests, sum.failures, sum.errors, sum.skipped, text);
+                       "failures=\"{}\" errors=\"{}\">\n{}</testsuites>\n",
+                       sum.tests, sum.failures, sum.errors, text);
 }
 
 } // namespace tetrace

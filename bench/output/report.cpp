@@ -3,13 +3,13 @@
 #include "bench/options/anonymous.h"
 #include "bench/options/identity.h"
 #include "bench/results/result_file.h"
+#include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 
-#include <cerrno>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
+#include <unistd.h>
 
 namespace tetrace {
 
@@ -35,18 +35,12 @@ std::string in_format(const Report& report, Format format, const Options& option
         return options.anonymous ? anonymous_text(text, options) : text;
     };
     switch (format) {
-    case Format::table: return shown(report.text);
+    case Format::table: return shown(without_colour(report.text));
     case Format::json: return (options.anonymous ? anonymous_json(report.json, options) : report.json).dump(2) + "\n";
     case Format::csv: return shown(report.table.csv());
     case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
     }
     throw Error(ErrorKind::internal, "in_format: no such format");
-}
-
-[[noreturn]] void reject_file(const char* option, const std::filesystem::path& path)
-{
-    throw Error(ErrorKind::invalid_input, fmt::format("writing the result to '{}': {}; name another file with {}",
-                                                      path.string(), std::strerror(errno), option));
 }
 
 } // namespace
@@ -71,29 +65,26 @@ void check_not_an_input(const std::filesystem::path& out, const std::vector<std:
 
 void check_writable(const char* option, const std::filesystem::path& path)
 {
-    const bool existed = std::filesystem::exists(path);
-    if (!std::ofstream(path, std::ios::app)) reject_file(option, path);
-    if (!existed) std::filesystem::remove(path);
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text)
-{
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file << text;
-    file.close();
-    if (!file) reject_file("--out", path);
+    try {
+        require_writable(path);
+    } catch (const Error& error) {
+        throw Error(error.kind(), fmt::format("{}: {}", option, error.what()));
+    }
 }
 
 void deliver_to_file(const Options& options, const Report& report)
 {
-    write_text(*options.out, in_format(report, format_of_file(options), options));
+    write_whole(*options.out, in_format(report, format_of_file(options), options));
 }
 
 void deliver(const Options& options, const Report& report)
 {
     if (options.out) deliver_to_file(options, report);
     const Format format = options.format.value_or(Format::table);
-    if (format == Format::table || !options.out) print(in_format(report, format, options));
+    if (format == Format::table && has_colour(STDOUT_FILENO))
+        print(options.anonymous ? anonymous_text(report.text, options) : report.text);
+    else if (format == Format::table || !options.out)
+        print(in_format(report, format, options));
 }
 
 nlohmann::json to_json(const Table& table)
@@ -125,6 +116,11 @@ nlohmann::json result_head(const Options& options)
                            {"compiler", build.compiler},
                            {"flags", build.flags},
                            {"host", {{"cpu", host.cpu}, {"system", host.system}, {"threads", host.threads}}}};
+    const std::pair<const char*, std::optional<unsigned>> numbers[] = {
+        {"family", host.family}, {"model", host.model}, {"stepping", host.stepping}};
+    for (const auto& [key, number] : numbers)
+        if (number) head["host"][key] = *number;
+    if (!options.label.empty()) head["label"] = options.label;
     if (options.packet_lanes != 0) head["packet_lanes"] = options.packet_lanes;
     return head;
 }

@@ -10,7 +10,7 @@ namespace tetrace {
 
 /// A verb's result, in each form that can be requested.
 struct Report {
-    std::string text; ///< for people
+    std::string text; ///< for people; may be in colour
     Table table;      ///< flat, for CSV and Markdown
     nlohmann::json json;
     std::string markdown = {}; ///< where it has more than the table's JSON; empty: the table's
@@ -41,8 +41,5 @@ void deliver_to_file(const Options& options, const Report& report);
 
 /// The head of every tetrace result: schema version, program, machine, time, and command line.
 [[nodiscard]] nlohmann::json result_head(const Options& options);
-
-/// Writes a file. Throws Error{invalid_input} naming it and the system's reason.
-void write_text(const std::filesystem::path& path, const std::string& text);
 
 } // namespace tetrace

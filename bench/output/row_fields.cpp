@@ -3,6 +3,7 @@
 #include "bench/output/device_json.h"
 #include "bench/rows/ray_json.h"
 #include "bench/rows/row_tracing.h"
+#include "bench/statistics/median_ratio.h"
 #include "core/base/hash.h"
 
 #include <fmt/format.h>
@@ -73,6 +74,14 @@ std::string status_text(const RowFacts& facts)
     if (status_of(*facts.row) == Status::flawed) text += ": " + reason_of(*facts.row);
     if (facts.figures && facts.figures->kernel_s.noisy()) text += ", noisy";
     return text;
+}
+
+/// Reads an end of the ratio's interval.
+auto end_of_interval(double FactorInterval::*end)
+{
+    return [=](const Comparison& comparison) {
+        return comparison.interval ? std::optional(*comparison.interval.*end) : std::nullopt;
+    };
 }
 
 json compile_and_build_s(const SetupTimes& setup)
@@ -163,23 +172,28 @@ std::vector<RowField> rate_fields()
          recorded("not_negative"), csv("steps per miss")},
         {"", "comparison",
          [](const Comparison& comparison) {
-             const MedianRatio& rate = comparison.rate;
-             return fmt::format("{:5.2f} [{:.2f}, {:.2f}]", rate.value, rate.low, rate.high);
+             const auto& interval = comparison.interval;
+             return fmt::format("{:5.2f}", comparison.ratio) +
+                    (interval ? fmt::format(" [{:.2f}, {:.2f}]", interval->low, interval->high) : "");
          },
          rates("x {reference}")},
         {ratio_group, "row",
          [](const RowFacts& facts) { return facts.comparison ? json(row_name(facts.row->key)) : json(); },
          recorded("line", required)},
-        {ratio_group, "ratio", in(&Comparison::rate, &MedianRatio::value),
+        {ratio_group, "ratio", &Comparison::ratio,
          recorded("positive", required,
                   "the reference's median device seconds over the row's: above 1 the row is faster"),
          csv("ratio to reference")},
-        {ratio_group, "low", in(&Comparison::rate, &MedianRatio::low), recorded("positive", required),
+        {ratio_group, "low", end_of_interval(&FactorInterval::low),
+         recorded("positive", optional, "of the interval; left out where a row has fewer than 5 samples"),
          csv({.title = "low", .key = "ratio_low"})},
-        {ratio_group, "high", in(&Comparison::rate, &MedianRatio::high), recorded("positive", required),
+        {ratio_group, "high", end_of_interval(&FactorInterval::high), recorded("positive"),
          csv({.title = "high", .key = "ratio_high"})},
-        {ratio_group, "confidence", [](const Comparison&) { return ratio_confidence; },
-         recorded(R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })", required)},
+        {ratio_group, "confidence",
+         [](const Comparison& comparison) {
+             return comparison.interval ? std::optional(ratio_confidence) : std::nullopt;
+         },
+         recorded(R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })")},
         {ratio_group, "reference", [](const Comparison& comparison) { return row_name(comparison.reference->key); },
          recorded("line", required), csv("reference")},
         {"rates", "ratio_to_single", &RowFacts::ratio_to_single,

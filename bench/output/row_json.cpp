@@ -62,7 +62,8 @@ nlohmann::json ratio_json(const RowFacts& facts)
 {
     nlohmann::json object;
     for (const RowField& field : row_fields())
-        if (field.group == std::string_view(ratio_group)) object[field.key] = field.value(facts);
+        if (field.group == std::string_view(ratio_group))
+            if (nlohmann::json value = field.value(facts); !value.is_null()) object[field.key] = std::move(value);
     return object;
 }
 

@@ -33,29 +33,34 @@ bool has_images_module()
     return std::filesystem::exists(module_beside_program());
 }
 
-ImageWriter::ImageWriter() : ImageWriter(module_beside_program()) {}
+ImageEncoder::ImageEncoder() : ImageEncoder(module_beside_program()) {}
 
 // The module stays loaded to the end of the process: OpenImageIO keeps threads of its own.
-ImageWriter::ImageWriter(const std::filesystem::path& module)
+ImageEncoder::ImageEncoder(const std::filesystem::path& module)
 {
     if (!std::filesystem::exists(module)) {
         module_missing(module, "no such file");
     }
     void* const handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-    void* const function = handle != nullptr ? dlsym(handle, "tetrace_write_image") : nullptr;
+    void* const function = handle != nullptr ? dlsym(handle, "tetrace_encode_image") : nullptr;
     if (function == nullptr) {
         module_missing(module, dlerror());
     }
-    write_image_ = reinterpret_cast<decltype(write_image_)>(function);
+    encode_image_ = reinterpret_cast<decltype(encode_image_)>(function);
 }
 
-void ImageWriter::write(const std::filesystem::path& path, const Pixmap& pixmap) const
+std::string ImageEncoder::bytes(const std::string& ending, const Pixmap& pixmap) const
 {
+    std::string bytes;
+    const auto take = [](void* receiver, const char* data, unsigned long size) {
+        static_cast<std::string*>(receiver)->assign(data, size);
+    };
     std::array<char, 512> reason{};
-    if (write_image_(path.c_str(), pixmap.width, pixmap.height, reinterpret_cast<const float*>(pixmap.pixels.data()),
-                     reason.data(), static_cast<unsigned>(reason.size())) != 0) {
-        throw Error(ErrorKind::invalid_input, fmt::format("writing the picture {}: {}", path.string(), reason.data()));
+    if (encode_image_(ending.c_str(), pixmap.width, pixmap.height, reinterpret_cast<const float*>(pixmap.pixels.data()),
+                      take, &bytes, reason.data(), static_cast<unsigned>(reason.size())) != 0) {
+        throw Error(ErrorKind::invalid_input, fmt::format("making a picture ({}): {}", ending, reason.data()));
     }
+    return bytes;
 }
 
 } // namespace tetrace

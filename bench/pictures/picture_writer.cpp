@@ -1,6 +1,7 @@
 #include "bench/pictures/picture_writer.h"
 
 #include "bench/pictures/ppm.h"
+#include "core/base/whole_file.h"
 
 namespace tetrace {
 
@@ -11,10 +12,7 @@ PictureWriter::PictureWriter(const std::string& ending)
 
 void PictureWriter::write(const std::filesystem::path& path, const Pixmap& pixmap) const
 {
-    if (images_)
-        images_->write(path, pixmap);
-    else
-        write_ppm(path, pixmap);
+    write_whole(path, images_ ? images_->bytes(path.extension().string(), pixmap) : ppm_bytes(pixmap));
 }
 
 } // namespace tetrace

@@ -17,7 +17,7 @@ public:
     void write(const std::filesystem::path& path, const Pixmap& pixmap) const;
 
 private:
-    std::optional<ImageWriter> images_; ///< of all forms but .ppm
+    std::optional<ImageEncoder> images_; ///< of all forms but .ppm
 };
 
 } // namespace tetrace

@@ -29,6 +29,13 @@ std::string minute_of(std::string date)
     return date;
 }
 
+/// How many processors other work took while rows were timed.
+Html others_of(const ResultValue& section)
+{
+    const auto load = section.find("load");
+    return load ? text(fmt::format("{:.2f}", load->at("others").number())) : Html();
+}
+
 Html results_table(const ReportInput& input)
 {
     HtmlTable table({{"result"},
@@ -39,6 +46,7 @@ Html results_table(const ReportInput& input)
                      {"system"},
                      {"threads", {}, true},
                      {"samples", "a row", true},
+                     {"others", "processors", true},
                      {"commit"},
                      {"compiler"}});
     for (std::size_t i = 0; i < input.files.size(); ++i) {
@@ -47,8 +55,8 @@ Html results_table(const ReportInput& input)
         const ResultValue section = file.section();
         table.add({text_element("b", "", file_letter(i, input.files.size())),
                    text_element("code", "", file.path.filename().string()), text(head.verb),
-                   text_element("span", "date", minute_of(head.date)), text(head.cpu), text(head.system),
-                   count_at(section, "threads"), count_at(section, "samples_a_row"),
+                   text_element("span", "date", minute_of(head.date)), text(head.machine), text(head.system),
+                   count_at(section, "threads"), count_at(section, "samples_a_row"), others_of(section),
                    text_element("code", "", head.commit), text(section.text_at("compiler"))});
     }
     return table.html();
@@ -129,7 +137,9 @@ std::vector<ToldDevice> all_devices(const ReportInput& input)
     std::vector<ToldDevice> all;
     for (std::size_t i = 0; i < input.files.size(); ++i)
         for (ToldDevice& device : devices_of(input.files[i])) {
-            device.host = input.files[i].head.cpu;
+            const ResultHead& head = input.files[i].head;
+            device.host = head.machine;
+            device.name = head.shown(device.name);
             device.letters = file_letter(i, input.files.size());
             const auto same = std::ranges::find_if(all, [&](const ToldDevice& other) {
                 return other.host == device.host && other.api == device.api && other.name == device.name &&

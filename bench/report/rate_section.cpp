@@ -81,7 +81,7 @@ Html rows_without_rate(const ReportInput& input)
 
 std::string device_text(const ReportRow& row, std::size_t files)
 {
-    return with_letter(row.row->device, row.file, files);
+    return with_letter(row.device, row.file, files);
 }
 
 std::size_t api_series(const std::string& backend)

@@ -10,7 +10,8 @@ namespace {
 
 const char* const how_to_read =
     "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
-    "with the 95 % interval of the ratio. A hollow dot's interval holds 1: no difference can be told.";
+    "with the 95 % interval of the ratio. A hollow dot's interval holds 1: no difference can be told. Rows with fewer "
+    "than 5 samples have no interval, and are not shown.";
 
 /// Identifies one chart.
 struct RatioKey {
@@ -76,7 +77,7 @@ Section ratio_section(const ReportInput& input)
     for (std::size_t file = 0; file < input.files.size(); ++file)
         if (const auto ratios = input.files[file].section().find("ratios"))
             for (const ResultValue& ratio : ratios->items())
-                add_ratio(groups, input, file, ratio);
+                if (ratio.find("low")) add_ratio(groups, input, file, ratio);
     Section section{"ratios", "APIs beside each other", {}};
     if (groups.empty()) {
         section.content =

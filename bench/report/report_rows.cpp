@@ -113,6 +113,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         row.row = &result.rows[i];
         row.kernel = kernel_of(items[i], result.rows[i]);
         row.api = result.rows[i].api();
+        row.device = result.head.shown(result.rows[i].device);
         row.rays = items[i].at("rays").line();
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");

@@ -24,6 +24,7 @@ struct ReportRow {
     std::string kernel;          ///< "cdt maria tet80", and whatever differs from the defaults
     std::string api;             ///< "vulkan", "vulkan:1"
     std::string rays;            ///< kind
+    std::string device;          ///< the row's, but of the processor the machine's name
     std::optional<RowRate> rate; ///< only of rows with a device
 
     [[nodiscard]] const std::string& name() const { return row->name; }

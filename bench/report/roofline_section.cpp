@@ -54,7 +54,8 @@ std::optional<DeviceRoof> roof_of(const ResultValue& device, std::size_t file, c
     if (!bandwidth) return std::nullopt;
     DeviceRoof roof;
     const std::string api = api_name(device.at("backend").line(), device.at("index").count());
-    roof.title = api + ": " + with_letter(device.at("name").line(), file, input.files.size());
+    const std::string name = input.files[file].head.shown(device.at("name").line());
+    roof.title = api + ": " + with_letter(name, file, input.files.size());
     roof.roofline.copy_bytes_per_s = bandwidth->number();
     if (roof.roofline.copy_bytes_per_s < 1 || roof.roofline.copy_bytes_per_s > 1e18)
         bandwidth->reject("is not between 1 and 1e18");

@@ -1,5 +1,6 @@
 #include "bench/results/result_comparison.h"
 
+#include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -43,9 +44,9 @@ std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile&
     const auto kept = [&](const ResultRow& row) { return std::regex_search(row.name, expression); };
     std::vector<ComparedRow> rows;
     for (const ResultRow& row : before.rows)
-        if (kept(row)) rows.push_back({&row, after.find_row(row.name), {}, {}});
+        if (kept(row)) rows.push_back({&row, after.find_row(row.name), {}, {}, {}});
     for (const ResultRow& row : after.rows)
-        if (kept(row) && before.find_row(row.name) == nullptr) rows.push_back({nullptr, &row, {}, {}});
+        if (kept(row) && before.find_row(row.name) == nullptr) rows.push_back({nullptr, &row, {}, {}, {}});
     for (ComparedRow& row : rows)
         row.outcome = outcome_of(row);
     return rows;
@@ -80,27 +81,32 @@ std::string different_work(const ResultFile& before, const ResultFile& after, co
     return {};
 }
 
-void require_same_work(const ResultFile& before, const ResultFile& after, const std::vector<ComparedRow>& rows)
-{
-    std::string lines;
-    for (const ComparedRow& row : rows)
-        if (row.outcome == RowOutcome::compared)
-            if (const std::string why = different_work(before, after, row); !why.empty())
-                lines += fmt::format("\n  {}: {}", row.name(), why);
-    if (lines.empty()) return;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("comparing A, '{}', with B, '{}': these rows did not do the same work, so that their times "
-                            "do not compare:{}\nmeasure both on the same scenes and views; rows whose answers may "
-                            "differ, as those of Embree or of math mode fast on another processor, are left out by "
-                            "--filter, for example --filter math:exact",
-                            before.path.string(), after.path.string(), lines));
-}
-
 [[noreturn]] void reject_pair(const ResultFile& before, const ResultFile& after, const std::string& why)
 {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("comparing A, '{}' (of 'tetrace {}'), with B, '{}' (of 'tetrace {}'): {}",
                             before.path.string(), before.head.verb, after.path.string(), after.head.verb, why));
+}
+
+/// Takes the rows that did different work out of the comparison. Some are expected: Embree's answers, and those of math
+/// mode fast, depend on the processor.
+void find_different_work(const ResultFile& before, const ResultFile& after, std::vector<ComparedRow>& rows)
+{
+    std::string reasons;
+    bool any_compared = false;
+    for (ComparedRow& row : rows) {
+        if (row.outcome != RowOutcome::compared) continue;
+        row.difference = different_work(before, after, row);
+        any_compared = any_compared || row.difference.empty();
+        if (row.difference.empty()) continue;
+        row.outcome = RowOutcome::different;
+        reasons += fmt::format("\n  {}: {}", row.name(), row.difference);
+    }
+    if (!any_compared && !reasons.empty())
+        reject_pair(before, after,
+                    fmt::format("no row did the same work in both, so that no times compare:{}\nmeasure both on the "
+                                "same scenes and views",
+                                reasons));
 }
 
 void require_rows(const ResultFile& before, const ResultFile& after, const std::vector<ComparedRow>& rows,
@@ -125,6 +131,7 @@ std::string ComparedRow::verdict() const
 {
     switch (outcome) {
     case RowOutcome::compared: return std::string(name_of(change->verdict));
+    case RowOutcome::different: return "DIFFERENT";
     case RowOutcome::failed: return "FAILED";
     case RowOutcome::missing: return "MISSING";
     case RowOutcome::added: return "NEW";
@@ -136,8 +143,9 @@ std::string ComparedRow::verdict() const
 std::string ComparedRow::note() const
 {
     if (has_too_few_samples())
-        return fmt::format("too few samples for an interval: {} in A and {} in B", before->samples_s.size(),
-                           after->samples_s.size());
+        return fmt::format("fewer than {} samples, so no interval: {} in A and {} in B", fewest_samples,
+                           before->samples_s.size(), after->samples_s.size());
+    if (outcome == RowOutcome::different) return difference;
     const std::string a = why_untimed("A", before), b = why_untimed("B", after);
     return a + (a.empty() || b.empty() ? "" : "; ") + b;
 }
@@ -181,7 +189,7 @@ ResultComparison compare_results(const ResultFile& before, const ResultFile& aft
 {
     ResultComparison comparison{&before, &after, tolerance, paired_rows(before, after, filter)};
     require_rows(before, after, comparison.rows, filter);
-    require_same_work(before, after, comparison.rows);
+    find_different_work(before, after, comparison.rows);
     const std::size_t compared = comparison.count(RowOutcome::compared);
     for (ComparedRow& row : comparison.rows)
         if (row.outcome == RowOutcome::compared)

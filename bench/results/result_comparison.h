@@ -11,11 +11,12 @@ namespace tetrace {
 
 /// How a row of one or both results compares.
 enum class RowOutcome {
-    compared, ///< timed in both
-    failed,   ///< timed before; wrong or in error after
-    missing,  ///< timed before; missing, skipped, unsupported or without samples after
-    added,    ///< timed after alone
-    untimed,  ///< timed in neither
+    compared,  ///< timed in both
+    different, ///< timed in both, but not of the same work: scene, views, size or hits differ
+    failed,    ///< timed before; wrong or in error after
+    missing,   ///< timed before; missing, skipped, unsupported or without samples after
+    added,     ///< timed after alone
+    untimed,   ///< timed in neither
 };
 
 /// A row of two results. Refers to them.
@@ -24,15 +25,17 @@ struct ComparedRow {
     const ResultRow* after = nullptr;  ///< the same; one of the two is there
     RowOutcome outcome = RowOutcome::untimed;
     std::optional<SpeedChange> change; ///< of compared rows
+    std::string difference;            ///< of rows that did different work: what differs
 
     [[nodiscard]] const std::string& name() const { return (before != nullptr ? before : after)->name; }
-    /// "SAME", "FASTER", "SLOWER" and "UNSURE" of compared rows; else "FAILED", "MISSING", "NEW" or "NOT TIMED".
+    /// "SAME", "FASTER", "SLOWER" and "UNSURE" of compared rows; else "DIFFERENT", "FAILED", "MISSING", "NEW" or "NOT
+    /// TIMED".
     [[nodiscard]] std::string verdict() const;
     /// Compared by its medians alone: the samples allow no interval, so that its verdict is "UNSURE" however far the
     /// medians lie apart.
     [[nodiscard]] bool has_too_few_samples() const { return change && !change->interval; }
-    /// Why the row is not compared, "B: skipped: no device", with B for after and A for before; that a compared row has
-    /// too few samples; else empty.
+    /// Why the row is not compared, "B: skipped: no device", with B for after and A for before, or what differs; that a
+    /// compared row has too few samples; else empty.
     [[nodiscard]] std::string note() const;
 };
 
@@ -55,9 +58,9 @@ struct ResultComparison {
 };
 
 /// Compares rows of equal names, of those whose name the regular expression matches (ECMAScript; empty: all).
-/// Throws Error{invalid_input} where the results are not of the same work: a row timed in both whose scenes' hashes,
-/// views, sizes or hit hashes differ, each with its name; and where there is nothing to compare: before has no timed
-/// row, or the two have no row in common.
+/// A row timed in both whose scenes' hashes, views, sizes or hit hashes differ did different work, and is not compared.
+/// Throws Error{invalid_input} where all such rows did different work, with the reasons; and where there is nothing to
+/// compare: before has no timed row, or the two have no row in common.
 [[nodiscard]] ResultComparison compare_results(const ResultFile& before, const ResultFile& after,
                                                const std::string& filter, double tolerance);
 

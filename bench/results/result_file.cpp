@@ -67,6 +67,16 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
     return value ? value->line() : std::string();
 }
 
+std::string machine_of(const ResultValue& section, const std::string& cpu)
+{
+    if (const auto label = section.find("label")) return label->line();
+    std::string numbers;
+    for (const char* const key : {"family", "model", "stepping"})
+        if (const auto number = section.at("host").find(key))
+            numbers += fmt::format("{}{} {}", numbers.empty() ? "" : ", ", key, number->count());
+    return numbers.empty() ? cpu : fmt::format("{} ({})", cpu, numbers);
+}
+
 ResultHead read_head(const ResultValue& section)
 {
     ResultHead head;
@@ -82,6 +92,7 @@ ResultHead read_head(const ResultValue& section)
     head.commit = section.at("commit").line();
     head.cpu = section.at("host").at("cpu").line();
     head.system = section.at("host").at("system").line();
+    head.machine = machine_of(section, head.cpu);
     return head;
 }
 

@@ -18,6 +18,10 @@ inline constexpr int schema_version = 2;
 struct ResultHead {
     std::uint64_t schema_version = 0;
     std::string verb, date, version, commit, cpu, system;
+    std::string machine; ///< the user's label; else the processor with family, model and stepping, where they are known
+
+    /// A device's name, but of the processor the machine's: several processors are called "AMD EPYC".
+    [[nodiscard]] const std::string& shown(const std::string& device) const { return device == cpu ? machine : device; }
 };
 
 /// A scene of a result with the rays that were traced through it.

@@ -165,15 +165,47 @@ std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& sce
     return rows;
 }
 
-std::string device_names(const Options& options, const Backend& backend)
+/// The usable devices of the backends kept, in one line, each with the APIs that have it:
+/// "llvmpipe (opencl, vulkan:1)".
+std::string device_names(const Options& options, const std::vector<Backend*>& backends)
 {
+    std::vector<std::pair<std::string, std::string>> names;
+    for (const Backend* backend : backends)
+        for (std::size_t i = 0; i < backend->devices().size(); ++i) {
+            const Device& device = backend->devices()[i];
+            if (!device.usable || !wanted(options.backends, backend->name())) continue;
+            const std::string api = i == 0 ? backend->name() : fmt::format("{}:{}", backend->name(), i);
+            const auto known = std::ranges::find(names, device.name, &std::pair<std::string, std::string>::first);
+            if (known == names.end())
+                names.emplace_back(device.name, api);
+            else
+                known->second += ", " + api;
+        }
     std::string text;
-    if (!options.devices.empty())
-        for (std::size_t i = 0; i < backend.devices().size(); ++i)
-            if (const Device& device = backend.devices()[i]; device.usable)
-                text += fmt::format("\n  a device is {}:{}: {}, {}, {}", backend.name(), i, device.name,
-                                    name_of(device.kind), device.driver);
+    for (const auto& [name, apis] : names)
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, apis);
     return text;
+}
+
+/// A text of --device that means no device would leave out what the user came for. Where no backend kept has a usable
+/// device, its rows give the reason.
+void require_named_devices(const Options& options, const std::vector<Backend*>& backends)
+{
+    const std::string names = device_names(options, backends);
+    if (names.empty()) return;
+    for (const std::string& text : options.devices) {
+        Options one = options;
+        one.devices = {text};
+        const auto has_it = [&](const Backend* backend) {
+            return wanted(options.backends, backend->name()) && has_usable_device(*backend) &&
+                   !devices_with_rows(one, *backend).empty();
+        };
+        if (std::ranges::none_of(backends, has_it))
+            throw Error(ErrorKind::missing,
+                        fmt::format("--device: no device's name contains {} (nor its driver, type, id or number); "
+                                    "there are: {}",
+                                    text, names));
+    }
 }
 
 /// The reasons of the backends asked for, to explain an empty selection.
@@ -185,8 +217,6 @@ std::string reasons(const Options& options)
             if (wanted_kernel(options, kernel) && wanted(options.backends, backend->name()))
                 if (const std::string reason = backend->why_not(0, kernel); !reason.empty())
                     text += fmt::format("\n  {} on {}: {}", name_of(kernel), backend->name(), reason);
-    for (const Backend* backend : all_backends())
-        if (wanted(options.backends, backend->name())) text += device_names(options, *backend);
     return text;
 }
 
@@ -314,6 +344,7 @@ std::string row_label(const RowKey& key)
 std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                 const std::vector<Backend*>& backends)
 {
+    require_named_devices(options, backends);
     std::vector<RowKey> unfiltered, rows;
     for (const std::string& scene : scene_labels)
         for (const RowKey& key : rows_of_kinds(options, scene, backends))
@@ -326,6 +357,7 @@ std::vector<RowKey> select_rows(const Options& options, const std::vector<std::s
 
 std::vector<RowKey> select_search_rows(const Options& options, const std::vector<Backend*>& backends)
 {
+    require_named_devices(options, backends);
     std::vector<RowKey> rows;
     for (RowKey key : rows_of_scene(options, search_scene, backends, kernels_of(Task::search))) {
         if (on_reference(key)) {

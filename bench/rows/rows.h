@@ -59,7 +59,8 @@ struct RowKey {
 /// --require names it.
 /// - A kernel that a backend has and a device cannot run still gets a row, which ends as unsupported.
 /// - Layout rt has rows by default only on real GPUs that run it, and elsewhere where --layout or a filter names it.
-/// Throws Error{usage} where nothing is selected; it names the options, and what there would be without them.
+/// Throws Error{missing} where a text of --device means no usable device, listing those that there are; Error{usage}
+/// where nothing is selected: it names the options, and what there would be without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 

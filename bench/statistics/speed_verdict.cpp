@@ -23,8 +23,8 @@ SpeedChange compare_speed(const std::vector<double>& before_s, const std::vector
 {
     SpeedChange change;
     change.ratio = statistics_of(before_s).median / statistics_of(after_s).median;
+    if (std::min(before_s.size(), after_s.size()) < fewest_samples) return change;
     const double smallest = smallest_error(before_s.size(), after_s.size());
-    if (smallest > comparison_error) return change;
     const double error = std::max(smallest, comparison_error / static_cast<double>(rows));
     change.interval = rank_interval(before_s, after_s, error);
     if (!change.interval) return change;

@@ -1,5 +1,6 @@
 #include "bench/terminal/progress.h"
 
+#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 
@@ -61,12 +62,6 @@ void clear_when_interrupted()
     }
 }
 
-bool colour_here()
-{
-    const char* no_colour = std::getenv("NO_COLOR");
-    return no_colour == nullptr || *no_colour == '\0';
-}
-
 } // namespace
 
 namespace {
@@ -75,7 +70,7 @@ ProgressLine make_progress_line()
 {
     const bool draws = draws_here();
     if (draws) clear_when_interrupted();
-    return ProgressLine(draws, colour_here());
+    return ProgressLine(draws, !is_colour_refused());
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "bench/terminal/table.h"
 
+#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 
@@ -18,10 +19,11 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-std::string padded(const std::string& text, std::size_t width, bool right)
+std::string padded(const std::string& text, std::size_t width, bool right, bool coloured = false)
 {
     const std::string blanks(width - std::min(width, display_width(text)), ' ');
-    return right ? blanks + text : text + blanks;
+    const std::string shown = coloured ? in_colour(text) : text;
+    return right ? blanks + shown : shown + blanks;
 }
 
 std::string without_trailing_blanks(std::string line)
@@ -106,7 +108,7 @@ std::string Table::text(std::size_t indent) const
         units += gap + padded(column.unit, width, right);
         any_unit = any_unit || !column.unit.empty();
         for (std::size_t r = 0; r < rows_.size(); ++r)
-            lines[r] += gap + padded(cell_text(rows_[r][c], column), width, right);
+            lines[r] += gap + padded(cell_text(rows_[r][c], column), width, right, column.coloured);
         gap = "  ";
     }
     std::string result = without_trailing_blanks(titles);

@@ -35,7 +35,8 @@ struct Column {
     std::string key;
     std::string title;
     std::string unit = {};
-    int decimals = 2; ///< of real numbers, in text and Markdown; CSV keeps all digits
+    int decimals = 2;      ///< of real numbers, in text and Markdown; CSV keeps all digits
+    bool coloured = false; ///< whether text() shows its words by in_colour()
 };
 
 /// A table that prints itself as aligned text, CSV or Markdown. Numbers are right-aligned, texts left-aligned.

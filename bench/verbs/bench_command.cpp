@@ -54,6 +54,7 @@ int bench_command(const Options& options)
         deliver(options, report);
     else if (options.out)
         deliver_to_file(options, report);
+    require_answers(result.run.rows, "measured");
     return exit_code(result.run.rows, true);
 }
 

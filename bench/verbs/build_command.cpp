@@ -4,6 +4,7 @@
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <optional>
 
@@ -22,7 +23,7 @@ struct Built {
     double build_s = 0;
     bool from_cache = false;
     RayTotals totals;
-    std::string reason; ///< why it failed
+    std::optional<Error> failure; ///< why it failed
 };
 
 template <class T>
@@ -90,8 +91,7 @@ Built build_one(const SceneRequest& request, const Options& options)
         built.scene = scene_json(scene, options);
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::usage) throw;
-        built.reason = error.what();
-        progress_line().clear();
+        built.failure = error;
     }
     return built;
 }
@@ -123,7 +123,7 @@ std::vector<Cell> table_row(const Built& built)
             cell_of(mean.miss),
             good ? Cell(hits_percent) : Cell(),
             built.totals.lost > 0 ? Cell(built.totals.lost) : Cell(),
-            good ? Cell() : Cell(built.reason)};
+            good ? Cell() : Cell(built.failure->what())};
 }
 
 std::vector<Column> columns(bool with_reason)
@@ -162,16 +162,30 @@ Table build_table(const std::vector<Built>& all, bool with_reason)
     return table;
 }
 
-/// Reasons are sentences, too long for a column on a terminal; they follow the table.
-std::string reasons_text(const std::vector<Built>& all)
+/// Reasons are too long for a column on a terminal. Each is said as soon as it is known, and once a scene.
+void tell_failure(const std::vector<Built>& all)
 {
-    std::string text;
-    for (const Built& built : all)
-        if (!built.scene)
-            text += fmt::format("\n{} ({}, {}, {}, {}) failed: {}\n", scene_label(built.request.name),
-                                name_of(built.request.build.tets), name_of(built.request.build.domain),
-                                built.request.build.divisions, built.request.build.switches, built.reason);
-    return text;
+    const Built& built = all.back();
+    if (!built.failure) return;
+    const std::string reason = built.failure->what();
+    const bool is_told = std::any_of(all.begin(), all.end() - 1, [&](const Built& other) {
+        return other.failure && other.request.name == built.request.name && other.failure->what() == reason;
+    });
+    const BuildOptions& how = built.request.build;
+    say(fmt::format("{} ({}, {}, {}, {}) failed{}", scene_label(built.request.name), name_of(how.tets),
+                    name_of(how.domain), how.divisions, how.switches,
+                    is_told ? " for the same reason" : ": " + reason));
+}
+
+/// As that of rows: 1 where rays are lost, else that of the first failure, else 0.
+int exit_code(const std::vector<Built>& all)
+{
+    int code = 0;
+    for (const Built& built : all) {
+        if (built.totals.lost > 0) return 1;
+        if (code == 0 && built.failure) code = exit_code(built.failure->kind());
+    }
+    return code;
 }
 
 Report build_report(const std::vector<Built>& all, const Options& options)
@@ -187,7 +201,7 @@ Report build_report(const std::vector<Built>& all, const Options& options)
         fmt::format("\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
                     "uniform line crosses, before and after optimising.\n",
                     selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
-    return {build_table(all, false).text() + reasons_text(all) + rays, full, {{"tetrace", std::move(section)}}};
+    return {build_table(all, false).text() + rays, full, {{"tetrace", std::move(section)}}};
 }
 
 } // namespace
@@ -198,13 +212,12 @@ int build_command(const Options& options)
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
     std::vector<Built> all;
-    bool failed = false;
     for (const SceneRequest& request : combinations(options)) {
         all.push_back(build_one(request, options));
-        failed = failed || !all.back().scene || all.back().totals.lost > 0;
+        tell_failure(all);
     }
     deliver(options, build_report(all, options));
-    return failed ? 1 : 0;
+    return exit_code(all);
 }
 
 } // namespace tetrace

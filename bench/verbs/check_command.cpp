@@ -8,6 +8,7 @@
 #include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
+#include "core/base/whole_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -16,6 +17,11 @@
 namespace tetrace {
 
 namespace {
+
+bool on_standard_output(const std::optional<std::filesystem::path>& file)
+{
+    return file && *file == "-";
+}
 
 RowFacts check_facts(const RowRun& row)
 {
@@ -102,7 +108,7 @@ std::string closing_text(const Checked& checked, const Options& options)
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             text += labelled("Picture", file.string());
-    if (options.junit) text += labelled("JUnit", options.junit->string());
+    if (options.junit && !on_standard_output(options.junit)) text += labelled("JUnit", options.junit->string());
     if (options.out) text += labelled("Result", options.out->string());
     return text;
 }
@@ -120,14 +126,19 @@ Report check_report(const Checked& checked, const Options& options)
     return report;
 }
 
-void write_junit(const std::vector<RowRun>& rows, const Options& options)
+/// problem: why the check ended early, or fails although no row does; empty where neither is so.
+void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem = {})
 {
     if (!options.junit) return;
     std::vector<bool> failed;
     for (const RowRun& row : rows)
         failed.push_back(fails_check(row, options));
-    const std::string xml = junit_xml(rows, failed);
-    write_text(*options.junit, options.anonymous ? anonymous_text(xml, options) : xml);
+    std::string xml = junit_xml(rows, failed, problem);
+    if (options.anonymous) xml = anonymous_text(xml, options);
+    if (on_standard_output(options.junit))
+        print(xml);
+    else
+        write_whole(*options.junit, xml);
 }
 
 /// Rows of Embree's own BVH and of drivers' are judged only where asked for: they make no claim to break.
@@ -166,17 +177,35 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
     }
 }
 
-/// A check without an answer from any device must not look like a check that passed.
-void require_answers(const std::vector<RowRun>& rows)
+/// checked: also what there is of it where the check ends early.
+int check(const Options& options, Checked& checked)
 {
-    const auto unanswered = [](const RowRun& row) {
-        const Status status = status_of(row);
-        return status == Status::skipped || status == Status::unsupported;
-    };
-    if (std::ranges::all_of(rows, unanswered))
-        throw Error(ErrorKind::missing, fmt::format("nothing was checked: no selected row could run here, for example "
-                                                    "{}: {}",
-                                                    row_name(rows.front().key), reason_of(rows.front())));
+    require_devices(options.required); // first: its reason for an empty selection is better
+    const auto keys = selected_rows(options, [](const std::string&) { return true; });
+    require_selected(keys, options.required);
+    for (const std::string& sentence : missing_default_scenes(options))
+        say(sentence);
+    checked.missing = missing_devices(options);
+    if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
+    checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
+        if (checked.pictures != nullptr) checked.pictures->see(image);
+    });
+    const auto& rows = checked.run.rows;
+    if (!on_standard_output(options.junit))
+        deliver(options, check_report(checked, options));
+    else if (options.out)
+        deliver_to_file(options, check_report(checked, options));
+    require_judged(rows, options.required);
+    require_answers(rows, "checked");
+    if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); })) return 1;
+    return exit_code(rows, options.allow_flawed);
+}
+
+int list_selected(const Options& options)
+{
+    for (const RowKey& key : selected_rows(options, [](const std::string&) { return true; }))
+        print(row_name(key) + "\n");
+    return 0;
 }
 
 } // namespace
@@ -184,31 +213,20 @@ void require_answers(const std::vector<RowRun>& rows)
 int check_command(const Options& asked)
 {
     const Options options = with_default_layouts(asked);
-    if (!options.list) require_devices(options.required); // first: its reason for an empty selection is better
-    const auto keys = selected_rows(options, [](const std::string&) { return true; });
-    if (options.list) {
-        for (const RowKey& key : keys)
-            print(row_name(key) + "\n");
-        return 0;
-    }
+    if (options.list) return list_selected(options);
     check_output(options);
-    if (options.junit) check_writable("--junit", *options.junit);
-    require_selected(keys, options.required);
-    for (const std::string& sentence : missing_default_scenes(options))
-        say(sentence);
+    if (options.junit && !on_standard_output(options.junit)) check_writable("--junit", *options.junit);
     Checked checked;
-    checked.missing = missing_devices(options);
-    if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
-    checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
-        if (checked.pictures != nullptr) checked.pictures->see(image);
-    });
-    const auto& rows = checked.run.rows;
-    write_junit(rows, options);
-    deliver(options, check_report(checked, options));
-    require_judged(rows, options.required);
-    require_answers(rows);
-    if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); })) return 1;
-    return exit_code(rows, options.allow_flawed);
+    int code = 0;
+    try {
+        code = check(options, checked);
+    } catch (const Error& error) {
+        // Whoever reads the XML alone must not take a check without a result for a good one.
+        if (error.kind() != ErrorKind::interrupted) write_junit(checked.run.rows, options, error.what());
+        throw;
+    }
+    write_junit(checked.run.rows, options);
+    return code;
 }
 
 } // namespace tetrace

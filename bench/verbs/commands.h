@@ -18,7 +18,7 @@ int reproduce_command(const Options& options);
 int compare_command(const Options& options);
 int report_command(const Options& options);
 
-/// Throws Error{missing} naming the first backend of the list that has no usable device.
+/// Throws Error{missing} naming the first backend of the list that has no usable device, with the reason.
 void require_devices(const std::vector<std::string>& backends);
 
 /// Runs the program on a command line without its name; prints errors; returns the exit code.

@@ -214,26 +214,23 @@ Table part_table()
     return table;
 }
 
-bool has_usable_device(const std::string& name)
+const Backend& backend_named(const std::string& name)
 {
-    for (const Backend* backend : all_backends()) {
-        const auto devices = backend->devices();
-        if (backend->name() == name && std::ranges::any_of(devices, [](const Device& device) { return device.usable; }))
-            return true;
-    }
-    return false;
+    for (const Backend* backend : all_backends())
+        if (backend->name() == name) return *backend;
+    throw Error(ErrorKind::internal, "backend_named: there is no backend " + name);
 }
 
 } // namespace
 
 void require_devices(const std::vector<std::string>& backends)
 {
-    for (const std::string& name : backends)
-        if (!has_usable_device(name))
+    for (const std::string& name : backends) {
+        const auto& devices = backend_named(name).devices();
+        if (std::ranges::none_of(devices, &Device::usable))
             throw Error(ErrorKind::missing,
-                        fmt::format("--require {}: this backend has no usable device here; 'tetrace "
-                                    "devices' tells the reason",
-                                    name));
+                        fmt::format("--require {}: no usable device here: {}", name, devices.front().reason));
+    }
 }
 
 int devices_command(const Options& options)

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <string>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
@@ -30,6 +31,8 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path))
         file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (file_ < 0 && errno == EEXIST);
     if (file_ < 0) fail("creating a temporary file for it");
+    struct stat before {};
+    if (::stat(path_.c_str(), &before) == 0) static_cast<void>(::fchmod(file_, before.st_mode & 0777u));
 }
 
 AtomicFile::~AtomicFile()

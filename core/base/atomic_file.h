@@ -7,8 +7,8 @@
 namespace tetrace {
 
 /// A file that appears whole or not at all: it is written under a temporary name in the same folder, synced, then
-/// renamed. Without commit() the temporary file is removed. Every call throws Error{invalid_input} naming the path and
-/// the system's reason.
+/// renamed; it has the permissions of the file that it replaces. Without commit() the temporary file is removed. Every
+/// call throws Error{invalid_input} naming the path and the system's reason.
 class AtomicFile {
 public:
     explicit AtomicFile(std::filesystem::path path);

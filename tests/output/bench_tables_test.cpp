@@ -1,10 +1,13 @@
 #include "bench/output/bench_tables.h"
 
+#include "bench/output/bench_answer.h"
 #include "bench/output/row_json.h"
 #include "bench/terminal/text.h"
 #include "tests/support/fake_backend.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -72,6 +75,34 @@ std::size_t widest(const std::string& text)
 }
 
 } // namespace
+
+TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
+{
+    RowRun bvh;
+    bvh.key = result_.run.rows[3].key; // openmp's
+    bvh.key.kernel.structure = Structure::bvh;
+    bvh.key.kernel.layout = Layout::bvh2;
+    bvh.backend = &openmp_;
+    bvh.device = openmp_.devices()[0];
+    bvh.outcome = result_.run.rows[3].outcome;
+    bvh.samples_s = {5, 5, 5, 5, 5};
+    result_.run.rows.push_back(std::move(bvh));
+    result_.comparisons = compare_rows(result_.run.rows);
+    result_.measurement.wall_s = 1;
+    result_.measurement.load = MachineLoad{0.05, 2.1, 2};
+    const auto unwrapped = [&] { return std::regex_replace(answer_text(result_), std::regex("\\s+"), " "); };
+    const std::string quiet = unwrapped();
+    EXPECT_TRUE(contains(quiet, "bunny (CPU): bvh bvh2 on openmp, 800.0 Mrays/s")) << quiet;
+    EXPECT_TRUE(contains(quiet, "bunny (H200): ")) << quiet;
+    EXPECT_TRUE(contains(quiet, "the fastest CDT has 0.50 of the rate of the fastest BVH")) << quiet;
+    EXPECT_TRUE(
+        contains(quiet, "APIs by openmp's rate, medians over the kernels: cuda-host 1.00, opencl 1.00, vulkan 1.00"))
+        << quiet;
+    EXPECT_TRUE(contains(quiet, "others used 0.05 of 2 processors while measuring")) << quiet;
+    EXPECT_FALSE(contains(quiet, "do not trust")) << quiet;
+    result_.measurement.load->others = 1.3;
+    EXPECT_TRUE(contains(unwrapped(), "do not trust these rates")) << unwrapped();
+}
 
 TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)
 {

@@ -21,15 +21,15 @@ RowRun skipped_row(const std::string& reason)
     return row;
 }
 
-/// Python's parser, where it is installed, says whether the text is XML.
-void expect_well_formed(const std::string& xml)
+/// xmllint, where it is installed, says whether the text is what tests/output/junit.xsd allows.
+void expect_valid(const std::string& xml)
 {
     const TemporaryFolder folder;
     write_file(folder / "result.xml", xml);
-    if (std::system("python3 -c 'import xml.dom.minidom' 2> /dev/null") != 0)
-        GTEST_SKIP() << "python3 is not installed (package python3), so nothing reads the XML";
-    const std::string command = "python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' " +
-                                (folder / "result.xml").string();
+    if (std::system("xmllint --version > /dev/null 2>&1") != 0)
+        GTEST_SKIP() << "xmllint is not installed (package libxml2-utils), so nothing reads the XML";
+    const std::string command =
+        "xmllint --noout --schema '" TETRACE_JUNIT_SCHEMA "' '" + (folder / "result.xml").string() + "'";
     EXPECT_EQ(std::system(command.c_str()), 0) << xml;
 }
 
@@ -54,11 +54,40 @@ TEST(Junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
     rows.push_back(skipped_row(""));
     rows[1].outcome = Failed{ErrorKind::internal, "device lost"};
     const std::string xml = junit_xml(rows, {false, false});
-    EXPECT_TRUE(
-        contains(xml, "<testsuites name=\"tetrace check\" tests=\"2\" failures=\"0\" errors=\"1\" skipped=\"1\">"));
+    EXPECT_TRUE(contains(xml, "<testsuites name=\"tetrace check\" tests=\"2\" failures=\"0\" errors=\"1\">"));
+    EXPECT_TRUE(contains(xml, "errors=\"1\" skipped=\"1\" time="));
     EXPECT_TRUE(contains(xml, "<skipped message=\"unsupported: buffers of 3 &lt; 4 &amp; 5 ? GB\"/>"));
     EXPECT_TRUE(contains(xml, "<error message=\"error: device lost\"/>"));
-    expect_well_formed(xml);
+    expect_valid(xml);
+}
+
+TEST(Junit, a_check_without_a_result_is_a_case_in_error)
+{
+    const std::string xml = junit_xml({}, {}, "--require cuda: no driver");
+    EXPECT_TRUE(contains(xml, "<testsuites name=\"tetrace check\" tests=\"1\" failures=\"0\" errors=\"1\">"));
+    EXPECT_TRUE(contains(xml, "<error message=\"--require cuda: no driver\"/>"));
+    expect_valid(xml);
+}
+
+TEST(Junit, classes_have_no_version_and_properties_have_them)
+{
+    const auto xml_of = [](const char* name, const char* driver) {
+        std::vector<RowRun> rows;
+        rows.push_back(skipped_row(""));
+        rows[0].key.backend = "vulkan";
+        rows[0].device.name = name;
+        rows[0].device.driver = driver;
+        return junit_xml(rows, {false});
+    };
+    for (const char* const name : {"llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe (LLVM 19.1.7, 128 bits)"})
+        EXPECT_TRUE(contains(xml_of(name, ""), "classname=\"tetrace.vulkan.llvmpipe\""));
+    EXPECT_TRUE(
+        contains(xml_of("Intel(R) UHD Graphics 620", ""), "classname=\"tetrace.vulkan.Intel-UHD-Graphics-620\""));
+    EXPECT_TRUE(contains(xml_of("", ""), "classname=\"tetrace.vulkan\""));
+    const std::string xml = xml_of("llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa 22.3.6");
+    EXPECT_TRUE(contains(xml, "<property name=\"vulkan.device\" value=\"llvmpipe (LLVM 15.0.6, 256 bits)\"/>"));
+    EXPECT_TRUE(contains(xml, "<property name=\"vulkan.driver\" value=\"Mesa 22.3.6\"/>"));
+    expect_valid(xml);
 }
 
 TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
@@ -78,7 +107,7 @@ TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
     const std::string xml = junit_xml(rows, {true});
     EXPECT_TRUE(contains(xml, "<failure message=\"wrong: 1 ray: 1 different from openmp&apos;s\">"));
     EXPECT_TRUE(contains(xml, "the first at view 0, pixel (8, 8)"));
-    EXPECT_TRUE(contains(xml, "<property name=\"hit_hash\""));
-    EXPECT_TRUE(contains(xml, "classname=\"openmp "));
-    expect_well_formed(xml);
+    EXPECT_TRUE(contains(xml, "hit_hash: "));
+    EXPECT_TRUE(contains(xml, "classname=\"tetrace.openmp."));
+    expect_valid(xml);
 }

@@ -44,6 +44,29 @@ TEST_F(ReportPage, emulated_devices_and_gpus_share_no_chart)
     }
 }
 
+TEST_F(ReportPage, processors_of_one_name_are_told_apart)
+{
+    json zen3 = bench_json(), zen5 = bench_json();
+    for (json* result : {&zen3, &zen5})
+        for (json* device : {&(*result)["tetrace"]["devices"][0], &(*result)["tetrace"]["rows"][0]["device"]})
+            (*device)["name"] = (*result)["tetrace"]["host"]["cpu"];
+    zen3["tetrace"]["host"].update({{"family", 25}, {"model", 1}, {"stepping", 1}});
+    zen5["tetrace"]["label"] = "Zen 5";
+    const std::string page = page_of({zen3, zen5});
+    for (const char* const section : {"machines", "rates", "roofline"}) {
+        EXPECT_TRUE(contains(section_of(page, section), "(family 25, model 1, stepping 1)")) << section;
+        EXPECT_TRUE(contains(section_of(page, section), "Zen 5")) << section;
+    }
+}
+
+TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
+{
+    json busy = bench_json();
+    busy["tetrace"]["load"] = {{"others", 1.25}, {"average", 3.5}, {"processors", 2}};
+    EXPECT_TRUE(contains(section_of(page_of({busy}), "machines"), "1.25"));
+    EXPECT_FALSE(contains(section_of(page_of({bench_json()}), "machines"), "others"));
+}
+
 TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
 {
     json other = bench_json();

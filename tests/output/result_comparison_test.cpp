@@ -70,13 +70,18 @@ protected:
     {
         return compare_results(file("a.json", before), file("b.json", after), filter, 0.03);
     }
-    /// Why a row that was timed in both is refused, its second version changed.
-    std::string refusal(const std::function<void(Json& tetrace)>& change)
+    /// What is told of the second of two rows where its second version, or the whole second result, was changed.
+    std::string difference(const std::function<void(Json& tetrace)>& change)
     {
         const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
         Json after = before;
         change(after["tetrace"]);
-        return error_of([&] { static_cast<void>(compare(before, after)); });
+        std::string told;
+        const std::string error = error_of([&] {
+            const ComparedRow row = compare(before, after).rows[1];
+            told = row.outcome == RowOutcome::different ? row.verdict() + ": " + row.note() : "";
+        });
+        return error + told;
     }
 
     TemporaryFolder folder_;
@@ -142,29 +147,32 @@ TEST_F(ResultComparisons, a_row_that_is_wrong_has_no_rate_even_where_it_has_samp
     EXPECT_EQ(compare(result_of({timed_row("one", 1)}), result_of({wrong})).rows[0].verdict(), "FAILED");
 }
 
-TEST_F(ResultComparisons, of_different_work_is_refused_naming_the_rows)
+TEST_F(ResultComparisons, rows_of_different_work_are_listed_with_the_reason_and_the_others_compared)
 {
-    const std::string hits = refusal([](Json& tetrace) { tetrace["rows"][1]["hit_hash"] = "00000000000000fe"; });
-    EXPECT_TRUE(contains(hits, "invalid_input: "));
-    EXPECT_TRUE(contains(hits, "two: hit hash 00000000000000ff in A and 00000000000000fe in B"));
-    EXPECT_FALSE(contains(hits, "one: ")) << hits;
-    const std::string hash = refusal([](Json& tetrace) { tetrace["scenes"][0]["hash"] = "0000000000000000"; });
-    EXPECT_TRUE(contains(hash, "one: the scene cubes has hash 0123456789abcdef in A and 0000000000000000 in B"));
-    EXPECT_TRUE(contains(hash, "two: the scene cubes"));
-    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["scenes"][0]["width"] = 25; }),
-                         "2 views of smoke at 24x16 in A, 2 views of smoke at 25x16 in B"));
-    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["scenes"][0]["views"] = {0, 2}; }), "other views"));
-    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["rows"][0].erase("hit_hash"); }), "no hit hash in B"));
-    EXPECT_TRUE(contains(refusal([](Json& tetrace) { tetrace["scenes"].clear(); }), "not among tetrace.scenes"));
-    EXPECT_EQ(refusal([](Json&) {}), "");
+    EXPECT_EQ(difference([](Json& tetrace) { tetrace["rows"][1]["hit_hash"] = "00000000000000fe"; }),
+              "DIFFERENT: hit hash 00000000000000ff in A and 00000000000000fe in B");
+    EXPECT_EQ(difference([](Json& tetrace) { tetrace["rows"][1].erase("hit_hash"); }), "DIFFERENT: no hit hash in B");
+    EXPECT_EQ(difference([](Json&) {}), "");
+    const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
+    Json after = result_of({timed_row("one", 1), timed_row("two", 100)});
+    after["tetrace"]["rows"][1]["hit_hash"] = "00000000000000fe";
+    const auto comparison = compare(before, after);
+    EXPECT_EQ(comparison.rows[0].verdict(), "SAME");
+    EXPECT_EQ(comparison.count(RowOutcome::different), 1u);
+    EXPECT_NEAR(comparison.geometric_mean().value(), 1, 1e-9) << "different work has no part in it";
+    EXPECT_TRUE(comparison.regressions(false).empty()) << "nor is it a regression";
 }
 
-TEST_F(ResultComparisons, leaves_out_by_the_filter_what_would_be_refused)
+TEST_F(ResultComparisons, is_refused_where_all_rows_did_different_work)
 {
-    const Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
-    Json after = before;
-    after["tetrace"]["rows"][1]["hit_hash"] = "00000000000000fe";
-    EXPECT_EQ(compare(before, after, "^o").rows.size(), 1u);
+    const std::string hash = difference([](Json& tetrace) { tetrace["scenes"][0]["hash"] = "0000000000000000"; });
+    EXPECT_TRUE(contains(hash, "invalid_input: "));
+    EXPECT_TRUE(contains(hash, "one: the scene cubes has hash 0123456789abcdef in A and 0000000000000000 in B"));
+    EXPECT_TRUE(contains(hash, "two: the scene cubes"));
+    EXPECT_TRUE(contains(difference([](Json& tetrace) { tetrace["scenes"][0]["width"] = 25; }),
+                         "2 views of smoke at 24x16 in A, 2 views of smoke at 25x16 in B"));
+    EXPECT_TRUE(contains(difference([](Json& tetrace) { tetrace["scenes"][0]["views"] = {0, 2}; }), "other views"));
+    EXPECT_TRUE(contains(difference([](Json& tetrace) { tetrace["scenes"].clear(); }), "not among tetrace.scenes"));
 }
 
 TEST_F(ResultComparisons, of_nothing_is_refused)

@@ -49,12 +49,26 @@ protected:
 
 } // namespace
 
+TEST_F(ResultFiles, name_the_machine_by_its_label_or_else_by_all_that_is_known_of_the_processor)
+{
+    nlohmann::json json = small_result();
+    json["tetrace"]["host"] = {
+        {"cpu", "AMD EPYC"}, {"family", 25}, {"model", 1}, {"stepping", 0}, {"system", "a system"}};
+    const ResultHead head = read(json.dump()).head;
+    EXPECT_EQ(head.machine, "AMD EPYC (family 25, model 1, stepping 0)");
+    EXPECT_EQ(head.shown("AMD EPYC"), head.machine);
+    EXPECT_EQ(head.shown("a GPU"), "a GPU");
+    json["tetrace"]["label"] = "Zen 3";
+    EXPECT_EQ(read(json.dump()).head.machine, "Zen 3");
+}
+
 TEST_F(ResultFiles, is_read)
 {
     const ResultFile result = read(small_result().dump());
     EXPECT_EQ(result.head.verb, "bench");
     EXPECT_EQ(result.head.commit, "abc1234");
     EXPECT_EQ(result.head.cpu, "a processor");
+    EXPECT_EQ(result.head.machine, "a processor");
     ASSERT_NE(result.find_scene("cubes"), nullptr);
     EXPECT_EQ(result.find_scene("cubes")->hash, "0123456789abcdef");
     EXPECT_EQ(result.find_scene("cubes")->views, (std::vector<std::uint64_t>{0, 3}));

@@ -1,4 +1,6 @@
 #include "bench/terminal/table.h"
+
+#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 
@@ -85,4 +87,20 @@ TEST(Text, numbers_and_sizes_read_well)
     EXPECT_EQ(seconds_text(12.2), "12 s");
     EXPECT_EQ(seconds_text(59.7), "1 min 00 s");
     EXPECT_EQ(seconds_text(185), "3 min 05 s");
+}
+
+TEST(Table, words_that_mean_trouble_are_in_colour_and_columns_stay_aligned)
+{
+    Table table({{"row", "row"}, {.key = "status", .title = "status", .coloured = true}, {"n", "n"}});
+    table.add({"a", "wrong: 1 ray", std::uint64_t{1}});
+    table.add({"b", "ok", std::uint64_t{2}});
+    const std::string text = table.text();
+    EXPECT_EQ(text, "row  status        n\n"
+                    "a    \x1b[31mwrong: 1 ray\x1b[0m  1\n"
+                    "b    ok            2\n");
+    EXPECT_EQ(without_colour(text), "row  status        n\n"
+                                    "a    wrong: 1 ray  1\n"
+                                    "b    ok            2\n");
+    EXPECT_FALSE(table.csv().find('\x1b') != std::string::npos);
+    EXPECT_FALSE(table.markdown().find('\x1b') != std::string::npos);
 }

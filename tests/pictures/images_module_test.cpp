@@ -1,4 +1,4 @@
-#include "bench/pictures/images.h"
+#include "bench/pictures/picture_writer.h"
 
 #include "tests/support/temporary_folder.h"
 
@@ -66,7 +66,7 @@ protected:
     }
 
     TemporaryFolder folder_;
-    ImageWriter writer_;
+    PictureWriter writer_{".png"};
 };
 
 } // namespace
@@ -93,7 +93,7 @@ TEST_F(ImagesModule, colours_beyond_the_screen_are_clamped)
     EXPECT_EQ(values[2], 0.0f);
 }
 
-TEST_F(ImagesModule, a_folder_that_is_not_there_is_an_error_with_the_file_name)
+TEST_F(ImagesModule, a_missing_folder_is_an_error_with_the_file_name)
 {
     const auto path = folder_ / "none/a.png";
     EXPECT_TRUE(contains(refusal(path, sample()), path.string()));

@@ -1,13 +1,9 @@
 #include "bench/pictures/ppm.h"
 
-#include "core/base/error.h"
-#include "tests/support/temporary_folder.h"
-
 #include <gtest/gtest.h>
 #include <limits>
 
 using namespace tetrace;
-using namespace tetrace::test;
 
 TEST(Ppm, has_a_header_and_three_bytes_a_pixel_row_after_row)
 {
@@ -28,15 +24,4 @@ TEST(Ppm, light_beyond_what_a_screen_shows_is_clamped)
     EXPECT_EQ(to_srgb(-1.0f), 0);
     EXPECT_EQ(to_srgb(7.0f), 255);
     EXPECT_EQ(to_srgb(std::numeric_limits<float>::quiet_NaN()), 0);
-}
-
-TEST(Ppm, a_file_that_cannot_be_written_is_named)
-{
-    const TemporaryFolder folder;
-    try {
-        write_ppm(folder.path() / "nowhere" / "a.ppm", Pixmap(1, 1));
-        FAIL() << "nothing was thrown";
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("a.ppm: No such file"), std::string::npos) << error.what();
-    }
 }

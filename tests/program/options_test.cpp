@@ -33,6 +33,16 @@ TEST(Options, without_arguments_help_is_asked_for)
     EXPECT_EQ(parse_options({"--version"}).verb, Verb::version);
 }
 
+TEST(Options, slips_of_the_hand_get_a_guess)
+{
+    EXPECT_TRUE(contains(rejection({"bench", "--smaples", "3"}), "; did you mean --samples?"));
+    EXPECT_TRUE(contains(rejection({"bench", "--scne=bunny"}), "; did you mean --scene?"));
+    EXPECT_TRUE(contains(rejection({"becnh"}), "'becnh' is not a verb; did you mean bench?"));
+    EXPECT_FALSE(contains(rejection({"bench", "--colour"}), "did you mean"));
+    EXPECT_FALSE(contains(rejection({"draw"}), "did you mean"));
+    EXPECT_EQ(did_you_mean("ab", {"abc", "cb"}), "") << "of short names everything is near";
+}
+
 TEST(Options, defaults_are_those_of_the_main_job)
 {
     const Options options = parse_options({"bench"});

@@ -1,3 +1,4 @@
+#include "bench/terminal/text.h"
 #include "tests/support/program_fixture.h"
 
 #include <algorithm>
@@ -210,14 +211,51 @@ TEST_F(Program, check_shows_rows_against_devices_and_writes_junit)
     EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
     EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
     EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+    EXPECT_TRUE(contains(file("check.xml"), "classname=\"tetrace.openmp."));
+    EXPECT_TRUE(contains(file("check.xml"), "<property name=\"tetrace.version\""));
 }
 
-TEST_F(Program, a_check_of_which_no_row_could_run_does_not_pass)
+TEST_F(Program, a_run_of_which_no_row_could_run_does_not_pass)
 {
-    ::setenv("CUDA_VISIBLE_DEVICES", "", 1); // where there is a GPU, CUDA has none for this program
-    const Ended ended = run("check --backend cuda --scene cubes --resolution 6 --size 24");
-    EXPECT_EQ(ended.code, 3) << ended.out;
-    EXPECT_TRUE(contains(ended.errors, "nothing was checked")) << ended.errors;
+    const ScopedVariable none("CUDA_VISIBLE_DEVICES", ""); // where there is a GPU, CUDA has none for this program
+    const auto expect_missing = [&](const char* verb, const char* text) {
+        const Ended ended =
+            run(std::string(verb) + " --backend cuda --scene cubes --resolution 6 --size 24 --out a.json");
+        EXPECT_EQ(ended.code, 3) << ended.out;
+        EXPECT_TRUE(contains(ended.errors, text)) << ended.errors;
+        const auto row = nlohmann::json::parse(file("a.json"))["tetrace"]["rows"][0];
+        EXPECT_TRUE(contains(ended.errors, row["reason"].get<std::string>())) << ended.errors;
+    };
+    expect_missing("check", "nothing was checked");
+    expect_missing("bench", "nothing was measured");
+}
+
+TEST_F(Program, a_check_that_ends_early_says_why_in_its_junit_and_on_standard_error)
+{
+    const ScopedVariable none("CUDA_VISIBLE_DEVICES", "");
+    const std::string tiny = " --scene cubes --resolution 3 --size 8 --junit check.xml";
+    for (const char* const arguments :
+         {"check --require cuda", "check --require embree --backend openmp", "check --backend openmp --device nvidia",
+          "check --backend openmp --scene no-such-scene", "check --backend cuda"}) {
+        std::filesystem::remove(folder_ / "check.xml");
+        const Ended ended = run(arguments + tiny);
+        EXPECT_NE(ended.code, 0) << arguments;
+        const std::string reason = ended.errors.substr(0, ended.errors.find('\n'));
+        ASSERT_TRUE(reason.starts_with("tetrace: ")) << arguments << ended.errors;
+        EXPECT_TRUE(contains(file("check.xml"), "<error message=\"" + xml_text(reason.substr(9)))) << file("check.xml");
+        EXPECT_TRUE(contains(file("check.xml"), "errors=\"1\"")) << file("check.xml");
+    }
+}
+
+TEST_F(Program, a_device_that_is_missing_is_told_in_one_line)
+{
+    for (const char* const verb : {"check", "bench", "render"}) {
+        const Ended ended = run(std::string(verb) + " --scene cubes --backend openmp,embree --device nvidia");
+        EXPECT_EQ(ended.code, 3) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "no device's name contains nvidia")) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "(openmp, embree)")) << ended.errors;
+        EXPECT_EQ(std::count(ended.errors.begin(), ended.errors.end(), '\n'), 1) << ended.errors;
+    }
 }
 
 TEST_F(Program, checks_embree_where_it_is_asked_for)
@@ -232,7 +270,7 @@ TEST_F(Program, builds_every_combination_and_goes_on_after_a_failure)
 {
     std::ofstream(folder_.path() / "broken.tet") << "no scene";
     const Ended ended = run("build --scene cubes,broken.tet --resolution 6 --size 24 --format json");
-    EXPECT_EQ(ended.code, 1) << ended.errors;
+    EXPECT_EQ(ended.code, 2) << ended.errors;
     const auto builds = nlohmann::json::parse(ended.out)["tetrace"]["builds"];
     ASSERT_EQ(builds.size(), 2u);
     EXPECT_EQ(builds[0]["status"], "ok");
@@ -295,6 +333,16 @@ TEST_F(Program, google_benchmarks_context_is_added_once)
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_EQ(nlohmann::json::parse(ended.out)["context"]["a"], "b");
     EXPECT_FALSE(contains(ended.errors, "ontext")) << ended.errors;
+}
+
+TEST_F(Program, a_result_tells_the_processors_family_model_and_stepping)
+{
+    const std::string processor = read_text("/proc/cpuinfo");
+    if (!contains(processor, "cpu family")) GTEST_SKIP() << "this system does not tell them of its processor";
+    const auto host = nlohmann::json::parse(run("devices --format json").out)["tetrace"]["host"];
+    EXPECT_TRUE(contains(processor, fmt::format("cpu family\t: {}\n", host["family"].get<unsigned>())));
+    EXPECT_TRUE(contains(processor, fmt::format("model\t\t: {}\n", host["model"].get<unsigned>())));
+    EXPECT_TRUE(contains(processor, fmt::format("stepping\t: {}\n", host["stepping"].get<unsigned>())));
 }
 
 TEST_F(Program, a_result_tells_the_threads_that_worked)

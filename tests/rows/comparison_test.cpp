@@ -32,11 +32,21 @@ TEST(Comparison, emulations_compare_with_openmp_and_gpus_with_cuda)
     EXPECT_FALSE(found[0].has_value()) << "the reference itself";
     ASSERT_TRUE(found[1].has_value());
     EXPECT_EQ(found[1]->reference, &rows[0]);
-    EXPECT_DOUBLE_EQ(found[1]->rate.value, 0.5) << "above 1 is faster";
-    EXPECT_TRUE(found[1]->rate.contains(0.5));
+    EXPECT_DOUBLE_EQ(found[1]->ratio, 0.5) << "above 1 is faster";
+    EXPECT_TRUE(found[1]->interval.value().contains(0.5));
     ASSERT_TRUE(found[2].has_value());
     EXPECT_EQ(found[2]->reference, &rows[3]);
     EXPECT_FALSE(found[3].has_value());
+}
+
+TEST(Comparison, of_fewer_than_five_samples_has_no_interval)
+{
+    auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 4));
+    rows[1].samples_s.resize(5);
+    EXPECT_TRUE(compare_rows(rows)[1]->interval.has_value());
+    rows[1].samples_s.resize(4);
+    EXPECT_FALSE(compare_rows(rows)[1]->interval.has_value());
+    EXPECT_NEAR(compare_rows(rows)[1]->ratio, 0.5, 0.01);
 }
 
 TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)

@@ -3,11 +3,13 @@
 #include "bench/options/benchmark_flags.h"
 #include "bench/rows/rows.h"
 #include "core/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using tetrace::test::error_of;
 
 namespace {
 
@@ -120,7 +122,11 @@ TEST(Rows, devices_are_chosen_by_a_part_of_what_describes_them_in_any_case)
     EXPECT_EQ(indices("radeON"), std::vector<std::size_t>{0});
     EXPECT_EQ(indices("EMULATED"), std::vector<std::size_t>{1});
     EXPECT_EQ(indices("radeon,pipe"), (std::vector<std::size_t>{0, 1}));
-    EXPECT_THROW(static_cast<void>(indices("geforce")), Error);
+    for (const char* const text : {"geforce", "radeon,geforce"})
+        EXPECT_EQ(
+            error_of([&] { static_cast<void>(indices(text)); }),
+            "missing: --device: no device's name contains geforce (nor its driver, type, id or number); there are: "
+            "Radeon (old), llvmpipe (old:1)");
 }
 
 TEST(Rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)

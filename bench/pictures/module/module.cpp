@@ -1,11 +1,11 @@
 // The images module: all of tetrace that knows OpenImageIO. Loaded by bench/pictures/images.cpp.
 #include "bench/pictures/images.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,51 +20,60 @@ OIIO::ImageSpec spec_of(unsigned width, unsigned height, const OIIO::TypeDesc& t
     return spec;
 }
 
-void write(const std::string& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type, const void* pixels)
+using Bytes = std::vector<unsigned char>;
+
+/// ending: decides the format.
+Bytes encoded(const std::string& ending, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type, const void* pixels)
 {
-    const auto output = OIIO::ImageOutput::create(path);
+    const std::string name = "picture" + ending;
+    const auto output = OIIO::ImageOutput::create(name);
     if (!output) {
         throw std::runtime_error(OIIO::geterror());
     }
-    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close()) {
+    OIIO::Filesystem::IOVecOutput memory;
+    if (!output->set_ioproxy(&memory) || !output->open(name, spec) || !output->write_image(type, pixels) ||
+        !output->close()) {
         throw std::runtime_error(output->geterror());
     }
+    return memory.buffer();
 }
 
-void write_png(const std::string& path, unsigned width, unsigned height, const float* linear_rgb)
+Bytes encoded_png(unsigned width, unsigned height, const float* linear_rgb)
 {
-    std::vector<unsigned char> bytes(std::size_t{width} * height * 3);
-    std::transform(linear_rgb, linear_rgb + bytes.size(), bytes.begin(), tetrace::to_srgb);
-    write(path, spec_of(width, height, OIIO::TypeDesc::UINT8, "sRGB"), OIIO::TypeDesc::UINT8, bytes.data());
+    Bytes channels(std::size_t{width} * height * 3);
+    std::transform(linear_rgb, linear_rgb + channels.size(), channels.begin(), tetrace::to_srgb);
+    return encoded(".png", spec_of(width, height, OIIO::TypeDesc::UINT8, "sRGB"), OIIO::TypeDesc::UINT8,
+                   channels.data());
 }
 
-void write_exr(const std::string& path, unsigned width, unsigned height, const float* linear_rgb)
+Bytes encoded_exr(unsigned width, unsigned height, const float* linear_rgb)
 {
-    write(path, spec_of(width, height, OIIO::TypeDesc::HALF, "Linear"), OIIO::TypeDesc::FLOAT, linear_rgb);
+    return encoded(".exr", spec_of(width, height, OIIO::TypeDesc::HALF, "Linear"), OIIO::TypeDesc::FLOAT, linear_rgb);
 }
 
-void write_by_extension(const std::string& path, unsigned width, unsigned height, const float* linear_rgb)
+Bytes encoded_by_ending(const std::string& ending, unsigned width, unsigned height, const float* linear_rgb)
 {
-    const std::string extension = std::filesystem::path(path).extension().string();
     if (width == 0 || height == 0) {
         throw std::runtime_error("the picture has no pixels");
     }
-    if (extension == ".png") {
-        write_png(path, width, height, linear_rgb);
-    } else if (extension == ".exr") {
-        write_exr(path, width, height, linear_rgb);
-    } else {
-        throw std::runtime_error("the name must end in .png or .exr");
+    if (ending == ".png") {
+        return encoded_png(width, height, linear_rgb);
     }
+    if (ending == ".exr") {
+        return encoded_exr(width, height, linear_rgb);
+    }
+    throw std::runtime_error("the name must end in .png or .exr");
 }
 
 } // namespace
 
-extern "C" int tetrace_write_image(const char* path, unsigned width, unsigned height, const float* linear_rgb,
-                                   char* error, unsigned error_size)
+extern "C" int tetrace_encode_image(const char* ending, unsigned width, unsigned height, const float* linear_rgb,
+                                    void (*take)(void* receiver, const char* bytes, unsigned long size), void* receiver,
+                                    char* error, unsigned error_size)
 {
     try {
-        write_by_extension(path, width, height, linear_rgb);
+        const Bytes bytes = encoded_by_ending(ending, width, height, linear_rgb);
+        take(receiver, reinterpret_cast<const char*>(bytes.data()), bytes.size());
         return 0;
     } catch (const std::exception& failure) { // nothing may be thrown through a C function
         std::snprintf(error, error_size, "%s", failure.what());

@@ -1,0 +1,146 @@
+#include "bench/output/bench_answer.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/statistics/statistics.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+
+namespace tetrace {
+
+namespace {
+
+/// Rows that may be ranked with each other: the same rays on one piece of hardware, in any structure and layout.
+struct Contest {
+    const RowRun* any = nullptr;
+    std::vector<const RowRun*> rows; ///< timed ones
+
+    /// The fastest, or the fastest of a structure; null where there is none.
+    [[nodiscard]] const RowRun* best(std::optional<Structure> structure = {}) const
+    {
+        const RowRun* found = nullptr;
+        for (const RowRun* row : rows)
+            if ((!structure || row->key.kernel.structure == *structure) &&
+                (found == nullptr || rate_of(*row) > rate_of(*found)))
+                found = row;
+        return found;
+    }
+    [[nodiscard]] static double rate_of(const RowRun& row) { return figures_of(row)->mrays_per_s; }
+};
+
+/// Emulated devices are in none: they are not to be ranked.
+std::vector<Contest> contests_of(const BenchResult& result)
+{
+    std::vector<Contest> contests;
+    const auto hardware_of = [&](const RowRun& row) {
+        return result.devices.at(*device_of(row, result.devices)).hardware;
+    };
+    for (const RowRun& row : result.run.rows) {
+        if (!figures_of(row) || !device_of(row, result.devices) || row.device.kind == DeviceKind::emulated) continue;
+        const auto same = std::ranges::find_if(contests, [&](const Contest& other) {
+            return same_rays(other.any->key, row.key) && hardware_of(*other.any) == hardware_of(row);
+        });
+        (same == contests.end() ? contests.emplace_back(Contest{&row, {}}) : *same).rows.push_back(&row);
+    }
+    return contests;
+}
+
+/// "bunny", "bunny, shadow rays", with the device where there are several.
+std::string contest_title(const Contest& contest, bool with_device)
+{
+    const RowKey& key = contest.any->key;
+    std::string title = key.scene;
+    if (key.rays != RayKind::primary) title += fmt::format(", {} rays", name_of(key.rays));
+    if (key.ray_order != RayOrder::tiles) title += fmt::format(" {}", name_of(key.ray_order));
+    return with_device ? fmt::format("{} ({})", title, contest.any->device.name) : title;
+}
+
+std::string row_text(const RowRun& row)
+{
+    const bool flawed = status_of(row) == Status::flawed;
+    return fmt::format("{}{}", row_label(row.key), flawed ? " (flawed)" : "");
+}
+
+/// One phrase for each contest, from those that have something to tell.
+template <class Phrase>
+std::string joined(const std::vector<Contest>& contests, const Phrase& phrase)
+{
+    const bool with_device = std::ranges::any_of(contests, [&](const Contest& contest) {
+        return contest.any->device.name != contests.front().any->device.name;
+    });
+    std::vector<std::string> parts;
+    for (const Contest& contest : contests)
+        if (const std::string text = phrase(contest); !text.empty())
+            parts.push_back(contest_title(contest, with_device) + ": " + text);
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string structures_text(const std::vector<Contest>& contests)
+{
+    return joined(contests, [](const Contest& contest) -> std::string {
+        const RowRun *cdt = contest.best(Structure::cdt), *bvh = contest.best(Structure::bvh);
+        if (cdt == nullptr || bvh == nullptr) return {};
+        return fmt::format("the fastest CDT has {:.2f} of the rate of the fastest BVH, {}",
+                           Contest::rate_of(*cdt) / Contest::rate_of(*bvh), row_text(*bvh));
+    });
+}
+
+/// The median of each API's ratios to its reference, on the same hardware.
+std::string apis_text(const BenchResult& result)
+{
+    std::map<std::string, std::map<std::string, std::vector<double>>> ratios;
+    for (std::size_t i = 0; i < result.run.rows.size(); ++i)
+        if (const auto& comparison = result.comparisons.at(i)) {
+            const std::string &row = result.run.rows[i].key.backend, &reference = comparison->reference->key.backend;
+            if (row != reference) ratios[reference][row].push_back(comparison->ratio);
+        }
+    std::vector<std::string> parts;
+    for (const auto& [reference, apis] : ratios) {
+        std::vector<std::string> of_one;
+        for (const auto& [api, list] : apis)
+            of_one.push_back(fmt::format("{} {:.2f}", api, quantile(list, 0.5)));
+        parts.push_back(
+            fmt::format("APIs by {}'s rate, medians over the kernels: {}", reference, fmt::join(of_one, ", ")));
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string trust_text(const BenchResult& result)
+{
+    std::size_t timed = 0, noisy = 0;
+    for (const RowRun& row : result.run.rows)
+        if (const auto figures = figures_of(row)) {
+            ++timed;
+            noisy += figures->kernel_s.noisy() ? 1 : 0;
+        }
+    const std::string rows = fmt::format("{} of {} rows noisy", noisy, timed);
+    const auto& load = result.measurement.load;
+    if (!load) return fmt::format("this system does not tell its load; {}.", rows);
+    const std::string what = fmt::format("others used {:.2f} of {} processors while measuring, load average {:.1f}; {}",
+                                         load->others, load->processors, load->average, rows);
+    if (!load->is_quiet()) return what + ": do not trust these rates; measure again on a quieter machine.";
+    return what + (2 * noisy > timed ? ": trust only what intervals tell." : ".");
+}
+
+} // namespace
+
+std::string answer_text(const BenchResult& result)
+{
+    const auto contests = contests_of(result);
+    std::string text;
+    if (!contests.empty())
+        text +=
+            labelled("Fastest", joined(contests, [](const Contest& contest) {
+                                    const RowRun& best = *contest.best();
+                                    return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
+                                }) + ".");
+    std::string compared = structures_text(contests);
+    if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;
+    if (!compared.empty()) text += labelled("Compared", compared + ".");
+    if (result.measurement.wall_s > 0) text += labelled("Trust", trust_text(result));
+    return text;
+}
+
+} // namespace tetrace

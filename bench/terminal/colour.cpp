@@ -1,0 +1,63 @@
+#include "bench/terminal/colour.h"
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+#include <unistd.h>
+
+namespace tetrace {
+
+namespace {
+
+struct Tint {
+    std::string_view code;
+    std::array<std::string_view, 6> beginnings;
+};
+
+constexpr std::string_view end_of_colour = "\x1b[0m";
+
+// Red, yellow, green: colours that terminals show legibly on black and on white.
+constexpr std::array<Tint, 3> tints = {{
+    {"\x1b[31m", {"wrong", "error", "not exact", "FAILED", "SLOWER"}},
+    {"\x1b[33m", {"flawed", "ok, noisy", "UNSURE", "MISSING", "DIFFERENT"}},
+    {"\x1b[32m", {"FASTER"}},
+}};
+
+} // namespace
+
+std::string in_colour(const std::string& words)
+{
+    for (const Tint& tint : tints)
+        for (const std::string_view beginning : tint.beginnings)
+            if (!beginning.empty() && words.starts_with(beginning))
+                return std::string(tint.code).append(words).append(end_of_colour);
+    return words;
+}
+
+std::string without_colour(const std::string& text)
+{
+    std::string plain = text;
+    const auto erase_all = [&](std::string_view code) {
+        for (std::size_t at = plain.find(code); at != std::string::npos; at = plain.find(code, at))
+            plain.erase(at, code.size());
+    };
+    for (const Tint& tint : tints)
+        erase_all(tint.code);
+    erase_all(end_of_colour);
+    return plain;
+}
+
+bool is_colour_refused()
+{
+    const char* const no_colour = std::getenv("NO_COLOR");
+    return no_colour != nullptr && *no_colour != '\0';
+}
+
+bool has_colour(int file)
+{
+    const char* const terminal = std::getenv("TERM");
+    return !is_colour_refused() && ::isatty(file) == 1 && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+}
+
+} // namespace tetrace

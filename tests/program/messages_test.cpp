@@ -1,0 +1,154 @@
+// What the program says: each thing once, where it belongs.
+#include "tests/support/program_fixture.h"
+
+#include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+std::size_t times_in(const std::string& text, const std::string& part)
+{
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+    return count;
+}
+
+class Messages : public ProgramTest {
+protected:
+    /// A mesh that a builder finds to intersect itself, at length.
+    void give_mesh_that_intersects_itself() const
+    {
+        write_file(folder_ / "knot.off", "OFF, as far as a shell script cares");
+        write_file(folder_ / "builder", "#!/bin/sh\necho 'error: 7 pairs of triangles intersect' >&2\nexit 10\n");
+        std::filesystem::permissions(folder_ / "builder", std::filesystem::perms::owner_all);
+    }
+};
+
+/// A terminal whose screen is a string.
+class Terminal {
+public:
+    Terminal()
+    {
+        master_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+        if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0) return;
+        name_ = ::ptsname(master_);
+        slave_ = ::open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC); // else reading ends before the program begins
+        reader_ = std::thread([this] {
+            char piece[4096];
+            for (ssize_t size; (size = ::read(master_, piece, sizeof piece)) > 0;)
+                screen_.append(piece, static_cast<std::size_t>(size));
+        });
+    }
+    ~Terminal() { static_cast<void>(screen()); }
+    Terminal(const Terminal&) = delete;
+    Terminal& operator=(const Terminal&) = delete;
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// All that was written to it; closes it.
+    const std::string& screen()
+    {
+        if (slave_ >= 0) ::close(std::exchange(slave_, -1));
+        if (reader_.joinable()) reader_.join();
+        if (master_ >= 0) ::close(std::exchange(master_, -1));
+        return screen_;
+    }
+
+private:
+    int master_ = -1, slave_ = -1;
+    std::string name_, screen_;
+    std::thread reader_;
+};
+
+} // namespace
+
+TEST_F(Messages, a_mesh_that_intersects_itself_is_told_once_with_one_exit_code)
+{
+    give_mesh_that_intersects_itself();
+    const ScopedVariable builder("TETRACE_BUILDER", folder_ / "builder");
+    for (const char* const arguments :
+         {"bench --backend openmp --scene knot.off", "check --backend openmp --scene knot.off",
+          "build --scene knot.off", "build --scene knot.off --domain tight,tight", "render --scene knot.off"}) {
+        const Ended ended = run(arguments);
+        EXPECT_EQ(ended.code, 2) << arguments << ended.errors;
+        EXPECT_EQ(times_in(ended.errors, "7 pairs of triangles"), 1u) << arguments << ended.errors;
+        EXPECT_LE(times_in(ended.out, "7 pairs of triangles"), 1u) << arguments << ended.out;
+        EXPECT_LT(ended.out.size(), 3000u) << arguments << ended.out;
+    }
+    const Ended json = run("bench --backend openmp --scene knot.off --format json");
+    for (const auto& row : nlohmann::json::parse(json.out)["tetrace"]["rows"])
+        EXPECT_TRUE(contains(row["reason"].get<std::string>(), "7 pairs of triangles")) << row;
+}
+
+TEST_F(Messages, a_reason_that_many_rows_share_is_one_line)
+{
+    const ScopedVariable none("CUDA_VISIBLE_DEVICES", "");
+    const Ended ended = run("bench --backend openmp,cuda --scene cubes --resolution 3 --size 16 --samples 3");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_EQ(times_in(ended.out, ": skipped: "), 1u) << ended.out;
+    EXPECT_TRUE(
+        contains(ended.out, " rows of cubes, such as cdt/maria/tet80/cubes/primary/math:exact/api:cuda: skipped: "))
+        << ended.out;
+}
+
+TEST_F(Messages, compare_says_of_many_rows_at_once_what_holds_of_all)
+{
+    ASSERT_EQ(bench("--out few.json").code, 0);
+    ASSERT_EQ(bench("--layout tet80 --out one.json").code, 0);
+    const Ended few = run("compare few.json few.json");
+    EXPECT_EQ(times_in(few.out, "fewer than 5 samples, so no interval: 3 in A and 3 in B"), 1u) << few.out;
+    const Ended missing = run("compare few.json one.json");
+    EXPECT_EQ(missing.code, 1);
+    EXPECT_EQ(times_in(missing.out, "B: no such row"), 1u) << missing.out;
+    EXPECT_EQ(times_in(missing.out, "Regressed"), 1u) << missing.out;
+    EXPECT_TRUE(contains(missing.out, "7 rows are MISSING")) << missing.out;
+}
+
+TEST_F(Messages, tables_are_in_colour_on_terminals_and_nowhere_else)
+{
+    ASSERT_EQ(bench("--out a.json").code, 0);
+    ASSERT_EQ(bench("--layout tet80 --out b.json").code, 0);
+    const auto shown = [&](const std::string& more) {
+        Terminal terminal;
+        if (terminal.name().empty()) return std::string("no terminal");
+        run("compare a.json b.json " + more + " > " + terminal.name() + " 2> /dev/null #");
+        return terminal.screen();
+    };
+    const ScopedVariable term("TERM", "xterm");
+    {
+        const ScopedVariable none("NO_COLOR", static_cast<const char*>(nullptr));
+        const std::string screen = shown("--out c.txt");
+        if (screen == "no terminal") GTEST_SKIP() << "this system has no pseudo-terminals";
+        EXPECT_TRUE(contains(screen, "\x1b[33mMISSING\x1b[0m")) << screen;
+        EXPECT_FALSE(contains(file("c.txt"), "\x1b")) << "a file has none";
+        EXPECT_FALSE(contains(run("compare a.json b.json").out, "\x1b"));
+    }
+    const ScopedVariable refused("NO_COLOR", "1");
+    EXPECT_FALSE(contains(shown(""), "\x1b"));
+    EXPECT_TRUE(contains(shown(""), "MISSING"));
+}
+
+TEST_F(Messages, google_benchmarks_console_obeys_and_has_its_units_right)
+{
+    const auto console = [&](const std::string& more) {
+        return bench("--layout tet80 --benchmark_format=console " + more);
+    };
+    const Ended plain = console("");
+    ASSERT_EQ(plain.code, 0) << plain.errors;
+    EXPECT_FALSE(contains(plain.out + plain.errors, "\x1b")) << plain.out;
+    EXPECT_FALSE(contains(plain.out + plain.errors, "DEBUG")) << plain.errors;
+    EXPECT_TRUE(contains(plain.errors, "Run on (")) << "the rest of what it says of the machine stays";
+    EXPECT_TRUE(std::regex_search(plain.out, std::regex("Mrays/s=[0-9.]+[a-zA-Z]?\\s"))) << plain.out;
+    EXPECT_TRUE(contains(console("--benchmark_color=true").out, "\x1b["));
+    EXPECT_FALSE(contains(console("--benchmark_color=false").out, "\x1b["));
+}
