@@ -184,8 +184,7 @@ std::vector<OptionRow> scene_options()
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
         {"Scenes", "--divisions", "N",
          "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
-             std::to_string(default_build(TetsKind::rays).divisions) + " for --tets rays, " +
-             std::to_string(default_build(TetsKind::cdt).divisions) + " for --tets cdt.",
+             std::to_string(BuildOptions{}.divisions) + ".",
          building, true, append_count("--divisions", &Options::divisions, 1, 64)},
         {"Scenes", "--switches", "SWITCHES",
          "TetGen's switches, as in its manual. 'build' takes a list. Default: " +
