@@ -178,7 +178,7 @@ std::vector<OptionRow> scene_options()
          building, true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
-         "optimiser takes 5 to 9 times as long, for 0 to 2 % fewer steps). Default: " +
+         "optimiser takes 5 to 9 times as long, for 1 to 2 % fewer steps). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
