@@ -37,10 +37,7 @@ BuildOptions default_build(TetsKind tets)
 {
     BuildOptions build;
     build.tets = tets;
-    if (tets == TetsKind::rays) {
-        build.divisions = 3;
-        build.switches = "pY";
-    }
+    if (tets == TetsKind::rays) build.switches = "pY";
     return build;
 }
 

@@ -47,9 +47,8 @@ struct BuildOptions {
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
 };
 
-/// The options of a kind of tets where nothing else is asked for. Tets for rays have fewer divisions, since the
-/// optimiser leaves the domain's sides as they are, and switches without q: their points are another set
-/// (docs/spec/rays-tets.md).
+/// The options of a kind of tets where nothing else is asked for. Tets for rays have switches without q: their points
+/// are another set (docs/spec/rays-tets.md).
 [[nodiscard]] BuildOptions default_build(TetsKind tets);
 
 /// A scene that the user asked for: a name of the catalogue, `banana@N`, or the path of a mesh file or a `.tet` file.

@@ -156,14 +156,13 @@ std::vector<OptionRow> scene_options()
          building, true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
-         "optimiser takes 5 to 9 times as long, for 0 to 2 % fewer steps). Default: " +
+         "optimiser takes 5 to 9 times as long, for 1 to 2 % fewer steps). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
         {"Scenes", "--divisions", "N",
          "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
-             std::to_string(default_build(TetsKind::rays).divisions) + " for --tets rays, " +
-             std::to_string(default_build(TetsKind::cdt).divisions) + " for --tets cdt.",
+             std::to_string(BuildOptions{}.divisions) + ".",
          building, true, append_count("--divisions", &Options::divisions, 1, 64)},
         {"Scenes", "--switches", "SWITCHES",
          "TetGen's switches, as in its manual. 'build' takes a list. Default: " +

@@ -65,63 +65,6 @@ private:
     TriangleMesh mesh_;
 };
 
-// Range of intervals of `lines` that [low, high] overlaps with more than a point.
-std::pair<std::uint32_t, std::uint32_t> overlapped(const std::vector<float>& lines, float low, float high)
-{
-    const auto first = std::ranges::upper_bound(lines, low) - lines.begin() - 1;
-    const auto last = std::ranges::lower_bound(lines, high) - lines.begin();
-    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
-}
-
-struct BoundaryFace {
-    std::uint32_t link = 0;
-    std::array<Float3, 3> corners;
-};
-
-std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh)
-{
-    std::vector<BoundaryFace> faces;
-    for (std::uint32_t index = 0; index < mesh.tets.size(); ++index) {
-        for (std::uint32_t face = 0; face < 4; ++face) {
-            if (mesh.tets[index].links[face] != NO_LINK) continue;
-            BoundaryFace found{make_link(index, face), {}};
-            for (std::uint32_t i = 0, n = 0; i < 4; ++i)
-                if (i != face) found.corners[n++] = mesh.vertices[mesh.tets[index].vertices[i]];
-            faces.push_back(found);
-        }
-    }
-    return faces;
-}
-
-// The side of the box that holds all three corners; 6 where there is none.
-std::uint32_t side_of(const Domain& domain, const BoundaryFace& face)
-{
-    for (const Float3 corner : face.corners)
-        if (!domain.contains(corner)) return 6;
-    for (std::uint32_t side = 0; side < 6; ++side) {
-        const auto axis = side / 2;
-        const float plane = side % 2 == 0 ? domain.lines[axis].front() : domain.lines[axis].back();
-        const auto on_plane = [&](Float3 p) { return p[static_cast<int>(axis)] == plane; };
-        if (std::ranges::all_of(face.corners, on_plane)) return side;
-    }
-    return 6;
-}
-
-template <class Visit>
-void for_each_square(const Domain& domain, const BoundaryFace& face, std::uint32_t side, const Visit& visit)
-{
-    const std::uint32_t n = domain.divisions;
-    std::pair<std::uint32_t, std::uint32_t> range[2];
-    for (std::uint32_t k = 0; k < 2; ++k) {
-        const auto axis = static_cast<int>((side / 2 + 1 + k) % 3);
-        const auto [low, high] = std::minmax({face.corners[0][axis], face.corners[1][axis], face.corners[2][axis]});
-        range[k] = overlapped(domain.lines[static_cast<std::size_t>(axis)], low, high);
-    }
-    for (std::uint32_t j = range[1].first; j < range[1].second; ++j)
-        for (std::uint32_t i = range[0].first; i < range[0].second; ++i)
-            visit((side * n + j) * n + i);
-}
-
 } // namespace
 
 bool Domain::contains(Float3 p) const
@@ -167,34 +110,6 @@ TriangleMesh domain_surface(const Domain& domain)
                 for (std::uint32_t i = 0; i < domain.divisions; ++i)
                     builder.add_square(axis, high, i, j);
     return builder.take();
-}
-
-EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh)
-{
-    const auto faces = boundary_faces(mesh);
-    std::vector<std::uint32_t> sides;
-    EntryGrid grid;
-    grid.ranges.assign(std::size_t{6} * domain.divisions * domain.divisions + 1, 0);
-    for (const BoundaryFace& face : faces) {
-        sides.push_back(side_of(domain, face));
-        if (sides.back() == 6)
-            throw Error(ErrorKind::invalid_input, "making the entry grid: tet " + std::to_string(link_tet(face.link)) +
-                                                      " has a boundary face that lies on no side of the domain");
-        for_each_square(domain, face, sides.back(), [&](std::uint32_t square) { grid.ranges[square + 1]++; });
-    }
-    const auto empty = std::find(grid.ranges.begin() + 1, grid.ranges.end(), 0U);
-    if (empty != grid.ranges.end())
-        throw Error(ErrorKind::invalid_input, "making the entry grid: square " +
-                                                  std::to_string(empty - grid.ranges.begin() - 1) +
-                                                  " of the domain has no boundary face");
-    for (std::size_t i = 1; i < grid.ranges.size(); ++i)
-        grid.ranges[i] += grid.ranges[i - 1];
-    grid.links.resize(grid.ranges.back());
-    auto next = grid.ranges;
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        for_each_square(domain, faces[i], sides[i],
-                        [&](std::uint32_t square) { grid.links[next[square]++] = faces[i].link; });
-    return grid;
 }
 
 } // namespace tetrace

@@ -17,9 +17,9 @@ enum class DomainKind {
 template <>
 inline constexpr auto enum_names<DomainKind> = names_up_to<DomainKind::wide>("tight", "wide");
 
-/// The box that the CDT fills, its sides cut into divisions x divisions squares.
-/// lines[axis] holds divisions + 1 ascending coordinates; the first and last are the box's own. Every corner of a
-/// square is a vertex of the tet mesh, bit for bit, so that a ray's square and a face's square cannot disagree.
+/// The box that the tets fill, its sides cut into divisions x divisions squares, in which rays look up the boundary
+/// face by which they enter. TetGen's tets keep to the squares, others need not (core/mesh/entry_grid.h). lines[axis]
+/// holds divisions + 1 ascending coordinates; the first and last are the box's own.
 struct Domain {
     DomainKind kind = DomainKind::tight;
     std::uint32_t divisions = 1;
@@ -37,15 +37,5 @@ struct Domain {
 
 /// The surface of the domain as triangles, two a square, wound outwards; vertices shared. What the CDT must contain.
 [[nodiscard]] TriangleMesh domain_surface(const Domain& domain);
-
-/// Per square of the domain's sides, the boundary faces that lie in it, as links into the tet mesh.
-/// Square index: (side * n + j) * n + i with side = 2 axis + (1 on the high side), i along axis + 1, j along axis + 2.
-struct EntryGrid {
-    std::vector<std::uint32_t> ranges; ///< 6 n n + 1 offsets into links
-    std::vector<std::uint32_t> links;  ///< tet << 2 | local face of a boundary face
-};
-
-/// Throws Error{invalid_input} where a square has no boundary face, or a boundary face lies on no side.
-[[nodiscard]] EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh);
 
 } // namespace tetrace

@@ -71,15 +71,14 @@ std::string mesh_too_near(const Scene& scene, double needed)
 
 std::string face_too_thin(const Scene& scene, const EntryGrid& grid, double needed)
 {
-    const std::size_t squares = std::size_t{scene.domain.divisions} * scene.domain.divisions;
-    for (std::size_t square = 0; square < 6 * squares; ++square)
-        for (auto i = grid.ranges[square]; i < grid.ranges[square + 1]; ++i) {
-            const double height = height_of(scene.tets, grid.links[i]);
+    for (std::uint32_t side = 0; side < 6; ++side)
+        for (const std::uint32_t link : faces_of_side(grid, side)) {
+            const double height = height_of(scene.tets, link);
             if (height >= needed) continue;
             std::ostringstream text;
-            text << "a boundary face of tet " << link_tet(grid.links[i]) << ", on the domain's "
-                 << side_name(static_cast<int>(square / squares / 2), square / squares % 2 == 1) << ", has a height of "
-                 << height << ", rounding asks for " << needed << "; use fewer divisions, or tets without such a face";
+            text << "a boundary face of tet " << link_tet(link) << ", on the domain's "
+                 << side_name(static_cast<int>(side / 2), side % 2 == 1) << ", has a height of " << height
+                 << ", rounding asks for " << needed << "; use fewer divisions, or tets without such a face";
             return text.str();
         }
     return "";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/mesh/entry_grid.h"
 #include "core/mesh/scene.h"
 
 #include <string>

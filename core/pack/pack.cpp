@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/mesh/entry_grid.h"
 #include "core/pack/hilbert.h"
 #include "core/pack/packed_scene.h"
 #include "core/pack/traits.h"

@@ -1,8 +1,8 @@
 // For rays from outside: where a ray meets the domain's box, and the boundary face by which it enters.
 // Only products are compared, never quotients: position <= line is |direction| (line - origin) <= |gap| direction_a.
 // The left side is monotone in the line, so that the squares of one side never contradict each other.
-// Include after this: entry_links.h or entry_faces.h (the boundary faces that a square lists), then entry_nearest.h or
-// entry_on_path.h (by which of them a ray enters).
+// Include after this: entry_links.h or entry_faces.h (the boundary faces that squares and sides list), then
+// entry_nearest.h or entry_on_path.h (by which of them a ray enters).
 #define NO_ENTRY 0xFFFFFFFFu // instead of a boundary face's number
 #define STARTS_IN_TETS       // rays of an image may also begin inside the domain
 

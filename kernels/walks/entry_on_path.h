@@ -24,55 +24,43 @@ KERNEL_FN bool sees_on_one_side(DomainBox box, Ray ray, Vec3 factors)
            dot3(sub3(least_corner(box, negated), ray.origin), factors) < real(0.0f);
 }
 
-// The box of `size` squares from this one on: one square, a row of them (divisions), or a side (divisions^2).
-KERNEL_FN DomainBox squares_box(SceneView scene, uint square, uint size)
+// The box of all vertices on a side.
+KERNEL_FN DomainBox side_box(SceneView scene, uint side)
 {
-    uint n = scene.divisions;
-    uint side = square / (n * n);
+    DomainBox box = domain_box(scene);
     uint across = side >> 1u;
-    uint j = square / n % n;
-    uint i = square % n;
-    real plane = domain_line(scene, across, (side & 1u) == 1u ? n : 0u);
-    real low_1 = domain_line(scene, first_axis(across), i);
-    real high_1 = domain_line(scene, first_axis(across), size >= n ? n : i + 1u);
-    real low_2 = domain_line(scene, second_axis(across), j);
-    real high_2 = domain_line(scene, second_axis(across), size == n * n ? n : j + 1u);
-    DomainBox box;
-    box.low = across == 0u   ? VEC3(plane, low_1, low_2)
-              : across == 1u ? VEC3(low_2, plane, low_1)
-                             : VEC3(low_1, low_2, plane);
-    box.high = across == 0u   ? VEC3(plane, high_1, high_2)
-               : across == 1u ? VEC3(high_2, plane, high_1)
-                              : VEC3(high_1, high_2, plane);
+    Vec3 plane = (side & 1u) == 1u ? box.high : box.low;
+    Vec3 low = VEC3(across == 0u ? plane.x : box.low.x, across == 1u ? plane.y : box.low.y,
+                    across == 2u ? plane.z : box.low.z);
+    Vec3 high = VEC3(across == 0u ? plane.x : box.high.x, across == 1u ? plane.y : box.high.y,
+                     across == 2u ? plane.z : box.high.z);
+    box.low = low;
+    box.high = high;
     return box;
 }
 
 // The number of the first boundary face by which the ray enters, or NO_ENTRY. Faces first to last - 1, those of the
-// square, are tested first. The others are passed over by sides, rows and squares where the ray enters by none of them:
-// a GPU would wait for the one ray that tests them all.
+// square, are tested first; then those of each side that the ray may enter by. A GPU would wait for the one ray that
+// tests all sides.
 KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
 {
     COUNT_SEARCH(0);
     Shear shear = shear_of(ray);
-    uint n = scene.divisions;
-    uint square = 0u;
-    uint size = n * n;
+    uint list = 6u * scene.divisions * scene.divisions; // the sides' lists follow those of the squares
+    uint side = 0u;
     uint index = first;
     uint behind = last;
     uint found = NO_ENTRY;
-    while (found == NO_ENTRY && (index < behind || square < 6u * n * n)) {
+    while (found == NO_ENTRY && (index < behind || side < 6u)) {
         if (index < behind) {
             found = depth_in(entry_face(scene, index), ray) < real(0.0f) ? NO_ENTRY : index;
             ++index;
         } else {
-            DomainBox box = squares_box(scene, square, size);
+            DomainBox box = side_box(scene, side);
             bool passed = sees_on_one_side(box, ray, shear.across) || sees_on_one_side(box, ray, shear.upwards);
-            bool opened = !passed && size == 1u;
-            index = opened ? FETCH(scene, entry_ranges, square) : index;
-            behind = opened ? FETCH(scene, entry_ranges, square + 1u) : behind;
-            square += passed || opened ? size : 0u;
-            uint largest = square % (n * n) == 0u ? n * n : square % n == 0u ? n : 1u;
-            size = passed || opened ? largest : size == n * n ? n : 1u;
+            index = passed ? index : FETCH(scene, entry_ranges, list + side);
+            behind = passed ? behind : FETCH(scene, entry_ranges, list + side + 1u);
+            ++side;
         }
     }
     return found;

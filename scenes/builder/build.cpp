@@ -119,21 +119,18 @@ void require_sound_sides(const Scene& scene)
                                                                 flaw, try_other_switches));
 }
 
-// Why optimised tets may not be used; empty where they may.
-std::string objection(const Scene& scene, const OptimisedTets& result)
+// Why a scene may not have its optimised tets; empty where it may.
+std::string objection(const Scene& scene, const OptimiserReport& report)
 {
-    if (result.report.cost_after >= result.report.cost_before) return "the optimiser found nothing to better";
-    auto defect = find_defect(result.mesh, scene.mesh.triangles.size());
+    if (report.cost_after >= report.cost_before) return "the optimiser found nothing to better";
+    auto defect = find_defect(scene.tets, scene.mesh.triangles.size());
     const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
-    if (!defect) defect = find_gap(result.mesh, scene.mesh, size);
+    if (!defect) defect = find_gap(scene.tets, scene.mesh, size);
     if (defect)
         return fmt::format("the optimised tets fail a check: {}: {}; please report it", name_of(defect->kind),
                            defect->what);
-    try {
-        static_cast<void>(make_entry_grid(scene.domain, result.mesh));
-    } catch (const Error& error) {
-        return fmt::format("the optimised tets fail a check: {}; please report it", error.what());
-    }
+    if (const std::string flaw = flaw_of_sides(scene); !flaw.empty())
+        return fmt::format("the optimised tets fail a check: {}; please report it", flaw);
     return "";
 }
 
@@ -161,12 +158,13 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
     info.cost_before = result.report.cost_before;
     info.cost_after = result.report.cost_after;
     info.seconds = result.report.seconds;
-    info.reason = objection(scene, result);
+    std::swap(scene.tets, result.mesh);
+    info.reason = objection(scene, result.report);
     if (info.reason.empty()) {
         info.tets = TetsKind::rays;
-        scene.tets = std::move(result.mesh);
         note_operations(result.report, talk);
     } else {
+        scene.tets = std::move(result.mesh);
         info.cost_after = info.cost_before;
         talk.note("TetGen's tets are used: " + info.reason);
     }

@@ -22,14 +22,13 @@ double Collapse::cost_after(std::uint32_t onto, double limit) const
     return sum;
 }
 
-// Neighbours for which cost is below the limit, cheapest first.
-void Collapse::find_candidates(double limit)
+// Neighbours on all sides of the box that the vertex lies on, and for which cost is below the limit, cheapest first.
+void Collapse::find_candidates(std::uint32_t vertex, double limit)
 {
     neighbours_.clear();
-    for (const auto& edge : star_.edges) {
-        neighbours_.push_back(edge.p);
-        neighbours_.push_back(edge.q);
-    }
+    for (const std::uint32_t t : star_.tets)
+        for (const std::uint32_t v : mesh_.tet(t).vertices)
+            if (v != vertex && (mesh_.box_sides(vertex) & ~mesh_.box_sides(v)) == 0) neighbours_.push_back(v);
     std::sort(neighbours_.begin(), neighbours_.end());
     neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
     candidates_.clear();
@@ -57,7 +56,7 @@ double Collapse::try_vertex(std::uint32_t vertex, double least)
 {
     if (!find_star(mesh_, vertex, most_collapsed_tets, star_)) return 0;
     const double before = star_.cost(mesh_, mesh_.point(vertex));
-    find_candidates(before - least);
+    find_candidates(vertex, before - least);
     for (const Candidate& candidate : candidates_) {
         make_fresh(vertex, candidate.vertex);
         const bool possible = std::all_of(fresh_.begin(), fresh_.end(), [&](const Corners& c) {

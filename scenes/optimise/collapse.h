@@ -5,7 +5,7 @@
 namespace tetrace {
 
 /// Contracts an edge of a free vertex: the vertex is put onto the neighbour for which cost falls most, and the tets
-/// between them vanish.
+/// between them vanish. A vertex on a side of the domain stays on it.
 class Collapse {
 public:
     explicit Collapse(EditableMesh& mesh) : mesh_(mesh) {}
@@ -18,7 +18,7 @@ private:
         double cost;
         std::uint32_t vertex;
     };
-    void find_candidates(double limit);
+    void find_candidates(std::uint32_t vertex, double limit);
     [[nodiscard]] double cost_after(std::uint32_t onto, double limit) const;
     void make_fresh(std::uint32_t vertex, std::uint32_t onto);
 

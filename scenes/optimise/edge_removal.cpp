@@ -18,6 +18,39 @@ std::uint32_t local_index(const Tet& tet, std::uint32_t vertex)
     return 3;
 }
 
+// A tet of the ring: its ring vertices behind and in front, by their local numbers.
+struct Place {
+    std::uint32_t tet, back, front;
+};
+
+Place next_of(const EditableMesh& mesh, const Place& at)
+{
+    const Tet& here = mesh.tet(at.tet);
+    const std::uint32_t link = here.links[at.back], tet = link_tet(link);
+    return {tet, local_index(mesh.tet(tet), here.vertices[at.front]), link_face(link)};
+}
+
+enum class RingEnd { closed, at_boundary, refused };
+
+RingEnd follow(const EditableMesh& mesh, const Place& begin, std::size_t most, EdgeRing& ring)
+{
+    ring.tets.clear();
+    ring.vertices.clear();
+    Place at = begin;
+    do {
+        const Tet& here = mesh.tet(at.tet);
+        if (here.faces[at.back] != FREE_FACE || ring.vertices.size() == most) return RingEnd::refused;
+        ring.tets.push_back(at.tet);
+        ring.vertices.push_back(here.vertices[at.back]);
+        if (here.links[at.back] == NO_LINK) {
+            ring.vertices.push_back(here.vertices[at.front]);
+            return ring.vertices.size() <= most ? RingEnd::at_boundary : RingEnd::refused;
+        }
+        at = next_of(mesh, at);
+    } while (at.tet != begin.tet);
+    return RingEnd::closed;
+}
+
 } // namespace
 
 bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, EdgeRing& ring)
@@ -26,26 +59,29 @@ bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, 
     const Corners& corners = mesh.tet(tet).vertices;
     ring.a = corners[a];
     ring.b = corners[b];
-    ring.tets.clear();
-    ring.vertices.clear();
-    std::uint32_t current = tet, back = c, front = corners[d];
-    do {
-        const Tet& here = mesh.tet(current);
-        if (here.faces[back] != FREE_FACE || here.links[back] == NO_LINK || ring.tets.size() == most) return false;
-        ring.tets.push_back(current);
-        ring.vertices.push_back(here.vertices[back]);
-        current = link_tet(here.links[back]);
-        const std::uint32_t next = mesh.tet(current).vertices[link_face(here.links[back])];
-        back = local_index(mesh.tet(current), front);
-        front = next;
-    } while (current != tet);
-    return ring.tets.size() >= 3;
+    const RingEnd end = follow(mesh, {tet, c, d}, most, ring);
+    if (end != RingEnd::at_boundary) return end == RingEnd::closed && ring.tets.size() >= 3;
+    Place begin{tet, d, c}; // looking back, where the ring begins
+    for (std::size_t i = 0; mesh.tet(begin.tet).links[begin.back] != NO_LINK; ++i) {
+        if (mesh.tet(begin.tet).faces[begin.back] != FREE_FACE || i == most) return false;
+        begin = next_of(mesh, begin);
+    }
+    if (mesh.tet(begin.tet).faces[begin.back] != FREE_FACE) return false;
+    return follow(mesh, {begin.tet, begin.front, begin.back}, most, ring) == RingEnd::at_boundary &&
+           ring.tets.size() >= 2;
 }
 
 bool EdgeRemoval::is_first(std::uint32_t tet) const
 {
     return std::none_of(ring_.tets.begin(), ring_.tets.end(),
                         [&](std::uint32_t other) { return other < tet && mesh_.tet_changed(other) >= since; });
+}
+
+// Whether the boundary faces at an open ring's ends lie on one side of the box.
+bool EdgeRemoval::ends_on_one_side() const
+{
+    return (mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) & mesh_.box_sides(ring_.vertices.front()) &
+            mesh_.box_sides(ring_.vertices.back())) != 0;
 }
 
 // Parts that cost `limit` or more stay impossible.
@@ -89,10 +125,11 @@ void EdgeRemoval::emit(std::size_t i, std::size_t k)
 double EdgeRemoval::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
     if (!find_ring(mesh_, tet, edge, most_around_edge, ring_) || !is_first(tet)) return 0;
-    double before = 0;
-    for (const std::uint32_t vertex : ring_.vertices)
-        before += area(mesh_.point(ring_.a), mesh_.point(ring_.b), mesh_.point(vertex));
-    const std::size_t last = ring_.vertices.size() - 1;
+    const std::size_t last = ring_.vertices.size() - 1, open = ring_.is_open() ? 1 : 0;
+    if (open == 1 && !ends_on_one_side()) return 0;
+    double before = 0; // the free faces: those of an open ring's ends are on the boundary
+    for (std::size_t i = open; i <= last - open; ++i)
+        before += area(mesh_.point(ring_.a), mesh_.point(ring_.b), ring_point(i));
     triangulate(before - least);
     if (cost_[0][last] == impossible) return 0;
     fresh_.clear();

@@ -4,24 +4,28 @@
 
 namespace tetrace {
 
-/// Most tets round an edge that remove_edge() looks at: its work is the cube of their number.
+/// Most vertices round an edge that EdgeRemoval looks at: its work is the cube of their number.
 inline constexpr std::size_t most_around_edge = 8;
 
 /// The tets round an edge, and the vertices across from it: tet i has the edge a b and ring vertices i and i + 1, so
-/// that (a, b, ring[i], ring[i + 1]) is positive.
+/// that (a, b, ring[i], ring[i + 1]) is positive. The ring of an edge on the boundary is open: it begins and ends with
+/// a boundary face, and has a vertex more than tets.
 struct EdgeRing {
     std::uint32_t a = 0, b = 0;
     std::vector<std::uint32_t> tets, vertices;
+
+    [[nodiscard]] bool is_open() const { return vertices.size() > tets.size(); }
 };
 
-/// Finds the ring of edge 0..5 (vertices 01 02 03 12 13 23) of a tet. False, where it is not closed (an occlusive or a
-/// boundary face has the edge) or has more than `most` tets.
+/// Finds the ring of edge 0..5 (vertices 01 02 03 12 13 23) of a tet. False, where an occlusive face has the edge, or
+/// it has more than `most` vertices.
 bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, EdgeRing& ring);
 
-/// Edge removal: n tets round an edge become the 2 (n - 2) above and below a triangulation of their ring, the cheapest
-/// one whose tets may be made, found by dynamic programming over the ring's chords.
-/// Sources: Klincsek 1980 (minimal triangulations of polygons); Freitag, Ollivier-Gooch 1997 and Shewchuk, "Two
-/// discrete optimization algorithms for the topological improvement of tetrahedral meshes", 2002 (edge removal).
+/// Edge removal: the tets round an edge become the 2 (n - 2) above and below a triangulation of their ring of n
+/// vertices, the cheapest one whose tets may be made, found by dynamic programming over the ring's chords. Where the
+/// ring is open, the two boundary faces at the edge become two others of the same side. Sources: Klincsek 1980 (minimal
+/// triangulations of polygons); Freitag, Ollivier-Gooch 1997 and Shewchuk, "Two discrete optimization algorithms for
+/// the topological improvement of tetrahedral meshes", 2002 (edge removal).
 class EdgeRemoval {
 public:
     explicit EdgeRemoval(EditableMesh& mesh) : mesh_(mesh) {}
@@ -34,6 +38,7 @@ public:
 
 private:
     [[nodiscard]] bool is_first(std::uint32_t tet) const;
+    [[nodiscard]] bool ends_on_one_side() const;
     void triangulate(double limit);
     void emit(std::size_t i, std::size_t k);
     [[nodiscard]] Double3 ring_point(std::size_t i) const { return mesh_.point(ring_.vertices[i]); }

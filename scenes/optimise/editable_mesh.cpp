@@ -4,19 +4,21 @@
 #include "scenes/optimise/shape.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace tetrace {
 
 EditableMesh::EditableMesh(const TetMesh& mesh)
     : tets_(mesh.tets), states_(mesh.tets.size(), State::hidden), kinds_(mesh.vertices.size(), VertexKind::held),
-      tet_of_(mesh.vertices.size(), NO_TET), tet_changed_(mesh.tets.size(), 1),
+      box_sides_(mesh.vertices.size(), 0), tet_of_(mesh.vertices.size(), NO_TET), tet_changed_(mesh.tets.size(), 1),
       vertex_changed_(mesh.vertices.size(), 1), marks_(mesh.tets.size(), 0)
 {
     points_.reserve(mesh.vertices.size());
     for (const Float3 vertex : mesh.vertices)
         points_.push_back(to_double(vertex));
     find_reached();
+    find_box_sides();
     find_kinds();
 }
 
@@ -37,6 +39,37 @@ void EditableMesh::find_reached()
     }
 }
 
+void EditableMesh::find_box_sides()
+{
+    std::vector<std::uint32_t> on_boundary;
+    Double3 low{impossible, impossible, impossible}, high = low * -1.0;
+    for (const Tet& tet : tets_)
+        for (std::uint32_t face = 0; face < 4; ++face)
+            for (const std::uint32_t corner : face_corners[face]) {
+                if (tet.links[face] != NO_LINK) continue;
+                on_boundary.push_back(tet.vertices[corner]);
+                const Double3 at = points_[on_boundary.back()];
+                low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+                high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+            }
+    for (const std::uint32_t v : on_boundary) {
+        const Double3 at = points_[v];
+        box_sides_[v] = (at.x == low.x ? 1u : 0u) | (at.x == high.x ? 2u : 0u) | (at.y == low.y ? 4u : 0u) |
+                        (at.y == high.y ? 8u : 0u) | (at.z == low.z ? 16u : 0u) | (at.z == high.z ? 32u : 0u);
+    }
+}
+
+BoxSides EditableMesh::common_sides(const std::array<std::uint32_t, 3>& vertices) const
+{
+    return box_sides_[vertices[0]] & box_sides_[vertices[1]] & box_sides_[vertices[2]];
+}
+
+bool EditableMesh::may_be_on_boundary(const std::array<std::uint32_t, 3>& vertices) const
+{
+    return may_be_boundary_face(points_[vertices[0]], points_[vertices[1]], points_[vertices[2]]);
+}
+
+// A vertex is held by occlusive faces, by boundary faces that lie on no side of a box, and at the box's corners.
 void EditableMesh::find_kinds()
 {
     for (std::uint32_t t = 0; t < tets_.size(); ++t)
@@ -45,10 +78,15 @@ void EditableMesh::find_kinds()
             if (states_[t] == State::reached) kinds_[v] = VertexKind::free;
         }
     for (const Tet& tet : tets_)
-        for (std::uint32_t face = 0; face < 4; ++face)
-            if (tet.faces[face] != FREE_FACE || tet.links[face] == NO_LINK)
-                for (const std::uint32_t corner : face_corners[face])
-                    kinds_[tet.vertices[corner]] = VertexKind::held;
+        for (std::uint32_t face = 0; face < 4; ++face) {
+            const auto& [a, b, c] = face_corners[face];
+            const std::array<std::uint32_t, 3> v = {tet.vertices[a], tet.vertices[b], tet.vertices[c]};
+            if (tet.faces[face] == FREE_FACE && (tet.links[face] != NO_LINK || common_sides(v) != 0)) continue;
+            for (const std::uint32_t vertex : v)
+                kinds_[vertex] = VertexKind::held;
+        }
+    for (std::size_t v = 0; v < points_.size(); ++v)
+        if (std::popcount(box_sides_[v]) > 2) kinds_[v] = VertexKind::held;
 }
 
 double EditableMesh::cost() const
@@ -129,16 +167,31 @@ bool EditableMesh::gather_sides(std::span<const std::uint32_t> old, std::span<co
     return true;
 }
 
+// Whether side i and the next one are of one face.
+bool EditableMesh::is_pair(std::size_t i) const
+{
+    return i + 1 < sides_.size() && sides_[i].key == sides_[i + 1].key;
+}
+
 // Sides come in twos: an outer one with a fresh one that turns alike, or two fresh ones that turn against each other.
+// Sides that stay alone lie on the box: boundary faces that go, or come. They leave a side of the box alone.
 bool EditableMesh::sides_match() const
 {
-    if (sides_.size() % 2 != 0) return false;
-    for (std::size_t i = 0; i < sides_.size(); i += 2) {
-        const Side &a = sides_[i], &b = sides_[i + 1];
-        if (a.key != b.key || (i > 0 && sides_[i - 1].key == a.key)) return false;
-        if (!b.fresh || (a.turn == b.turn) == a.fresh) return false;
+    BoxSides touched = 0;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+        const Side& a = sides_[i];
+        if (i > 0 && sides_[i - 1].key == a.key) return false; // a third one
+        if (is_pair(i)) {
+            const Side& b = sides_[++i];
+            if (!b.fresh || (a.turn == b.turn) == a.fresh) return false;
+            continue;
+        }
+        const BoxSides common = common_sides(a.key);
+        if (common == 0) return false;
+        if (a.fresh ? !may_be_on_boundary(a.key) : a.link != NO_LINK || a.triangle != FREE_FACE) return false;
+        touched |= common;
     }
-    return true;
+    return touched != all_box_sides;
 }
 
 void EditableMesh::choose_slots(std::span<const std::uint32_t> old, std::size_t count)
@@ -168,8 +221,10 @@ void EditableMesh::connect_fresh(const Side& a, const Side& b)
 
 void EditableMesh::connect()
 {
-    for (std::size_t i = 0; i < sides_.size(); i += 2) {
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+        if (!is_pair(i)) continue;
         const Side &a = sides_[i], &b = sides_[i + 1];
+        ++i;
         if (a.fresh) {
             connect_fresh(a, b);
             connect_fresh(b, a);
@@ -197,6 +252,7 @@ bool EditableMesh::replace(std::span<const std::uint32_t> old, std::span<const C
         const std::uint32_t slot = slots_[i];
         tets_[slot].vertices = fresh[i];
         tets_[slot].faces.fill(FREE_FACE);
+        tets_[slot].links.fill(NO_LINK);
         states_[slot] = State::reached;
         tet_changed_[slot] = round;
         for (const std::uint32_t v : fresh[i]) {
@@ -210,12 +266,26 @@ bool EditableMesh::replace(std::span<const std::uint32_t> old, std::span<const C
     return true;
 }
 
+bool EditableMesh::may_stay(const Tet& tet) const
+{
+    const auto& v = tet.vertices;
+    if (!may_be_made(points_[v[0]], points_[v[1]], points_[v[2]], points_[v[3]])) return false;
+    for (std::uint32_t face = 0; face < 4; ++face) {
+        const auto& [a, b, c] = face_corners[face];
+        if (tet.links[face] == NO_LINK && !may_be_on_boundary({v[a], v[b], v[c]})) return false;
+    }
+    return true;
+}
+
 bool EditableMesh::move(std::uint32_t vertex, std::span<const std::uint32_t> star, Double3 to)
 {
-    const Double3 from = std::exchange(points_[vertex], to);
-    for (const std::uint32_t t : star) {
-        const auto& [a, b, c, d] = tets_[t].vertices;
-        if (may_be_made(points_[a], points_[b], points_[c], points_[d])) continue;
+    const Double3 from = points_[vertex];
+    const BoxSides sides = box_sides_[vertex];
+    if ((holds_axis(sides, 0) && to.x != from.x) || (holds_axis(sides, 1) && to.y != from.y) ||
+        (holds_axis(sides, 2) && to.z != from.z))
+        return false;
+    points_[vertex] = to;
+    if (!std::all_of(star.begin(), star.end(), [&](std::uint32_t t) { return may_stay(tets_[t]); })) {
         points_[vertex] = from;
         return false;
     }
@@ -227,12 +297,13 @@ bool EditableMesh::move(std::uint32_t vertex, std::span<const std::uint32_t> sta
     return true;
 }
 
-std::uint32_t EditableMesh::add_vertex(Double3 point)
+std::uint32_t EditableMesh::add_vertex(Double3 point, BoxSides sides)
 {
     if (unused_vertices_.empty()) {
         unused_vertices_.push_back(vertex_slots());
         points_.push_back(point);
         kinds_.push_back(VertexKind::held);
+        box_sides_.push_back(0);
         tet_of_.push_back(NO_TET);
         vertex_changed_.push_back(round);
     }
@@ -240,6 +311,7 @@ std::uint32_t EditableMesh::add_vertex(Double3 point)
     unused_vertices_.pop_back();
     points_[vertex] = point;
     kinds_[vertex] = VertexKind::free;
+    box_sides_[vertex] = sides;
     return vertex;
 }
 

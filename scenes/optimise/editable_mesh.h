@@ -12,8 +12,18 @@ namespace tetrace {
 /// The vertices of a tet, positive as core/mesh/tet_mesh.h has it.
 using Corners = std::array<std::uint32_t, 4>;
 
+/// A set of sides of the domain's box, a bit each: 2 axis + (1 on the high side).
+using BoxSides = std::uint32_t;
+inline constexpr BoxSides all_box_sides = 0x3F;
+
+/// Whether a point that stays on these sides keeps its coordinate along the axis.
+[[nodiscard]] constexpr bool holds_axis(BoxSides sides, int axis)
+{
+    return (sides >> (2 * axis) & 3u) != 0;
+}
+
 /// A tet mesh whose parts are replaced by others. Everything that changes it keeps it a tetrahedralization of the same
-/// domain with the same occlusive and boundary faces (docs/spec/rays-tets.md, O1). Memory: linear.
+/// domain with the same occlusive faces (docs/spec/rays-tets.md, O1). Memory: linear.
 class EditableMesh {
 public:
     /// mesh: sound (find_defect and find_gap find nothing).
@@ -27,8 +37,11 @@ public:
     /// A tet that rays from outside reach: a chain of free faces leads from the domain's boundary to it. Operations
     /// change no other.
     [[nodiscard]] bool is_reached(std::uint32_t tet) const { return states_[tet] == State::reached; }
-    /// Whether a vertex may move or vanish: it is on no occlusive and no boundary face, and its tets are reached.
+    /// Whether a vertex may move or vanish: it is on no occlusive face, its tets are reached, it is no corner of the
+    /// domain, and its boundary faces lie on the sides of a box. It stays on the sides that it lies on.
     [[nodiscard]] bool is_free(std::uint32_t vertex) const { return kinds_[vertex] == VertexKind::free; }
+    /// The sides of the domain's box that a vertex lies on: none inside, two on an edge of the box, three at a corner.
+    [[nodiscard]] BoxSides box_sides(std::uint32_t vertex) const { return box_sides_[vertex]; }
     /// A tet that has the vertex; NO_TET for a slot without a vertex.
     [[nodiscard]] std::uint32_t tet_of(std::uint32_t vertex) const { return tet_of_[vertex]; }
 
@@ -38,16 +51,17 @@ public:
     [[nodiscard]] double boundary_area() const;
 
     /// Puts `fresh` in the place of `old`, where that is sound: each fresh tet may be made (shape.h), and the fresh
-    /// tets' outer faces are those of the old ones, side by side. Otherwise returns false and changes nothing.
+    /// tets' outer faces are those of the old ones, side by side, but for boundary faces, which may become others of
+    /// the same side (O1), no flatter than shape.h allows. Otherwise returns false and changes nothing.
     /// old: tets that rays reach, each once. Vertices that lose their last tet are dropped.
     bool replace(std::span<const std::uint32_t> old, std::span<const Corners> fresh);
 
-    /// Moves a free vertex where each tet of `star`, all that have it, may still be made; else changes nothing.
-    /// to: on the grid, as a float.
+    /// Moves a free vertex where each tet of `star`, all that have it, and each boundary face may still be made; else
+    /// changes nothing. to: on the grid, as a float, and on the vertex's sides of the box.
     bool move(std::uint32_t vertex, std::span<const std::uint32_t> star, Double3 to);
 
-    /// A free vertex without a tet, for the next replace(); drop it where that fails.
-    [[nodiscard]] std::uint32_t add_vertex(Double3 point);
+    /// A free vertex without a tet, for the next replace(); drop it where that fails. sides: those that it lies on.
+    [[nodiscard]] std::uint32_t add_vertex(Double3 point, BoxSides sides);
     void drop_vertex(std::uint32_t vertex);
 
     /// The number that tets and vertices are marked with when they change. Starts with 1, and so do their marks.
@@ -82,10 +96,15 @@ private:
     };
 
     void find_reached();
+    void find_box_sides();
     void find_kinds();
+    [[nodiscard]] BoxSides common_sides(const std::array<std::uint32_t, 3>& vertices) const;
+    [[nodiscard]] bool may_be_on_boundary(const std::array<std::uint32_t, 3>& vertices) const;
+    [[nodiscard]] bool may_stay(const Tet& tet) const;
     [[nodiscard]] static Side side_of(const Corners& corners, std::uint32_t face);
     [[nodiscard]] bool gather_sides(std::span<const std::uint32_t> old, std::span<const Corners> fresh);
     [[nodiscard]] bool sides_match() const;
+    [[nodiscard]] bool is_pair(std::size_t i) const;
     void choose_slots(std::span<const std::uint32_t> old, std::size_t count);
     void connect();
     void connect_fresh(const Side& a, const Side& b);
@@ -94,6 +113,7 @@ private:
     std::vector<Tet> tets_;
     std::vector<State> states_;
     std::vector<VertexKind> kinds_;
+    std::vector<BoxSides> box_sides_;
     std::vector<std::uint32_t> tet_of_, tet_changed_, vertex_changed_, marks_;
     std::vector<std::uint32_t> unused_tets_, unused_vertices_;
     std::uint32_t mark_ = 0;

@@ -26,12 +26,29 @@ bool Insertion::sees(Double3 at, const Tet& tet, std::uint32_t face) const
     return may_be_made(at, mesh_.point(tet.vertices[i]), mesh_.point(tet.vertices[j]), mesh_.point(tet.vertices[k]));
 }
 
+// Whether the vertex and an edge are to make a boundary face, which costs nothing.
+bool Insertion::is_on_box(std::uint32_t p, std::uint32_t q) const
+{
+    return (mesh_.box_sides(p) & mesh_.box_sides(q) & sides_) != 0;
+}
+
+// Whether an outer face of the cavity lies in the plane of a side that the vertex is to lie on: it makes no tet.
+bool Insertion::is_flush(const Tet& tet, std::uint32_t face) const
+{
+    const auto& [i, j, k] = face_corners[face];
+    return tet.links[face] == NO_LINK && (mesh_.box_sides(tet.vertices[i]) & mesh_.box_sides(tet.vertices[j]) &
+                                          mesh_.box_sides(tet.vertices[k]) & sides_) != 0;
+}
+
 // Half the areas of the three faces of a point and a face's edges: each is shared by two tets.
 double Insertion::spokes(Double3 at, const Tet& tet, std::uint32_t face) const
 {
     const auto& [i, j, k] = face_corners[face];
-    const Double3 a = mesh_.point(tet.vertices[i]), b = mesh_.point(tet.vertices[j]), c = mesh_.point(tet.vertices[k]);
-    return 0.5 * (area(at, a, b) + area(at, b, c) + area(at, c, a));
+    const std::array<std::uint32_t, 4> v = {tet.vertices[i], tet.vertices[j], tet.vertices[k], tet.vertices[i]};
+    double sum = 0;
+    for (std::size_t n = 0; n < 3; ++n)
+        if (!is_on_box(v[n], v[n + 1])) sum += area(at, mesh_.point(v[n]), mesh_.point(v[n + 1]));
+    return 0.5 * sum;
 }
 
 double Insertion::face_area(const Tet& tet, std::uint32_t face) const
@@ -49,7 +66,7 @@ double Insertion::change_by(Double3 at, std::uint32_t index) const
         if (link != NO_LINK && mesh_.is_marked(link_tet(link))) {
             if (tet.faces[face] != FREE_FACE) return impossible;
             change -= spokes(at, tet, face) + face_area(tet, face);
-        } else {
+        } else if (!is_flush(tet, face)) {
             if (!sees(at, tet, face)) return impossible;
             change += spokes(at, tet, face);
         }
@@ -89,7 +106,7 @@ double Insertion::grow(Double3 at)
             if (link != NO_LINK && mesh_.is_marked(link_tet(link))) {
                 if (tet.faces[face] != FREE_FACE) return impossible;
                 cost -= 0.5 * face_area(tet, face);
-            } else {
+            } else if (!is_flush(tet, face)) {
                 if (!sees(at, tet, face)) return impossible;
                 cost += spokes(at, tet, face);
             }
@@ -120,7 +137,7 @@ double Insertion::grow(Double3 at)
     return best;
 }
 
-// The outer faces of the cavity, the edges of them, and the area inside.
+// The outer faces of the cavity that make tets, the edges of them that make free faces, and the area inside.
 void Insertion::find_outside()
 {
     mesh_.unmark_all();
@@ -136,11 +153,13 @@ void Insertion::find_outside()
                 inside_area_ += 0.5 * face_area(tet, face);
                 continue;
             }
+            if (is_flush(tet, face)) continue;
             const auto& [i, j, k] = face_corners[face];
             const std::array<std::uint32_t, 3> v = {tet.vertices[i], tet.vertices[j], tet.vertices[k]};
             faces_.push_back(v);
             for (std::size_t n = 0; n < 3; ++n) // each edge has two faces, which run along it in opposite ways
-                if (v[n] < v[(n + 1) % 3]) outside_.edges.push_back({v[n], v[(n + 1) % 3], NO_TET, NO_TET});
+                if (v[n] < v[(n + 1) % 3] && !is_on_box(v[n], v[(n + 1) % 3]))
+                    outside_.edges.push_back({v[n], v[(n + 1) % 3], NO_TET, NO_TET});
         }
     }
 }
@@ -154,7 +173,7 @@ bool Insertion::may_be_at(Double3 at) const
 
 Double3 Insertion::better_point(Double3 at) const
 {
-    const Double3 way = cheapest_point(mesh_, outside_.edges, at, 3) - at;
+    const Double3 way = cheapest_point(mesh_, outside_.edges, sides_, at, 3) - at;
     const double now = outside_.cost(mesh_, at);
     double part = 1;
     for (int i = 0; i < insertion_halvings; ++i, part /= 2) {
@@ -167,6 +186,8 @@ Double3 Insertion::better_point(Double3 at) const
 double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
     if (!find_ring(mesh_, tet, edge, most_round_edge, ring_) || !is_first(tet)) return 0;
+    sides_ = ring_.is_open() ? mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) : 0;
+    if (ring_.is_open() && sides_ == 0) return 0; // the domain is no box
     Double3 at = rounded_point((mesh_.point(ring_.a) + mesh_.point(ring_.b)) * 0.5);
     cavity_ = ring_.tets;
     double gain = 0;
@@ -177,7 +198,7 @@ double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
         gain = inside_area_ - outside_.cost(mesh_, at);
     }
     if (gain <= least + least_share * inside_area_ || !may_be_at(at)) return 0;
-    const std::uint32_t vertex = mesh_.add_vertex(at);
+    const std::uint32_t vertex = mesh_.add_vertex(at, sides_);
     fresh_.clear();
     for (const auto& [p, q, r] : faces_)
         fresh_.push_back({vertex, p, q, r});

@@ -7,7 +7,8 @@ namespace tetrace {
 
 /// Inserts a vertex near the middle of an edge: the tets round the edge, and others that pay, are replaced by the tets
 /// of the vertex and their outer faces. The cavity grows by the neighbour that lowers cost most, a few steps past the
-/// best too, and the vertex then moves to the cheapest point of it.
+/// best too, and the vertex then moves to the cheapest point of it. On an edge of the domain's boundary, the vertex
+/// stays on the sides that the edge lies on.
 class Insertion {
 public:
     explicit Insertion(EditableMesh& mesh) : mesh_(mesh) {}
@@ -26,6 +27,8 @@ private:
         double change; ///< of cost, if it joins the cavity
     };
     [[nodiscard]] bool is_first(std::uint32_t tet) const;
+    [[nodiscard]] bool is_on_box(std::uint32_t p, std::uint32_t q) const;
+    [[nodiscard]] bool is_flush(const Tet& tet, std::uint32_t face) const;
     [[nodiscard]] bool sees(Double3 at, const Tet& tet, std::uint32_t face) const;
     [[nodiscard]] double spokes(Double3 at, const Tet& tet, std::uint32_t face) const;
     [[nodiscard]] double face_area(const Tet& tet, std::uint32_t face) const;
@@ -39,6 +42,7 @@ private:
 
     EditableMesh& mesh_;
     EdgeRing ring_;
+    BoxSides sides_ = 0; ///< of the box, that the vertex is to lie on
     std::vector<std::uint32_t> cavity_;
     std::vector<Candidate> candidates_;
     VertexStar outside_; ///< of the vertex to be: its edges

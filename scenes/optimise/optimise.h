@@ -41,9 +41,10 @@ struct OptimisedTets {
 };
 
 /// Changes the tets that rays from outside reach so that these cross fewer faces: edges and faces are removed, vertices
-/// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the domain's boundary and the tets
-/// inside closed objects stay. The same bits on every machine, unless it runs out of time. Memory linear; time linear
-/// per round. mesh: sound (find_defect and find_gap find nothing); so is the result.
+/// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the region of the domain and the tets
+/// inside closed objects stay; the sides of a box get other boundary faces. The same bits on every machine, unless it
+/// runs out of time. Memory linear; time linear per round. mesh: sound (find_defect and find_gap find nothing); so is
+/// the result.
 [[nodiscard]] OptimisedTets optimise(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress);
 
 } // namespace tetrace

@@ -22,6 +22,17 @@ inline constexpr double least_relative_height = 1e-3;
     return 0.5 * length(cross(b - a, c - a));
 }
 
+/// The least height of a boundary face that an operation makes: more than three times what docs/spec/project.md, P10,
+/// asks for, so that no ray sees the face turned over.
+inline constexpr double least_boundary_height = 0x1p-12;
+
+/// Whether a boundary face may be made.
+[[nodiscard]] inline bool may_be_boundary_face(Double3 a, Double3 b, Double3 c)
+{
+    const double edge = std::max({squared(b - a), squared(c - b), squared(a - c)});
+    return squared(cross(b - a, c - a)) >= least_boundary_height * least_boundary_height * edge;
+}
+
 /// A cost that nothing has.
 inline constexpr double impossible = std::numeric_limits<double>::infinity();
 

@@ -27,6 +27,24 @@ struct Equations {
         zz += weight * (1 - t.z * t.z);
         right = right + (p - t * dot(p, t)) * weight;
     }
+    // Keeps a coordinate at `value`.
+    void hold(int axis, double value)
+    {
+        const double scale = xx + yy + zz;
+        if (axis == 0) {
+            right = {scale * value, right.y - xy * value, right.z - xz * value};
+            xx = scale;
+            xy = xz = 0;
+        } else if (axis == 1) {
+            right = {right.x - xy * value, scale * value, right.z - yz * value};
+            yy = scale;
+            xy = yz = 0;
+        } else {
+            right = {right.x - xz * value, right.y - yz * value, scale * value};
+            zz = scale;
+            xz = yz = 0;
+        }
+    }
     // By Cramer's rule; `otherwise` where the matrix is singular.
     [[nodiscard]] Double3 solve(Double3 otherwise) const
     {
@@ -42,8 +60,10 @@ struct Equations {
 
 } // namespace
 
-Double3 cheapest_point(const EditableMesh& mesh, std::span<const VertexStar::LinkEdge> edges, Double3 from, int steps)
+Double3 cheapest_point(const EditableMesh& mesh, std::span<const VertexStar::LinkEdge> edges, BoxSides sides,
+                       Double3 from, int steps)
 {
+    const Double3 begin = from;
     for (int step = 0; step < steps; ++step) {
         Equations equations;
         for (const auto& edge : edges) {
@@ -53,7 +73,13 @@ Double3 cheapest_point(const EditableMesh& mesh, std::span<const VertexStar::Lin
             const Double3 across = (from - p) - t * dot(from - p, t);
             equations.add_line(p, t, edge_length / std::max(length(across), least_distance));
         }
+        if (holds_axis(sides, 0)) equations.hold(0, begin.x);
+        if (holds_axis(sides, 1)) equations.hold(1, begin.y);
+        if (holds_axis(sides, 2)) equations.hold(2, begin.z);
         from = equations.solve(from);
+        if (holds_axis(sides, 0)) from.x = begin.x; // without the solution's roundings
+        if (holds_axis(sides, 1)) from.y = begin.y;
+        if (holds_axis(sides, 2)) from.z = begin.z;
     }
     return from;
 }
@@ -68,7 +94,7 @@ double try_move(EditableMesh& mesh, std::uint32_t vertex, double least, VertexSt
     if (!find_star(mesh, vertex, most_moved_tets, scratch)) return 0;
     const Double3 from = mesh.point(vertex);
     const double before = scratch.cost(mesh, from);
-    const Double3 way = cheapest_point(mesh, scratch.edges, from, solving_steps) - from;
+    const Double3 way = cheapest_point(mesh, scratch.edges, mesh.box_sides(vertex), from, solving_steps) - from;
     double part = 1;
     for (int i = 0; i < move_halvings; ++i, part /= 2) {
         const Double3 to = rounded_point(from + way * part);

@@ -9,7 +9,7 @@ void add_edges(const EditableMesh& mesh, std::uint32_t vertex, std::uint32_t ind
     const Tet& tet = mesh.tet(index);
     for (std::uint32_t face = 0; face < 4; ++face) {
         const std::uint32_t link = tet.links[face];
-        if (tet.vertices[face] == vertex || link_tet(link) < index) continue;
+        if (tet.vertices[face] == vertex || link == NO_LINK || link_tet(link) < index) continue;
         VertexStar::LinkEdge edge{NO_TET, NO_TET, tet.vertices[face],
                                   mesh.tet(link_tet(link)).vertices[link_face(link)]};
         for (std::uint32_t i = 0; i < 4; ++i)
@@ -30,7 +30,7 @@ bool find_star(EditableMesh& mesh, std::uint32_t vertex, std::size_t most, Verte
         if (star.tets.size() > most) return false;
         const Tet& tet = mesh.tet(star.tets[i]);
         for (std::uint32_t face = 0; face < 4; ++face)
-            if (tet.vertices[face] != vertex && mesh.mark(link_tet(tet.links[face])))
+            if (tet.vertices[face] != vertex && tet.links[face] != NO_LINK && mesh.mark(link_tet(tet.links[face])))
                 star.tets.push_back(link_tet(tet.links[face]));
         add_edges(mesh, vertex, star.tets[i], star);
     }

@@ -8,8 +8,8 @@
 
 namespace tetrace {
 
-/// The tets of a free vertex, and the edges of its link. The faces that have the vertex are the triangles of it and
-/// these edges.
+/// The tets of a free vertex, and the edges of its link. The free faces that have the vertex are the triangles of it
+/// and these edges; boundary faces cost nothing.
 struct VertexStar {
     struct LinkEdge {
         std::uint32_t p, q;
@@ -18,7 +18,7 @@ struct VertexStar {
     std::vector<std::uint32_t> tets;
     std::vector<LinkEdge> edges;
 
-    /// Sum of the areas of the faces that have the vertex, were it at `at`.
+    /// Sum of the areas of the free faces that have the vertex, were it at `at`.
     [[nodiscard]] double cost(const EditableMesh& mesh, Double3 at) const
     {
         double sum = 0;

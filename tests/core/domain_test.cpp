@@ -1,13 +1,11 @@
 #include "core/mesh/domain.h"
 
 #include "core/base/error.h"
-#include "scenes/procedural.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 using namespace tetrace;
 
@@ -76,42 +74,4 @@ TEST(Domain, surface_is_closed_wound_outwards_and_has_two_triangles_a_square)
     }
     const Double3 size = to_double(domain.high()) - to_double(domain.low());
     EXPECT_NEAR(volume, size.x * size.y * size.z, 1e-9);
-}
-
-TEST(EntryGrid, every_square_holds_the_two_faces_that_cover_it)
-{
-    const Scene scene = make_cubes(4);
-    const EntryGrid grid = make_entry_grid(scene.domain, scene.tets);
-    ASSERT_EQ(grid.ranges.size(), 6u * 4 * 4 + 1);
-    std::set<std::uint32_t> seen;
-    for (std::size_t square = 0; square + 1 < grid.ranges.size(); ++square) {
-        EXPECT_EQ(grid.ranges[square + 1] - grid.ranges[square], 2u);
-        seen.insert(grid.links.begin() + grid.ranges[square], grid.links.begin() + grid.ranges[square + 1]);
-    }
-    EXPECT_EQ(seen.size(), count_faces(scene.tets).boundary_faces);
-}
-
-TEST(EntryGrid, a_boundary_face_inside_the_domain_is_refused)
-{
-    Scene scene = make_cubes(2);
-    for (auto& line : scene.domain.lines)
-        line.back() += 0.25f; // the tets no longer reach the box
-    EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
-}
-
-TEST(EntryGrid, a_boundary_face_that_reaches_beyond_its_side_is_refused)
-{
-    Scene scene = make_cubes(2);
-    for (float& line : scene.domain.lines[1])
-        line *= 0.5f; // the sides across x keep their planes, and the tets stick out of them
-    EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
-}
-
-TEST(EntryGrid, a_square_without_a_face_is_refused)
-{
-    Scene scene = make_cubes(2);
-    for (Tet& tet : scene.tets.tets)
-        for (std::uint32_t& link : tet.links)
-            if (link == NO_LINK) link = 0; // no boundary is left
-    EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
 }

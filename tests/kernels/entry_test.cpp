@@ -1,5 +1,7 @@
 #include "core/base/exact.h"
+#include "scenes/optimise/optimise.h"
 #include "scenes/procedural.h"
+#include "tests/support/cut_anew.h"
 #include "tests/support/maria_kernel.h"
 #include "tests/support/random.h"
 
@@ -9,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <set>
+#include <utility>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -17,13 +20,23 @@ using namespace tetrace::test::maria;
 namespace {
 
 struct PackedCubes {
-    Scene scene = make_cubes(5);
+    Scene scene;
     PackedScene packed = pack(scene, Layout::tet96, TetOrder::input);
+
+    explicit PackedCubes(Scene made) : scene(std::move(made)) {}
 };
 const PackedCubes& box()
 {
-    static const PackedCubes made;
+    static const PackedCubes made(make_cubes(5));
     return made;
+}
+
+// With squares that the boundary faces lie across, or that lie inside of one face.
+Scene cubes_with_squares(std::uint32_t divisions)
+{
+    Scene scene = make_cubes(5);
+    scene.domain = cut_anew(scene.domain, divisions);
+    return scene;
 }
 
 // Whether the ray only touches the closed box, at a point or along a side, and never gets inside. Directions whose
@@ -43,12 +56,20 @@ bool grazes(Float3 origin, Float3 direction)
     return enter >= leave;
 }
 
+// With few large faces on the sides.
+Scene cubes_for_rays()
+{
+    Scene scene = make_cubes(5);
+    scene.tets = optimise(scene.tets, {2, 0}, {}).mesh;
+    return scene;
+}
+
 // All boundary faces that the exact ray meets on its way in: none where it misses the box, or only grazes it.
-std::set<uint> brute_force(Float3 origin, Float3 direction)
+std::set<uint> brute_force(Float3 origin, Float3 direction, const PackedCubes& cubes = box())
 {
     std::set<uint> met;
     if (grazes(origin, direction)) return met;
-    const auto& mesh = box().scene.tets;
+    const auto& mesh = cubes.scene.tets;
     for (uint index = 0; index < mesh.tets.size(); ++index) {
         for (uint face = 0; face < 4; ++face) {
             if (mesh.tets[index].links[face] != NO_LINK) continue;
@@ -62,11 +83,11 @@ std::set<uint> brute_force(Float3 origin, Float3 direction)
     return met;
 }
 
-uint look_up(Float3 origin, Float3 direction)
+uint look_up(Float3 origin, Float3 direction, const PackedCubes& cubes = box())
 {
     const Vec3 d = to_vec3(direction);
     const Ray ray = make_ray(to_vec3(origin), VEC3(without_dust(d.x), without_dust(d.y), without_dust(d.z)));
-    const SceneView view = view_of(box().packed);
+    const SceneView view = view_of(cubes.packed);
     return entry_link(view, entry_index(view, ray));
 }
 
@@ -103,6 +124,42 @@ TEST(Entry, agrees_with_brute_force_from_all_round)
     }
     EXPECT_GT(entered, 1000);
     EXPECT_EQ(differing, 0);
+}
+
+TEST(Entry, agrees_with_brute_force_where_faces_lie_across_squares)
+{
+    for (const std::uint32_t divisions : {0u, 1u, 2u, 3u, 7u, 16u}) {
+        const PackedCubes cubes(divisions == 0 ? cubes_for_rays() : cubes_with_squares(divisions));
+        Random random(divisions);
+        int differing = 0, entered = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Float3 origin = random.point(-3, 3);
+            if (cubes.scene.domain.contains(origin)) continue;
+            const Float3 direction = toward(origin, random.point(-1.2f, 1.2f));
+            const auto met = brute_force(origin, direction, cubes);
+            const uint found = look_up(origin, direction, cubes);
+            entered += !met.empty();
+            differing += met.empty() ? found != NO_LINK : met.count(found) == 0;
+        }
+        EXPECT_GT(entered, 700);
+        EXPECT_EQ(differing, 0) << divisions << " divisions";
+    }
+}
+
+TEST(Entry, rays_through_lines_of_the_look_up_find_the_face_that_lies_across)
+{
+    const PackedCubes cubes(cubes_with_squares(8)); // lines that are exact, and inside faces
+    const auto& lines = cubes.scene.domain.lines;
+    for (std::size_t i = 1; i < 8; ++i)
+        for (std::size_t j = 1; j < 8; ++j) {
+            const Float3 point{lines[0][i], lines[1][j], lines[2][8]};
+            for (const Float3 direction : {Float3{-0.25f, 0.5f, -1}, Float3{0, 0, -1}, Float3{0.5f, 0.5f, -0.125f}}) {
+                const Float3 origin{point.x - direction.x, point.y - direction.y, point.z - direction.z};
+                const auto met = brute_force(origin, direction, cubes);
+                ASSERT_FALSE(met.empty());
+                EXPECT_EQ(met.count(look_up(origin, direction, cubes)), 1u) << "line " << i << ", " << j;
+            }
+        }
 }
 
 TEST(Entry, rays_parallel_to_a_side_enter_by_the_side_they_face)

@@ -98,12 +98,15 @@ TEST(HardRays, of_hard_meshes_are_neither_wrong_nor_lost)
 
 TEST_P(HardRaysOf, a_scanned_mesh_are_neither_wrong_nor_lost)
 {
-    const std::string name = GetParam();
+    const std::string of = GetParam(), name = of.substr(0, of.find('_'));
     if (const std::string reason = why_not_available(name); !reason.empty()) GTEST_SKIP() << reason;
-    expect_none_wrong_or_lost(load_scene({name, {}}, {}).scene, name.c_str());
+    const TetsKind tets = of == name ? TetsKind::cdt : TetsKind::rays;
+    const Scene scene = load_scene({name, default_build(tets)}, {}).scene;
+    EXPECT_EQ(scene.build.optimised.tets, tets);
+    expect_none_wrong_or_lost(scene, of.c_str());
 }
 
-INSTANTIATE_TEST_SUITE_P(each, HardRaysOf, testing::Values("bunny", "armadillo"),
+INSTANTIATE_TEST_SUITE_P(each, HardRaysOf, testing::Values("bunny", "armadillo", "bunny_rays"),
                          [](const auto& test) { return test.param; });
 
 TEST(HardRays, find_a_walk_without_the_rule_for_ties)

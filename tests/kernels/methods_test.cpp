@@ -208,7 +208,7 @@ TEST(Methods, a_walk_that_goes_in_circles_is_lost_at_its_cap_or_begins_anew)
     for (std::uint32_t quad : {4u, 5u, 10u, 11u}) { // every face of each tet leads to face 0 of the other
         packed.tets[quad].x = packed.tets[quad].z = quad < TET96_QUADS ? 1u << 2u : 0u;
     }
-    packed.entry_ranges.assign(7, 0); // no face of a boundary, where project begins anew: it finds no path
+    packed.entry_ranges.assign(13, 0); // no face of a boundary, where project begins anew: it finds no path
     packed.lines.assign(6, 0);
     for (const CountedMethod& method : methods()) {
         if (!always_leaves(method)) continue;
@@ -223,7 +223,7 @@ TEST(Methods, a_circle_is_found_long_before_the_cap)
     auto packed = misled();
     for (std::uint32_t quad : {4u, 5u, 10u, 11u})
         packed.tets[quad].x = packed.tets[quad].z = quad < TET96_QUADS ? 1u << 2u : 0u;
-    packed.entry_ranges.assign(7, 0);
+    packed.entry_ranges.assign(13, 0);
     packed.lines.assign(6, 0);
     for (const CountedMethod& method : methods()) {
         if (!always_leaves(method) || method.name == std::string("project")) continue;

@@ -44,8 +44,8 @@ Crossed crossed_by(const Grid& grid, const Line& line)
     for (std::uint32_t side = 0; side < 6; ++side) {
         const auto inwards =
             side % 2 == 0 ? line.direction[static_cast<int>(side / 2)] : -line.direction[static_cast<int>(side / 2)];
-        for (auto i = grid.packed.entry_ranges[side * squares]; i < grid.packed.entry_ranges[(side + 1) * squares];
-             ++i) {
+        const std::size_t list = 6 * squares + side;
+        for (auto i = grid.packed.entry_ranges[list]; i < grid.packed.entry_ranges[list + 1]; ++i) {
             const int way = crossing(grid, grid.packed.entry_links[i], ray);
             if (way > 0) found.entries.push_back(grid.packed.entry_links[i]);
             if ((way > 0 && inwards <= 0) || (way < 0 && inwards >= 0)) ++found.folded;

@@ -159,7 +159,7 @@ TEST(ProjectWalk, passes_over_no_boundary_face_that_it_enters_by)
             const Line line = {snap_to_grid(from), without_small({to.x - from.x, to.y - from.y, to.z - from.z})};
             if (grid->scene.domain.contains(line.origin) || line.direction == Float3{}) continue;
             const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
-            std::uint32_t first = 0;
+            std::uint32_t first = grid->packed.entry_ranges[grid->packed.entry_ranges.size() - 7]; // of all sides
             const auto faces = static_cast<std::uint32_t>(grid->packed.entry_links.size());
             while (first < faces && right::depth_in(right::entry_face(grid->view, first), ray) < 0)
                 ++first;

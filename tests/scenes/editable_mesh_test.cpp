@@ -11,8 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -76,7 +78,7 @@ const Scene& cubes()
 std::uint32_t free_vertex(const EditableMesh& mesh)
 {
     for (std::uint32_t v = 0; v < mesh.vertex_slots(); ++v)
-        if (mesh.is_free(v)) return v;
+        if (mesh.is_free(v) && mesh.box_sides(v) == 0) return v;
     return NO_TET;
 }
 
@@ -96,9 +98,11 @@ TEST(EditableMesh, knows_what_rays_reach_and_what_may_move)
     for (std::uint32_t v = 0; v < mesh.vertex_slots(); ++v) {
         free += mesh.is_free(v) ? 1 : 0;
         const Double3 p = mesh.point(v), low = to_double(cubes().domain.low()), high = to_double(cubes().domain.high());
-        const bool on_side =
-            p.x == low.x || p.y == low.y || p.z == low.z || p.x == high.x || p.y == high.y || p.z == high.z;
-        EXPECT_FALSE(on_side && mesh.is_free(v));
+        const BoxSides sides = (p.x == low.x ? 1u : 0u) | (p.x == high.x ? 2u : 0u) | (p.y == low.y ? 4u : 0u) |
+                               (p.y == high.y ? 8u : 0u) | (p.z == low.z ? 16u : 0u) | (p.z == high.z ? 32u : 0u);
+        EXPECT_EQ(mesh.box_sides(v), sides);
+        if (sides == 0) continue;
+        EXPECT_EQ(mesh.is_free(v), std::popcount(sides) < 3) << "all but the corners";
     }
     EXPECT_GT(reached, 0U);
     EXPECT_LT(reached, mesh.tet_slots()); // the ball is closed
@@ -211,7 +215,7 @@ TEST(VertexMove, ends_where_no_other_point_is_cheaper)
     const std::uint32_t v = free_vertex(mesh);
     VertexStar star;
     ASSERT_TRUE(find_star(mesh, v, 400, star));
-    const Double3 best = cheapest_point(mesh, star.edges, mesh.point(v), 500);
+    const Double3 best = cheapest_point(mesh, star.edges, 0, mesh.point(v), 500);
     const double least = star.cost(mesh, best);
     Random random(3);
     for (int i = 0; i < 1000; ++i) {
@@ -240,20 +244,24 @@ TEST(VertexMove, and_collapse_lower_the_cost_by_what_they_say)
 TEST(Collapse, takes_the_neighbour_that_leaves_the_least_cost)
 {
     const EditableMesh start(cubes().tets);
-    for (std::uint32_t v = 0, tried = 0; v < start.vertex_slots() && tried < 8; ++v) {
-        if (!start.is_free(v)) continue;
-        ++tried;
+    std::array<int, 3> tried{}; // inside, on a side, on an edge of the box
+    for (std::uint32_t v = 0; v < start.vertex_slots(); ++v) {
+        if (!start.is_free(v) || ++tried[static_cast<std::size_t>(std::popcount(start.box_sides(v)))] > 8) continue;
         VertexStar star;
         EditableMesh first(cubes().tets);
         ASSERT_TRUE(find_star(first, v, 400, star));
         double best = impossible;
-        for (const auto& edge : star.edges) {
+        std::set<std::uint32_t> neighbours;
+        for (const std::uint32_t t : star.tets)
+            neighbours.insert(start.tet(t).vertices.begin(), start.tet(t).vertices.end());
+        neighbours.erase(v);
+        for (const std::uint32_t onto : neighbours) {
             EditableMesh mesh(cubes().tets);
             std::vector<Corners> fresh;
             for (const std::uint32_t t : star.tets) {
                 Corners corners = mesh.tet(t).vertices;
-                if (std::find(corners.begin(), corners.end(), edge.p) != corners.end()) continue;
-                std::replace(corners.begin(), corners.end(), v, edge.p);
+                if (std::find(corners.begin(), corners.end(), onto) != corners.end()) continue;
+                std::replace(corners.begin(), corners.end(), v, onto);
                 fresh.push_back(corners);
             }
             if (mesh.replace(star.tets, fresh)) best = std::min(best, mesh.cost());
@@ -308,6 +316,6 @@ TEST(EditableMesh, stays_sound_through_many_random_operations)
         if (i % 20'000 == 0) expect_same_domain(mesh.take(), cubes());
     }
     EXPECT_NEAR(mesh.cost(), cost, 1e-8);
-    EXPECT_GT(done, 10'000);
+    EXPECT_GT(done, 4'000);
     expect_same_domain(mesh.take(), cubes());
 }

@@ -111,7 +111,8 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
 {
     request.build = default_build(TetsKind::rays);
     Scene made = expected();
-    made.domain = make_cubes(3).domain; // three divisions
+    request.build.divisions = 3;
+    made.domain = make_cubes(3).domain;
     made.build.switches = "pq5Y";
     made.build.optimised = {TetsKind::rays, TetsKind::rays, "", request.build.effort, 2, 1, 0.1};
     write_scene(prepared, made);

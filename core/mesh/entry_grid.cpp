@@ -1,0 +1,181 @@
+#include "core/mesh/entry_grid.h"
+
+#include "core/base/error.h"
+#include "core/mesh/face_corners.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace tetrace {
+namespace {
+
+/// A point of a side's plane.
+struct Point {
+    double x, y;
+};
+using Corners = std::array<Point, 3>;
+
+struct Rectangle {
+    Point low, high;
+};
+
+struct BoundaryFace {
+    std::uint32_t link, side;
+    Corners corners; ///< along the two other axes of the side, in cyclic order
+};
+
+/// The side of the box that has all three corners; 6 where there is none.
+std::uint32_t side_of(const Domain& domain, const std::array<Float3, 3>& corners)
+{
+    for (const Float3 corner : corners)
+        if (!domain.contains(corner)) return 6;
+    for (std::uint32_t side = 0; side < 6; ++side) {
+        const auto axis = side / 2;
+        const float plane = side % 2 == 0 ? domain.lines[axis].front() : domain.lines[axis].back();
+        const auto on_plane = [&](Float3 p) { return p[static_cast<int>(axis)] == plane; };
+        if (std::ranges::all_of(corners, on_plane)) return side;
+    }
+    return 6;
+}
+
+BoundaryFace boundary_face(const Domain& domain, const TetMesh& mesh, std::uint32_t link)
+{
+    std::array<Float3, 3> at;
+    for (std::size_t i = 0; i < 3; ++i)
+        at[i] = mesh.vertices[mesh.tets[link_tet(link)].vertices[face_corners[link_face(link)][i]]];
+    BoundaryFace face{link, side_of(domain, at), {}};
+    if (face.side == 6)
+        throw Error(ErrorKind::invalid_input, "making the entry grid: tet " + std::to_string(link_tet(link)) +
+                                                  " has a boundary face that lies on no side of the domain");
+    const auto axis = static_cast<int>(face.side / 2);
+    for (std::size_t i = 0; i < 3; ++i)
+        face.corners[i] = {at[i][(axis + 1) % 3], at[i][(axis + 2) % 3]};
+    return face;
+}
+
+std::vector<BoundaryFace> boundary_faces(const Domain& domain, const TetMesh& mesh)
+{
+    std::vector<BoundaryFace> faces;
+    for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
+        for (std::uint32_t face = 0; face < 4; ++face)
+            if (mesh.tets[tet].links[face] == NO_LINK)
+                faces.push_back(boundary_face(domain, mesh, make_link(tet, face)));
+    return faces;
+}
+
+/// Whether a line along an edge of the triangle parts it from the rectangle. It errs by roundings only, which are far
+/// below entry_margin.
+bool is_parted(const Corners& corners, const Rectangle& box)
+{
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point a = corners[i], b = corners[(i + 1) % 3], c = corners[(i + 2) % 3];
+        Point normal{b.y - a.y, a.x - b.x};
+        const double inwards = normal.x * (c.x - a.x) + normal.y * (c.y - a.y);
+        if (inwards < 0) normal = {-normal.x, -normal.y};
+        const Point innermost{normal.x > 0 ? box.high.x : box.low.x, normal.y > 0 ? box.high.y : box.low.y};
+        if (normal.x * (innermost.x - a.x) + normal.y * (innermost.y - a.y) < 0) return true;
+    }
+    return false;
+}
+
+/// What is left of a polygon on the inner side of a line along an axis (Sutherland, Hodgman 1974).
+template <class Depth>
+std::vector<Point> clipped(const std::vector<Point>& polygon, const Depth& depth)
+{
+    std::vector<Point> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point p = polygon[i], q = polygon[(i + 1) % polygon.size()];
+        const double at_p = depth(p), at_q = depth(q);
+        if (at_p >= 0) kept.push_back(p);
+        if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) {
+            const double part = at_p / (at_p - at_q);
+            kept.push_back({p.x + (q.x - p.x) * part, p.y + (q.y - p.y) * part});
+        }
+    }
+    return kept;
+}
+
+/// The share of a square that a face covers, in sixteenths.
+std::uint32_t share_of(const Corners& corners, const Rectangle& square)
+{
+    std::vector<Point> polygon(corners.begin(), corners.end());
+    polygon = clipped(polygon, [&](Point p) { return p.x - square.low.x; });
+    polygon = clipped(polygon, [&](Point p) { return square.high.x - p.x; });
+    polygon = clipped(polygon, [&](Point p) { return p.y - square.low.y; });
+    polygon = clipped(polygon, [&](Point p) { return square.high.y - p.y; });
+    double area = 0;
+    for (std::size_t i = 2; i < polygon.size(); ++i) {
+        const Point a = polygon[0], b = polygon[i - 1], c = polygon[i];
+        area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+    const double whole = (square.high.x - square.low.x) * (square.high.y - square.low.y);
+    return static_cast<std::uint32_t>(std::lround(16 * std::abs(area) / whole));
+}
+
+/// The intervals of `lines` that come within entry_margin of [low, high]: first to last - 1.
+std::pair<std::uint32_t, std::uint32_t> intervals_near(const std::vector<float>& lines, double low, double high)
+{
+    const auto last_line = lines.size() - 1;
+    const auto first = std::ranges::lower_bound(lines, low - entry_margin) - lines.begin();
+    const auto last = std::ranges::upper_bound(lines, high + entry_margin) - lines.begin();
+    return {static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(first, 1) - 1),
+            static_cast<std::uint32_t>(std::min<std::size_t>(static_cast<std::size_t>(last), last_line))};
+}
+
+struct Listed {
+    std::uint32_t square, share, link;
+};
+
+/// Calls visit(Listed) for each square that a face touches or nearly touches.
+template <class Visit>
+void for_each_square(const Domain& domain, const BoundaryFace& face, const Visit& visit)
+{
+    const std::uint32_t n = domain.divisions;
+    const auto& [a, b, c] = face.corners;
+    const auto& across = domain.lines[(face.side / 2 + 1) % 3];
+    const auto& upwards = domain.lines[(face.side / 2 + 2) % 3];
+    const auto [first_i, last_i] = intervals_near(across, std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}));
+    const auto [first_j, last_j] = intervals_near(upwards, std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}));
+    for (std::uint32_t j = first_j; j < last_j; ++j)
+        for (std::uint32_t i = first_i; i < last_i; ++i) {
+            const Rectangle square{{across[i], upwards[j]}, {across[i + 1], upwards[j + 1]}};
+            const Rectangle near{{square.low.x - entry_margin, square.low.y - entry_margin},
+                                 {square.high.x + entry_margin, square.high.y + entry_margin}};
+            if (is_parted(face.corners, near)) continue;
+            visit(Listed{(face.side * n + j) * n + i, share_of(face.corners, square), face.link});
+        }
+}
+
+} // namespace
+
+EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh)
+{
+    const std::uint32_t squares = 6 * domain.divisions * domain.divisions;
+    std::vector<Listed> listed;
+    for (const BoundaryFace& face : boundary_faces(domain, mesh)) {
+        for_each_square(domain, face, [&](const Listed& entry) { listed.push_back(entry); });
+        listed.push_back({squares + face.side, 0, face.link});
+    }
+    std::ranges::sort(listed, [](const Listed& a, const Listed& b) {
+        return a.square != b.square ? a.square < b.square : a.share != b.share ? a.share > b.share : a.link < b.link;
+    });
+    EntryGrid grid;
+    grid.ranges.assign(std::size_t{squares} + 7, 0);
+    for (const Listed& entry : listed) {
+        grid.ranges[entry.square + 1]++;
+        grid.links.push_back(entry.link);
+    }
+    const auto empty = std::find(grid.ranges.begin() + 1, grid.ranges.end(), 0U);
+    if (empty != grid.ranges.end())
+        throw Error(ErrorKind::invalid_input, "making the entry grid: square " +
+                                                  std::to_string(empty - grid.ranges.begin() - 1) +
+                                                  " of the domain has no boundary face");
+    for (std::size_t i = 1; i < grid.ranges.size(); ++i)
+        grid.ranges[i] += grid.ranges[i - 1];
+    return grid;
+}
+
+} // namespace tetrace
