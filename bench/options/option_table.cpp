@@ -1,10 +1,9 @@
 #include "bench/options/option_table.h"
 
+#include "bench/options/apply_option.h"
 #include "bench/options/option_values.h"
-#include "core/device/backend.h"
 
 #include <algorithm>
-#include <regex>
 
 namespace tetrace {
 
@@ -44,99 +43,6 @@ std::string names_of(Structure structure, T KernelId::*member)
     return join_alternatives(names);
 }
 
-template <class T>
-ApplyOption append(std::string option, std::vector<T> Options::*list, std::vector<T> accepted = values_of<T>())
-{
-    return
-        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
-}
-
-/// "all" stands for every value.
-template <class T>
-ApplyOption append_or_all(std::string option, std::vector<T> Options::*list, std::vector<T> accepted)
-{
-    return [=](Options& options, const std::string& text) {
-        std::vector<std::string> names = {"all"};
-        for (const T& value : accepted) {
-            names.emplace_back(name_of(value));
-            if (text == "all" || text == names.back()) (options.*list).push_back(value);
-        }
-        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
-    };
-}
-
-std::vector<std::string> backend_names()
-{
-    std::vector<std::string> names;
-    for (const Backend* backend : all_backends())
-        names.push_back(backend->name());
-    return names;
-}
-
-ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list)
-{
-    return [=](Options& options, const std::string& text) {
-        const auto names = backend_names();
-        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
-        (options.*list).push_back(text);
-    };
-}
-
-void set_filter(Options& options, const std::string& text)
-{
-    try {
-        const std::regex check(text);
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
-    }
-    options.filter = text;
-}
-
-ApplyOption set(bool Options::*flag)
-{
-    return [=](Options& options, const std::string&) { options.*flag = true; };
-}
-
-ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high)
-{
-    return [=](Options& options, const std::string& text) {
-        options.*count = static_cast<unsigned>(parse_count(option, text, low, high));
-    };
-}
-
-ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low, unsigned high)
-{
-    return [=](Options& options, const std::string& text) {
-        (options.*list).push_back(static_cast<unsigned>(parse_count(option, text, low, high)));
-    };
-}
-
-ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
-{
-    return [=](Options& options, const std::string& text) {
-        if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
-        options.*path = text;
-    };
-}
-
-void set_tile(Options& options, const std::string& text)
-{
-    if (text != "8x4" && text != "8x8") reject_value("--tile", text, "8x4 or 8x8");
-    options.tile_height = text == "8x4" ? 4 : 8;
-}
-
-void set_packet_lanes(Options& options, const std::string& text)
-{
-    std::vector<std::string> accepted;
-    for (const unsigned lanes : packet_widths) {
-        accepted.push_back(std::to_string(lanes));
-        if (text == accepted.back()) options.packet_lanes = lanes;
-    }
-    if (std::ranges::find(accepted, text) == accepted.end())
-        reject_value("--packet-lanes", text, join_alternatives(accepted));
-}
-
 std::vector<OptionRow> reproduce_options()
 {
     return {
@@ -145,8 +51,10 @@ std::vector<OptionRow> reproduce_options()
              ". Default: all except growth, which is not in the paper.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--builds", "LIST",
-         "Which builds of banana, bunny and armadillo: 'ours', as the options of scenes say, and 'paper', near the "
-         "paper's counts, in a domain that holds the cameras. Other scenes have ours alone. Default: both.",
+         "Which builds of the scenes: 'ours', a CDT as the options of scenes say; 'paper', of banana, bunny and "
+         "armadillo, a CDT near the paper's counts, in a domain that holds the cameras; 'rays', tets that are changed "
+         "until rays cross few faces, which decide no claim of the paper. growth has no 'paper'; cubes and .tet files "
+         "have ours alone. Default: all.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
@@ -174,8 +82,8 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--tets", "KIND",
          "How the domain is filled: 'rays', tets that are changed until rays cross few faces, or 'cdt', the "
          "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes' and .tet files "
-         "have tets of their own. 'build' takes a list. Default: rays; cdt for 'reproduce'.",
-         building, true, append("--tets", &Options::tets)},
+         "have tets of their own. 'build' takes a list. 'reproduce' has --builds. Default: rays.",
+         building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
          "optimiser takes 5 to 9 times as long, for 0 to 2 % fewer steps). Default: " +

@@ -128,7 +128,7 @@ Options defaults_of(Verb verb)
     if (verb != Verb::reproduce) return options;
     options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};
-    options.tets = {TetsKind::cdt}; // as in the paper
+    options.tets = {TetsKind::cdt}; // as in the paper; --builds adds others
     options.samples = 5;
     return options;
 }
