@@ -17,6 +17,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"occlusive_faces", scene.counts().occlusive_faces},
                              {"free_faces", scene.counts().free_faces},
                              {"boundary_faces", scene.counts().boundary_faces},
+                             {"reached_tets", scene.counts().reached_tets},
                              {"domain", name_of(loaded.scene.domain.kind)},
                              {"divisions", loaded.scene.domain.divisions},
                              {"switches", build.switches},

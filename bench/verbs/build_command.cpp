@@ -96,6 +96,13 @@ Built build_one(const SceneRequest& request, const Options& options)
     return built;
 }
 
+/// Of the tets that rays from outside reach; the others are inside closed objects.
+double reached_bytes(const Built& built)
+{
+    return static_cast<double>(built.bytes) * static_cast<double>(built.counts.reached_tets) /
+           static_cast<double>(built.counts.tets);
+}
+
 std::vector<Cell> table_row(const Built& built)
 {
     const bool good = built.scene.has_value();
@@ -113,6 +120,7 @@ std::vector<Cell> table_row(const Built& built)
             count(built.counts.occlusive_faces),
             count(built.counts.free_faces),
             good ? Cell(1e-6 * static_cast<double>(built.bytes)) : Cell(),
+            good ? Cell(1e-6 * reached_bytes(built)) : Cell(),
             good ? Cell(built.build_s) : Cell(),
             cost(optimised.seconds),
             cost(optimised.cost_before),
@@ -137,6 +145,7 @@ std::vector<Column> columns(bool with_reason)
                                 {"occlusive_faces", "occlusive"},
                                 {"free_faces", "free"},
                                 {"size_mb", "size", "MB", 1},
+                                {"reached_mb", "reached", "MB", 1},
                                 {"build_s", "build", "s", 1},
                                 {"optimise_s", "optimise", "s", 1},
                                 {"cost_before", "cost", "before"},
