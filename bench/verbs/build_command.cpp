@@ -183,6 +183,39 @@ std::string reasons_text(const std::vector<Built>& all)
     return text;
 }
 
+/// The same scene in the same domain as TetGen's CDT, if it was built too; else null.
+const Built* find_cdt(const std::vector<Built>& all, const Built& rays)
+{
+    for (const Built& built : all)
+        if (built.scene && built.request.name == rays.request.name && built.optimised.tets == TetsKind::cdt &&
+            built.request.build.domain == rays.request.build.domain)
+            return &built;
+    return nullptr;
+}
+
+/// Cost and steps before and after the optimiser, and what each of its operations did.
+std::string optimiser_text(const std::vector<Built>& all, const Built& built)
+{
+    const OptimisedInfo& made = built.optimised;
+    if (made.operations.empty()) return "";
+    std::string steps;
+    if (const Built* cdt = find_cdt(all, built))
+        steps = fmt::format("; steps a ray {:.2f} in the CDT, {:.2f} now", mean_steps(cdt->totals).all.value_or(0),
+                            mean_steps(built.totals).all.value_or(0));
+    Table table({{"operation", "operation"},
+                 {"done", "done"},
+                 {"gain", "cost", "lowered by"},
+                 {"share", "share", "%", 1},
+                 {"seconds", "time", "s", 1}});
+    for (const OptimiserOperation& operation : made.operations)
+        table.add({operation.name, operation.done, operation.gain,
+                   100 * operation.gain / (made.cost_before - made.cost_after), operation.seconds});
+    return fmt::format("\n{} ({}, {}), the optimiser in {} rounds: cost {:.2f} before, {:.2f} after{}\n\n{}",
+                       scene_label(built.request.name), name_of(built.request.build.domain),
+                       built.request.build.divisions, made.rounds, made.cost_before, made.cost_after, steps,
+                       table.text(2));
+}
+
 Report build_report(const std::vector<Built>& all, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -192,11 +225,15 @@ Report build_report(const std::vector<Built>& all, const Options& options)
         section["builds"][i]["status"] = all[i].scene ? "ok" : "error";
         if (all[i].scene) section["builds"][i]["scene_record"] = *all[i].scene;
     }
-    const std::string rays =
+    std::string text = build_table(all, false).text() + reasons_text(all);
+    for (const Built& built : all)
+        text += optimiser_text(all, built);
+    text +=
         fmt::format("\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
-                    "uniform line crosses, before and after optimising.\n",
+                    "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
+                    "inside closed objects.\n",
                     selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
-    return {build_table(all, false).text() + reasons_text(all) + rays, full, {{"tetrace", std::move(section)}}};
+    return {std::move(text), full, {{"tetrace", std::move(section)}}};
 }
 
 } // namespace

@@ -137,15 +137,11 @@ std::string objection(const Scene& scene, const OptimisedTets& result)
     return "";
 }
 
-void note_operations(const OptimiserReport& report, const BuilderTalk& talk)
+void note_result(const OptimiserReport& report, const BuilderTalk& talk)
 {
-    std::string did;
-    for (const OperationCount& operation : report.operations)
-        did +=
-            fmt::format("{}{} {} (-{:.2f})", did.empty() ? "" : ", ", operation.done, operation.name, operation.gain);
     talk.note(fmt::format("optimised in {:.1f} s, {} rounds: a uniform line crosses {:.2f} free faces instead of "
-                          "{:.2f}; {}",
-                          report.seconds, report.rounds, report.cost_after, report.cost_before, did));
+                          "{:.2f}",
+                          report.seconds, report.rounds, report.cost_after, report.cost_before));
     if (report.out_of_time) talk.note("the optimiser ran out of time; on another machine it may reach other tets");
 }
 
@@ -161,11 +157,15 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
     info.cost_before = result.report.cost_before;
     info.cost_after = result.report.cost_after;
     info.seconds = result.report.seconds;
+    info.rounds = result.report.rounds;
     info.reason = objection(scene, result);
     if (info.reason.empty()) {
         info.tets = TetsKind::rays;
+        for (const OperationCount& operation : result.report.operations)
+            info.operations.push_back(
+                {std::string(operation.name), operation.done, operation.gain, operation.seconds});
         scene.tets = std::move(result.mesh);
-        note_operations(result.report, talk);
+        note_result(result.report, talk);
     } else {
         info.cost_after = info.cost_before;
         talk.note("TetGen's tets are used: " + info.reason);

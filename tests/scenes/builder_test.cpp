@@ -66,6 +66,10 @@ TEST_F(BuilderProgram, optimises_tets_for_rays_and_says_so)
     EXPECT_EQ(scene.build.optimised.tets, TetsKind::rays);
     EXPECT_EQ(scene.build.optimised.effort, 1);
     EXPECT_LT(scene.build.optimised.cost_after, scene.build.optimised.cost_before);
+    double gain = 0;
+    for (const OptimiserOperation& operation : scene.build.optimised.operations)
+        gain += operation.gain;
+    EXPECT_NEAR(gain, scene.build.optimised.cost_before - scene.build.optimised.cost_after, 1e-9);
     expect_sound(scene);
     EXPECT_EQ(run_on(mesh, "--tets delaunay").code, BUILDER_USAGE);
     EXPECT_EQ(run_on(mesh, "--effort 4").code, BUILDER_USAGE);
