@@ -90,6 +90,7 @@ void put_optimised(InformationWriter& out, const OptimisedInfo& info)
         out.put(operation.gain);
         out.put(operation.seconds);
     }
+    out.put(static_cast<std::uint32_t>(info.end));
 }
 
 bool get_optimised(InformationReader& in, OptimisedInfo& info)
@@ -117,7 +118,10 @@ bool get_optimised(InformationReader& in, OptimisedInfo& info)
         in.get(operation.gain);
         in.get(operation.seconds);
     }
-    return true;
+    std::uint32_t end = 0;
+    in.get(end);
+    info.end = static_cast<OptimiserEnd>(end);
+    return end <= static_cast<std::uint32_t>(OptimiserEnd::interrupted);
 }
 
 std::vector<char> pack_information(const Scene& scene)

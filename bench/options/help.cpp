@@ -35,7 +35,8 @@ const VerbHelp verb_help[] = {
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
      "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
      "built. A "
-     "combination that fails is a row with its reason; the others are still built, and the exit code is 1.",
+     "combination that fails is a row with its reason; the others are still built, and the exit code is 1. Ctrl-C "
+     "while the optimiser works keeps what it has reached, in a file of its own; a second one ends the program.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"

@@ -107,6 +107,12 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--time-limit", "TIME",
          "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
          false, [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
+        {"Scenes", "--optimise-time", "TIME",
+         "Stop the optimiser of --tets rays after this time, as above, with the tets that it has reached. They depend "
+         "on "
+         "the machine: the result says 'out of time', and the scene is kept in a file of its own, which --scene takes. "
+         "Default: half of --time-limit.",
+         building, false, [](Options& o, const std::string& v) { o.optimise_s = parse_seconds("--optimise-time", v); }},
         {"Scenes", "--memory-limit", "SIZE",
          "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
          false, [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},

@@ -199,6 +199,8 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.effort = options.effort;
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;
+    build.optimise_s = options.optimise_s;
+    build.keep_unfinished = options.verb == Verb::build;
     build.memory_limit_bytes = options.memory_limit_bytes;
     std::vector<SceneRequest> requests;
     for (const std::string& name : options.scenes.empty() ? default_scenes() : options.scenes)

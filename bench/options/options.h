@@ -36,8 +36,8 @@ template <>
 inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::growth>("table3", "table4", "table5", "table6",
                                                                                  "figure6", "growth");
 
-/// A build of a scene that `reproduce` traces: a CDT as the options ask for, one as near to the paper's counts as known,
-/// or tets for rays.
+/// A build of a scene that `reproduce` traces: a CDT as the options ask for, one as near to the paper's counts as
+/// known, or tets for rays.
 enum class PaperBuild { ours, paper, rays };
 template <>
 inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ours", "paper", "rays");
@@ -66,6 +66,7 @@ struct Options {
     int effort = usual_effort;
     std::uint32_t resolution = BuildOptions{}.resolution;
     double time_limit_s = BuildOptions{}.time_limit_s;
+    double optimise_s = BuildOptions{}.optimise_s;
     std::uint64_t memory_limit_bytes = BuildOptions{}.memory_limit_bytes;
 
     std::vector<Structure> structures;

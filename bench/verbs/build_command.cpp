@@ -21,6 +21,7 @@ struct Built {
     std::uint64_t bytes = 0;
     double build_s = 0;
     bool from_cache = false;
+    bool interrupted = false; ///< Ctrl-C came while it was built
     RayTotals totals;
     std::string reason; ///< why it failed
 };
@@ -84,6 +85,7 @@ Built build_one(const SceneRequest& request, const Options& options)
         built.optimised = scene.loaded().scene.build.optimised;
         built.build_s = scene.loaded().scene.build.build_s;
         built.from_cache = scene.loaded().from_cache;
+        built.interrupted = scene.loaded().interrupted;
         built.request.build.divisions = scene.loaded().scene.domain.divisions;
         built.request.build.domain = scene.loaded().scene.domain.kind;
         count_steps(built, scene, options);
@@ -210,9 +212,11 @@ std::string optimiser_text(const std::vector<Built>& all, const Built& built)
     for (const OptimiserOperation& operation : made.operations)
         table.add({operation.name, operation.done, operation.gain,
                    100 * operation.gain / (made.cost_before - made.cost_after), operation.seconds});
-    return fmt::format("\n{} ({}, {}), the optimiser in {} rounds: cost {:.2f} before, {:.2f} after{}\n\n{}",
+    const std::string early =
+        made.end == OptimiserEnd::finished ? "" : fmt::format(", stopped early ({})", name_of(made.end));
+    return fmt::format("\n{} ({}, {}), the optimiser in {} rounds{}: cost {:.2f} before, {:.2f} after{}\n\n{}",
                        scene_label(built.request.name), name_of(built.request.build.domain),
-                       built.request.build.divisions, made.rounds, made.cost_before, made.cost_after, steps,
+                       built.request.build.divisions, made.rounds, early, made.cost_before, made.cost_after, steps,
                        table.text(2));
 }
 
@@ -228,11 +232,11 @@ Report build_report(const std::vector<Built>& all, const Options& options)
     std::string text = build_table(all, false).text() + reasons_text(all);
     for (const Built& built : all)
         text += optimiser_text(all, built);
-    text +=
-        fmt::format("\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
-                    "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
-                    "inside closed objects.\n",
-                    selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
+    text += fmt::format(
+        "\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
+        "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
+        "inside closed objects.\n",
+        selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
     return {std::move(text), full, {{"tetrace", std::move(section)}}};
 }
 
@@ -244,12 +248,15 @@ int build_command(const Options& options)
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
     std::vector<Built> all;
-    bool failed = false;
+    bool failed = false, interrupted = false;
     for (const SceneRequest& request : combinations(options)) {
+        if (interrupted) break;
         all.push_back(build_one(request, options));
         failed = failed || !all.back().scene || all.back().totals.lost > 0;
+        interrupted = all.back().interrupted;
     }
     deliver(options, build_report(all, options));
+    if (interrupted) throw Error(ErrorKind::interrupted, "building scenes: interrupted; what follows was not built");
     return failed ? 1 : 0;
 }
 

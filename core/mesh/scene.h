@@ -20,6 +20,17 @@ enum class TetsKind {
 template <>
 inline constexpr auto enum_names<TetsKind> = names_up_to<TetsKind::rays>("cdt", "rays");
 
+/// Why the optimiser of tets ended. Scene files hold the values.
+enum class OptimiserEnd {
+    finished = 0,
+    out_of_time = 1, ///< what it reached by then depends on the machine's speed
+    interrupted = 2
+};
+
+template <>
+inline constexpr auto enum_names<OptimiserEnd> = names_up_to<OptimiserEnd::interrupted>("finished", "out of time",
+                                                                                        "interrupted");
+
 /// What one kind of operation of the optimiser of tets did.
 struct OptimiserOperation {
     std::string name;
@@ -40,6 +51,7 @@ struct OptimisedInfo {
     double seconds = 0;                     ///< part of BuildInfo::build_s
     std::uint32_t rounds = 0;
     std::vector<OptimiserOperation> operations = {};
+    OptimiserEnd end = OptimiserEnd::finished;
 
     friend bool operator==(const OptimisedInfo&, const OptimisedInfo&) = default;
 };

@@ -122,7 +122,9 @@ void require_sound_sides(const Scene& scene)
 // Why optimised tets may not be used; empty where they may.
 std::string objection(const Scene& scene, const OptimisedTets& result)
 {
-    if (result.report.cost_after >= result.report.cost_before) return "the optimiser found nothing to better";
+    if (result.report.cost_after >= result.report.cost_before)
+        return result.report.end == OptimiserEnd::finished ? "the optimiser found nothing to better"
+                                                           : "the optimiser was stopped before it had bettered any";
     auto defect = find_defect(result.mesh, scene.mesh.triangles.size());
     const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
     if (!defect) defect = find_gap(result.mesh, scene.mesh, size);
@@ -142,7 +144,6 @@ void note_result(const OptimiserReport& report, const BuilderTalk& talk)
     talk.note(fmt::format("optimised in {:.1f} s, {} rounds: a uniform line crosses {:.2f} free faces instead of "
                           "{:.2f}",
                           report.seconds, report.rounds, report.cost_after, report.cost_before));
-    if (report.out_of_time) talk.note("the optimiser ran out of time; on another machine it may reach other tets");
 }
 
 void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const BuilderTalk& talk)
@@ -153,17 +154,22 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
         info.reason = "--effort is 0";
         return;
     }
-    OptimisedTets result = optimise(scene.tets, limits, [&](const std::string& stage, double) { talk.stage(stage); });
+    talk.stage("optimising");
+    OptimisedTets result =
+        optimise(scene.tets, limits, [&](const std::string&, double fraction, const std::string& detail) {
+            if (talk.progress) talk.progress(fraction, detail);
+        });
+    talk.stage("checking the optimised tets");
     info.cost_before = result.report.cost_before;
     info.cost_after = result.report.cost_after;
     info.seconds = result.report.seconds;
     info.rounds = result.report.rounds;
+    info.end = result.report.end;
     info.reason = objection(scene, result);
     if (info.reason.empty()) {
         info.tets = TetsKind::rays;
         for (const OperationCount& operation : result.report.operations)
-            info.operations.push_back(
-                {std::string(operation.name), operation.done, operation.gain, operation.seconds});
+            info.operations.push_back({std::string(operation.name), operation.done, operation.gain, operation.seconds});
         scene.tets = std::move(result.mesh);
         note_result(result.report, talk);
     } else {

@@ -26,9 +26,11 @@ struct BuilderOptions {
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 
-/// Called with the stage that begins, and with notes for the user, one line each.
+/// Called with the stage that begins, and with notes for the user, one line each; and with what a stage tells of
+/// itself.
 struct BuilderTalk {
     std::function<void(const std::string&)> stage, note;
+    std::function<void(double fraction, const std::string& detail)> progress;
 };
 
 /// Everything that TetGen needs; scene.tets is empty.

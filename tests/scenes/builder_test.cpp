@@ -60,7 +60,8 @@ TEST_F(BuilderProgram, optimises_tets_for_rays_and_says_so)
     const auto mesh = write("ball.off", to_off(sphere(3)));
     const auto ended = run_on(mesh, "--divisions 3 --switches pY --tets rays --effort 1 --optimise-for 60");
     ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
-    EXPECT_TRUE(contains(ended.errors, "stage: optimising, round 1: "));
+    EXPECT_TRUE(contains(ended.errors, "stage: optimising\nprogress: 0."));
+    EXPECT_TRUE(contains(ended.errors, " round 1: a line crosses "));
     EXPECT_TRUE(contains(ended.errors, "note: optimised in "));
     const Scene scene = read_scene(folder_ / "out.tet");
     EXPECT_EQ(scene.build.optimised.tets, TetsKind::rays);

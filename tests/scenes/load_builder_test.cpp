@@ -48,7 +48,7 @@ TEST_F(Load, hands_on_stages_and_notes)
     use_builder("echo 'stage: reading' >&2; sleep 0.3; echo 'note: 3 vertices merged' >&2; echo 'stage: tetgen' >&2; "
                 "sleep 0.3");
     std::vector<std::string> stages;
-    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double fraction) {
+    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double fraction, const std::string&) {
         stages.push_back(stage);
         EXPECT_LT(fraction, 0);
     });
@@ -156,7 +156,7 @@ TEST_F(Load, tells_an_interrupt)
     std::thread sender;
     use_builder("echo 'stage: tetgen' >&2; sleep 60");
     const std::string error = error_of([&] {
-        (void)load_scene(request, [&](const std::string& stage, double) {
+        (void)load_scene(request, [&](const std::string& stage, double, const std::string&) {
             if (!sender.joinable() && stage.find("tetgen") != std::string::npos)
                 sender = std::thread([] { ::kill(::getpid(), SIGINT); });
         });
