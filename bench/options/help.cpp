@@ -91,9 +91,11 @@ const VerbHelp verb_help[] = {
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
-     "ray in false colour with a scale bar. The pictures are made by the first selected row of each scene.",
+     "ray in false colour with a scale bar, side by side for several kinds of tets. The pictures are made by the first "
+     "selected row of each scene.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
-     "  tetrace render --scene armadillo --picture normals,steps --size 512\n"},
+     "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
+     "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
      "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
      "Tetrahedralization\" (GRAPP 2017), on every device at hand. The paper's numbers stand next to ours, and each "

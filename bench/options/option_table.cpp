@@ -82,7 +82,8 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--tets", "KIND",
          "How the domain is filled: 'rays', tets that are changed until rays cross few faces, or 'cdt', the "
          "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes' and .tet files "
-         "have tets of their own. 'build' takes a list. 'reproduce' has --builds. Default: rays.",
+         "have tets of their own. 'build' takes a list, and so does 'render', whose steps are then side by side; "
+         "'reproduce' has --builds. Default: rays.",
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "

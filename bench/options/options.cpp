@@ -114,7 +114,7 @@ void check_single(const Options& options, const char* name, std::size_t count)
 void check_together(const Options& options)
 {
     check_single(options, "--domain", options.domains.size());
-    check_single(options, "--tets", options.tets.size());
+    if (options.verb != Verb::render) check_single(options, "--tets", options.tets.size());
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     static_cast<void>(selected_views(options));

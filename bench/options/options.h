@@ -122,7 +122,7 @@ struct Options {
 
 /// The scenes asked for with their one set of build options; the default scenes where none was named. Precondition: one
 /// domain, one kind of tets, at most one number of divisions and set of switches (parse_options ensures it, except for
-/// `build`, which combines them).
+/// `build`, which combines them, and `render`, which shows several kinds of tets).
 [[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
 
 /// The view numbers asked for, ascending. Throws Error{usage} as parse_views() does.

@@ -102,6 +102,7 @@ TEST(Options, build_takes_lists_where_others_take_one_value)
     EXPECT_EQ(options.divisions, (std::vector<std::uint32_t>{4, 8}));
     EXPECT_EQ(parse_options({"build", "--tets", "cdt,rays"}).tets, (std::vector{TetsKind::cdt, TetsKind::rays}));
     EXPECT_TRUE(contains(rejection({"bench", "--switches", "p,pq5Y"}), "one value"));
+    EXPECT_EQ(parse_options({"render", "--tets", "cdt,rays"}).tets.size(), 2u) << "side by side";
     EXPECT_TRUE(contains(rejection({"bench", "--tets", "cdt,rays"}), "one value"));
     EXPECT_TRUE(contains(rejection({"bench", "--tets", "delaunay"}), "rays"));
     EXPECT_TRUE(contains(rejection({"bench", "--effort", "4"}), "--effort"));
