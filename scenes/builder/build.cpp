@@ -119,26 +119,6 @@ void require_sound_sides(const Scene& scene)
                                                                 flaw, try_other_switches));
 }
 
-// Why optimised tets may not be used; empty where they may.
-std::string objection(const Scene& scene, const OptimisedTets& result)
-{
-    if (result.report.cost_after >= result.report.cost_before)
-        return result.report.end == OptimiserEnd::finished ? "the optimiser found nothing to better"
-                                                           : "the optimiser was stopped before it had bettered any";
-    auto defect = find_defect(result.mesh, scene.mesh.triangles.size());
-    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
-    if (!defect) defect = find_gap(result.mesh, scene.mesh, size);
-    if (defect)
-        return fmt::format("the optimised tets fail a check: {}: {}; please report it", name_of(defect->kind),
-                           defect->what);
-    try {
-        static_cast<void>(make_entry_grid(scene.domain, result.mesh));
-    } catch (const Error& error) {
-        return fmt::format("the optimised tets fail a check: {}; please report it", error.what());
-    }
-    return "";
-}
-
 void note_result(const OptimiserReport& report, const BuilderTalk& talk)
 {
     talk.note(fmt::format("optimised in {:.1f} s, {} rounds: a uniform line crosses {:.2f} free faces instead of "
@@ -165,7 +145,7 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
     info.seconds = result.report.seconds;
     info.rounds = result.report.rounds;
     info.end = result.report.end;
-    info.reason = objection(scene, result);
+    info.reason = objection_to(result, scene);
     if (info.reason.empty()) {
         info.tets = TetsKind::rays;
         for (const OperationCount& operation : result.report.operations)
@@ -183,6 +163,25 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
 std::string builder_tool()
 {
     return "tetrace-builder " TETRACE_VERSION ", TetGen " TETRACE_TETGEN_VERSION ", CGAL " TETRACE_CGAL_VERSION;
+}
+
+std::string objection_to(const OptimisedTets& result, const Scene& scene)
+{
+    if (result.report.cost_after >= result.report.cost_before)
+        return result.report.end == OptimiserEnd::finished ? "the optimiser found nothing to better"
+                                                           : "the optimiser was stopped before it had bettered any";
+    auto defect = find_defect(result.mesh, scene.mesh.triangles.size());
+    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
+    if (!defect) defect = find_gap(result.mesh, scene.mesh, size);
+    if (defect)
+        return fmt::format("the optimised tets fail a check: {}: {}; please report it", name_of(defect->kind),
+                           defect->what);
+    try {
+        static_cast<void>(make_entry_grid(scene.domain, result.mesh));
+    } catch (const Error& error) {
+        return fmt::format("the optimised tets fail a check: {}; please report it", error.what());
+    }
+    return "";
 }
 
 PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk)
