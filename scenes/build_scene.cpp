@@ -5,6 +5,7 @@
 #include "scenes/child_process.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
@@ -34,6 +35,7 @@ bool can_execute(const fs::path& path)
 }
 
 constexpr const char* builder_name = "tetrace-builder";
+constexpr double to_check_and_write_s = 120; // what an interrupted optimiser has reached; a second Ctrl-C ends it
 
 fs::path in_search_path()
 {
@@ -46,7 +48,8 @@ fs::path in_search_path()
 
 /// What the builder has said so far, line by line.
 struct Report {
-    std::string stage = "starting";
+    std::string stage = "starting", detail;
+    double fraction = -1; ///< of the stage
     std::vector<std::string> notes, errors;
     std::string last_words; ///< the last other line, for example of a failed assertion
 
@@ -57,13 +60,31 @@ struct Report {
             return line.substr(std::min(line.size(), line.find_first_not_of(' ', prefix.size())));
         };
         if (const std::string text = rest("stage: "); !text.empty())
-            stage = text;
+            begin(text);
+        else if (const std::string progress = rest("progress: "); !progress.empty())
+            take_progress(progress);
         else if (const std::string note = rest("note: "); !note.empty())
             notes.push_back(note);
         else if (const std::string error = rest("error: "); !error.empty())
             errors.push_back(error);
         else if (!line.empty())
             last_words = line.substr(0, 300);
+    }
+
+private:
+    void begin(const std::string& text)
+    {
+        stage = text;
+        detail.clear();
+        fraction = -1;
+    }
+    /// "0.25 round 2: ..."
+    void take_progress(const std::string& text)
+    {
+        const std::size_t space = std::min(text.find(' '), text.size());
+        const auto [end, problem] = std::from_chars(text.data(), text.data() + space, fraction);
+        if (problem != std::errc() || !(fraction >= 0 && fraction <= 1)) fraction = -1;
+        detail = text.substr(std::min(space + 1, text.size()));
     }
 };
 
@@ -150,15 +171,16 @@ std::string finding(const Report& report)
 std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
                                       const BuildOptions& options)
 {
-    return {"--mesh",         mesh.string(),
-            "--out",          out.string(),
-            "--name",         label,
-            "--domain",       std::string(name_of(options.domain)),
-            "--divisions",    std::to_string(options.divisions),
-            "--switches",     options.switches,
-            "--tets",         std::string(name_of(options.tets)),
-            "--effort",       std::to_string(options.effort),
-            "--optimise-for", fmt::format("{:g}", options.time_limit_s / 2)};
+    return {
+        "--mesh",         mesh.string(),
+        "--out",          out.string(),
+        "--name",         label,
+        "--domain",       std::string(name_of(options.domain)),
+        "--divisions",    std::to_string(options.divisions),
+        "--switches",     options.switches,
+        "--tets",         std::string(name_of(options.tets)),
+        "--effort",       std::to_string(options.effort),
+        "--optimise-for", fmt::format("{:g}", options.optimise_s > 0 ? options.optimise_s : options.time_limit_s / 2)};
 }
 
 /// A builder that has ended, and what it said.
@@ -183,13 +205,16 @@ Run run_builder(const fs::path& builder, const std::vector<std::string>& argumen
                 const BuildOptions& options, const Progress& progress)
 {
     Run run;
-    ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes};
+    ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes,
+                          options.keep_unfinished ? to_check_and_write_s : 0};
     // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
     if (address_space_is_shadowed) limits.memory_bytes = 0;
     run.outcome = run_child(
         builder, arguments, limits, [&](const std::string& line) { run.report.take(line); },
         [&](double) {
-            if (progress) progress(fmt::format("building {}: {}", label, run.report.stage), -1);
+            if (progress)
+                progress(fmt::format("building {}: {}", label, run.report.stage), run.report.fraction,
+                         run.report.detail);
         });
     return run;
 }
@@ -205,7 +230,7 @@ fs::path find_builder()
     return can_execute(beside) ? beside : in_search_path();
 }
 
-void build_scene(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
+bool build_scene(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
                  const Progress& progress, std::vector<std::string>& notes)
 {
     const fs::path builder = find_builder();
@@ -219,7 +244,7 @@ void build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
         run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
     }
     notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
-    if (run.is_good()) return;
+    if (run.is_good()) return run.outcome.interrupted;
     fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), tried.switches),
          ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
 }

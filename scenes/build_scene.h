@@ -20,10 +20,12 @@ namespace tetrace {
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. Where TetGen fails, runs it again
 /// with fallback_switches().
 /// notes: the builder's remarks are appended. progress: called with the stage about ten times a second.
+/// Returns whether Ctrl-C came; with keep_unfinished there may be a scene nevertheless, finished or not.
 /// Throws Error; its text says how the builder ended, its switches, its last stage and what to try. Kinds: missing (no
 /// builder, or a file that it needs), interrupted (Ctrl-C), internal (a fault of the builder), usage (switches or
 /// divisions that it does not accept), else invalid_input.
-void build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out, const std::string& label,
-                 const BuildOptions& options, const Progress& progress, std::vector<std::string>& notes);
+[[nodiscard]] bool build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out,
+                               const std::string& label, const BuildOptions& options, const Progress& progress,
+                               std::vector<std::string>& notes);
 
 } // namespace tetrace

@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <mutex>
+#include <optional>
 #include <poll.h>
 #include <string_view>
 #include <sys/prctl.h>
@@ -69,22 +70,22 @@ Pipe make_pipe(const std::filesystem::path& program)
 }
 
 // One flag for all runs at once: an interrupt is meant for the whole process.
-std::atomic<int> interrupt_received{0};
+std::atomic<int> interrupts{0};
 static_assert(std::atomic<int>::is_always_lock_free, "set by a signal handler");
 
-void note_interrupt(int signal)
+void note_interrupt(int)
 {
-    interrupt_received.store(signal);
+    interrupts.fetch_add(1);
 }
 
-/// Routes SIGINT and SIGTERM to interrupt_received while at least one of these lives. Ignored signals stay ignored.
+/// Counts SIGINT and SIGTERM in `interrupts` while at least one of these lives. Ignored signals stay ignored.
 class InterruptGuard {
 public:
     InterruptGuard()
     {
         const std::scoped_lock lock(mutex);
         if (users++ > 0) return;
-        interrupt_received.store(0);
+        interrupts.store(0);
         for (std::size_t i = 0; i < signals.size(); ++i) {
             struct sigaction ours {};
             ours.sa_handler = note_interrupt;
@@ -303,19 +304,26 @@ private:
     std::string line_;
 };
 
-/// Ends a child: asks it first, then kills it.
+/// Ends a child: asks it first, then kills it. Before that an interrupt may let it finish its work.
 class Terminator {
 public:
     using End = ChildOutcome::End;
 
     void check(const Child& child, const ChildLimits& limits, double elapsed_s)
     {
-        if (reason_ == End::exited && interrupt_received.load() != 0) ask(child, End::interrupted, elapsed_s);
+        const int count = interrupts.load();
+        if (count > 0 && !interrupted_s_) {
+            interrupted_s_ = elapsed_s;
+            if (limits.finish_s > 0) child.signal_group(SIGINT);
+        }
+        const bool may_finish = limits.finish_s > 0 && count == 1 && elapsed_s <= *interrupted_s_ + limits.finish_s;
+        if (reason_ == End::exited && count > 0 && !may_finish) ask(child, End::interrupted, elapsed_s);
         if (reason_ == End::exited && limits.time_s > 0 && elapsed_s > limits.time_s)
             ask(child, End::timed_out, elapsed_s);
         if (reason_ != End::exited && elapsed_s > asked_s_ + grace_s) child.signal_group(SIGKILL);
     }
     [[nodiscard]] End reason() const { return reason_; }
+    [[nodiscard]] bool interrupted() const { return interrupted_s_.has_value(); }
 
 private:
     void ask(const Child& child, End reason, double elapsed_s)
@@ -327,6 +335,7 @@ private:
 
     End reason_ = End::exited;
     double asked_s_ = 0;
+    std::optional<double> interrupted_s_; ///< when the first interrupt was seen
 };
 
 } // namespace
@@ -359,7 +368,9 @@ ChildOutcome run_child(const std::filesystem::path& program, const std::vector<s
     outcome.wall_s = watch.seconds();
     outcome.end = terminator.reason();
     outcome.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
-    if (outcome.end == ChildOutcome::End::exited && WIFSIGNALED(status)) outcome.end = ChildOutcome::End::signalled;
+    outcome.interrupted = terminator.interrupted();
+    if (outcome.end == ChildOutcome::End::exited && WIFSIGNALED(status))
+        outcome.end = outcome.interrupted ? ChildOutcome::End::interrupted : ChildOutcome::End::signalled;
     return outcome;
 }
 

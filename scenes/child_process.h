@@ -11,6 +11,7 @@ namespace tetrace {
 struct ChildLimits {
     double time_s = 0;              ///< wall clock; 0 is none
     std::uint64_t memory_bytes = 0; ///< address space (RLIMIT_AS); 0 is none
+    double finish_s = 0;            ///< what a child gets to finish its work after SIGINT; 0: it is ended at once
 };
 
 /// How a child ended.
@@ -18,12 +19,14 @@ struct ChildOutcome {
     enum class End { exited, signalled, timed_out, interrupted } end = End::exited;
     int code = 0; ///< exit status, or the signal's number
     double wall_s = 0;
-    std::string out;    ///< captured standard output, its last 64 KiB
-    std::string errors; ///< captured standard error, its last 64 KiB
+    std::string out;          ///< captured standard output, its last 64 KiB
+    std::string errors;       ///< captured standard error, its last 64 KiB
+    bool interrupted = false; ///< an interrupt came; with End::exited the child finished its work after it
 };
 
 /// Runs a program and waits for it, killing it past its limits. SIGINT and SIGTERM sent to this process end the child
-/// too (End::interrupted), and the child dies with its parent, however the parent ends.
+/// too (End::interrupted); with finish_s the first of them is passed on as SIGINT, and the second ends the child. The
+/// child dies with its parent, however the parent ends.
 /// on_error_line: each whole line of the child's standard error as it comes; on_tick: about ten times a second.
 /// Throws Error{missing} where the program cannot be started.
 [[nodiscard]] ChildOutcome run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,

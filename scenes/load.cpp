@@ -42,6 +42,11 @@ private:
     fs::path path_;
 };
 
+bool is_unfinished(const Scene& scene)
+{
+    return scene.build.optimised.end != OptimiserEnd::finished;
+}
+
 /// Loads a scene of a mesh from the cache, or builds it into the cache first.
 class MeshSceneLoader {
 public:
@@ -66,9 +71,10 @@ private:
     [[nodiscard]] FileLock wait_for_lock() const;
     void build_alone();
     void build();
+    void set_apart();
     void tell(const std::string& stage) const
     {
-        if (progress_) progress_(stage, -1);
+        if (progress_) progress_(stage, -1, "");
     }
 
     const SceneRequest& request_;
@@ -123,7 +129,8 @@ bool MeshSceneLoader::read_cached()
             loaded_.messages.push_back(fmt::format("{}; the cache's file is built again", error.what()));
         return false;
     }
-    const std::string difference = mismatch(loaded_.scene);
+    std::string difference = mismatch(loaded_.scene);
+    if (difference.empty() && is_unfinished(loaded_.scene)) difference = "its optimiser was stopped early";
     if (!difference.empty())
         loaded_.messages.push_back(
             fmt::format("reading scene {}: foreign file: {}; built again", file_.string(), difference));
@@ -157,11 +164,21 @@ void MeshSceneLoader::build_alone()
     if (!read_cached()) build(); // another process may have built it while we waited
 }
 
+/// What the optimiser reached depends on the moment that it was stopped in, so it is not what the key stands for.
+void MeshSceneLoader::set_apart()
+{
+    const OptimiserEnd end = loaded_.scene.build.optimised.end;
+    file_ = cached_scene_path(label_ + ".unfinished", mesh_hash_, request_.build);
+    loaded_.messages.push_back(fmt::format(
+        "the optimiser was stopped early ({}); what it had reached is {}, which --scene takes{}", name_of(end),
+        file_.string(), end == OptimiserEnd::out_of_time ? "; --optimise-time allows it more" : ""));
+}
+
 void MeshSceneLoader::build()
 {
     const WorkFolder work(file_);
     const fs::path made = work.path() / "scene.tet";
-    build_scene(mesh_, made, label_, request_.build, progress_, loaded_.messages);
+    loaded_.interrupted = build_scene(mesh_, made, label_, request_.build, progress_, loaded_.messages);
     tell(fmt::format("checking {}", label_));
     try {
         loaded_.scene = read_scene(made);
@@ -175,6 +192,7 @@ void MeshSceneLoader::build()
     if (!difference.empty())
         throw Error(ErrorKind::internal, fmt::format("building scene {}: the builder made another scene than asked: {}",
                                                      label_, difference));
+    if (is_unfinished(loaded_.scene)) set_apart();
     std::error_code failure;
     fs::rename(made, file_, failure);
     if (failure)
@@ -211,7 +229,7 @@ struct Unused {
 
 LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
 {
-    if (progress) progress("making cubes", -1);
+    if (progress) progress("making cubes", -1, "");
     const Stopwatch watch;
     LoadedScene loaded;
     loaded.scene = make_cubes(request.build.resolution);
@@ -225,7 +243,7 @@ LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
 
 LoadedScene load_scene_file(const SceneRequest& request, const Progress& progress)
 {
-    if (progress) progress(fmt::format("reading {}", request.name), -1);
+    if (progress) progress(fmt::format("reading {}", request.name), -1, "");
     LoadedScene loaded;
     loaded.scene = read_scene(request.name);
     loaded.hash = scene_hash(loaded.scene);

@@ -64,6 +64,8 @@ enum SectionId : std::size_t { information, mesh_vertices, triangles, tet_vertic
 
 constexpr std::uint32_t most_divisions = 128; // those of the finest cubes; the entry grid grows with their square
 
+constexpr std::uint32_t most_operations = 64; // of the optimiser; there are fewer than ten
+
 using Table = std::array<SectionEntry, kinds.size()>;
 constexpr std::size_t header_bytes = sizeof(FileHeader) + sizeof(Table) + sizeof(std::uint64_t);
 
@@ -80,6 +82,15 @@ void put_optimised(InformationWriter& out, const OptimisedInfo& info)
     out.put(static_cast<std::int32_t>(info.effort));
     for (const double value : {info.cost_before, info.cost_after, info.seconds})
         out.put(value);
+    out.put(info.rounds);
+    out.put(static_cast<std::uint32_t>(info.operations.size()));
+    for (const OptimiserOperation& operation : info.operations) {
+        out.put(operation.name);
+        out.put(operation.done);
+        out.put(operation.gain);
+        out.put(operation.seconds);
+    }
+    out.put(static_cast<std::uint32_t>(info.end));
 }
 
 bool get_optimised(InformationReader& in, OptimisedInfo& info)
@@ -96,7 +107,21 @@ bool get_optimised(InformationReader& in, OptimisedInfo& info)
     info.effort = effort;
     for (double* value : {&info.cost_before, &info.cost_after, &info.seconds})
         in.get(*value);
-    return true;
+    in.get(info.rounds);
+    std::uint32_t operations = 0;
+    in.get(operations);
+    if (operations > most_operations) return false;
+    info.operations.resize(operations);
+    for (OptimiserOperation& operation : info.operations) {
+        in.get(operation.name);
+        in.get(operation.done);
+        in.get(operation.gain);
+        in.get(operation.seconds);
+    }
+    std::uint32_t end = 0;
+    in.get(end);
+    info.end = static_cast<OptimiserEnd>(end);
+    return end <= static_cast<std::uint32_t>(OptimiserEnd::interrupted);
 }
 
 std::vector<char> pack_information(const Scene& scene)

@@ -35,8 +35,8 @@ const VerbHelp verb_help[] = {
      "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
      "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
      "built. A combination that fails is a row without numbers, and standard error has the reason. The others are "
-     "still "
-     "built; the exit code is that of the first failure, as in 'bench': 2 if the mesh cannot be used.",
+     "still built; the exit code is that of the first failure, as in 'bench': 2 if the mesh cannot be used. Ctrl-C "
+     "while the optimiser works keeps what it has reached, in a file of its own; a second one ends the program.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
@@ -91,16 +91,18 @@ const VerbHelp verb_help[] = {
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
-     "ray in false colour with a scale bar. The pictures are made by the first selected row of each scene.",
+     "ray in false colour with a scale bar, side by side for several kinds of tets. The pictures are made by the first "
+     "selected row of each scene.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
-     "  tetrace render --scene armadillo --picture normals,steps --size 512\n"},
+     "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
+     "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
      "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
      "Tetrahedralization\" (GRAPP 2017), on every device at hand. The paper's numbers stand next to ours, and each "
      "claim gets a verdict that is computed from intervals: 'holds', 'does not hold' or 'not testable here'.\n\n"
-     "Banana, bunny and armadillo are traced in two builds: as the options say, and as close to the paper's counts as "
-     "known (--builds). Where the mesh is another than the paper's, its numbers are shown without a ratio, with the "
-     "reason.\n\n"
+     "Scenes are traced in up to three builds (--builds): a CDT as the options say; banana, bunny and armadillo as "
+     "close to the paper's counts as known; and tets for rays, without a number of the paper's beside them. Where the "
+     "mesh is another than the paper's, its numbers are shown without a ratio, with the reason.\n\n"
      "table3: tets, faces, memory and rates of each scene.\n\n"
      "table4: rays with a wrong result per image, by method, scene and device, as the exact oracle of 'check' judges "
      "them, and where they are. project, which is ours, is compared with the paper's methods.\n\n"
@@ -108,7 +110,7 @@ const VerbHelp verb_help[] = {
      "face, on one thread of the CPU and on every device. Every face that is found is compared with exact arithmetic. "
      "No scene is needed; --searches sets the number. A row needs about 80 MB for its rays. Beside it stands what a "
      "search costs in operations and side products, which the kernels count themselves.\n\n"
-     "table6: the CDT against BVHs: maria is compared with bvh2, which is the paper's kind of BVH, and with cwbvh on "
+     "table6: tets against BVHs: maria is compared with bvh2, which is the paper's kind of BVH, and with cwbvh on "
      "every device, and with Embree on the host. It has frames a second, build time and memory; the ratio of their "
      "times, paired view by view; and the number of rays after which a slower build pays off. In --method and "
      "--layout, the values of BVHs select among the BVHs only, and those of the CDT among its rows only.\n\n"

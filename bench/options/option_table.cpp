@@ -1,7 +1,7 @@
 #include "bench/options/option_table.h"
 
+#include "bench/options/apply_option.h"
 #include "bench/options/option_values.h"
-#include "core/device/backend.h"
 
 #include <algorithm>
 
@@ -43,78 +43,6 @@ std::string names_of(Structure structure, T KernelId::*member)
     return join_alternatives(names);
 }
 
-template <class T>
-ApplyOption append(std::string option, std::vector<T> Options::*list, std::vector<T> accepted = values_of<T>())
-{
-    return
-        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
-}
-
-/// "all" stands for every value.
-template <class T>
-ApplyOption append_or_all(std::string option, std::vector<T> Options::*list, std::vector<T> accepted)
-{
-    return [=](Options& options, const std::string& text) {
-        std::vector<std::string> names = {"all"};
-        for (const T& value : accepted) {
-            names.emplace_back(name_of(value));
-            if (text == "all" || text == names.back()) (options.*list).push_back(value);
-        }
-        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
-    };
-}
-
-std::vector<std::string> backend_names()
-{
-    std::vector<std::string> names;
-    for (const Backend* backend : all_backends())
-        names.push_back(backend->name());
-    return names;
-}
-
-ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list)
-{
-    return [=](Options& options, const std::string& text) {
-        const auto names = backend_names();
-        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
-        (options.*list).push_back(text);
-    };
-}
-
-ApplyOption set(bool Options::*flag)
-{
-    return [=](Options& options, const std::string&) { options.*flag = true; };
-}
-
-ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high)
-{
-    return [=](Options& options, const std::string& text) {
-        options.*count = static_cast<unsigned>(parse_count(option, text, low, high));
-    };
-}
-
-ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low, unsigned high)
-{
-    return [=](Options& options, const std::string& text) {
-        (options.*list).push_back(static_cast<unsigned>(parse_count(option, text, low, high)));
-    };
-}
-
-void set_result_file(Options& options, const std::string& text)
-{
-    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
-    options.out.reset();
-    if (text != "-") options.out = text;
-}
-
-ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
-{
-    return [=](Options& options, const std::string& text) {
-        if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
-        options.*path = text;
-    };
-}
-
 std::vector<OptionRow> reproduce_options()
 {
     return {
@@ -123,8 +51,10 @@ std::vector<OptionRow> reproduce_options()
              ". Default: all except growth, which is not in the paper.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--builds", "LIST",
-         "Which builds of banana, bunny and armadillo: 'ours', as the options of scenes say, and 'paper', near the "
-         "paper's counts, in a domain that holds the cameras. Other scenes have ours alone. Default: both.",
+         "Which builds of the scenes: 'ours', a CDT as the options of scenes say; 'paper', of banana, bunny and "
+         "armadillo, a CDT near the paper's counts, in a domain that holds the cameras; 'rays', tets that are changed "
+         "until rays cross few faces, which decide no claim of the paper. growth has no 'paper'; cubes and .tet files "
+         "have ours alone. Default: all.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
@@ -152,8 +82,9 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--tets", "KIND",
          "How the domain is filled: 'rays', tets that are changed until rays cross few faces, or 'cdt', the "
          "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes' and .tet files "
-         "have tets of their own. 'build' takes a list. Default: rays; cdt for 'reproduce'.",
-         building, true, append("--tets", &Options::tets)},
+         "have tets of their own. 'build' takes a list, and so does 'render', whose steps are then side by side; "
+         "'reproduce' has --builds. Default: rays.",
+         building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
          "optimiser takes 5 to 9 times as long, for 1 to 2 % fewer steps). Default: " +
@@ -176,6 +107,12 @@ std::vector<OptionRow> scene_options()
         {"Scenes", "--time-limit", "TIME",
          "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
          false, [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
+        {"Scenes", "--optimise-time", "TIME",
+         "Stop the optimiser of --tets rays after this time, as above, with the tets that it has reached. They depend "
+         "on "
+         "the machine: the result says 'out of time', and the scene is kept in a file of its own, which --scene takes. "
+         "Default: half of --time-limit.",
+         building, false, [](Options& o, const std::string& v) { o.optimise_s = parse_seconds("--optimise-time", v); }},
         {"Scenes", "--memory-limit", "SIZE",
          "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
          false, [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
@@ -282,8 +219,8 @@ std::vector<OptionRow> judging_options()
     return {
         {"Measuring", "--samples", "N",
          "Samples a row, 3 to 10000; a sample traces all selected views once. Fewer than 5 give no interval, neither "
-         "here "
-         "nor in 'compare'. Default: 10.",
+         "here nor "
+         "in 'compare'. Default: 10.",
          bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},

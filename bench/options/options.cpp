@@ -134,7 +134,7 @@ void check_single(const Options& options, const char* name, std::size_t count)
 void check_together(const Options& options)
 {
     check_single(options, "--domain", options.domains.size());
-    check_single(options, "--tets", options.tets.size());
+    if (options.verb != Verb::render) check_single(options, "--tets", options.tets.size());
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     static_cast<void>(selected_views(options));
@@ -148,7 +148,7 @@ Options defaults_of(Verb verb)
     if (verb != Verb::reproduce) return options;
     options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};
-    options.tets = {TetsKind::cdt}; // as in the paper
+    options.tets = {TetsKind::cdt}; // as in the paper; --builds adds others
     options.samples = 5;
     return options;
 }
@@ -219,6 +219,8 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.effort = options.effort;
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;
+    build.optimise_s = options.optimise_s;
+    build.keep_unfinished = options.verb == Verb::build;
     build.memory_limit_bytes = options.memory_limit_bytes;
     std::vector<SceneRequest> requests;
     for (const std::string& name : options.scenes.empty() ? default_scenes() : options.scenes)

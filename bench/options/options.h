@@ -36,11 +36,11 @@ template <>
 inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::growth>("table3", "table4", "table5", "table6",
                                                                                  "figure6", "growth");
 
-/// A build of the paper's scenes that `reproduce` traces: as the options ask for, or as near to the paper's counts as
-/// known.
-enum class PaperBuild { ours, paper };
+/// A build of a scene that `reproduce` traces: a CDT as the options ask for, one as near to the paper's counts as
+/// known, or tets for rays.
+enum class PaperBuild { ours, paper, rays };
 template <>
-inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::paper>("ours", "paper");
+inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ours", "paper", "rays");
 
 /// The number of exit searches behind Table 5. Default: the paper's.
 struct SearchSize {
@@ -66,6 +66,7 @@ struct Options {
     int effort = usual_effort;
     std::uint32_t resolution = BuildOptions{}.resolution;
     double time_limit_s = BuildOptions{}.time_limit_s;
+    double optimise_s = BuildOptions{}.optimise_s;
     std::uint64_t memory_limit_bytes = BuildOptions{}.memory_limit_bytes;
 
     std::vector<Structure> structures;
@@ -93,7 +94,7 @@ struct Options {
     double budget_s = 240; ///< for verifying and timing all rows
 
     std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper
-    std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: both
+    std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: all
     SearchSize searches;                  ///< of `reproduce`
     std::vector<std::uint32_t> sizes;     ///< of `reproduce growth`; empty: growth_sizes()
     bool resume = false;                  ///< of `reproduce`: continue from the journal
@@ -122,7 +123,7 @@ struct Options {
 
 /// The scenes asked for with their one set of build options; the default scenes where none was named. Precondition: one
 /// domain, one kind of tets, at most one number of divisions and set of switches (parse_options ensures it, except for
-/// `build`, which combines them).
+/// `build`, which combines them, and `render`, which shows several kinds of tets).
 [[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
 
 /// The view numbers asked for, ascending. Throws Error{usage} as parse_views() does.

@@ -137,6 +137,7 @@ std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& ro
     std::string how = fmt::format("{} {}x{}", name_of(loaded.scene.domain.kind), loaded.scene.domain.divisions,
                                   loaded.scene.domain.divisions);
     if (loaded.scene.build.optimised.tets == TetsKind::rays) how += ", for rays";
+    if (loaded.scene.build.optimised.end != OptimiserEnd::finished) how += ", unfinished";
     if (!loaded.scene.build.switches.empty()) how += ", -" + loaded.scene.build.switches;
     if (loaded.from_cache) how += ", cached";
     return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({})\n", scene.label(),

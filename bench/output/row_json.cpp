@@ -4,6 +4,24 @@
 
 namespace tetrace {
 
+namespace {
+
+nlohmann::json optimised_json(const OptimisedInfo& made)
+{
+    nlohmann::json object = {{"effort", made.effort},         {"seconds", made.seconds},
+                             {"rounds", made.rounds},         {"cost_before", made.cost_before},
+                             {"cost_after", made.cost_after}, {"reason", made.reason},
+                             {"end", name_of(made.end)},      {"operations", nlohmann::json::array()}};
+    for (const OptimiserOperation& operation : made.operations)
+        object["operations"].push_back({{"name", operation.name},
+                                        {"done", operation.done},
+                                        {"gain", operation.gain},
+                                        {"seconds", operation.seconds}});
+    return object;
+}
+
+} // namespace
+
 nlohmann::json scene_json(const SceneWork& scene, const Options& options)
 {
     const LoadedScene& loaded = scene.loaded();
@@ -17,6 +35,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"occlusive_faces", scene.counts().occlusive_faces},
                              {"free_faces", scene.counts().free_faces},
                              {"boundary_faces", scene.counts().boundary_faces},
+                             {"reached_tets", scene.counts().reached_tets},
                              {"domain", name_of(loaded.scene.domain.kind)},
                              {"divisions", loaded.scene.domain.divisions},
                              {"switches", build.switches},
@@ -29,12 +48,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
-    if (const OptimisedInfo& made = build.optimised; made.asked == TetsKind::rays)
-        object["optimised"] = {{"effort", made.effort},
-                               {"seconds", made.seconds},
-                               {"cost_before", made.cost_before},
-                               {"cost_after", made.cost_after},
-                               {"reason", made.reason}};
+    if (build.optimised.asked == TetsKind::rays) object["optimised"] = optimised_json(build.optimised);
     if (const auto& walk = scene.start_walk())
         object["start_walk"] = {{"walked", walk->counts.walked},
                                 {"located", walk->counts.located},

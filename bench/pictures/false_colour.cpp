@@ -24,6 +24,7 @@ Colour from_oklab(double lightness, double a, double b)
 
 constexpr std::uint32_t margin = 10; ///< of title and scale bar, at lettering scale 1
 constexpr std::uint32_t footer_height = 58;
+constexpr std::uint32_t gap = 4; // between pictures side by side
 
 /// Where the scale bar of a picture lies, and what it means.
 struct ScaleBar {
@@ -133,22 +134,33 @@ StepSummary summarize_steps(std::span<const Hit> hits)
 
 Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height, const std::string& subject)
 {
-    const StepSummary summary = summarize_steps(hits);
-    const std::uint32_t scale = std::max(1u, width / 448);
-    const std::string title = title_of(subject, summary);
-    const std::uint32_t full_width = std::max(width, text_width(title, scale) + 2 * margin * scale);
-    const Colour paper = from_srgb(0x16181C), ink = from_srgb(0xE8EAED);
+    const StepsImage image{{hits.begin(), hits.end()}, subject};
+    return draw_steps(std::span(&image, 1), width, height);
+}
 
-    Pixmap pixmap(full_width, height + footer_height * scale, paper);
-    for (std::uint32_t y = 0; y < height; ++y) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            pixmap.at(x, y) = colour_of(hits[std::size_t{y} * width + x], summary.top);
-        }
+Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::uint32_t height)
+{
+    const std::uint32_t scale = std::max(1u, width / 448);
+    const Colour paper = from_srgb(0x16181C), ink = from_srgb(0xE8EAED);
+    std::vector<std::string> titles;
+    std::uint32_t column = width, end = 1; // of the scale
+    for (const StepsImage& image : images) {
+        const StepSummary summary = summarize_steps(image.hits);
+        titles.push_back(title_of(image.subject, summary));
+        column = std::max(column, text_width(titles.back(), scale) + 2 * margin * scale);
+        end = std::max(end, summary.top);
     }
-    draw_text(pixmap, std::int64_t{margin} * scale, std::int64_t{height} + std::int64_t{margin} * scale, title, ink,
-              scale);
-    const ScaleBar bar{scale,      margin * scale, height + 24 * scale, full_width - 2 * margin * scale,
-                       14 * scale, summary.top};
+    if (images.size() > 1) column += gap * scale;
+    Pixmap pixmap(column * static_cast<std::uint32_t>(images.size()), height + footer_height * scale, paper);
+    for (std::uint32_t i = 0; i < images.size(); ++i) {
+        const std::uint32_t left = i * column;
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                pixmap.at(left + x, y) = colour_of(images[i].hits[std::size_t{y} * width + x], end);
+        draw_text(pixmap, std::int64_t{left} + margin * scale, std::int64_t{height} + std::int64_t{margin} * scale,
+                  titles[i], ink, scale);
+    }
+    const ScaleBar bar{scale, margin * scale, height + 24 * scale, pixmap.width - 2 * margin * scale, 14 * scale, end};
     draw_bar(pixmap, bar);
     draw_ticks(pixmap, bar, ink);
     return pixmap;

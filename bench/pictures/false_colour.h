@@ -33,4 +33,12 @@ struct StepSummary {
 [[nodiscard]] Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height,
                                 const std::string& subject);
 
+/// One of several pictures of a view: for example of another tetrahedralization.
+struct StepsImage {
+    std::vector<Hit> hits; ///< width * height, row after row
+    std::string subject;
+};
+/// The same for several of them side by side: each has its own title, and all have one scale.
+[[nodiscard]] Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::uint32_t height);
+
 } // namespace tetrace

@@ -52,6 +52,10 @@ Likeness likeness_of(std::string_view scene, const Scene& loaded, const TetMeshC
     const std::size_t triangles = loaded.mesh.triangles.size();
     if (!is_within(static_cast<double>(triangles), static_cast<double>(nearest->triangles), mesh_tolerance))
         return {LikenessKind::other_mesh, other_mesh_text(triangles, *nearest)};
+    if (loaded.build.optimised.asked == TetsKind::rays)
+        return {LikenessKind::tets_for_rays,
+                fmt::format("no CDT: {} tets that were changed for rays, which the paper does not have.",
+                            with_commas(counts.tets))};
     const std::string text = counts_text(counts, *papers);
     if (loaded.domain.kind != DomainKind::wide)
         return {LikenessKind::other_tets, "another domain, which does not hold the cameras: " + text + '.'};

@@ -12,14 +12,15 @@ namespace tetrace {
 enum class LikenessKind {
     not_its_scene, ///< the paper has no such scene
     other_mesh,    ///< the same object, of another number of triangles: no ratio to the paper's numbers means anything
+    tets_for_rays, ///< its mesh, in tets that are no CDT
     other_tets,    ///< its mesh, as near as there is one, in another domain or with other counts of tets and faces
     near_counts,   ///< a domain as the paper's, and all counts within near_counts_tolerance
     papers_counts  ///< and within equal_counts_tolerance
 };
 template <>
 inline constexpr auto
-    enum_names<LikenessKind> = names_up_to<LikenessKind::papers_counts>("not its scene", "other mesh", "other tets",
-                                                                        "near its counts", "its counts");
+    enum_names<LikenessKind> = names_up_to<LikenessKind::papers_counts>("not its scene", "other mesh", "tets for rays",
+                                                                        "other tets", "near its counts", "its counts");
 
 /// Shares of the paper's numbers. Counts of one mesh vary by 0.2 % with the order of its triangles, and more between
 /// versions of TetGen.

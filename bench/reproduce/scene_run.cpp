@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 
 namespace tetrace {
 
@@ -90,13 +91,32 @@ Options options_of(Structure structure, Options options)
 
 std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& options)
 {
-    if (!build.rivals) return select_rows(options, {build.label});
+    if (build.methods && !build.rivals) return select_rows(options, {build.label});
     Options of_cdt = options_of(Structure::cdt, options);
     if (!build.methods) of_cdt.methods = {Method::maria};
     auto rows = select_rows(of_cdt, {build.label});
+    if (!build.rivals) return rows;
     for (RowKey& key : select_rows(options_of(Structure::bvh, options), {build.label}))
         rows.push_back(std::move(key));
     return rows;
+}
+
+bool is_for_rays(const SceneRun& run)
+{
+    if (run.build.build == rays_build) return true;
+    return run.scene != nullptr && run.scene->loaded().scene.build.optimised.tets == TetsKind::rays;
+}
+
+std::string tets_name(const SceneRun& run)
+{
+    return is_for_rays(run) ? "tets for rays" : "CDT";
+}
+
+SceneRuns runs_of_cdt(const SceneRuns& runs)
+{
+    SceneRuns found;
+    std::ranges::copy_if(runs, std::back_inserter(found), [](const SceneRun* run) { return !is_for_rays(*run); });
+    return found;
 }
 
 void SceneRun::close()

@@ -12,20 +12,23 @@
 
 namespace tetrace {
 
-/// The builds that tables compare: as the options ask for, and as near to the paper's as known.
+/// The builds that tables compare: a CDT as the options ask for, one as near to the paper's as known, and tets for
+/// rays.
 inline constexpr const char* our_build = "ours";
 inline constexpr const char* papers_build = "paper's";
+inline constexpr const char* rays_build = "rays";
 
 /// A scene in one of the builds that tables compare.
 struct SceneBuild {
     SceneRequest request;
     std::string scene;      ///< name in tables
-    std::string build;      ///< "ours" or "paper's"
-    std::string label;      ///< name in rows: the scene, with "-paper" appended for the paper's build
+    std::string build;      ///< one of the three above
+    std::string label;      ///< name in rows: the scene, with "-paper" or "-rays" appended for these builds
     bool robustness = true; ///< whether to look for flat tets
     bool timing = true;     ///< whether to take samples
     bool methods = true;    ///< whether to trace all methods of the cdt that were asked for, or only maria
     bool rivals = false;    ///< whether to trace the BVHs as well
+    bool growth = false;    ///< whether it is one of the sizes of growth, which has tables of its own
 };
 
 /// A scene with its rows, and the results for each view.
@@ -49,6 +52,13 @@ struct SceneRun : RecordedRows {
 
 /// Those scenes of a run that a table covers.
 using SceneRuns = std::vector<const SceneRun*>;
+
+/// Whether its tets are not a CDT, but changed for rays: asked for so, or read from such a file.
+[[nodiscard]] bool is_for_rays(const SceneRun& run);
+/// "CDT" or "tets for rays".
+[[nodiscard]] std::string tets_name(const SceneRun& run);
+/// Those that the paper's claims are about.
+[[nodiscard]] SceneRuns runs_of_cdt(const SceneRuns& runs);
 
 /// The rows of a build. Where BVHs are traced as well as the CDT, the options' methods and layouts select only among
 /// the rows of their own structure; a structure for which none is named keeps all its rows. Throws Error{usage} as

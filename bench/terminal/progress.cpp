@@ -111,6 +111,14 @@ void ProgressLine::show(const std::string& stage, double fraction, double left_s
     since_draw_ = {};
 }
 
+Progress ProgressLine::callback()
+{
+    return [this](const std::string& stage, double fraction, const std::string& detail) {
+        const double elapsed_s = stage == stage_ ? in_stage_.seconds() : 0;
+        show(stage, fraction, fraction > 0 ? elapsed_s * (1 - fraction) / fraction : -1, detail);
+    };
+}
+
 void ProgressLine::clear()
 {
     if (drawn_ == 0) return;

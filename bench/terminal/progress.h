@@ -22,10 +22,8 @@ public:
     void show(const std::string& stage, double fraction, double left_s = -1, const std::string& detail = {});
     /// Clears the line. Called before anything else is written, and when the work is done.
     void clear();
-    [[nodiscard]] Progress callback()
-    {
-        return [this](const std::string& stage, double fraction) { show(stage, fraction); };
-    }
+    /// Shows what work tells. Expects the rest of a stage to go on as its beginning did.
+    [[nodiscard]] Progress callback();
 
 private:
     bool draws_;

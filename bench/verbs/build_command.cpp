@@ -22,6 +22,7 @@ struct Built {
     std::uint64_t bytes = 0;
     double build_s = 0;
     bool from_cache = false;
+    bool interrupted = false; ///< Ctrl-C came while it was built
     RayTotals totals;
     std::optional<Error> failure; ///< why it failed
 };
@@ -85,6 +86,7 @@ Built build_one(const SceneRequest& request, const Options& options)
         built.optimised = scene.loaded().scene.build.optimised;
         built.build_s = scene.loaded().scene.build.build_s;
         built.from_cache = scene.loaded().from_cache;
+        built.interrupted = scene.loaded().interrupted;
         built.request.build.divisions = scene.loaded().scene.domain.divisions;
         built.request.build.domain = scene.loaded().scene.domain.kind;
         count_steps(built, scene, options);
@@ -94,6 +96,13 @@ Built build_one(const SceneRequest& request, const Options& options)
         built.failure = error;
     }
     return built;
+}
+
+/// Of the tets that rays from outside reach; the others are inside closed objects.
+double reached_bytes(const Built& built)
+{
+    return static_cast<double>(built.bytes) * static_cast<double>(built.counts.reached_tets) /
+           static_cast<double>(built.counts.tets);
 }
 
 std::vector<Cell> table_row(const Built& built)
@@ -113,6 +122,7 @@ std::vector<Cell> table_row(const Built& built)
             count(built.counts.occlusive_faces),
             count(built.counts.free_faces),
             good ? Cell(1e-6 * static_cast<double>(built.bytes)) : Cell(),
+            good ? Cell(1e-6 * reached_bytes(built)) : Cell(),
             good ? Cell(built.build_s) : Cell(),
             cost(optimised.seconds),
             cost(optimised.cost_before),
@@ -137,6 +147,7 @@ std::vector<Column> columns(bool with_reason)
                                 {"occlusive_faces", "occlusive"},
                                 {"free_faces", "free"},
                                 {"size_mb", "size", "MB", 1},
+                                {"reached_mb", "reached", "MB", 1},
                                 {"build_s", "build", "s", 1},
                                 {"optimise_s", "optimise", "s", 1},
                                 {"cost_before", "cost", "before"},
@@ -188,6 +199,41 @@ int exit_code(const std::vector<Built>& all)
     return code;
 }
 
+/// The same scene in the same domain as TetGen's CDT, if it was built too; else null.
+const Built* find_cdt(const std::vector<Built>& all, const Built& rays)
+{
+    for (const Built& built : all)
+        if (built.scene && built.request.name == rays.request.name && built.optimised.tets == TetsKind::cdt &&
+            built.request.build.domain == rays.request.build.domain)
+            return &built;
+    return nullptr;
+}
+
+/// Cost and steps before and after the optimiser, and what each of its operations did.
+std::string optimiser_text(const std::vector<Built>& all, const Built& built)
+{
+    const OptimisedInfo& made = built.optimised;
+    if (made.operations.empty()) return "";
+    std::string steps;
+    if (const Built* cdt = find_cdt(all, built))
+        steps = fmt::format("; steps a ray {:.2f} in the CDT, {:.2f} now", mean_steps(cdt->totals).all.value_or(0),
+                            mean_steps(built.totals).all.value_or(0));
+    Table table({{"operation", "operation"},
+                 {"done", "done"},
+                 {"gain", "cost", "lowered by"},
+                 {"share", "share", "%", 1},
+                 {"seconds", "time", "s", 1}});
+    for (const OptimiserOperation& operation : made.operations)
+        table.add({operation.name, operation.done, operation.gain,
+                   100 * operation.gain / (made.cost_before - made.cost_after), operation.seconds});
+    const std::string early =
+        made.end == OptimiserEnd::finished ? "" : fmt::format(", stopped early ({})", name_of(made.end));
+    return fmt::format("\n{} ({}, {}), the optimiser in {} rounds{}: cost {:.2f} before, {:.2f} after{}\n\n{}",
+                       scene_label(built.request.name), name_of(built.request.build.domain),
+                       built.request.build.divisions, made.rounds, early, made.cost_before, made.cost_after, steps,
+                       table.text(2));
+}
+
 Report build_report(const std::vector<Built>& all, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -197,11 +243,15 @@ Report build_report(const std::vector<Built>& all, const Options& options)
         section["builds"][i]["status"] = all[i].scene ? "ok" : "error";
         if (all[i].scene) section["builds"][i]["scene_record"] = *all[i].scene;
     }
-    const std::string rays =
-        fmt::format("\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
-                    "uniform line crosses, before and after optimising.\n",
-                    selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
-    return {build_table(all, false).text() + rays, full, {{"tetrace", std::move(section)}}};
+    std::string text = build_table(all, false).text();
+    for (const Built& built : all)
+        text += optimiser_text(all, built);
+    text += fmt::format(
+        "\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
+        "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
+        "inside closed objects.\n",
+        selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
+    return {std::move(text), full, {{"tetrace", std::move(section)}}};
 }
 
 } // namespace
@@ -212,11 +262,15 @@ int build_command(const Options& options)
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
     std::vector<Built> all;
+    bool interrupted = false;
     for (const SceneRequest& request : combinations(options)) {
+        if (interrupted) break;
         all.push_back(build_one(request, options));
         tell_failure(all);
+        interrupted = all.back().interrupted;
     }
     deliver(options, build_report(all, options));
+    if (interrupted) throw Error(ErrorKind::interrupted, "building scenes: interrupted; what follows was not built");
     return exit_code(all);
 }
 

@@ -7,7 +7,9 @@
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <memory>
 
 namespace tetrace {
 
@@ -55,14 +57,6 @@ std::vector<Hit> trace(RowRun& row, std::size_t view)
     return hits;
 }
 
-Pixmap draw(Picture picture, std::span<const Hit> hits, const SceneWork& scene, std::size_t view)
-{
-    if (picture == Picture::steps)
-        return draw_steps(hits, scene.width(), scene.height(),
-                          fmt::format("{}, view {}", scene.label(), scene.view_numbers()[view]));
-    return shade_hits(hits, scene.views()[view], scene.width(), scene.height(), scene.loaded().scene.mesh);
-}
-
 void refuse_steps_without_tets(const RowRun& row, const std::vector<Picture>& pictures)
 {
     for (const Picture picture : pictures)
@@ -79,20 +73,64 @@ void tell_lost_rays(const RowRun& row, std::size_t view, std::span<const Hit> hi
                         row.scene->view_numbers()[view], lost));
 }
 
-void render_scene(SceneWork& scene, const Options& options, const PictureFiles& files, bool only_scene)
+/// A scene in each kind of tets asked for, with the row that traces it. Scenes whose tets are their own are one.
+struct Subject {
+    std::vector<std::unique_ptr<SceneWork>> scenes;
+    std::vector<RowRun> rows;
+
+    [[nodiscard]] const SceneWork& first() const { return *scenes.front(); }
+};
+
+Subject load_subject(const std::string& name, const Options& options)
+{
+    Subject subject;
+    for (const TetsKind tets : options.tets) {
+        Options one = options;
+        one.scenes = {name};
+        one.tets = {tets};
+        auto scene = std::make_unique<SceneWork>(load_work(scene_requests(one).front(), one));
+        const auto is_same = [&](const auto& other) { return other->loaded().hash == scene->loaded().hash; };
+        if (std::ranges::any_of(subject.scenes, is_same)) continue;
+        subject.rows.push_back(open_first_row(*scene, one));
+        subject.scenes.push_back(std::move(scene));
+    }
+    return subject;
+}
+
+/// The view's rays in each kind of tets.
+std::vector<StepsImage> trace_all(Subject& subject, std::size_t view)
+{
+    std::vector<StepsImage> images;
+    for (RowRun& row : subject.rows) {
+        std::string title = fmt::format("{}, view {}", row.scene->label(), row.scene->view_numbers()[view]);
+        if (subject.rows.size() > 1)
+            title += fmt::format(", {}", name_of(row.scene->loaded().scene.build.optimised.tets));
+        images.push_back({trace(row, view), title});
+        tell_lost_rays(row, view, images.back().hits);
+    }
+    return images;
+}
+
+Pixmap draw(Picture picture, const std::vector<StepsImage>& images, const SceneWork& scene, std::size_t view)
+{
+    if (picture == Picture::steps) return draw_steps(images, scene.width(), scene.height());
+    return shade_hits(images.front().hits, scene.views()[view], scene.width(), scene.height(),
+                      scene.loaded().scene.mesh); // all kinds of tets show the same
+}
+
+void render_subject(Subject& subject, const Options& options, const PictureFiles& files, bool only_scene)
 {
     const auto pictures = wanted_pictures(options);
+    const SceneWork& scene = subject.first();
     const bool only_picture = only_scene && scene.views().size() == 1 && pictures.size() == 1;
-    RowRun row = open_first_row(scene, options);
-    refuse_steps_without_tets(row, pictures);
+    refuse_steps_without_tets(subject.rows.front(), pictures);
     for (std::size_t view = 0; view < scene.views().size(); ++view) {
         progress_line().show("rendering " + scene.label(),
                              static_cast<double>(view) / static_cast<double>(scene.views().size()));
-        const std::vector<Hit> hits = trace(row, view);
-        tell_lost_rays(row, view, hits);
+        const auto images = trace_all(subject, view);
         for (const Picture picture : pictures)
             files.write({scene.label(), scene.view_numbers()[view], picture}, only_picture,
-                        draw(picture, hits, scene, view));
+                        draw(picture, images, scene, view));
     }
 }
 
@@ -106,8 +144,8 @@ int render_command(const Options& options)
         say(reason);
     const auto requests = scene_requests(options);
     for (const SceneRequest& request : requests) {
-        SceneWork scene = load_work(request, options);
-        render_scene(scene, options, files, requests.size() == 1);
+        Subject subject = load_subject(request.name, options);
+        render_subject(subject, options, files, requests.size() == 1);
     }
     return 0;
 }

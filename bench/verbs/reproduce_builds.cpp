@@ -4,6 +4,7 @@
 #include "bench/reproduce/tables/tables.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tetrace {
 
@@ -15,13 +16,25 @@ bool wants_build(const Options& options, PaperBuild build)
     return builds.empty() || std::ranges::find(builds, build) != builds.end();
 }
 
-/// Whether the scene is one of the paper's, and TetGen makes its tets with the given switches.
-bool has_papers_build(const std::string& name)
+/// Whether the builder makes its tets: those of cubes and of .tet files are their own.
+bool is_tetrahedralized(const std::string& name)
 {
-    if (!paper::has_scene(scene_label(name))) return false;
     const CatalogueEntry* entry = find_in_catalogue(name);
     if (entry != nullptr) return entry->source != SceneSource::cubes;
     return std::filesystem::path(name).extension() != ".tet";
+}
+
+/// Whether the scene is one of the paper's, and TetGen makes its tets with the given switches.
+bool has_papers_build(const std::string& name)
+{
+    return paper::has_scene(scene_label(name)) && is_tetrahedralized(name);
+}
+
+/// The same scenes in tets for rays, as the options say, and by their own defaults where these say nothing.
+std::vector<SceneRequest> requests_for_rays(Options options)
+{
+    options.tets = {TetsKind::rays};
+    return scene_requests(options);
 }
 
 SceneBuild papers(SceneBuild build)
@@ -36,35 +49,58 @@ SceneBuild papers(SceneBuild build)
     return build;
 }
 
-/// The builds of the scenes asked for.
-std::vector<SceneBuild> paper_builds(const Options& options)
+SceneBuild in_rays(SceneBuild build, const SceneRequest& request)
+{
+    build.request = request;
+    build.build = rays_build;
+    build.label += "-rays";
+    return build;
+}
+
+/// The builds of the scenes asked for. A scene without those that are wanted has ours.
+std::vector<SceneBuild> table_builds(const Options& options)
 {
     const bool table3 = wants(options, PaperTarget::table3), table6 = wants(options, PaperTarget::table6);
     const bool table4 = wants(options, PaperTarget::table4), figure6 = wants(options, PaperTarget::figure6);
     std::vector<SceneBuild> builds;
     if (!wants_scenes(options)) return builds;
-    for (const SceneRequest& request : scene_requests(options)) {
-        const std::string label = scene_label(request.name);
+    const auto requests = scene_requests(options), of_rays = requests_for_rays(options);
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        const std::string& name = requests[i].name;
+        const std::string label = scene_label(name);
         const SceneBuild ours = {
-            request, label, our_build, label, table4, table3 || table6 || figure6, table3 || table4 || figure6, table6};
-        const bool is_papers = has_papers_build(request.name);
-        if (wants_build(options, PaperBuild::ours) || !is_papers) builds.push_back(ours);
-        if (wants_build(options, PaperBuild::paper) && is_papers) builds.push_back(papers(ours));
+            requests[i], label, our_build, label, table4, table3 || table6 || figure6, table3 || table4 || figure6,
+            table6};
+        const bool papers_too = wants_build(options, PaperBuild::paper) && has_papers_build(name);
+        const bool rays_too = wants_build(options, PaperBuild::rays) && is_tetrahedralized(name);
+        const bool has_all = !wants_build(options, PaperBuild::paper) || papers_too;
+        if (wants_build(options, PaperBuild::ours) || !has_all || (!papers_too && !rays_too)) builds.push_back(ours);
+        if (papers_too) builds.push_back(papers(ours));
+        if (rays_too) builds.push_back(in_rays(ours, of_rays[i]));
     }
     return builds;
 }
 
-/// Scenes in several sizes: banana and cubes where asked for, else banana.
+/// Scenes in several sizes: banana and cubes where asked for, else banana. The BVHs, which are the same for all tets,
+/// are traced once.
 void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
 {
     static const std::vector<std::uint32_t> cubes_sizes = {4, 8, 16, 32, 64};
     Options of_families = options;
     std::erase_if(of_families.scenes, [](const std::string& name) { return name != "banana" && name != "cubes"; });
     if (of_families.scenes.empty()) of_families.scenes = {"banana"};
-    for (const SceneRequest& request : scene_requests(of_families)) {
-        const auto& standard = request.name == "cubes" ? cubes_sizes : growth_sizes();
-        for (SceneBuild& build : growth_builds(request, options.sizes.empty() ? standard : options.sizes))
+    const auto requests = scene_requests(of_families), of_rays = requests_for_rays(of_families);
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        const auto& standard = requests[i].name == "cubes" ? cubes_sizes : growth_sizes();
+        const auto& sizes = options.sizes.empty() ? standard : options.sizes;
+        const bool rays_too = wants_build(options, PaperBuild::rays) && is_tetrahedralized(requests[i].name);
+        const bool rays_alone = rays_too && !wants_build(options, PaperBuild::ours);
+        if (!rays_alone) std::ranges::move(growth_builds(requests[i], sizes), std::back_inserter(builds));
+        if (!rays_too) continue;
+        for (SceneBuild& build : growth_builds(of_rays[i], sizes, rays_build)) {
+            build.rivals = rays_alone;
             builds.push_back(std::move(build));
+        }
     }
 }
 
@@ -84,15 +120,14 @@ bool wants_scenes(const Options& options)
 
 std::vector<SceneBuild> scene_builds(const Options& options)
 {
-    auto builds = paper_builds(options);
+    auto builds = table_builds(options);
     if (wants(options, PaperTarget::growth)) add_growth_builds(builds, options);
     return builds;
 }
 
 Options options_of_build(const SceneBuild& build, Options options)
 {
-    if (build.build == growth_build && options.views.empty() && options.camera_set == CameraSet::flight)
-        options.views = growth_views;
+    if (build.growth && options.views.empty() && options.camera_set == CameraSet::flight) options.views = growth_views;
     return options;
 }
 

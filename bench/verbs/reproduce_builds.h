@@ -12,7 +12,7 @@ namespace tetrace {
 [[nodiscard]] bool wants_scenes(const Options& options);
 
 /// The builds that the requested tables need: the scenes as the options say, those of the paper also as near to its
-/// counts as known, and the sizes of growth.
+/// counts as known, the same with tets for rays, and the sizes of growth.
 [[nodiscard]] std::vector<SceneBuild> scene_builds(const Options& options);
 
 /// The options with the views that the build is traced from.

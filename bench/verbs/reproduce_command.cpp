@@ -28,11 +28,12 @@ struct Reproduction {
     json search_records; ///< as results record them; null without searches
     RunProgress progress;
 
-    [[nodiscard]] SceneRuns of_builds(const std::vector<std::string>& builds) const
+    /// growth: whether those of growth are meant, or those of all other tables.
+    [[nodiscard]] SceneRuns runs_of(bool growth) const
     {
         SceneRuns found;
         for (const SceneRun& run : runs)
-            if (std::ranges::find(builds, run.build.build) != builds.end()) found.push_back(&run);
+            if (run.build.growth == growth) found.push_back(&run);
         return found;
     }
 
@@ -191,7 +192,7 @@ struct Keeping {
 
 void make_tables(Reproduction& all, const Options& options)
 {
-    const SceneRuns runs = all.of_builds({our_build, papers_build});
+    const SceneRuns runs = all.runs_of(false);
     const auto add_figures = [&](std::vector<PaperFigure> figures) {
         std::ranges::move(figures, std::back_inserter(all.figures));
     };
@@ -213,7 +214,7 @@ void make_tables(Reproduction& all, const Options& options)
         add_figures(table6_figures(runs));
     }
     if (wants(options, PaperTarget::growth)) {
-        const SceneRuns sizes = all.of_builds({growth_build});
+        const SceneRuns sizes = all.runs_of(true);
         all.tables.push_back(growth_table(sizes));
         all.tables.push_back(growth_exponents(sizes));
         add_figures(growth_figures(sizes));
@@ -296,9 +297,9 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked,
 {
     const Options options = options_of_build(build, asked);
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
-    if (build.rivals) run.costs = keeping.costs.of(run.rows);
+    if (build.rivals || build.growth) run.costs = keeping.costs.of(run.rows);
     run_views(run, options, keeping.journal.get(), all.progress);
-    if (keeping.pictures != nullptr && build.build != growth_build)
+    if (keeping.pictures != nullptr && !build.growth)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
     add_devices(all, run, options, keeping.yardsticks);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tetrace {
 
@@ -19,6 +20,27 @@ enum class TetsKind {
 template <>
 inline constexpr auto enum_names<TetsKind> = names_up_to<TetsKind::rays>("cdt", "rays");
 
+/// Why the optimiser of tets ended. Scene files hold the values.
+enum class OptimiserEnd {
+    finished = 0,
+    out_of_time = 1, ///< what it reached by then depends on the machine's speed
+    interrupted = 2
+};
+
+template <>
+inline constexpr auto enum_names<OptimiserEnd> = names_up_to<OptimiserEnd::interrupted>("finished", "out of time",
+                                                                                        "interrupted");
+
+/// What one kind of operation of the optimiser of tets did.
+struct OptimiserOperation {
+    std::string name;
+    std::uint64_t done = 0;
+    double gain = 0; ///< by which it lowered the cost
+    double seconds = 0;
+
+    friend bool operator==(const OptimiserOperation&, const OptimiserOperation&) = default;
+};
+
 /// What the optimiser of tets did. Costs: free faces outside the objects that a uniform line crosses.
 struct OptimisedInfo {
     TetsKind asked = TetsKind::cdt;
@@ -27,6 +49,9 @@ struct OptimisedInfo {
     int effort = 0;
     double cost_before = 0, cost_after = 0; ///< 0 where no optimiser ran
     double seconds = 0;                     ///< part of BuildInfo::build_s
+    std::uint32_t rounds = 0;
+    std::vector<OptimiserOperation> operations = {};
+    OptimiserEnd end = OptimiserEnd::finished;
 
     friend bool operator==(const OptimisedInfo&, const OptimisedInfo&) = default;
 };

@@ -166,6 +166,25 @@ std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& t
     return std::nullopt;
 }
 
+std::vector<bool> reached_tets(const TetMesh& mesh)
+{
+    std::vector<bool> reached(mesh.tets.size());
+    std::vector<std::uint32_t> pending;
+    const auto reach = [&](std::uint32_t tet) {
+        if (!reached[tet]) pending.push_back(tet);
+        reached[tet] = true;
+    };
+    for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
+        if (std::ranges::count(mesh.tets[tet].links, NO_LINK) > 0) reach(tet);
+    while (!pending.empty()) {
+        const Tet& tet = mesh.tets[pending.back()];
+        pending.pop_back();
+        for (std::size_t face = 0; face < 4; ++face)
+            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
+    }
+    return reached;
+}
+
 TetMeshCounts count_faces(const TetMesh& mesh)
 {
     TetMeshCounts counts;
@@ -183,6 +202,7 @@ TetMeshCounts count_faces(const TetMesh& mesh)
     }
     counts.occlusive_faces += occlusive_sides / 2;
     counts.free_faces = inner_sides / 2;
+    counts.reached_tets = static_cast<std::uint64_t>(std::ranges::count(reached_tets(mesh), true));
     return counts;
 }
 

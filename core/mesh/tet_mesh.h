@@ -71,12 +71,17 @@ struct TetMeshDefect {
 [[nodiscard]] std::optional<TetMeshDefect> find_gap(const TetMesh& mesh, const TriangleMesh& triangles,
                                                     Double3 box_size);
 
+/// Which tets rays from outside can reach: those that a chain of free faces joins to the domain's boundary. The others
+/// are inside closed objects.
+[[nodiscard]] std::vector<bool> reached_tets(const TetMesh& mesh);
+
 /// Counts each face once, not once per side; the domain's boundary is not free.
 struct TetMeshCounts {
     std::uint64_t tets = 0;
     std::uint64_t occlusive_faces = 0;
     std::uint64_t free_faces = 0;
     std::uint64_t boundary_faces = 0;
+    std::uint64_t reached_tets = 0; ///< see reached_tets()
 };
 [[nodiscard]] TetMeshCounts count_faces(const TetMesh& mesh);
 

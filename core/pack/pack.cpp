@@ -22,26 +22,6 @@ Double3 unit_centroid(const Scene& scene, const Tet& tet)
     return {offset.x / size.x, offset.y / size.y, offset.z / size.z};
 }
 
-// Which tets are connected to the domain's boundary by free faces: rays from the boundary cross no other tets.
-std::vector<bool> reached_tets(const TetMesh& mesh)
-{
-    std::vector<bool> reached(mesh.tets.size());
-    std::vector<std::uint32_t> pending;
-    const auto reach = [&](std::uint32_t tet) {
-        if (!reached[tet]) pending.push_back(tet);
-        reached[tet] = true;
-    };
-    for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
-        if (std::ranges::count(mesh.tets[tet].links, NO_LINK) > 0) reach(tet);
-    while (!pending.empty()) {
-        const Tet& tet = mesh.tets[pending.back()];
-        pending.pop_back();
-        for (std::size_t face = 0; face < 4; ++face)
-            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
-    }
-    return reached;
-}
-
 // The scene's tets in packed order.
 std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
 {

@@ -119,31 +119,11 @@ void require_sound_sides(const Scene& scene)
                                                                 flaw, try_other_switches));
 }
 
-// Why a scene may not have its optimised tets; empty where it may.
-std::string objection(const Scene& scene, const OptimiserReport& report)
+void note_result(const OptimiserReport& report, const BuilderTalk& talk)
 {
-    if (report.cost_after >= report.cost_before) return "the optimiser found nothing to better";
-    auto defect = find_defect(scene.tets, scene.mesh.triangles.size());
-    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
-    if (!defect) defect = find_gap(scene.tets, scene.mesh, size);
-    if (defect)
-        return fmt::format("the optimised tets fail a check: {}: {}; please report it", name_of(defect->kind),
-                           defect->what);
-    if (const std::string flaw = flaw_of_sides(scene); !flaw.empty())
-        return fmt::format("the optimised tets fail a check: {}; please report it", flaw);
-    return "";
-}
-
-void note_operations(const OptimiserReport& report, const BuilderTalk& talk)
-{
-    std::string did;
-    for (const OperationCount& operation : report.operations)
-        did +=
-            fmt::format("{}{} {} (-{:.2f})", did.empty() ? "" : ", ", operation.done, operation.name, operation.gain);
     talk.note(fmt::format("optimised in {:.1f} s, {} rounds: a uniform line crosses {:.2f} free faces instead of "
-                          "{:.2f}; {}",
-                          report.seconds, report.rounds, report.cost_after, report.cost_before, did));
-    if (report.out_of_time) talk.note("the optimiser ran out of time; on another machine it may reach other tets");
+                          "{:.2f}",
+                          report.seconds, report.rounds, report.cost_after, report.cost_before));
 }
 
 void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const BuilderTalk& talk)
@@ -154,17 +134,25 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
         info.reason = "--effort is 0";
         return;
     }
-    OptimisedTets result = optimise(scene.tets, limits, [&](const std::string& stage, double) { talk.stage(stage); });
+    talk.stage("optimising");
+    OptimisedTets result =
+        optimise(scene.tets, limits, [&](const std::string&, double fraction, const std::string& detail) {
+            if (talk.progress) talk.progress(fraction, detail);
+        });
+    talk.stage("checking the optimised tets");
     info.cost_before = result.report.cost_before;
     info.cost_after = result.report.cost_after;
     info.seconds = result.report.seconds;
-    std::swap(scene.tets, result.mesh);
-    info.reason = objection(scene, result.report);
+    info.rounds = result.report.rounds;
+    info.end = result.report.end;
+    info.reason = objection_to(result, scene);
     if (info.reason.empty()) {
         info.tets = TetsKind::rays;
-        note_operations(result.report, talk);
-    } else {
+        for (const OperationCount& operation : result.report.operations)
+            info.operations.push_back({std::string(operation.name), operation.done, operation.gain, operation.seconds});
         scene.tets = std::move(result.mesh);
+        note_result(result.report, talk);
+    } else {
         info.cost_after = info.cost_before;
         talk.note("TetGen's tets are used: " + info.reason);
     }
@@ -175,6 +163,24 @@ void optimise_for_rays(Scene& scene, const OptimiserLimits& limits, const Builde
 std::string builder_tool()
 {
     return "tetrace-builder " TETRACE_VERSION ", TetGen " TETRACE_TETGEN_VERSION ", CGAL " TETRACE_CGAL_VERSION;
+}
+
+std::string objection_to(const OptimisedTets& result, const Scene& scene)
+{
+    if (result.report.cost_after >= result.report.cost_before)
+        return result.report.end == OptimiserEnd::finished ? "the optimiser found nothing to better"
+                                                           : "the optimiser was stopped before it had bettered any";
+    Scene changed = scene;
+    changed.tets = result.mesh;
+    auto defect = find_defect(changed.tets, scene.mesh.triangles.size());
+    const Double3 size = to_double(scene.domain.high()) - to_double(scene.domain.low());
+    if (!defect) defect = find_gap(changed.tets, scene.mesh, size);
+    if (defect)
+        return fmt::format("the optimised tets fail a check: {}: {}; please report it", name_of(defect->kind),
+                           defect->what);
+    if (const std::string flaw = flaw_of_sides(changed); !flaw.empty())
+        return fmt::format("the optimised tets fail a check: {}; please report it", flaw);
+    return "";
 }
 
 PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk)

@@ -26,9 +26,11 @@ struct BuilderOptions {
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 
-/// Called with the stage that begins, and with notes for the user, one line each.
+/// Called with the stage that begins, and with notes for the user, one line each; and with what a stage tells of
+/// itself.
 struct BuilderTalk {
     std::function<void(const std::string&)> stage, note;
+    std::function<void(double fraction, const std::string& detail)> progress = {};
 };
 
 /// Everything that TetGen needs; scene.tets is empty.
@@ -46,6 +48,10 @@ struct PreparedScene {
 /// Reads, cleans, places and checks a mesh and makes its domain.
 /// Throws Error as read_mesh and make_domain do, and BuilderFailure{BUILDER_SELF_INTERSECTION} with the first pairs.
 [[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);
+
+/// Why optimised tets may not take the place of the scene's own: they cost no less, or fail a check. Empty where they
+/// may.
+[[nodiscard]] std::string objection_to(const OptimisedTets& result, const Scene& scene);
 
 /// Converts TetGen's output and checks it: structure, orientation, every input triangle covered, the domain filled, the
 /// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed. Then optimises the

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -25,9 +27,28 @@ void say(const char* kind, const std::string& text)
     }
 }
 
+void say_progress(double fraction, const std::string& detail)
+{
+    static std::optional<Stopwatch> since_last;
+    if (since_last && since_last->seconds() < 0.1) return;
+    since_last.emplace();
+    say("progress", fmt::format("{:.4f} {}", fraction, detail));
+}
+
 BuilderTalk talk()
 {
-    return {[](const std::string& text) { say("stage", text); }, [](const std::string& text) { say("note", text); }};
+    return {[](const std::string& text) { say("stage", text); }, [](const std::string& text) { say("note", text); },
+            say_progress};
+}
+
+// SIGINT asks the optimiser to end with what it has. Until TetGen is done it ends the program, as SIGTERM always does.
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set by a signal handler");
+
+void finish_when_interrupted(PreparedScene& prepared)
+{
+    prepared.limits.stop = &interrupted;
+    std::signal(SIGINT, [](int) { interrupted.store(true); });
 }
 
 int code_of(ErrorKind kind)
@@ -96,7 +117,8 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                    "the optimiser stops after so many seconds, with what it has reached; default: 300")
         ->check(CLI::Range(0.0, 1e6).description(""))
         ->type_name("S");
-    app.footer("Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
+    app.footer("After SIGINT the optimiser ends, and what it has reached is checked and written.\n"
+               "Exit codes: 0 good; 2 usage; 3 file missing; 4 internal; 5 bad mesh; 10 self-intersections; 11 TetGen "
                "refused;\n"
                "12 TetGen's output failed a check; 13 out of memory.");
     try {
@@ -137,6 +159,7 @@ int main(int argc, char** argv)
     say("stage", "TetGen " + options.switches);
     std::set_terminate(explain_tetgen_failure); // and no handler round the call: see run_tetgen
     const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
+    finish_when_interrupted(prepared);
     return guarded([&] {
         const Scene scene = finish_scene(std::move(prepared), output, talk());
         talk().stage("writing " + options.out.filename().string());

@@ -4,6 +4,7 @@
 #include "scenes/optimise/collapse.h"
 #include "scenes/optimise/edge_removal.h"
 #include "scenes/optimise/face_removal.h"
+#include "scenes/optimise/forecast.h"
 #include "scenes/optimise/insertion.h"
 #include "scenes/optimise/vertex_move.h"
 
@@ -21,7 +22,8 @@ struct Effort {
 };
 constexpr std::array<Effort, most_effort + 1> efforts = {
     {{0, 1, false}, {2, 0.05, false}, {16, 0.004, false}, {40, 0.001, true}}};
-constexpr double negligible = 1e-12; // a gain, as a part of the boundary's area
+constexpr double negligible = 1e-12;                // a gain, as a part of the boundary's area
+constexpr std::uint32_t tries_between_looks = 1024; // at clock and limits
 
 class Optimiser {
 public:
@@ -36,9 +38,10 @@ public:
 
     [[nodiscard]] OptimisedTets run()
     {
-        for (std::uint32_t i = 0; i < effort_.most_rounds && !report_.out_of_time; ++i) {
+        for (std::uint32_t i = 0; i < effort_.most_rounds && !ends_early(); ++i) {
             const double gain = round();
             if (gain < effort_.share * cost_) break;
+            forecast_.end_round(watch_.seconds(), gain);
         }
         report_.cost_after = mesh_.cost() * per_area_;
         report_.seconds = watch_.seconds();
@@ -53,7 +56,9 @@ private:
     void sweep(Operation operation, std::uint32_t count, const Try& try_one);
     void flip();
     void insert_vertices();
-    void tell() const;
+    [[nodiscard]] bool ends_early() const { return report_.end != OptimiserEnd::finished; }
+    void look_at_limits(double share_of_sweep);
+    void tell(double share_of_sweep) const;
 
     OptimiserLimits limits_;
     Effort effort_;
@@ -69,14 +74,27 @@ private:
     OptimiserReport report_;
     double cost_ = 0;
     std::uint32_t since_ = 1;
+    std::uint32_t sweeps_ = 0; ///< of this round
+    Forecast forecast_;
 };
 
-void Optimiser::tell() const
+void Optimiser::look_at_limits(double share_of_sweep)
+{
+    if (limits_.time_limit_s > 0 && watch_.seconds() > limits_.time_limit_s) report_.end = OptimiserEnd::out_of_time;
+    if (limits_.stop != nullptr && limits_.stop->load()) report_.end = OptimiserEnd::interrupted;
+    tell(share_of_sweep);
+}
+
+void Optimiser::tell(double share_of_sweep) const
 {
     if (!progress_) return;
-    progress_(fmt::format("optimising, round {}: a line crosses {:.2f} faces, {:.2f} before", report_.rounds, cost_,
-                          report_.cost_before),
-              -1);
+    const double share_of_round = (sweeps_ + share_of_sweep) / (effort_.inserts ? 7 : 6);
+    double left_s =
+        forecast_.left_s(watch_.seconds(), share_of_round, effort_.share * cost_, effort_.most_rounds - report_.rounds);
+    if (limits_.time_limit_s > 0) left_s = std::min(left_s, std::max(0.0, limits_.time_limit_s - watch_.seconds()));
+    progress_("optimising", watch_.seconds() / (watch_.seconds() + left_s),
+              fmt::format("round {}: a line crosses {:.2f} faces, {:.2f} before", report_.rounds, cost_,
+                          report_.cost_before));
 }
 
 // try_one(index) returns the gain as an area. Only what changed since the last round is looked at.
@@ -84,19 +102,17 @@ template <class Try>
 void Optimiser::sweep(Operation operation, std::uint32_t count, const Try& try_one)
 {
     const double begin_s = watch_.seconds();
-    if (limits_.time_limit_s > 0 && begin_s > limits_.time_limit_s) report_.out_of_time = true;
-    if (report_.out_of_time) return;
     OperationCount& total = report_.operations[operation];
-    const double before = total.gain;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const double gain = try_one(i);
+    for (std::uint32_t i = 0; i < count && !ends_early(); ++i) {
+        if (i % tries_between_looks == 0) look_at_limits(static_cast<double>(i) / count);
+        const double gain = ends_early() ? 0 : try_one(i) * per_area_;
         if (gain <= 0) continue;
         ++total.done;
-        total.gain += gain * per_area_;
+        total.gain += gain;
+        cost_ -= gain;
     }
-    cost_ -= total.gain - before;
     total.seconds += watch_.seconds() - begin_s;
-    tell();
+    ++sweeps_;
 }
 
 void Optimiser::flip()
@@ -113,6 +129,7 @@ double Optimiser::round()
 {
     const double before = cost_;
     ++report_.rounds;
+    sweeps_ = 0;
     since_ = mesh_.round++;
     const auto is_new = [&](std::uint32_t v) { return mesh_.is_free(v) && mesh_.vertex_changed(v) >= since_; };
     flip();

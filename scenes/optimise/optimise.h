@@ -1,9 +1,10 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/mesh/tet_mesh.h"
+#include "core/mesh/scene.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <string_view>
 
@@ -14,7 +15,8 @@ inline constexpr int most_effort = 3, default_effort = 2;
 
 struct OptimiserLimits {
     int effort = default_effort;
-    double time_limit_s = 0; ///< no sweep begins after so many seconds; 0: no limit
+    double time_limit_s = 0;                 ///< it ends after so many seconds; 0: no limit
+    const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
 };
 
 /// What an operation did.
@@ -31,7 +33,7 @@ struct OptimiserReport {
     double cost_before = 0, cost_after = 0;
     std::array<OperationCount, 5> operations; ///< edges removed, faces removed, vertices moved, collapsed, inserted
     std::uint32_t rounds = 0;
-    bool out_of_time = false; ///< it ended early; the result then depends on the machine's speed
+    OptimiserEnd end = OptimiserEnd::finished;
     double seconds = 0;
 };
 
@@ -43,8 +45,8 @@ struct OptimisedTets {
 /// Changes the tets that rays from outside reach so that these cross fewer faces: edges and faces are removed, vertices
 /// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the region of the domain and the tets
 /// inside closed objects stay; the sides of a box get other boundary faces. The same bits on every machine, unless it
-/// runs out of time. Memory linear; time linear per round. mesh: sound (find_defect and find_gap find nothing); so is
-/// the result.
+/// ends early; what it has is sound then too. Memory linear; time linear per round. mesh: sound (find_defect and
+/// find_gap find nothing); so is the result.
 [[nodiscard]] OptimisedTets optimise(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress);
 
 } // namespace tetrace

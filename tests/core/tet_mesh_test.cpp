@@ -138,6 +138,24 @@ TEST(TetMesh, tets_that_do_not_fill_the_domain_are_found)
     EXPECT_EQ(gap_after([](Scene& s) { s.domain.lines[0].back() += 0.01f; }), Kind::open_boundary);
 }
 
+TEST(TetMesh, tets_are_reached_through_free_faces_alone)
+{
+    TetMesh mesh = make_cubes(3).tets;
+    for (Tet& tet : mesh.tets)
+        tet.faces.fill(FREE_FACE);
+    EXPECT_EQ(count_faces(mesh).reached_tets, mesh.tets.size());
+    std::uint32_t inner = 0; // one without a side of the boundary, then walled in
+    while (std::ranges::count(mesh.tets[inner].links, NO_LINK) > 0)
+        ++inner;
+    for (std::size_t face = 0; face < 4; ++face) {
+        const std::uint32_t link = mesh.tets[inner].links[face];
+        mesh.tets[inner].faces[face] = 0;
+        mesh.tets[link_tet(link)].faces[link_face(link)] = 0;
+    }
+    EXPECT_EQ(count_faces(mesh).reached_tets, mesh.tets.size() - 1);
+    EXPECT_FALSE(reached_tets(mesh)[inner]);
+}
+
 TEST(TetMesh, faces_are_counted_once)
 {
     const Scene scene = make_cubes(3);

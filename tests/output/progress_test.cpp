@@ -46,6 +46,20 @@ TEST(Progress, draws_after_two_seconds_and_leaves_the_line_empty)
     EXPECT_EQ(drawn.find('\x1b'), std::string::npos) << "NO_COLOR is honoured";
 }
 
+TEST(Progress, tells_the_time_left_of_work_that_knows_its_share)
+{
+    testing::internal::CaptureStderr();
+    {
+        ProgressLine line(true, false);
+        const tetrace::Progress progress = line.callback();
+        progress("optimising", -1, "");
+        std::this_thread::sleep_for(std::chrono::milliseconds(2050));
+        progress("optimising", 0.25, "round 2");
+    }
+    const std::string drawn = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(drawn.rfind("\roptimising, round 2  2.1 s  25 %  6.2 s left", 0), 0u) << drawn;
+}
+
 TEST(Progress, names_other_work_at_once_and_keeps_the_time_of_the_stage)
 {
     testing::internal::CaptureStderr();

@@ -135,6 +135,17 @@ TEST(DrawSteps, has_a_bar_from_end_to_end_below_the_picture)
     EXPECT_FALSE(contains(footer, lost_colour()));
 }
 
+TEST(DrawSteps, pictures_side_by_side_have_one_scale)
+{
+    const std::vector<StepsImage> images = {{std::vector<Hit>(600 * 4, hit_after(10)), "cdt"},
+                                            {std::vector<Hit>(600 * 4, hit_after(5)), "rays"}};
+    const Pixmap pixmap = draw_steps(images, 600, 4);
+    EXPECT_EQ(pixmap.at(0, 0), false_colour(1.0));
+    EXPECT_EQ(pixmap.at(pixmap.width / 2, 0), false_colour(0.5)) << "5 of 10 steps";
+    EXPECT_EQ(pixmap.height, draw_steps(images[0].hits, 600, 4, "cdt").height);
+    EXPECT_GE(pixmap.width, 1200u);
+}
+
 TEST(DrawSteps, a_tiny_picture_is_widened_for_its_title)
 {
     const std::vector<Hit> hits(2 * 2, hit_after(1));

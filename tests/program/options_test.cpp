@@ -112,6 +112,7 @@ TEST(Options, build_takes_lists_where_others_take_one_value)
     EXPECT_EQ(options.divisions, (std::vector<std::uint32_t>{4, 8}));
     EXPECT_EQ(parse_options({"build", "--tets", "cdt,rays"}).tets, (std::vector{TetsKind::cdt, TetsKind::rays}));
     EXPECT_TRUE(contains(rejection({"bench", "--switches", "p,pq5Y"}), "one value"));
+    EXPECT_EQ(parse_options({"render", "--tets", "cdt,rays"}).tets.size(), 2u) << "side by side";
     EXPECT_TRUE(contains(rejection({"bench", "--tets", "cdt,rays"}), "one value"));
     EXPECT_TRUE(contains(rejection({"bench", "--tets", "delaunay"}), "rays"));
     EXPECT_TRUE(contains(rejection({"bench", "--effort", "4"}), "--effort"));
@@ -262,12 +263,14 @@ TEST(Options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
     EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6 or growth"));
 }
 
-TEST(Options, builds_are_ours_and_the_papers_unless_named)
+TEST(Options, all_builds_are_traced_unless_some_are_named)
 {
     EXPECT_TRUE(parse_options({"reproduce"}).paper_builds.empty());
     EXPECT_EQ(parse_options({"reproduce", "--builds", "paper"}).paper_builds, std::vector{PaperBuild::paper});
     EXPECT_EQ(parse_options({"reproduce", "--builds", "ours,paper"}).paper_builds.size(), 2u);
-    EXPECT_THROW((void)parse_options({"reproduce", "--builds", "theirs"}), Error);
+    EXPECT_EQ(parse_options({"reproduce", "--builds", "rays"}).paper_builds, std::vector{PaperBuild::rays});
+    EXPECT_TRUE(contains(rejection({"reproduce", "--builds", "theirs"}), "ours, paper or rays"));
+    EXPECT_THROW((void)parse_options({"reproduce", "--tets", "rays"}), Error) << "the paper's claims are about CDTs";
     EXPECT_THROW((void)parse_options({"bench", "--builds", "paper"}), Error);
 }
 

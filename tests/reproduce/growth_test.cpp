@@ -3,9 +3,11 @@
 #include "bench/statistics/power_law.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/timed_runs.h"
 
 #include <list>
 #include <random>
+#include <tuple>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -26,13 +28,14 @@ std::vector<double> powers(const std::vector<double>& x, double factor, double e
 struct Sizes {
     std::list<SceneRun> runs;
 
-    explicit Sizes(const std::string& views = "0-1281:320")
+    explicit Sizes(const std::string& build = our_build)
     {
         const Options options =
-            parse_options({"reproduce", "growth", "--scene", "cubes", "--size", "8", "--views", views, "--backend",
-                           "openmp,embree", "--samples", "3", "--threads", "1"});
-        for (const SceneBuild& build : growth_builds(scene_requests(options).front(), {3, 6, 12})) {
-            SceneRun& run = runs.emplace_back(open_scene_run(build, options));
+            parse_options({"reproduce", "growth", "--scene", "cubes", "--size", "8", "--views", "0-1281:320",
+                           "--backend", "openmp,embree", "--samples", "3", "--threads", "1"});
+        for (SceneBuild size : growth_builds(scene_requests(options).front(), {3, 6, 12}, build)) {
+            size.rivals = build == our_build;
+            SceneRun& run = runs.emplace_back(open_scene_run(size, options));
             RunProgress progress;
             run_views(run, options, nullptr, progress);
             run.costs.resize(run.rows.size());
@@ -58,6 +61,17 @@ struct Sizes {
         for (SceneRun& run : runs) {
             const auto rays = static_cast<double>(traced(run.rows[row])->totals.rays);
             run.rows[row].samples_s.assign(3, rays * factor * std::pow(faces(run), exponent));
+        }
+    }
+
+    /// A ray of a row visits as many tets or nodes as that power of the number of faces, nearly.
+    void set_visits(std::size_t row, double exponent)
+    {
+        for (SceneRun& run : runs) {
+            auto& result = std::get<Traced>(run.rows[row].outcome);
+            const auto visits = static_cast<std::uint64_t>(1e6 * std::pow(faces(run), exponent));
+            result.totals = {.rays = 1000, .hit_steps = visits};
+            if (!is_cdt(run.rows[row])) result.visits = {1000, visits, visits};
         }
     }
 };
@@ -139,6 +153,9 @@ TEST(Growth, sizes_are_builds_of_their_own_ascending_and_once)
     EXPECT_EQ(cubes[1].request.build.resolution, 8u);
     EXPECT_EQ(cubes[1].label, "cubes@8");
     EXPECT_GE(growth_sizes().size(), 5u);
+    const auto rays = growth_builds({"banana", {}}, {1500}, rays_build);
+    EXPECT_EQ(rays[0].scene, "banana@1500");
+    EXPECT_EQ(rays[0].label, "banana@1500-rays");
 }
 
 TEST(Growth, each_row_has_the_exponent_of_its_own_times)
@@ -209,6 +226,42 @@ TEST(Growth, the_papers_claim_about_size_is_decided_by_the_exponents)
     EXPECT_EQ(claim().verdict, ClaimVerdict::does_not_hold);
     all.runs.back().rows[2].outcome = Failed{ErrorKind::internal, "lost"};
     EXPECT_EQ(claim().verdict, ClaimVerdict::not_testable) << "bvh2 has two sizes";
+}
+
+TEST(Growth, tets_for_rays_are_lines_of_their_own_beside_the_same_bvhs)
+{
+    Sizes all, rays(rays_build);
+    ASSERT_EQ(rays.runs.front().rows.size(), 2u) << "maria in two layouts: the BVHs are the same";
+    for (std::size_t row = 0; row < 6; ++row)
+        all.set_times(row, 1e-8, row < 2 ? 0.4 : 0.1);
+    for (std::size_t row = 0; row < 2; ++row)
+        rays.set_times(row, 1e-8, 0);
+    SceneRuns both = all.all();
+    const SceneRuns of_rays = rays.all();
+    both.insert(both.end(), of_rays.begin(), of_rays.end());
+    const PaperTable table = growth_exponents(both);
+    ASSERT_EQ(table.rows.size(), 8u);
+    EXPECT_EQ(std::get<std::string>(table.rows[6][1]), "rays");
+    EXPECT_NEAR(number(table, 6, "time").ours.value, 0, 1e-9);
+    EXPECT_NEAR(number(table, 0, "time").ours.value, 0.4, 1e-9);
+    const auto verdict = [](const PaperTable& one, const std::string& id) { return claim_of(one, id).verdict; };
+    EXPECT_EQ(verdict(table, "growth-bvh-depends-less-on-size-cpu"), ClaimVerdict::holds) << "it is about the CDT";
+    const std::string ours = "growth-tets-for-rays-grow-less-than-nodes-cubes";
+    for (const auto& [of_tets, of_nodes, expected] :
+         {std::tuple(0.05, 0.1, ClaimVerdict::holds), std::tuple(0.2, 0.1, ClaimVerdict::does_not_hold)}) {
+        rays.set_visits(0, of_tets);
+        all.set_visits(2, of_nodes);
+        const PaperTable now = growth_exponents(both);
+        EXPECT_EQ(verdict(now, ours), expected) << claim_of(now, ours).evidence;
+        EXPECT_TRUE(contains(claim_of(now, ours).evidence, "Tets: faces^"));
+    }
+    EXPECT_EQ(verdict(growth_exponents(of_rays), ours), ClaimVerdict::not_testable) << "no nodes";
+    EXPECT_EQ(growth_exponents(all.all()).claims.size() + 1, table.claims.size());
+    const auto figures = growth_figures(both);
+    EXPECT_EQ(figures[0].series.size(), 8u);
+    EXPECT_EQ(figures[0].series[6].name, "tets for rays tet80 openmp");
+    ASSERT_EQ(figures[1].series.size(), 6u);
+    EXPECT_EQ(figures[1].series[5].name, "tets for rays");
 }
 
 TEST(Growth, figures_are_lines_over_the_faces_with_logarithmic_axes)

@@ -64,6 +64,18 @@ TEST(Likeness, another_mesh_is_not_compared_whatever_its_counts)
         << "Debian's bunny is near";
 }
 
+TEST(Likeness, tets_for_rays_are_not_compared_whatever_their_counts)
+{
+    Scene scene = scene_of(69'451, DomainKind::wide);
+    scene.build.optimised.asked = TetsKind::rays;
+    const Likeness likeness = likeness_of("bunny", scene, papers_counts("bunny", 1));
+    EXPECT_EQ(likeness.kind, LikenessKind::tets_for_rays);
+    EXPECT_FALSE(likeness.is_compared());
+    EXPECT_TRUE(contains(likeness.reason, "no CDT"));
+    scene.mesh.triangles.resize(100);
+    EXPECT_EQ(likeness_of("bunny", scene, papers_counts("bunny", 1)).kind, LikenessKind::other_mesh);
+}
+
 TEST(Likeness, other_scenes_are_not_the_papers)
 {
     const Likeness cubes = likeness_of("cubes", scene_of(100, DomainKind::wide), {});

@@ -58,6 +58,50 @@ TEST(PairClaims, the_papers_build_decides_where_there_is_one)
     EXPECT_EQ(verdict_of({&ours}, id), ClaimVerdict::holds) << "what the paper claims of its CDTs is meant of any";
 }
 
+TEST(PairClaims, tets_for_rays_decide_no_claim_of_the_paper)
+{
+    SceneRun ours = run_of("bunny"), rays = run_of("bunny", LikenessKind::tets_for_rays);
+    rays.build.build = rays_build;
+    set_all(ours, 2, 1);
+    set_all(rays, 1, 9);
+    const std::string id = "table6-cdt-is-faster-on-bunny-cpu";
+    EXPECT_EQ(verdict_of({&ours, &rays}, id), ClaimVerdict::does_not_hold);
+    EXPECT_EQ(verdict_of({&rays, &ours}, id), ClaimVerdict::does_not_hold);
+    EXPECT_EQ(verdict_of({&rays}, id), ClaimVerdict::not_testable);
+    const auto papers_claims = [](const SceneRuns& runs) {
+        std::string text;
+        for (const PaperTable& table :
+             {table3(runs), table3_rates(runs), table4(runs, 1282), table6_pairs(runs), figure6_table(runs)})
+            for (const Claim& claim : table.claims)
+                if (!contains(claim.text, "not the paper's")) text += claim_json(claim).dump() + "\n";
+        return text;
+    };
+    EXPECT_EQ(papers_claims({&ours, &rays}), papers_claims({&ours}));
+    EXPECT_EQ(papers_claims({&rays, &ours}), papers_claims({&ours}));
+    EXPECT_FALSE(contains(papers_claims({&rays}), R"("holds")")) << papers_claims({&rays});
+}
+
+TEST(PairClaims, tets_for_rays_have_a_claim_of_their_own_and_no_number_of_the_papers)
+{
+    SceneRun ours = run_of("bunny"), rays = run_of("bunny", LikenessKind::tets_for_rays);
+    rays.build.build = rays_build;
+    const std::string id = "table6-tets-for-rays-are-faster-on-bunny-cpu";
+    EXPECT_THROW((void)verdict_of({&ours}, id), std::runtime_error);
+    set_all(rays, 1, 2);
+    EXPECT_EQ(verdict_of({&ours, &rays}, id), ClaimVerdict::holds);
+    EXPECT_FALSE(contains(claim_of(table6_pairs({&rays}), id).evidence, "CDT")) << "they are none";
+    set_times(rays, find_row(rays, Layout::cwbvh, Method::single), ramp(0.5));
+    EXPECT_EQ(verdict_of({&rays}, id), ClaimVerdict::does_not_hold) << "both BVHs count";
+    for (const PaperTable& table :
+         {table3({&rays}), table3_rates({&rays}), table4({&rays}, 1282), table6({&rays}), figure6_table({&rays})})
+        for (const auto& row : table.rows)
+            for (const PaperCell& cell : row)
+                if (const auto* number = std::get_if<Quantity>(&cell)) {
+                    EXPECT_FALSE(number->paper) << table.id;
+                }
+    EXPECT_EQ(figure6({&rays})[0].series.size(), 2u) << "maria on two layouts alone";
+}
+
 TEST(PairClaims, another_mesh_decides_nothing_and_says_why)
 {
     SceneRun run = run_of("armadillo", LikenessKind::other_mesh);

@@ -60,15 +60,44 @@ TEST_F(BuilderProgram, optimises_tets_for_rays_and_says_so)
     const auto mesh = write("ball.off", to_off(sphere(3)));
     const auto ended = run_on(mesh, "--divisions 3 --switches pY --tets rays --effort 1 --optimise-for 60");
     ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
-    EXPECT_TRUE(contains(ended.errors, "stage: optimising, round 1: "));
+    EXPECT_TRUE(contains(ended.errors, "stage: optimising\nprogress: 0."));
+    EXPECT_TRUE(contains(ended.errors, " round 1: a line crosses "));
     EXPECT_TRUE(contains(ended.errors, "note: optimised in "));
     const Scene scene = read_scene(folder_ / "out.tet");
     EXPECT_EQ(scene.build.optimised.tets, TetsKind::rays);
     EXPECT_EQ(scene.build.optimised.effort, 1);
     EXPECT_LT(scene.build.optimised.cost_after, scene.build.optimised.cost_before);
+    double gain = 0;
+    for (const OptimiserOperation& operation : scene.build.optimised.operations)
+        gain += operation.gain;
+    EXPECT_NEAR(gain, scene.build.optimised.cost_before - scene.build.optimised.cost_after, 1e-9);
     expect_sound(scene);
     EXPECT_EQ(run_on(mesh, "--tets delaunay").code, BUILDER_USAGE);
     EXPECT_EQ(run_on(mesh, "--effort 4").code, BUILDER_USAGE);
+}
+
+TEST_F(BuilderProgram, finishes_with_what_the_optimiser_has_reached_when_it_is_interrupted)
+{
+    const auto log = folder_ / "log";
+    const std::string command =
+        "'" TETRACE_BUILDER_PROGRAM "' --mesh '" + write("ball.off", to_off(sphere(6))).string() + "' --out '" +
+        (folder_ / "out.tet").string() + "' --divisions 3 --switches pY --tets rays --effort 3 2> '" + log.string() +
+        "' & pid=$!;" + " until grep -q '^progress: 0.0[1-9]' '" + log.string() +
+        "' || ! kill -0 $pid; do sleep 0.02; done; kill -INT $pid; wait $pid";
+    EXPECT_EQ(std::system(command.c_str()), 0) << read_text(log);
+    const Scene scene = read_scene(folder_ / "out.tet");
+    EXPECT_EQ(scene.build.optimised.end, OptimiserEnd::interrupted);
+    EXPECT_LT(scene.build.optimised.cost_after, scene.build.optimised.cost_before);
+    expect_sound(scene);
+}
+
+TEST_F(BuilderProgram, says_when_the_optimiser_ran_out_of_time)
+{
+    const auto ended = run_on(write("ball.off", to_off(sphere(5))), "--switches pY --tets rays --optimise-for 0.05");
+    ASSERT_EQ(ended.code, BUILDER_GOOD) << ended.errors;
+    const Scene scene = read_scene(folder_ / "out.tet");
+    EXPECT_EQ(scene.build.optimised.end, OptimiserEnd::out_of_time);
+    expect_sound(scene);
 }
 
 TEST_F(BuilderProgram, notes_what_it_dropped)

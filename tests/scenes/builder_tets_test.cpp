@@ -8,6 +8,9 @@
 #include "tests/support/builder_meshes.h"
 #include "tests/support/sound_tets.h"
 
+#include <cmath>
+#include <utility>
+
 using namespace tetrace;
 using namespace tetrace::test;
 
@@ -57,6 +60,50 @@ TetMesh four_tets(Float3 middle)
     }
     return mesh;
 }
+
+/// An open sheet of 8 x 8 squares; up: the height of every other vertex.
+TriangleMesh grid(float up)
+{
+    TriangleMesh sheet;
+    for (std::uint32_t i = 0; i < 81; ++i)
+        sheet.vertices.push_back({static_cast<float>(i % 9) / 8, static_cast<float>(i / 9) / 8, i % 2 == 0 ? 0 : up});
+    for (std::uint32_t i = 0; i < 72; ++i) {
+        if (i % 9 == 8) continue;
+        sheet.triangles.push_back({i, i + 1, i + 10});
+        sheet.triangles.push_back({i, i + 10, i + 9});
+    }
+    return sheet;
+}
+
+/// The first mesh, and the second one times a factor, then moved by as much along each axis.
+TriangleMesh joined(TriangleMesh first, const TriangleMesh& second, float factor, float offset)
+{
+    const auto base = static_cast<std::uint32_t>(first.vertices.size());
+    for (const Float3 v : second.vertices)
+        first.vertices.push_back({factor * v.x + offset, factor * v.y + offset, factor * v.z + offset});
+    for (const auto& [a, b, c] : second.triangles)
+        first.triangles.push_back({base + a, base + b, base + c});
+    return first;
+}
+
+/// Builds meshes for rays in both domains.
+class OptimisingBuilder : public Builder {
+protected:
+    [[nodiscard]] Scene expect_optimised(const TriangleMesh& mesh, DomainKind domain, const std::string& switches) const
+    {
+        BuilderOptions asked = options(mesh, domain, switches);
+        asked.tets = TetsKind::rays;
+        Scene scene = build(asked);
+        expect_sound(scene);
+        expect_faces_inside_their_triangles(scene);
+        const OptimisedInfo& made = scene.build.optimised;
+        EXPECT_EQ(made.asked, TetsKind::rays);
+        EXPECT_EQ(made.end, OptimiserEnd::finished);
+        EXPECT_EQ(made.tets == TetsKind::rays, made.reason.empty());
+        EXPECT_EQ(made.tets == TetsKind::rays, made.cost_after < made.cost_before);
+        return scene;
+    }
+};
 
 class AbsurdOutput : public Builder {
 protected:
@@ -129,38 +176,73 @@ TEST_F(Builder, fills_both_domains_round_every_kind_of_mesh)
     }
 }
 
-TEST_F(Builder, optimises_every_kind_of_mesh)
+TEST_F(OptimisingBuilder, betters_every_kind_of_mesh_or_says_why_not)
 {
     const TriangleMesh single{{{0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0.1f}}, {{0, 1, 2}}};
     const TriangleMesh sliver{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1e-4f, 0}, {0.5f, 0.2f, 0.7f}}, {{0, 1, 2}, {0, 1, 3}}};
-    TriangleMesh sheet; // open, and flat
-    for (std::uint32_t i = 0; i < 81; ++i)
-        sheet.vertices.push_back({static_cast<float>(i % 9) / 8, static_cast<float>(i / 9) / 8, 0});
-    for (std::uint32_t i = 0; i < 72; ++i) {
-        if (i % 9 == 8) continue;
-        sheet.triangles.push_back({i, i + 1, i + 10});
-        sheet.triangles.push_back({i, i + 10, i + 9});
-    }
-    const std::vector<TriangleMesh> meshes = {tetrahedron(), flat_cube(6), sphere(3), single, sliver, sheet};
-    for (std::size_t i = 0; i < meshes.size(); ++i)
+    for (const TriangleMesh& mesh : {tetrahedron(), flat_cube(6), sphere(3), single, sliver, grid(0)})
         for (const DomainKind domain : {DomainKind::tight, DomainKind::wide})
             for (const std::string switches : {"pY", "pq5Y"}) {
-                SCOPED_TRACE("mesh " + std::to_string(i) + ", " + std::string(name_of(domain)) + ", " + switches);
-                BuilderOptions asked = options(meshes[i], domain, switches);
-                const Scene plain = build(asked);
-                asked.tets = TetsKind::rays;
-                const Scene scene = build(asked);
-                expect_sound(scene);
-                expect_faces_inside_their_triangles(scene);
+                SCOPED_TRACE(std::to_string(mesh.triangles.size()) + " triangles, " + std::string(name_of(domain)) +
+                             ", " + switches);
+                const Scene plain = build(options(mesh, domain, switches));
+                const Scene scene = expect_optimised(mesh, domain, switches);
                 EXPECT_EQ(scene.mesh, plain.mesh);
-                const OptimisedInfo& made = scene.build.optimised;
-                EXPECT_EQ(made.asked, TetsKind::rays);
-                EXPECT_EQ(made.tets == TetsKind::rays, made.reason.empty());
-                EXPECT_EQ(made.tets == TetsKind::rays, made.cost_after < made.cost_before);
                 if (switches == "pq5Y") { // no points were added: the surfaces are those of the plain build
                     EXPECT_EQ(fixed_faces(scene.tets), fixed_faces(plain.tets));
                 }
             }
+}
+
+TEST_F(OptimisingBuilder, betters_hostile_meshes_or_says_why_not)
+{
+    TriangleMesh needles; // round one axis
+    for (std::uint32_t i = 0; i < 12; ++i) {
+        const auto angle = static_cast<float>(i) * 0.5f, radius = 1e-3f;
+        needles.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+        needles.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), 1});
+        if (i > 0) needles.triangles.push_back({2 * i - 2, 2 * i, 2 * i - 1});
+    }
+    TriangleMesh repaired = sphere(1);
+    repaired.triangles.push_back(repaired.triangles.front());
+    repaired.triangles.push_back({1, 1, 2});
+    const std::pair<const char*, TriangleMesh> meshes[] = {
+        {"nearly flat", grid(1e-6f)},
+        {"closed in closed", joined(sphere(1), sphere(1), 0.5f, 0)},
+        {"cubes that share a corner", joined(flat_cube(1), flat_cube(1), -1, 2)},
+        {"needles", needles},
+        {"repaired", repaired}};
+    for (const auto& [name, mesh] : meshes)
+        for (const DomainKind domain : {DomainKind::tight, DomainKind::wide}) {
+            SCOPED_TRACE(std::string(name) + ", " + std::string(name_of(domain)));
+            static_cast<void>(expect_optimised(mesh, domain, "pY"));
+        }
+}
+
+TEST_F(Builder, keeps_tetgens_tets_where_the_optimised_ones_fail_a_check)
+{
+    const Scene scene = build(options(sphere(2), DomainKind::tight, "pq5Y"));
+    const OptimisedTets good = optimise(scene.tets, {1, 0}, {});
+    EXPECT_EQ(objection_to(good, scene), "");
+    const auto objection_after = [&](const auto& damage) {
+        OptimisedTets bad = good;
+        damage(bad);
+        return objection_to(bad, scene);
+    };
+    EXPECT_TRUE(contains(objection_after([](auto& bad) { bad.report.cost_after = bad.report.cost_before; }),
+                         "found nothing to better"));
+    EXPECT_TRUE(contains(objection_after([](auto& bad) {
+                             std::swap(bad.mesh.tets[7].vertices[0], bad.mesh.tets[7].vertices[1]);
+                             std::swap(bad.mesh.tets[7].links[0], bad.mesh.tets[7].links[1]);
+                         }),
+                         "fail a check"));
+    EXPECT_TRUE(contains(objection_after([](auto& bad) { bad.mesh.tets.pop_back(); }), "fail a check"));
+    EXPECT_TRUE(contains(objection_after([](auto& bad) {
+                             for (Tet& tet : bad.mesh.tets)
+                                 for (std::uint32_t& face : tet.faces)
+                                     if (face == 3) face = FREE_FACE;
+                         }),
+                         "missing input triangles"));
 }
 
 TEST_F(Builder, leaves_tetgens_tets_with_effort_0)

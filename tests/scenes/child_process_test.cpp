@@ -46,12 +46,18 @@ std::size_t open_files()
     return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
 
-/// Sends a signal to this process once the child has said that it runs.
-ChildOutcome shell_interrupted_by(int signal, const std::string& script)
+/// Sends signals to this process once the child has said that it runs.
+ChildOutcome shell_interrupted_by(int signal, const std::string& script, int times = 1, const ChildLimits& limits = {})
 {
     std::thread sender;
-    ChildOutcome outcome = run_child("/bin/sh", {"-c", "echo ready >&2; " + script}, {}, [&](const std::string& line) {
-        if (line == "ready") sender = std::thread([signal] { ::kill(::getpid(), signal); });
+    const auto send = [=] {
+        for (int i = 0; i < times; ++i) {
+            if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(300)); // signals that wait are one
+            ::kill(::getpid(), signal);
+        }
+    };
+    ChildOutcome outcome = run_child("/bin/sh", {"-c", script}, limits, [&](const std::string& line) {
+        if (line == "ready") sender = std::thread(send);
     });
     sender.join();
     return outcome;
@@ -191,12 +197,34 @@ TEST(ChildProcess, ends_the_child_when_this_process_is_interrupted)
         }, ours{};
         ours.sa_handler = SIG_DFL; // whoever runs the tests may have it ignored
         ::sigaction(signal, &ours, &before);
-        const ChildOutcome outcome = shell_interrupted_by(signal, "exec sleep 60");
+        const ChildOutcome outcome = shell_interrupted_by(signal, "echo ready >&2; exec sleep 60");
         EXPECT_EQ(outcome.end, End::interrupted);
         struct sigaction after {};
         ::sigaction(signal, &before, &after);
         EXPECT_EQ(after.sa_handler, SIG_DFL) << "the handler was not restored";
     }
+}
+
+TEST(ChildProcess, lets_a_child_finish_after_one_interrupt_where_it_may)
+{
+    struct sigaction before {
+    }, ours{};
+    ours.sa_handler = SIG_DFL;
+    ::sigaction(SIGINT, &ours, &before);
+    const ChildLimits patient = {0, 0, 60};
+    const std::string loop = "echo ready >&2; while :; do sleep 0.02; done";
+    const ChildOutcome finished = shell_interrupted_by(SIGINT, "trap 'echo end; exit 0' INT; " + loop, 1, patient);
+    EXPECT_EQ(finished.end, End::exited);
+    EXPECT_TRUE(finished.interrupted);
+    EXPECT_EQ(finished.out, "end\n");
+    const ChildOutcome ended = shell_interrupted_by(SIGINT, "echo ready >&2; exec sleep 60", 1, patient);
+    EXPECT_EQ(ended.end, End::interrupted) << "it has nothing to finish";
+    const ChildOutcome twice = shell_interrupted_by(SIGINT, "trap '' INT; " + loop, 2, patient);
+    EXPECT_EQ(twice.end, End::interrupted) << "the second ends it";
+    const ChildOutcome late = shell_interrupted_by(SIGINT, "trap '' INT; " + loop, 1, {0, 0, 0.3});
+    EXPECT_EQ(late.end, End::interrupted) << "its time is over";
+    EXPECT_FALSE(run_child("/bin/true", {}, patient).interrupted);
+    ::sigaction(SIGINT, &before, nullptr);
 }
 
 TEST(ChildProcess, leaves_an_ignored_interrupt_ignored)
@@ -205,7 +233,7 @@ TEST(ChildProcess, leaves_an_ignored_interrupt_ignored)
     }, ignore{};
     ignore.sa_handler = SIG_IGN;
     ::sigaction(SIGINT, &ignore, &before);
-    const ChildOutcome outcome = shell_interrupted_by(SIGINT, "sleep 0.5; echo end");
+    const ChildOutcome outcome = shell_interrupted_by(SIGINT, "echo ready >&2; sleep 0.5; echo end");
     EXPECT_EQ(outcome.end, End::exited);
     EXPECT_EQ(outcome.out, "end\n");
     ::sigaction(SIGINT, &before, nullptr);

@@ -48,7 +48,7 @@ TEST_F(Load, hands_on_stages_and_notes)
     use_builder("echo 'stage: reading' >&2; sleep 0.3; echo 'note: 3 vertices merged' >&2; echo 'stage: tetgen' >&2; "
                 "sleep 0.3");
     std::vector<std::string> stages;
-    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double fraction) {
+    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double fraction, const std::string&) {
         stages.push_back(stage);
         EXPECT_LT(fraction, 0);
     });
@@ -107,6 +107,58 @@ TEST_F(Load, says_each_remedy_once)
     }
 }
 
+TEST_F(Load, sets_a_scene_apart_whose_optimiser_was_stopped)
+{
+    request.build = default_build(TetsKind::rays);
+    Scene made = expected();
+    made.domain = make_cubes(3).domain; // three divisions
+    made.build.switches = request.build.switches;
+    made.build.optimised = {TetsKind::rays, TetsKind::rays, "", request.build.effort, 2, 1, 0.1};
+    for (const OptimiserEnd end : {OptimiserEnd::out_of_time, OptimiserEnd::interrupted}) {
+        made.build.optimised.end = end;
+        write_scene(prepared, made);
+        use_builder("");
+        const LoadedScene loaded = load();
+        EXPECT_NE(loaded.file, cached());
+        EXPECT_FALSE(std::filesystem::exists(cached())) << "it is not the scene that the key stands for";
+        EXPECT_TRUE(contains(loaded.messages.front(), "stopped early (" + std::string(name_of(end)) + ")"));
+        EXPECT_EQ(load_scene({loaded.file.string(), {}}, {}).hash, loaded.hash) << "--scene takes it";
+        const auto listed = list_cache();
+        EXPECT_TRUE(std::ranges::any_of(listed, [&](const CachedFile& file) { return file.path == loaded.file; }));
+    }
+    EXPECT_FALSE(load().from_cache);
+    write_scene(cached(), made); // as somebody may have copied it
+    EXPECT_TRUE(contains(load().messages.front(), "its optimiser was stopped early; built again"));
+    EXPECT_GT(clear_cache(), 0u);
+    EXPECT_TRUE(list_cache().empty());
+}
+
+TEST_F(Load, gives_the_optimiser_half_of_the_builders_time_unless_told)
+{
+    (void)load();
+    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300\n"));
+    request.build.optimise_s = 7;
+    request.build.divisions = 3;
+    clear_cache();
+    (void)load();
+    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 7\n"));
+}
+
+TEST_F(Load, shows_what_the_builder_tells_of_its_progress)
+{
+    use_builder("echo 'stage: optimising' >&2; echo 'progress: 0.25 round 2: as far' >&2; sleep 0.3");
+    std::vector<std::string> told;
+    (void)load_scene(request, [&](const std::string& stage, double fraction, const std::string& detail) {
+        if (fraction == 0.25) told.push_back(stage + ", " + detail);
+    });
+    EXPECT_TRUE(std::ranges::find(told, "building thing: optimising, round 2: as far") != told.end());
+    clear_cache();
+    use_builder("echo 'stage: optimising' >&2; echo 'progress: none' >&2; sleep 0.3");
+    (void)load_scene(request, [&](const std::string& stage, double fraction, const std::string&) {
+        EXPECT_TRUE(stage != "building thing: optimising" || fraction < 0);
+    });
+}
+
 TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
 {
     request.build = default_build(TetsKind::rays);
@@ -157,7 +209,7 @@ TEST_F(Load, tells_an_interrupt)
     std::thread sender;
     use_builder("echo 'stage: tetgen' >&2; sleep 60");
     const std::string error = error_of([&] {
-        (void)load_scene(request, [&](const std::string& stage, double) {
+        (void)load_scene(request, [&](const std::string& stage, double, const std::string&) {
             if (!sender.joinable() && stage.find("tetgen") != std::string::npos)
                 sender = std::thread([] { ::kill(::getpid(), SIGINT); });
         });

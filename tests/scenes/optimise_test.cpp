@@ -2,6 +2,7 @@
 #include "core/base/error.h"
 #include "core/mesh/sides.h"
 #include "scenes/optimise/editable_mesh.h"
+#include "scenes/optimise/forecast.h"
 #include "scenes/optimise/graded_points.h"
 #include "scenes/optimise/optimise.h"
 #include "scenes/procedural.h"
@@ -68,7 +69,7 @@ TEST(Optimise, reports_gains_that_add_up)
     for (const OperationCount& operation : report.operations)
         sum += operation.gain;
     EXPECT_NEAR(report.cost_before - report.cost_after, sum, 1e-9);
-    EXPECT_FALSE(report.out_of_time);
+    EXPECT_EQ(report.end, OptimiserEnd::finished);
 }
 
 TEST(Optimise, gives_the_same_bits_each_time)
@@ -95,8 +96,51 @@ TEST(Optimise, ends_in_time_with_a_sound_mesh)
 {
     const Scene scene = make_cubes(12);
     const OptimisedTets result = optimise(scene.tets, {3, 1e-9}, {});
-    EXPECT_TRUE(result.report.out_of_time);
+    EXPECT_EQ(result.report.end, OptimiserEnd::out_of_time);
     expect_same_domain(result.mesh, scene);
+}
+
+TEST(Optimise, ends_when_it_is_told_to_with_a_sound_mesh_and_what_it_has_gained)
+{
+    const Scene scene = make_cubes(12);
+    std::atomic<bool> stop{false};
+    int looks = 0;
+    const OptimisedTets result = optimise(scene.tets, {3, 0, &stop}, [&](const std::string&, double, const auto&) {
+        if (++looks == 8) stop = true; // after some sweeps
+    });
+    EXPECT_EQ(result.report.end, OptimiserEnd::interrupted);
+    EXPECT_EQ(looks, 9) << "it sees that at the next look, and ends";
+    expect_same_domain(result.mesh, scene);
+    EXPECT_LT(result.report.cost_after, result.report.cost_before);
+    EXPECT_GT(result.report.cost_after, optimised(scene.tets, 3).report.cost_after);
+}
+
+TEST(Optimise, tells_what_it_has_reached_and_a_share_that_comes_near_to_one)
+{
+    double last = 0;
+    std::string detail;
+    static_cast<void>(optimise(make_cubes(12).tets, {2, 0},
+                               [&](const std::string& stage, double fraction, const std::string& reached) {
+                                   EXPECT_EQ(stage, "optimising");
+                                   EXPECT_TRUE(fraction >= 0 && fraction <= 1) << fraction;
+                                   last = fraction;
+                                   detail = reached;
+                               }));
+    EXPECT_GT(last, 0.5);
+    EXPECT_EQ(detail.rfind("round ", 0), 0u) << detail;
+}
+
+TEST(Forecast, expects_rounds_to_go_on_as_they_did)
+{
+    Forecast forecast;
+    EXPECT_GT(forecast.left_s(1, 0.5, 0.01, 16), 1) << "the rest of the first round, and more";
+    forecast.end_round(8, 1);
+    forecast.end_round(12, 0.5);
+    forecast.end_round(14, 0.25);
+    // Rounds of 8, 4, 2 seconds; the next ones gain 1/8 and 1/16, take 1 and 1/2 second, and then it is enough.
+    EXPECT_NEAR(forecast.left_s(14, 0, 0.1, 16), 1.5, 1e-9);
+    EXPECT_NEAR(forecast.left_s(14.25, 0.25, 0.1, 16), 1.25, 1e-9);
+    EXPECT_NEAR(forecast.left_s(14, 0, 0.1, 0), 1, 1e-9) << "no more rounds are allowed";
 }
 
 TEST(GradedPoints, lie_in_the_domain_on_the_grid_and_off_the_mesh)

@@ -31,7 +31,16 @@ Scene sample_scene()
 {
     Scene scene = make_cubes(3);
     scene.name = "a name with spaces, \xff and a \n line end";
-    const OptimisedInfo optimised = {TetsKind::rays, TetsKind::cdt, "a \n reason", 3, 5.5, 4.5, 0.25};
+    const OptimisedInfo optimised = {TetsKind::rays,
+                                     TetsKind::cdt,
+                                     "a \n reason",
+                                     3,
+                                     5.5,
+                                     4.5,
+                                     0.25,
+                                     7,
+                                     {{"moves", 8, 0.75, 0.5}, {"flips"}},
+                                     OptimiserEnd::out_of_time};
     scene.build = {"file \"x\".off", 0x123456789ABCDEFu, "pq5Y", "TetGen 1.5", 1.25, -7, 1, 2, 3, 4, optimised};
     return scene;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 
 namespace tetrace {
 
@@ -20,15 +21,26 @@ struct Growing {
 
 /// A row through all sizes at which it ran.
 struct GrowthLine {
-    const RowRun* row = nullptr; ///< at the first of them
-    std::string family;          ///< the scene's name without its size
+    const SceneRun* run = nullptr; ///< the first of them
+    const RowRun* row = nullptr;   ///< in that run
     std::vector<Growing> points;
     bool noisy = false; ///< at one of the sizes
 };
 
+/// The scene's name without its size.
 std::string family_of(const SceneRun& run)
 {
-    return run.build.label.substr(0, run.build.label.find('@'));
+    return run.build.scene.substr(0, run.build.scene.find('@'));
+}
+
+std::string family_of(const GrowthLine& line)
+{
+    return family_of(*line.run);
+}
+
+bool is_for_rays(const GrowthLine& line)
+{
+    return is_for_rays(*line.run);
 }
 
 std::optional<double> a_ray(std::uint64_t count, std::uint64_t rays)
@@ -70,10 +82,11 @@ std::vector<GrowthLine> lines_of(const SceneRuns& runs)
         if (run->scene == nullptr) continue;
         for (std::size_t i = 0; i < run->rows.size(); ++i) {
             const auto same = [&](const GrowthLine& line) {
-                return line.family == family_of(*run) && is_one_kernel(*line.row, run->rows[i]);
+                return line.run->build.build == run->build.build && family_of(line) == family_of(*run) &&
+                       is_one_kernel(*line.row, run->rows[i]);
             };
             auto line = std::ranges::find_if(lines, same);
-            if (line == lines.end()) line = lines.insert(line, {&run->rows[i], family_of(*run), {}, false});
+            if (line == lines.end()) line = lines.insert(line, {run, &run->rows[i], {}, false});
             line->points.push_back(growing(*run, i));
             line->noisy = line->noisy || is_noisy(run->rows[i]);
         }
@@ -84,7 +97,7 @@ std::vector<GrowthLine> lines_of(const SceneRuns& runs)
 std::vector<PaperCell> size_cells(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
-    auto cells = label_cells({run.build.label}, row);
+    auto cells = label_cells({run.build.scene, run.build.build}, row);
     if (run.scene != nullptr) {
         const Growing point = growing(run, i);
         const auto figures = figures_of(row);
@@ -123,8 +136,11 @@ PaperCell exponent_cell(const GrowthLine& line, std::optional<double> Growing::*
 std::vector<PaperCell> exponent_cells(const GrowthLine& line)
 {
     const KernelId& kernel = line.row->key.kernel;
-    std::vector<PaperCell> cells = {line.family, std::string(name_of(kernel.method)),
-                                    std::string(name_of(kernel.layout)), device_label(line.row->key),
+    std::vector<PaperCell> cells = {family_of(line),
+                                    line.run->build.build,
+                                    std::string(name_of(kernel.method)),
+                                    std::string(name_of(kernel.layout)),
+                                    device_label(line.row->key),
                                     exact_cell(static_cast<double>(line.points.size()))};
     for (const auto member : {&Growing::ns_a_ray, &Growing::steps, &Growing::nodes, &Growing::triangles,
                               &Growing::build_s, &Growing::memory_mb})
@@ -132,13 +148,14 @@ std::vector<PaperCell> exponent_cells(const GrowthLine& line)
     return cells;
 }
 
-/// "maria tet80 openmp"; Embree's rows omit the device.
+/// "CDT tet80 openmp", "bvh2 openmp"; Embree's rows omit the device.
 std::string line_name(const GrowthLine& line)
 {
     const KernelId& kernel = line.row->key.kernel;
     if (kernel.layout == Layout::embree) return fmt::format("Embree {}", name_of(kernel.method));
-    const std::string name = kernel.structure == Structure::cdt ? fmt::format("CDT {}", name_of(kernel.layout))
-                                                                : std::string(name_of(kernel.layout));
+    const std::string name = kernel.structure == Structure::cdt
+                                 ? fmt::format("{} {}", tets_name(*line.run), name_of(kernel.layout))
+                                 : std::string(name_of(kernel.layout));
     return name + ' ' + device_label(line.row->key);
 }
 
@@ -173,7 +190,7 @@ PaperFigure time_figure(const std::vector<GrowthLine>& lines, const std::string&
         empty_figure(fmt::format("growth-{}-time-{}", family, name_of(kind)),
                      fmt::format("Time of a ray as {} is refined, {}", family, name_of(kind)), "time", "ns a ray");
     for (const GrowthLine& line : lines)
-        if (line.family == family && line.row->device.kind == kind)
+        if (family_of(line) == family && line.row->device.kind == kind)
             add_series(figure, series_of(line, line_name(line), &Growing::ns_a_ray));
     return figure;
 }
@@ -183,12 +200,12 @@ PaperFigure visits_figure(const std::vector<GrowthLine>& lines, const std::strin
 {
     PaperFigure figure = empty_figure(fmt::format("growth-{}-visits", family),
                                       fmt::format("What a ray visits as {} is refined", family), "visits", "a ray");
-    bool has_cdt = false;
+    std::set<bool> drawn; // whether tets for rays: all layouts have the same
     for (const GrowthLine& line : lines) {
-        if (line.family != family || !on_reference(line.row->key)) continue;
+        if (family_of(line) != family || !on_reference(line.row->key)) continue;
         const std::string layout(name_of(line.row->key.kernel.layout));
-        if (!has_cdt) add_series(figure, series_of(line, "CDT, tets", &Growing::steps));
-        has_cdt = has_cdt || is_cdt(*line.row);
+        if (is_cdt(*line.row) && drawn.insert(is_for_rays(line)).second)
+            add_series(figure, series_of(line, is_for_rays(line) ? "tets for rays" : "CDT, tets", &Growing::steps));
         add_series(figure, series_of(line, layout + ", nodes", &Growing::nodes));
         add_series(figure, series_of(line, layout + ", triangles", &Growing::triangles));
     }
@@ -209,7 +226,8 @@ Claim size_claim(const std::vector<GrowthLine>& lines, DeviceKind kind)
         const auto least = law_of(bvh, &Growing::ns_a_ray);
         std::vector<Estimate> others;
         for (const GrowthLine& cdt : lines)
-            if (cdt.family == bvh.family && is_cdt(*cdt.row) && same_place(cdt.row->key, bvh.row->key))
+            if (!is_for_rays(cdt) && family_of(cdt) == family_of(bvh) && is_cdt(*cdt.row) &&
+                same_place(cdt.row->key, bvh.row->key))
                 if (const auto law = law_of(cdt, &Growing::ns_a_ray)) {
                     others.push_back(law->exponent);
                     noisy = noisy || cdt.noisy;
@@ -233,11 +251,46 @@ Claim size_claim(const std::vector<GrowthLine>& lines, DeviceKind kind)
     return claim;
 }
 
+/// The line of a family whose number is known on the reference; null where there is none.
+template <class IsMeant>
+const GrowthLine* find_line(const std::vector<GrowthLine>& lines, const std::string& family, const IsMeant& is_meant)
+{
+    for (const GrowthLine& line : lines)
+        if (family_of(line) == family && on_reference(line.row->key) && is_meant(line)) return &line;
+    return nullptr;
+}
+
+/// Ours, not the paper's: tets a ray in tets for rays grow by a smaller power than nodes a ray in bvh2.
+Claim visits_claim(const std::vector<GrowthLine>& lines, const std::string& family)
+{
+    Claim claim{fmt::format("growth-tets-for-rays-grow-less-than-nodes-{}", family),
+                fmt::format("not the paper's: as {} is refined, rays visit tets for rays by a smaller power of its "
+                            "faces than nodes of bvh2",
+                            family)};
+    const auto exponent_of = [&](const GrowthLine* line, std::optional<double> Growing::*member) {
+        const auto law = line != nullptr ? law_of(*line, member) : std::nullopt;
+        return law ? std::optional(law->exponent) : std::nullopt;
+    };
+    const auto tets =
+        exponent_of(find_line(lines, family, [](const auto& line) { return is_for_rays(line) && is_cdt(*line.row); }),
+                    &Growing::steps);
+    const auto nodes = exponent_of(
+        find_line(lines, family, [](const auto& line) { return line.row->key.kernel.layout == Layout::bvh2; }),
+        &Growing::nodes);
+    if (!tets || !nodes) {
+        claim.evidence = "They were not both traced in three sizes.";
+        return claim;
+    }
+    claim.verdict = judge_less(*tets, {*nodes});
+    claim.evidence = fmt::format("Tets: faces^{}; nodes: faces^{}.", estimate_text(*tets), estimate_text(*nodes));
+    return claim;
+}
+
 std::vector<std::string> families_of(const std::vector<GrowthLine>& lines)
 {
     std::vector<std::string> families;
     for (const GrowthLine& line : lines)
-        if (std::ranges::find(families, line.family) == families.end()) families.push_back(line.family);
+        if (std::ranges::find(families, family_of(line)) == families.end()) families.push_back(family_of(line));
     return families;
 }
 
@@ -251,19 +304,21 @@ const std::vector<std::uint32_t>& growth_sizes()
     return sizes;
 }
 
-std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes)
+std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes,
+                                      const std::string& build)
 {
     std::ranges::sort(sizes);
     sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
     std::vector<SceneBuild> builds;
     for (const std::uint32_t size : sizes) {
         SceneRequest sized = request;
-        const std::string label = fmt::format("{}@{}", request.name, size);
+        const std::string scene = fmt::format("{}@{}", request.name, size);
         if (request.name == "cubes")
             sized.build.resolution = size;
         else
-            sized.name = label;
-        builds.push_back({sized, label, growth_build, label, false, true, false, true});
+            sized.name = scene;
+        const std::string label = build == rays_build ? scene + "-rays" : scene;
+        builds.push_back({sized, scene, build, label, false, true, false, true, true});
     }
     return builds;
 }
@@ -273,22 +328,17 @@ PaperTable growth_table(const SceneRuns& runs)
     PaperTable table{"growth",
                      "One scene in several sizes: what a ray visits, and what tracing takes",
                      growth_source,
-                     {{"scene", "scene"},
-                      {"method", "method"},
-                      {"layout", "layout"},
-                      {"device", "device"},
-                      {"type", "type"},
-                      {"occlusive_faces", "occlusive faces", "", 0},
-                      {"tets", "tets", "", 0},
-                      {"steps", "tets", "a ray", 1},
-                      {"nodes", "nodes", "a ray", 1},
-                      {"triangles", "triangles", "a ray", 1},
-                      {"mrays_per_s", "Mrays/s"},
-                      {"ns_a_ray", "time", "ns a ray", 1},
-                      {"build_s", "built and packed in", "s"},
-                      {"memory_mb", "memory", "MB", 1},
-                      {"spread_percent", "spread", "%", 1},
-                      {"status", "status"}},
+                     with_labels({{"occlusive_faces", "occlusive faces", "", 0},
+                                  {"tets", "tets", "", 0},
+                                  {"steps", "tets", "a ray", 1},
+                                  {"nodes", "nodes", "a ray", 1},
+                                  {"triangles", "triangles", "a ray", 1},
+                                  {"mrays_per_s", "Mrays/s"},
+                                  {"ns_a_ray", "time", "ns a ray", 1},
+                                  {"build_s", "built and packed in", "s"},
+                                  {"memory_mb", "memory", "MB", 1},
+                                  {"spread_percent", "spread", "%", 1},
+                                  {"status", "status"}}),
                      {"A size is the number of triangles of banana@N, of cubes@N the cubes along an axis. Times are of "
                       "the median sample of all views, device seconds of the kernel alone. Nodes and triangles are "
                       "counted by openmp's counting build, outside the timing."}};
@@ -305,6 +355,7 @@ PaperTable growth_exponents(const SceneRuns& runs)
         "How cost grows with the number of occlusive faces: the exponents of power laws",
         growth_source,
         {{"scene", "scene"},
+         {"build", "build"},
          {"method", "method"},
          {"layout", "layout"},
          {"device", "device"},
@@ -313,7 +364,7 @@ PaperTable growth_exponents(const SceneRuns& runs)
          {"steps", "tets a ray"},
          {"nodes", "nodes a ray"},
          {"triangles", "triangles a ray"},
-         {"build", "build and packing"},
+         {"setup", "build and packing"},
          {"memory", "memory"}},
         {"cost ~ faces^x, x by least squares on logarithms, from 3 sizes on, with Student's 95 % interval: "
          "it tells how well a power fits these sizes, whose deviations it takes as independent. A cost "
@@ -323,6 +374,9 @@ PaperTable growth_exponents(const SceneRuns& runs)
         table.rows.push_back(exponent_cells(line));
     for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu})
         table.claims.push_back(size_claim(lines, kind));
+    for (const std::string& family : families_of(lines))
+        if (std::ranges::any_of(lines, [](const GrowthLine& line) { return is_for_rays(line); }))
+            table.claims.push_back(visits_claim(lines, family));
     return table;
 }
 

@@ -253,6 +253,14 @@ std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRun& r
     return first;
 }
 
+std::vector<Column> with_labels(const std::vector<Column>& others)
+{
+    std::vector<Column> columns = {{"scene", "scene"},   {"build", "build"},   {"method", "method"},
+                                   {"layout", "layout"}, {"device", "device"}, {"type", "type"}};
+    columns.insert(columns.end(), others.begin(), others.end());
+    return columns;
+}
+
 std::string status_with_reason(const RowRun& row)
 {
     const std::string status(name_of(status_of(row))), reason = reason_of(row);

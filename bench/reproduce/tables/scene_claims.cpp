@@ -41,7 +41,7 @@ std::string missing_text(const SceneRun* run, std::string_view scene, const char
 
 PaperCell quantity_beside(const Estimate& ours, std::optional<double> paper, const SceneRun& run)
 {
-    return Quantity{ours, paper, run.likeness.is_compared()};
+    return Quantity{ours, is_for_rays(run) ? std::nullopt : paper, run.likeness.is_compared()};
 }
 
 std::vector<std::string> likeness_notes(const SceneRuns& runs)
@@ -56,7 +56,7 @@ std::vector<std::string> likeness_notes(const SceneRuns& runs)
 const SceneRun* judged_run(const SceneRuns& runs, std::string_view scene)
 {
     const SceneRun* found = nullptr;
-    for (const SceneRun* run : runs)
+    for (const SceneRun* run : runs_of_cdt(runs))
         if (run->build.scene == scene && run->scene != nullptr &&
             (found == nullptr || run->build.build == papers_build))
             found = run;

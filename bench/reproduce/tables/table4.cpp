@@ -285,7 +285,7 @@ PaperTable table4(const SceneRuns& runs, std::size_t population)
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (is_cdt(run->rows[i])) table.rows.push_back(cells_of(*run, i));
-    const auto rows = method_rows(runs);
+    const auto rows = method_rows(runs_of_cdt(runs));
     table.claims.push_back(count_claim(rows, Method::maria, population, false));
     table.claims.push_back(count_claim(rows, Method::project, population, false)); // our method, which has a proof
     for (const Method method : older_methods())

@@ -74,6 +74,7 @@ std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, cons
 std::string papers_frames_text(const SceneRun& run, const RowRun& row)
 {
     if (!paper::has_scene(run.build.scene)) return "not its scene";
+    if (is_for_rays(run)) return "not its tets";
     if (!is_cdt(row) && row.key.kernel.layout != Layout::bvh2) return "not its BVH";
     const auto frames = papers_frames(run, row);
     return frames ? fmt::format("{} to {}, a GPU", frames->first, frames->second) : "";
@@ -81,24 +82,18 @@ std::string papers_frames_text(const SceneRun& run, const RowRun& row)
 
 const std::vector<Column>& frame_columns()
 {
-    static const std::vector<Column> list = {{"scene", "scene"},
-                                             {"build", "build"},
-                                             {"method", "method"},
-                                             {"layout", "layout"},
-                                             {"device", "device"},
-                                             {"type", "type"},
-                                             {"views", "views", "", 0},
-                                             {"frames_per_s", "median", "frames/s"},
-                                             {"least_frames_per_s", "least", "frames/s"},
-                                             {"most_frames_per_s", "most", "frames/s"},
-                                             {"papers_frames_per_s", "the paper's", "frames/s"},
-                                             {"mrays_per_s", "Mrays/s"},
-                                             {"build_s", "built in", "s"},
-                                             {"pack_s", "packed in", "s", 3},
-                                             {"memory_mb", "memory", "MB", 1},
-                                             {"spread_percent", "spread", "%", 1},
-                                             {"likeness", "like the paper's"},
-                                             {"status", "status"}};
+    static const std::vector<Column> list = with_labels({{"views", "views", "", 0},
+                                                         {"frames_per_s", "median", "frames/s"},
+                                                         {"least_frames_per_s", "least", "frames/s"},
+                                                         {"most_frames_per_s", "most", "frames/s"},
+                                                         {"papers_frames_per_s", "the paper's", "frames/s"},
+                                                         {"mrays_per_s", "Mrays/s"},
+                                                         {"build_s", "built in", "s"},
+                                                         {"pack_s", "packed in", "s", 3},
+                                                         {"memory_mb", "memory", "MB", 1},
+                                                         {"spread_percent", "spread", "%", 1},
+                                                         {"likeness", "like the paper's"},
+                                                         {"status", "status"}});
     return list;
 }
 
@@ -136,14 +131,14 @@ const std::vector<Column>& pair_columns()
 {
     static const std::vector<Column> list = {{"scene", "scene"},
                                              {"build", "build"},
-                                             {"layout", "CDT"},
+                                             {"layout", "tets"},
                                              {"rival", "BVH"},
                                              {"device", "device"},
                                              {"type", "type"},
-                                             {"ratio", "time BVH / CDT"},
+                                             {"ratio", "time BVH / tets"},
                                              {"least_ratio", "least"},
                                              {"most_ratio", "most"},
-                                             {"won_percent", "CDT faster in", "% of views", 1},
+                                             {"won_percent", "tets faster in", "% of views", 1},
                                              {"break_even_mrays", "builds paid after", "Mrays", 1},
                                              {"ahead", "ahead"}};
     return list;
@@ -154,9 +149,9 @@ std::string ahead_text(const RowPair& pair)
 {
     const auto even = break_even(pair);
     if (!even) return "not to be told";
-    const std::string_view who = even->ahead == BreakEven::Ahead::first    ? "the CDT"
-                                 : even->ahead == BreakEven::Ahead::second ? "the BVH"
-                                                                           : "neither";
+    const std::string who = even->ahead == BreakEven::Ahead::first    ? "the " + tets_name(*pair.run)
+                            : even->ahead == BreakEven::Ahead::second ? "the BVH"
+                                                                      : "neither";
     return fmt::format("{}, {}", who, even->rays ? "from there on" : "always");
 }
 
@@ -207,15 +202,16 @@ PaperFigure::Series curve_of(const RowPair& pair, bool with_device)
 
 PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector<RowPair>& pairs)
 {
-    PaperFigure figure{fmt::format("table6-{}-{}", run.build.label, name_of(kind)),
-                       fmt::format("Time of a BVH over the CDT's, view by view: {}, {} build, {}", run.build.scene,
-                                   run.build.build, name_of(kind)),
-                       source(),
-                       {"views that have at most this ratio", "%"},
-                       {"time of the BVH over the CDT's", "", true},
-                       {"Above 1 the CDT is faster. A curve has all views of a pair, ascending: where it crosses 1 is "
-                        "the share of the "
-                        "views in which the BVH is faster. The CDT has its device's fastest layout."}};
+    PaperFigure figure{
+        fmt::format("table6-{}-{}", run.build.label, name_of(kind)),
+        fmt::format("Time of a BVH over that of the {}, view by view: {}, {} build, {}", tets_name(run),
+                    run.build.scene, run.build.build, name_of(kind)),
+        source(),
+        {"views that have at most this ratio", "%"},
+        {"time of the BVH over that of the tets", "", true},
+        {"Above 1 the tets are faster. A curve has all views of a pair, ascending: where it crosses 1 is "
+         "the share of the "
+         "views in which the BVH is faster. The tets have their device's fastest layout."}};
     const RowKey& first = run.rows[pairs.front().cdt].key;
     const bool one_device =
         std::ranges::all_of(pairs, [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
@@ -284,12 +280,13 @@ PaperTable table6(const SceneRuns& runs)
 {
     PaperTable table{
         "table6",
-        "CDT and BVHs: frames a second, build time and memory",
+        "Tets and BVHs: frames a second, build time and memory",
         source(),
         frame_columns(),
         {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
          "alone: the median over the views with its interval (order statistics), the least and the most.",
-         "Built in: TetGen for the CDT, the builder of the BVH, which is Embree's, for bvh2 and cwbvh, "
+         "Built in: TetGen for the CDT, and our optimiser for rays, the builder of the BVH, which is Embree's, for "
+         "bvh2 and cwbvh, "
          "Embree itself for its own rows; TetGen uses one thread, the others all. Memory: all that a "
          "session holds of the scene.",
          fmt::format("The paper's frames are of its GPU ({}) and its own cameras; they have a ratio beside "
@@ -305,18 +302,19 @@ PaperTable table6(const SceneRuns& runs)
 
 PaperTable table6_pairs(const SceneRuns& runs)
 {
-    PaperTable table{"table6-pairs",
-                     "CDT against BVHs, paired view by view",
-                     source(),
-                     pair_columns(),
-                     {"A ratio is of the same view on the same device, above 1 the CDT is faster; the interval is that "
-                      "of the median over the views (order statistics). Embree stands beside openmp.",
-                      "Ahead: who takes less time, builds and rays together. Builds paid after: the rays, of these "
-                      "views, after which the one with the faster rays has made "
-                      "up for a slower build (built and packed as table6 has it); never: there is nothing to make up "
-                      "for. Not to be told: the interval of the ratio of all views' times holds 1.",
-                      "Claims are of bvh2, the paper's kind of BVH, and of the fastest layout of the CDT on each "
-                      "device. Emulations of GPUs are in none."}};
+    PaperTable table{
+        "table6-pairs",
+        "Tets against BVHs, paired view by view",
+        source(),
+        pair_columns(),
+        {"A ratio is of the same view on the same device, above 1 the tets are faster; the interval is that "
+         "of the median over the views (order statistics). Embree stands beside openmp.",
+         "Ahead: who takes less time, builds and rays together. Builds paid after: the rays, of these "
+         "views, after which the one with the faster rays has made "
+         "up for a slower build (built and packed as table6 has it); never: there is nothing to make up "
+         "for. Not to be told: the interval of the ratio of all views' times holds 1.",
+         "The paper's claims are of bvh2, its kind of BVH, and of the fastest layout of the CDT on each "
+         "device. Tets for rays have claims of their own. Emulations of GPUs are in none."}};
     table.claims = pair_claims(runs);
     for (const SceneRun* run : runs)
         for (const RowPair& pair : row_pairs(*run))

@@ -15,7 +15,8 @@ namespace tetrace {
 
 // Each table and figure is made in a file of its own name.
 
-/// Our number and the paper's of the same thing; without a ratio where the run's scene is too unlike the paper's.
+/// Our number and the paper's of the same thing; without a ratio where the run's scene is too unlike the paper's, and
+/// without the paper's where the tets are for rays.
 [[nodiscard]] PaperCell quantity_beside(const Estimate& ours, std::optional<double> paper, const SceneRun& run);
 
 /// Why the numbers of these scenes are compared with the paper's although they are not its own, or are not compared: a
@@ -23,7 +24,7 @@ namespace tetrace {
 [[nodiscard]] std::vector<std::string> likeness_notes(const SceneRuns& runs);
 
 /// The run that decides what the paper claims of a scene: of its own build where that was traced, else of ours. Null
-/// where the scene was not traced.
+/// where the scene was not traced as a CDT.
 [[nodiscard]] const SceneRun* judged_run(const SceneRuns& runs, std::string_view scene);
 
 /// Table 3: tets, faces and memory of each scene in each build.
@@ -88,7 +89,8 @@ struct RowPair {
 [[nodiscard]] std::vector<double> view_frames(const SceneRun& run, std::size_t row);
 
 /// What the paper claims of these pairs, on a GPU and on the CPU: which structure is faster on each of its scenes,
-/// whose times have the larger amplitude over the views, and whose depend less on the size of the scene.
+/// whose times have the larger amplitude over the views, and whose depend less on the size of the scene. And what we
+/// claim: tets for rays are faster than both of our BVHs, on each scene that has them.
 [[nodiscard]] std::vector<Claim> pair_claims(const SceneRuns& runs);
 
 /// Table 6: frames of 1024 x 1024 a second, build time and memory of the CDT and of each BVH.
@@ -114,9 +116,6 @@ struct RowPair {
 /// The views (indices) in which a row's rays leave the fewest and the most tets.
 [[nodiscard]] std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row);
 
-/// The build of a scene that is available in several sizes.
-inline constexpr const char* growth_build = "growth";
-
 /// The default sizes: triangles of banana.
 [[nodiscard]] const std::vector<std::uint32_t>& growth_sizes();
 /// The default views: every 64th of the camera set.
@@ -124,13 +123,14 @@ inline constexpr const char* growth_views = "0-1281:64";
 
 /// A scene in these sizes, ascending and each once. A size is the number of triangles for banana, and of cubes along an
 /// axis for cubes.
-/// request: what is built, except for its size; its name is "banana" or "cubes".
-[[nodiscard]] std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes);
+/// request: what is built, except for its size; its name is "banana" or "cubes". build: our_build or rays_build.
+[[nodiscard]] std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes,
+                                                    const std::string& build = our_build);
 
 /// The cost of tracing as one scene is refined: one row for each size and row of the run.
 [[nodiscard]] PaperTable growth_table(const SceneRuns& runs);
 
-/// The exponents of fitted power laws in the number of occlusive faces: one row for each kernel and device.
+/// The exponents of fitted power laws in the number of occlusive faces: one row for each build, kernel and device.
 [[nodiscard]] PaperTable growth_exponents(const SceneRuns& runs);
 
 /// Lines over the number of occlusive faces: a ray's time, one figure for each type of device, and what a ray visits.

@@ -1,0 +1,62 @@
+#include "bench/options/apply_option.h"
+
+#include "core/device/backend.h"
+
+namespace tetrace {
+
+namespace {
+
+std::vector<std::string> backend_names()
+{
+    std::vector<std::string> names;
+    for (const Backend* backend : all_backends())
+        names.push_back(backend->name());
+    return names;
+}
+
+} // namespace
+
+ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list)
+{
+    return [=](Options& options, const std::string& text) {
+        const auto names = backend_names();
+        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
+        (options.*list).push_back(text);
+    };
+}
+
+ApplyOption set(bool Options::*flag)
+{
+    return [=](Options& options, const std::string&) { options.*flag = true; };
+}
+
+ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high)
+{
+    return [=](Options& options, const std::string& text) {
+        options.*count = static_cast<unsigned>(parse_count(option, text, low, high));
+    };
+}
+
+ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low, unsigned high)
+{
+    return [=](Options& options, const std::string& text) {
+        (options.*list).push_back(static_cast<unsigned>(parse_count(option, text, low, high)));
+    };
+}
+
+ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
+{
+    return [=](Options& options, const std::string& text) {
+        if (text.empty()) throw Error(ErrorKind::usage, option + ": the file name is empty");
+        options.*path = text;
+    };
+}
+
+void set_result_file(Options& options, const std::string& text)
+{
+    if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");
+    options.out.reset();
+    if (text != "-") options.out = text;
+}
+
+} // namespace tetrace

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "bench/options/option_table.h"
+#include "bench/options/option_values.h"
+
+#include <algorithm>
+
+namespace tetrace {
+
+// What options do with their values. Each throws Error{usage} where it does not accept one, and lists what it accepts.
+
+/// Appends the value with that name.
+template <class T>
+[[nodiscard]] ApplyOption append(std::string option, std::vector<T> Options::*list,
+                                 std::vector<T> accepted = values_of<T>())
+{
+    return
+        [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
+}
+
+/// The same; "all" stands for every value.
+template <class T>
+[[nodiscard]] ApplyOption append_or_all(std::string option, std::vector<T> Options::*list, std::vector<T> accepted)
+{
+    return [=](Options& options, const std::string& text) {
+        std::vector<std::string> names = {"all"};
+        for (const T& value : accepted) {
+            names.emplace_back(name_of(value));
+            if (text == "all" || text == names.back()) (options.*list).push_back(value);
+        }
+        if (std::ranges::find(names, text) == names.end()) reject_value(option, text, join_alternatives(names));
+    };
+}
+
+/// Appends the name of a backend.
+[[nodiscard]] ApplyOption append_backend(const std::string& option, std::vector<std::string> Options::*list);
+
+[[nodiscard]] ApplyOption set(bool Options::*flag);
+/// A whole number in [low, high].
+[[nodiscard]] ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high);
+[[nodiscard]] ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low,
+                                       unsigned high);
+/// A file's name, not empty.
+[[nodiscard]] ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path);
+/// The file of --out; "-" means none.
+void set_result_file(Options& options, const std::string& text);
+
+} // namespace tetrace
