@@ -64,8 +64,6 @@ enum SectionId : std::size_t { information, mesh_vertices, triangles, tet_vertic
 
 constexpr std::uint32_t most_divisions = 128; // those of the finest cubes; the entry grid grows with their square
 
-constexpr std::uint32_t most_operations = 64; // of the optimiser; there are fewer than ten
-
 using Table = std::array<SectionEntry, kinds.size()>;
 constexpr std::size_t header_bytes = sizeof(FileHeader) + sizeof(Table) + sizeof(std::uint64_t);
 
@@ -108,9 +106,9 @@ bool get_optimised(InformationReader& in, OptimisedInfo& info)
     for (double* value : {&info.cost_before, &info.cost_after, &info.seconds})
         in.get(*value);
     in.get(info.rounds);
-    std::uint32_t operations = 0;
+    std::uint32_t operations = 0, end = 0;
     in.get(operations);
-    if (operations > most_operations) return false;
+    if (operations > 64) return false; // there are fewer than ten
     info.operations.resize(operations);
     for (OptimiserOperation& operation : info.operations) {
         in.get(operation.name);
@@ -118,7 +116,6 @@ bool get_optimised(InformationReader& in, OptimisedInfo& info)
         in.get(operation.gain);
         in.get(operation.seconds);
     }
-    std::uint32_t end = 0;
     in.get(end);
     info.end = static_cast<OptimiserEnd>(end);
     return end <= static_cast<std::uint32_t>(OptimiserEnd::interrupted);
