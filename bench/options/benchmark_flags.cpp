@@ -1,11 +1,11 @@
 #include "bench/options/benchmark_flags.h"
 
+#include "bench/options/name_filter.h"
 #include "bench/options/option_values.h"
 #include "core/base/error.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <regex>
 
 namespace tetrace {
 
@@ -90,14 +90,7 @@ bool benchmark_filter_keeps(const std::string& filter, const std::string& name)
 {
     if (filter.empty() || filter == "all") return true;
     const bool negated = filter.front() == '-';
-    try {
-        // Google Benchmark uses POSIX extended expressions.
-        const std::regex expression(negated ? filter.substr(1) : filter, std::regex::extended);
-        return std::regex_search(name, expression) != negated;
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--benchmark_filter: '{}' is not a regular expression: {}", filter, problem.what()));
-    }
+    return NameFilter("--benchmark_filter", negated ? filter.substr(1) : filter).keeps(name) != negated;
 }
 
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #include "bench/options/option_values.h"
 
+#include "bench/options/name_filter.h"
 #include "core/device/backend.h"
 #include "kernels/layouts/layout.h"
 
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <regex>
 #include <set>
 
 namespace tetrace {
@@ -185,12 +185,7 @@ unsigned parse_packet_lanes(const std::string& text)
 
 std::string parse_filter(const std::string& text)
 {
-    try {
-        const std::regex check(text);
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
-    }
+    const NameFilter check("--filter", text);
     return text;
 }
 

@@ -1,12 +1,12 @@
 #include "bench/rows/rows.h"
 
+#include "bench/options/name_filter.h"
 #include "bench/rows/scene_work.h"
 #include "core/base/error.h"
 
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
-#include <regex>
 
 namespace tetrace {
 
@@ -99,8 +99,8 @@ std::vector<std::size_t> devices_with_rows(const Options& options, const Backend
 /// Whether --layout, --filter or --benchmark_filter names the layout rt.
 bool names_rt(const Options& options)
 {
-    static const std::regex word("\\brt\\b");
-    const auto names_it = [](const std::string& filter) { return std::regex_search(filter, word); };
+    static const NameFilter word("layout rt", "\\brt\\b");
+    const auto names_it = [](const std::string& filter) { return word.keeps(filter); };
     const auto& flags = options.benchmark_flags;
     return !options.layouts.empty() || names_it(options.filter) ||
            std::ranges::any_of(flags, [&](const std::string& flag) {
@@ -114,11 +114,6 @@ bool wanted_there(const Options& options, const Backend& backend, std::size_t de
 {
     if (kernel.layout != Layout::rt || names_rt(options)) return true;
     return backend.devices()[device].kind != DeviceKind::emulated && backend.why_not(device, kernel).empty();
-}
-
-bool filter_keeps(const std::string& filter, const std::string& name)
-{
-    return filter.empty() || std::regex_search(name, std::regex(filter));
 }
 
 void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
@@ -349,8 +344,9 @@ std::vector<RowKey> select_rows(const Options& options, const std::vector<std::s
     for (const std::string& scene : scene_labels)
         for (const RowKey& key : rows_of_kinds(options, scene, backends))
             unfiltered.push_back(key);
+    const NameFilter filter("--filter", options.filter);
     for (const RowKey& key : unfiltered)
-        if (filter_keeps(options.filter, row_name(key))) rows.push_back(key);
+        if (filter.keeps(row_name(key))) rows.push_back(key);
     if (rows.empty()) reject_selection(options, unfiltered);
     return rows;
 }
