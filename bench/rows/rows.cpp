@@ -165,10 +165,11 @@ std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& sce
 std::string device_names(const Options& options, const std::vector<Backend*>& backends)
 {
     std::vector<std::pair<std::string, std::string>> names;
-    for (const Backend* backend : backends)
+    for (const Backend* backend : backends) {
+        if (!wanted(options.backends, backend->name())) continue;
         for (std::size_t i = 0; i < backend->devices().size(); ++i) {
             const Device& device = backend->devices()[i];
-            if (!device.usable || !wanted(options.backends, backend->name())) continue;
+            if (!device.usable) continue;
             const std::string api = i == 0 ? backend->name() : fmt::format("{}:{}", backend->name(), i);
             const auto known = std::ranges::find(names, device.name, &std::pair<std::string, std::string>::first);
             if (known == names.end())
@@ -176,6 +177,7 @@ std::string device_names(const Options& options, const std::vector<Backend*>& ba
             else
                 known->second += ", " + api;
         }
+    }
     std::string text;
     for (const auto& [name, apis] : names)
         text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, apis);
@@ -186,6 +188,7 @@ std::string device_names(const Options& options, const std::vector<Backend*>& ba
 /// device, its rows give the reason.
 void require_named_devices(const Options& options, const std::vector<Backend*>& backends)
 {
+    if (options.devices.empty()) return;
     const std::string names = device_names(options, backends);
     if (names.empty()) return;
     for (const std::string& text : options.devices) {
@@ -224,8 +227,8 @@ std::string reasons(const Options& options)
                         reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
-    std::string text =
-        fmt::format("--filter '{}' matches none of the {} rows selected otherwise:", options.filter, unfiltered.size());
+    std::string text = fmt::format("--filter '{:.200}' matches none of the {} rows selected otherwise:", options.filter,
+                                   unfiltered.size());
     for (const RowKey& key : unfiltered)
         text += "\n  " + row_name(key);
     throw Error(ErrorKind::usage, text);
@@ -309,8 +312,9 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
 {
     std::vector<std::string> sentences;
     for (const Backend* backend : backends) {
+        if (!wanted(options.backends, backend->name())) continue; // nor is its driver loaded
         const bool has_rows = has_usable_device(*backend) || (is_named(options, *backend) && has_any_kernel(*backend));
-        if (wanted(options.backends, backend->name()) && !has_rows)
+        if (!has_rows)
             sentences.push_back(fmt::format("{}: no device: {}", backend->name(), backend->devices().front().reason));
     }
     return sentences;
