@@ -1,6 +1,7 @@
 #include "bench/options/option_values.h"
 
 #include "bench/options/name_filter.h"
+#include "core/base/printable.h"
 #include "core/device/backend.h"
 #include "kernels/layouts/layout.h"
 
@@ -192,9 +193,8 @@ std::string parse_filter(const std::string& text)
 std::string parse_label(const std::string& text)
 {
     constexpr std::size_t longest = 100;
-    const auto breaks_line = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-    if (text.empty() || text.size() > longest || std::ranges::any_of(text, breaks_line))
-        reject_value("--label", text, "one line of 1 to 100 bytes");
+    if (text.empty() || text.size() > longest || printable_line(text) != text)
+        reject_value("--label", text, "one line of 1 to 100 bytes, UTF-8 that can be shown");
     return text;
 }
 

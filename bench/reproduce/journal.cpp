@@ -26,6 +26,12 @@ const json finished_line = {{"finished", true}};
 constexpr std::string_view before_checksum = R"({"checksum":")", before_entry = R"(","entry":)";
 constexpr std::size_t largest_journal = std::size_t{1} << 30;
 
+/// In one line; what is not UTF-8, such as a path may be, is replaced.
+std::string text_of(const json& value)
+{
+    return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 /// Of an entry's text after the line with this checksum.
 std::uint64_t checksum(std::string_view entry, std::uint64_t before)
 {
@@ -57,15 +63,16 @@ std::string differences(const json& theirs, const json& ours)
     std::string text;
     for (const auto& [key, value] : ours.items())
         if (!theirs.contains(key) || theirs[key] != value)
-            text += fmt::format("\n  {}: {} there, {} here", key, theirs.contains(key) ? theirs[key].dump() : "none",
-                                value.dump());
+            text += fmt::format("\n  {}: {} there, {} here", key, theirs.contains(key) ? text_of(theirs[key]) : "none",
+                                text_of(value));
     return text.empty() ? "\n  it was written by another version" : text;
 }
 
 } // namespace
 
-Journal::Journal(std::filesystem::path path, const json& head, bool resume) : path_(std::move(path))
+Journal::Journal(std::filesystem::path path, const json& asked, bool resume) : path_(std::move(path))
 {
+    const json head = json::parse(text_of(asked)); // as it comes back from the file
     open_and_lock();
     try {
         if (read(head, resume)) return;
@@ -199,7 +206,7 @@ std::vector<json> Journal::parse(std::string_view text)
 
 void Journal::write_line(const json& line)
 {
-    const std::string entry = line.dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::string entry = text_of(line);
     checksum_ = checksum(entry, checksum_);
     const std::string text = line_of(entry, checksum_) + "\n";
     for (std::size_t done = 0; done < text.size();) {

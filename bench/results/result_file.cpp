@@ -1,6 +1,7 @@
 #include "bench/results/result_file.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@ namespace tetrace {
 namespace {
 
 constexpr std::uint64_t oldest_schema_version = 1;
-// The largest result so far has 2.3 MB and 80,000 values. What a value takes in memory its text does not show: 60 MB of
+// The largest result so far has 2.3 MB and 65,000 values. What a value takes in memory its text does not show: 60 MB of
 // "[]," took 1.3 GB.
 constexpr std::size_t largest_file = std::size_t{64} << 20;
 constexpr std::size_t most_values = 2'000'000;
@@ -140,14 +141,6 @@ std::string read_status(const ResultValue& value)
     return status;
 }
 
-/// With a '?' for each character that would do something to a terminal; lines stay.
-std::string printable(std::string text)
-{
-    for (char& c : text)
-        if ((static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f) c = '?';
-    return text;
-}
-
 /// Results from before the key have it in the row's name alone, where it is not tiles: "/schedule:packets/".
 std::string read_schedule(const ResultValue& row)
 {
@@ -169,7 +162,7 @@ ResultRow read_row(const ResultValue& value)
     row.backend = value.at("backend").line();
     row.schedule = read_schedule(value);
     row.status = read_status(value.at("status"));
-    if (const auto reason = value.find("reason")) row.reason = printable(reason->text());
+    if (const auto reason = value.find("reason")) row.reason = printable_text(reason->text());
     if (const auto device = value.find("device")) {
         row.device = device->at("name").line();
         row.device_kind = device_kind_of(*device);
