@@ -1,6 +1,7 @@
 #include "scenes/build_scene.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "scenes/builder_exit.h"
 #include "scenes/child_process.h"
 
@@ -53,8 +54,9 @@ struct Report {
     std::vector<std::string> notes, errors;
     std::string last_words; ///< the last other line, for example of a failed assertion
 
-    void take(const std::string& line)
+    void take(const std::string& said)
     {
+        const std::string line = printable_line(said);
         const auto rest = [&](std::string_view prefix) -> std::string {
             if (!line.starts_with(prefix)) return "";
             return line.substr(std::min(line.size(), line.find_first_not_of(' ', prefix.size())));

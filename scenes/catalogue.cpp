@@ -1,6 +1,7 @@
 #include "scenes/catalogue.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "scenes/build_scene.h"
 #include "scenes/mesh_files.h"
 
@@ -63,7 +64,7 @@ const CatalogueEntry* find_in_catalogue(const std::string& name)
 
 std::string scene_label(const std::string& name)
 {
-    return find_in_catalogue(name) != nullptr ? name : std::filesystem::path(name).stem().string();
+    return find_in_catalogue(name) != nullptr ? name : printable_line(std::filesystem::path(name).stem().string());
 }
 
 std::string why_not_available(const std::string& name)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/base/printable.h"
+
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -51,7 +53,7 @@ public:
             good_ = false;
             return;
         }
-        text.assign(rest_.data(), static_cast<std::size_t>(size));
+        text = printable_text({rest_.data(), static_cast<std::size_t>(size)});
         rest_ = rest_.subspan(static_cast<std::size_t>(size));
     }
     [[nodiscard]] bool finished() const { return good_ && rest_.empty(); }

@@ -16,6 +16,7 @@
 #include <fmt/ranges.h>
 #include <fstream>
 #include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -86,16 +87,24 @@ private:
     LoadedScene loaded_;
 };
 
+/// In pieces: the builder, which takes the whole file at once, has a limit of memory, and this process has none.
 std::uint64_t MeshSceneLoader::hash_mesh() const
 {
-    std::error_code failure; // opening a folder works, and a pipe would wait for its writer
-    std::vector<char> bytes(fs::is_regular_file(mesh_, failure) ? fs::file_size(mesh_, failure) : 0);
+    std::error_code not_there; // opening a folder works, and a pipe would wait for its writer
     std::ifstream file;
-    if (!bytes.empty() && !failure) file.open(mesh_, std::ios::binary);
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || bytes.empty())
+    if (fs::is_regular_file(mesh_, not_there)) file.open(mesh_, std::ios::binary);
+    Hasher hasher;
+    std::uint64_t read = 0;
+    std::vector<char> piece(std::size_t{1} << 20);
+    while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
+        const auto size = static_cast<std::size_t>(file.gcount());
+        hasher.add(std::as_bytes(std::span(piece).first(size)));
+        read += size;
+    }
+    if (read == 0 || file.bad())
         throw Error(ErrorKind::invalid_input,
                     fmt::format("reading mesh {}: it is empty, no regular file, or may not be read", mesh_.string()));
-    return hash_of(bytes);
+    return hasher.hash();
 }
 
 /// Empty where the scene is the one that was asked for, else what differs.

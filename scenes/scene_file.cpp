@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/exact.h"
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 #include "core/mesh/sides.h"
 #include "scenes/information.h"
 
@@ -145,6 +146,7 @@ bool unpack_information(std::span<const char> bytes, Scene& scene)
 {
     InformationReader in(bytes);
     in.get(scene.name);
+    scene.name = printable_line(scene.name);
     std::uint32_t kind = 0;
     in.get(kind);
     if (kind > static_cast<std::uint32_t>(DomainKind::wide)) return false;

@@ -115,7 +115,8 @@ std::vector<Device> list_devices(const LoadedDriver& loaded, const Programs& pro
     if (count == 0) return {unusable_device("none", "the NVIDIA driver finds no device")};
     std::vector<Device> devices;
     for (int i = 0; i < count; ++i) {
-        Device& device = devices.emplace_back(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i))));
+        Device& device =
+            devices.emplace_back(printable(describe(driver, ordinal_of(driver, static_cast<std::size_t>(i)))));
         device.usable = !programs.code.empty() || programs.has_nvrtc();
         if (!device.usable)
             device.reason = "this program was built without nvcc, so that its kernels are compiled at run time: " +

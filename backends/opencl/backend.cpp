@@ -7,6 +7,8 @@
 #include "core/device/device_facts.h"
 #include "core/device/open_checks.h"
 
+#include <mutex>
+
 namespace tetrace {
 namespace {
 
@@ -15,7 +17,7 @@ public:
     [[nodiscard]] std::string name() const override { return "opencl"; }
     [[nodiscard]] std::string clock() const override { return "OpenCL profiling events"; }
 
-    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return found().facts; }
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
@@ -28,7 +30,7 @@ public:
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
     {
         if (!has_kernel(kernel)) return "opencl has no kernel " + name_of(kernel);
-        return devices_.at(device).reason;
+        return devices().at(device).reason;
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
@@ -46,17 +48,17 @@ public:
 
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
-        return opencl::measure_device(*context(device, options.threads), largest_buffer(devices_.at(device), options));
+        return opencl::measure_device(*context(device, options.threads), largest_buffer(devices().at(device), options));
     }
 
 private:
     /// The context that the device's open sessions share, else a new one. A lost context is not used for new sessions.
     std::shared_ptr<opencl::Context> context(std::size_t device, unsigned threads)
     {
-        if (!devices_.at(device).usable) throw Error(ErrorKind::missing, devices_[device].reason);
+        if (!devices().at(device).usable) throw Error(ErrorKind::missing, devices()[device].reason);
         Shared& shared = shared_[device];
         if (auto made = shared.context.lock(); made && !made->is_lost() && shared.threads == threads) return made;
-        auto made = std::make_shared<opencl::Context>(found_[device], threads);
+        auto made = std::make_shared<opencl::Context>(found().devices[device], threads);
         shared = {made, threads};
         return made;
     }
@@ -66,9 +68,25 @@ private:
         unsigned threads = 0; ///< asked for
     };
 
-    std::vector<opencl::FoundDevice> found_ = opencl::find_devices();
-    std::vector<Device> devices_ = facts_of(found_);
-    std::vector<Shared> shared_ = std::vector<Shared>(found_.size());
+    struct Found {
+        std::vector<opencl::FoundDevice> devices;
+        std::vector<Device> facts;
+    };
+
+    /// Found when first asked for: this loads drivers, and a run that selects other backends needs none of them.
+    [[nodiscard]] const Found& found() const
+    {
+        std::call_once(once_, [this] {
+            found_.devices = opencl::find_devices();
+            found_.facts = facts_of(found_.devices);
+            shared_.resize(found_.devices.size());
+        });
+        return found_;
+    }
+
+    mutable std::once_flag once_;
+    mutable Found found_;
+    mutable std::vector<Shared> shared_; ///< device by device
 };
 
 } // namespace

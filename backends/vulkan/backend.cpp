@@ -7,6 +7,8 @@
 #include "core/device/device_facts.h"
 #include "core/device/open_checks.h"
 
+#include <mutex>
+
 namespace tetrace {
 namespace {
 
@@ -15,7 +17,7 @@ public:
     [[nodiscard]] std::string name() const override { return "vulkan"; }
     [[nodiscard]] std::string clock() const override { return "Vulkan timestamps"; }
 
-    [[nodiscard]] const std::vector<Device>& devices() const override { return devices_; }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return found().facts; }
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
@@ -26,9 +28,9 @@ public:
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
     {
         if (!has_kernel(kernel)) return "vulkan has no kernel " + name_of(kernel);
-        const std::string& reason = devices_.at(device).reason;
+        const std::string& reason = devices().at(device).reason;
         if (!reason.empty() || kernel.layout != Layout::rt) return reason;
-        return found_[device].ray_queries.reason;
+        return found().devices[device].ray_queries.reason;
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
@@ -36,26 +38,42 @@ public:
     {
         if (kernel.layout == Layout::rt) {
             require_kernel(*this, device, kernel);
-            return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, *scene.mesh, options);
+            return std::make_unique<vulkan::VulkanSession>(found().devices[device], kernel, *scene.mesh, options);
         }
         const PackedScene& packed = packed_scene(*this, device, kernel, scene);
-        return std::make_unique<vulkan::VulkanSession>(found_[device], kernel, packed, options);
+        return std::make_unique<vulkan::VulkanSession>(found().devices[device], kernel, packed, options);
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                    std::span<const Quad> operations) override
     {
-        return vulkan::run_probe(vulkan::Context(found_.at(device)), math, operations);
+        return vulkan::run_probe(vulkan::Context(found().devices.at(device)), math, operations);
     }
 
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
-        return vulkan::measure_device(vulkan::Context(found_.at(device)), largest_buffer(devices_.at(device), options));
+        return vulkan::measure_device(vulkan::Context(found().devices.at(device)),
+                                      largest_buffer(devices().at(device), options));
     }
 
 private:
-    std::vector<vulkan::FoundDevice> found_ = vulkan::find_devices();
-    std::vector<Device> devices_ = facts_of(found_);
+    struct Found {
+        std::vector<vulkan::FoundDevice> devices;
+        std::vector<Device> facts;
+    };
+
+    /// Found when first asked for: this loads drivers, and a run that selects other backends needs none of them.
+    [[nodiscard]] const Found& found() const
+    {
+        std::call_once(once_, [this] {
+            found_.devices = vulkan::find_devices();
+            found_.facts = facts_of(found_.devices);
+        });
+        return found_;
+    }
+
+    mutable std::once_flag once_;
+    mutable Found found_;
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 #include "core/base/stopwatch.h"
 #include "core/base/whole_file.h"
 
@@ -236,7 +237,8 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     require_printed(flags);
     if (file != nullptr) write_whole(flags.out, file->text());
     check_rows_after(rows);
-    result.google_benchmark = nlohmann::json::parse(json.str());
+    // Of names Google Benchmark escapes no control character; the host's is its own.
+    result.google_benchmark = nlohmann::json::parse(printable_text(json.str()));
     result.wall_s = watch.seconds();
     return result;
 }

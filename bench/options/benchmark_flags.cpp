@@ -1,11 +1,12 @@
 #include "bench/options/benchmark_flags.h"
 
+#include "bench/options/name_filter.h"
 #include "bench/options/option_values.h"
 #include "core/base/error.h"
+#include "core/base/printable.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <regex>
 
 namespace tetrace {
 
@@ -71,6 +72,9 @@ BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments)
     BenchmarkFlags flags;
     std::vector<std::string> handed_on;
     for (const std::string& argument : arguments) {
+        if (printable_line(argument) != argument) // it would stand in the output as it is
+            throw Error(ErrorKind::usage,
+                        fmt::format("'{}' is not accepted: it has characters that cannot be shown", argument));
         const auto equals = argument.find('=');
         const std::string name = argument.substr(0, equals);
         const std::string value = equals == std::string::npos ? "" : argument.substr(equals + 1);
@@ -90,14 +94,7 @@ bool benchmark_filter_keeps(const std::string& filter, const std::string& name)
 {
     if (filter.empty() || filter == "all") return true;
     const bool negated = filter.front() == '-';
-    try {
-        // Google Benchmark uses POSIX extended expressions.
-        const std::regex expression(negated ? filter.substr(1) : filter, std::regex::extended);
-        return std::regex_search(name, expression) != negated;
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--benchmark_filter: '{}' is not a regular expression: {}", filter, problem.what()));
-    }
+    return NameFilter("--benchmark_filter", negated ? filter.substr(1) : filter).keeps(name) != negated;
 }
 
 } // namespace tetrace

@@ -1,6 +1,7 @@
 #include "bench/options/identity.h"
 
 #include "bench/options/commit.h"
+#include "core/base/printable.h"
 
 #include <charconv>
 #include <ctime>
@@ -22,7 +23,7 @@ std::string value_in(const char* file, const std::string& key, char separator)
         std::string value = line.substr(line.find(separator) + 1);
         value.erase(0, value.find_first_not_of(" \t\""));
         value.erase(value.find_last_not_of(" \t\"") + 1);
-        return value;
+        return printable_line(value);
     }
     return "unknown";
 }
@@ -60,7 +61,8 @@ HostIdentity host_identity()
             processor_number("cpu family"),
             processor_number("model"),
             processor_number("stepping"),
-            fmt::format("{}, {} {}", value_in("/etc/os-release", "PRETTY_NAME=", '='), system.sysname, system.release),
+            printable_line(fmt::format("{}, {} {}", value_in("/etc/os-release", "PRETTY_NAME=", '='), system.sysname,
+                                       system.release)),
             known ? static_cast<unsigned>(CPU_COUNT(&allowed)) : 1u};
 }
 

@@ -1,5 +1,7 @@
 #include "bench/options/option_values.h"
 
+#include "bench/options/name_filter.h"
+#include "core/base/printable.h"
 #include "core/device/backend.h"
 #include "kernels/layouts/layout.h"
 
@@ -8,7 +10,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <regex>
 #include <set>
 
 namespace tetrace {
@@ -185,21 +186,15 @@ unsigned parse_packet_lanes(const std::string& text)
 
 std::string parse_filter(const std::string& text)
 {
-    try {
-        const std::regex check(text);
-    } catch (const std::regex_error& problem) {
-        throw Error(ErrorKind::usage,
-                    "--filter: '" + text + "' is not a regular expression (ECMAScript): " + problem.what());
-    }
+    const NameFilter check("--filter", text);
     return text;
 }
 
 std::string parse_label(const std::string& text)
 {
     constexpr std::size_t longest = 100;
-    const auto breaks_line = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-    if (text.empty() || text.size() > longest || std::ranges::any_of(text, breaks_line))
-        reject_value("--label", text, "one line of 1 to 100 bytes");
+    if (text.empty() || text.size() > longest || printable_line(text) != text)
+        reject_value("--label", text, "one line of 1 to 100 bytes, UTF-8 that can be shown");
     return text;
 }
 

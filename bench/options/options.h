@@ -79,7 +79,7 @@ struct Options {
     std::vector<TetOrder> orders;
     std::vector<Schedule> schedules;
     std::vector<std::string> devices; ///< texts; a device's name, driver, type or id must contain one; empty: all
-    std::string filter;               ///< ECMAScript regular expression on row names; empty: all
+    std::string filter;               ///< regular expression on row names, see name_filter.h; empty: all
     bool list = false;
 
     CameraSet camera_set = CameraSet::smoke;

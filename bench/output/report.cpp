@@ -29,6 +29,12 @@ Format format_of_file(const Options& options)
                             options.out->string()));
 }
 
+/// No result is lost because of a text, such as a path, that is not UTF-8.
+std::string json_text(const nlohmann::json& value)
+{
+    return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 std::string in_format(const Report& report, Format format, const Options& options)
 {
     const auto shown = [&](const std::string& text) {
@@ -36,7 +42,7 @@ std::string in_format(const Report& report, Format format, const Options& option
     };
     switch (format) {
     case Format::table: return shown(without_colour(report.text));
-    case Format::json: return (options.anonymous ? anonymous_json(report.json, options) : report.json).dump(2) + "\n";
+    case Format::json: return json_text(options.anonymous ? anonymous_json(report.json, options) : report.json);
     case Format::csv: return shown(report.table.csv());
     case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
     }

@@ -1,8 +1,10 @@
 #include "bench/reproduce/image_record.h"
 
+#include "bench/rows/json_numbers.h"
 #include "bench/rows/ray_json.h"
 #include "core/base/hash.h"
 
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace tetrace {
@@ -16,6 +18,11 @@ std::uint64_t hash_from(const json& text)
     return std::stoull(text.get<std::string>(), nullptr, 16);
 }
 
+std::uint64_t number_from(const json& value)
+{
+    return count_from<std::uint64_t>(value);
+}
+
 json totals_json(const RayTotals& t)
 {
     return {t.rays, t.hits, t.misses, t.lost, t.unwritten, t.hit_steps, t.miss_steps, t.lost_steps};
@@ -23,7 +30,8 @@ json totals_json(const RayTotals& t)
 
 RayTotals totals_from(const json& t)
 {
-    return {t.at(0), t.at(1), t.at(2), t.at(3), t.at(4), t.at(5), t.at(6), t.at(7)};
+    return {number_from(t.at(0)), number_from(t.at(1)), number_from(t.at(2)), number_from(t.at(3)),
+            number_from(t.at(4)), number_from(t.at(5)), number_from(t.at(6)), number_from(t.at(7))};
 }
 
 json verdicts_json(const Verdicts& v)
@@ -38,14 +46,14 @@ Verdicts verdicts_from(const json& object)
 {
     const json& c = object.at("counts");
     Verdicts verdicts;
-    verdicts.rays = c.at(0);
-    verdicts.agreed = c.at(1);
-    verdicts.ties = c.at(2);
-    verdicts.settled = c.at(3);
-    verdicts.wrong = c.at(4);
-    verdicts.lost = c.at(5);
-    verdicts.offset = c.at(6);
-    verdicts.largest_tie_distance = object.at("largest_tie_distance");
+    verdicts.rays = number_from(c.at(0));
+    verdicts.agreed = number_from(c.at(1));
+    verdicts.ties = number_from(c.at(2));
+    verdicts.settled = number_from(c.at(3));
+    verdicts.wrong = number_from(c.at(4));
+    verdicts.lost = number_from(c.at(5));
+    verdicts.offset = number_from(c.at(6));
+    verdicts.largest_tie_distance = amount_from(object.at("largest_tie_distance"));
     if (object.contains("first_wrong")) verdicts.first_wrong = wrong_ray_from(object["first_wrong"]);
     return verdicts;
 }
@@ -71,14 +79,18 @@ ImageVerdict verdict_from(const json& object)
     verdict.hit_hash = hash_from(object.at("hit_hash"));
     if (object.contains("visits")) {
         const json& visits = object["visits"];
-        verdict.visits = {visits.at(0), visits.at(1), visits.at(2)};
+        verdict.visits = {number_from(visits.at(0)), number_from(visits.at(1)), number_from(visits.at(2))};
     }
     const json& seconds = object.at("seconds");
-    verdict.kernel_s = seconds.at(0), verdict.wall_s = seconds.at(1), verdict.download_s = seconds.at(2);
+    verdict.kernel_s = amount_from(seconds.at(0));
+    verdict.wall_s = amount_from(seconds.at(1));
+    verdict.download_s = amount_from(seconds.at(2));
     verdict.compared = object.contains("compared");
     if (verdict.compared) {
         const json& compared = object["compared"];
-        verdict.different = compared.at(0), verdict.inexact = compared.at(1), verdict.largest_ulps = compared.at(2);
+        verdict.different = number_from(compared.at(0));
+        verdict.inexact = number_from(compared.at(1));
+        verdict.largest_ulps = number_from(compared.at(2));
     }
     if (object.contains("first_different")) verdict.first_different = differing_ray_from(object["first_different"]);
     return verdict;
@@ -97,9 +109,12 @@ json record_json(const ImageRecord& record)
 ImageRecord record_from(const json& object)
 {
     const json& flat = object.at("flat");
-    return {verdict_from(object.at("verdict")), hash_from(object.at("chained_hash")),
-            object.at("lost_at_cap"),           {flat.at(0), flat.at(1)},
-            {flat.at(2), flat.at(3)},           object.at("samples_s"),
+    return {verdict_from(object.at("verdict")),
+            hash_from(object.at("chained_hash")),
+            number_from(object.at("lost_at_cap")),
+            {number_from(flat.at(0)), number_from(flat.at(1))},
+            {number_from(flat.at(2)), number_from(flat.at(3))},
+            object.at("samples_s"),
             object.at("wall_samples_s")};
 }
 
@@ -107,10 +122,26 @@ ImageRecord record_from(const json& object)
 template <class Enum>
 Enum choice_from(const json& number, Enum first, Enum last)
 {
-    const int value = number.get<int>();
+    const auto value = number.is_number_integer() ? number.get<std::int64_t>() : -1;
     if (value < static_cast<int>(first) || value > static_cast<int>(last))
         throw std::out_of_range("no such status or kind of error");
     return static_cast<Enum>(value);
+}
+
+/// Throws std::domain_error where a count of rays exceeds their number.
+void require_possible(const ImageRecord& record)
+{
+    const ImageVerdict& verdict = record.verdict;
+    const RayTotals& totals = verdict.totals;
+    const Verdicts& judged = verdict.verdicts;
+    for (const std::uint64_t count :
+         {totals.hits, totals.misses, totals.lost, totals.unwritten, judged.rays, judged.agreed, judged.ties,
+          judged.settled, judged.wrong, judged.lost, judged.offset, verdict.different, verdict.inexact,
+          verdict.visits.rays, record.lost_at_cap, record.flawed.rays, record.any.rays})
+        if (count > totals.rays) throw std::domain_error(fmt::format("{} of {} rays", count, totals.rays));
+    for (const FlatWalks& walks : {record.flawed, record.any})
+        if (walks.through_flat > walks.rays)
+            throw std::domain_error(fmt::format("{} of {} rays", walks.through_flat, walks.rays));
 }
 
 } // namespace
@@ -130,7 +161,9 @@ ImageOutcome outcome_from_json(const nlohmann::json& json)
         return Skipped{choice_from(json.at("status"), Status::unsupported, Status::skipped), json["skipped"]};
     if (json.contains("failed"))
         return Failed{choice_from(json.at("kind"), ErrorKind::usage, ErrorKind::wrong_result), json["failed"]};
-    return record_from(json);
+    ImageRecord record = record_from(json);
+    require_possible(record);
+    return record;
 }
 
 } // namespace tetrace

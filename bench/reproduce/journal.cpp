@@ -1,16 +1,17 @@
 #include "bench/reproduce/journal.h"
 
 #include "core/base/error.h"
+#include "core/base/hash.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fstream>
 #include <iterator>
-#include <sstream>
+#include <string_view>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace tetrace {
@@ -22,24 +23,60 @@ using nlohmann::json;
 constexpr const char* head_key = "journal";
 const json finished_line = {{"finished", true}};
 
+constexpr std::string_view before_checksum = R"({"checksum":")", before_entry = R"(","entry":)";
+constexpr std::size_t largest_journal = std::size_t{1} << 30;
+
+/// In one line; what is not UTF-8, such as a path may be, is replaced.
+std::string text_of(const json& value)
+{
+    return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+/// Of an entry's text after the line with this checksum.
+std::uint64_t checksum(std::string_view entry, std::uint64_t before)
+{
+    return hash_of(entry, before);
+}
+
+std::string line_of(std::string_view entry, std::uint64_t checksum)
+{
+    return fmt::format("{}{}{}{}}}", before_checksum, hash_text(checksum), before_entry, entry);
+}
+
+/// The text of a line's entry; empty where the line is none of a journal.
+std::string_view entry_of(std::string_view line)
+{
+    const std::size_t place = before_checksum.size() + 16 + before_entry.size();
+    return line.size() > place && line.ends_with('}') ? line.substr(place, line.size() - place - 1)
+                                                      : std::string_view();
+}
+
+/// Before lines had checksums, the head stood in the first line itself.
+bool is_old(std::string_view text)
+{
+    return text.starts_with(R"({"journal":)");
+}
+
 /// The differences between two heads, by their keys.
 std::string differences(const json& theirs, const json& ours)
 {
     std::string text;
     for (const auto& [key, value] : ours.items())
         if (!theirs.contains(key) || theirs[key] != value)
-            text += fmt::format("\n  {}: {} there, {} here", key, theirs.contains(key) ? theirs[key].dump() : "none",
-                                value.dump());
+            text += fmt::format("\n  {}: {} there, {} here", key, theirs.contains(key) ? text_of(theirs[key]) : "none",
+                                text_of(value));
     return text.empty() ? "\n  it was written by another version" : text;
 }
 
 } // namespace
 
-Journal::Journal(std::filesystem::path path, const json& head, bool resume) : path_(std::move(path))
+Journal::Journal(std::filesystem::path path, const json& asked, bool resume) : path_(std::move(path))
 {
+    const json head = json::parse(text_of(asked)); // as it comes back from the file
     open_and_lock();
     try {
         if (read(head, resume)) return;
+        checksum_ = 0;
         if (::ftruncate(file_, 0) != 0) fail("emptying");
         write_line({{head_key, head}});
     } catch (...) {
@@ -72,8 +109,19 @@ void Journal::finish()
 
 void Journal::open_and_lock()
 {
-    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (file_ < 0) fail("opening");
+    // A pipe would wait for its other end, and /dev/zero has none: looked at before it is opened, and after.
+    struct stat found {};
+    const auto require_regular = [&] {
+        if (!S_ISREG(found.st_mode))
+            throw Error(ErrorKind::invalid_input,
+                        fmt::format("the journal '{}' is no regular file but a folder, a pipe "
+                                    "or a device; name another file with --out",
+                                    path_.string()));
+    };
+    if (::stat(path_.c_str(), &found) == 0) require_regular();
+    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666);
+    if (file_ < 0 || ::fstat(file_, &found) != 0) fail("opening");
+    require_regular();
     if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(file_);
     throw Error(ErrorKind::usage, fmt::format("the journal '{}' is being written by another run; wait for its end, or "
@@ -84,21 +132,17 @@ void Journal::open_and_lock()
 /// Whether there are entries to continue from.
 bool Journal::read(const json& head, bool resume)
 {
-    std::ifstream file(path_, std::ios::binary);
-    std::ostringstream whole;
-    whole << file.rdbuf();
-    std::string text = whole.str();
+    std::string text = read_text();
     text.erase(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1); // the last line is incomplete
     if (text.empty()) return false;
-    std::istringstream lines(text);
-    std::vector<json> parsed;
-    for (std::string line; std::getline(lines, line);) {
-        parsed.push_back(json::parse(line, nullptr, false));
-        if (!parsed.back().is_object())
-            throw Error(ErrorKind::invalid_input, fmt::format("line {} of the journal '{}' cannot be read; remove the "
-                                                              "file to begin anew",
-                                                              parsed.size(), path_.string()));
+    if (is_old(text)) {
+        if (!resume && text.ends_with("\n" + finished_line.dump() + "\n")) return false;
+        throw Error(ErrorKind::usage, fmt::format("'{}' is the journal of an older tetrace, whose lines have no "
+                                                  "checksums; end that run with its program, or remove the file to "
+                                                  "begin anew",
+                                                  path_.string()));
     }
+    const std::vector<json> parsed = parse(text);
     finished_ = parsed.back() == finished_line;
     if (!resume && finished_) {
         finished_ = false;
@@ -119,9 +163,52 @@ bool Journal::read(const json& head, bool resume)
     return true;
 }
 
+/// The whole file.
+std::string Journal::read_text() const
+{
+    struct stat found {};
+    if (::fstat(file_, &found) != 0) fail("reading");
+    auto size = static_cast<std::size_t>(found.st_size);
+    if (size > largest_journal)
+        throw Error(ErrorKind::invalid_input, fmt::format("the journal '{}' is larger than 1 GiB, which no journal is; "
+                                                          "remove the file to begin anew",
+                                                          path_.string()));
+    std::string text(size, '\0');
+    for (std::size_t done = 0; done < size;) {
+        const ssize_t read = ::pread(file_, text.data() + done, size - done, static_cast<off_t>(done));
+        if (read < 0 && errno == EINTR) continue;
+        if (read < 0) fail("reading");
+        if (read == 0) text.resize(size = done);
+        done += static_cast<std::size_t>(read);
+    }
+    return text;
+}
+
+/// The entries of whole lines; takes over the last one's checksum.
+std::vector<json> Journal::parse(std::string_view text)
+{
+    std::vector<json> parsed;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(line.size() + 1);
+        const std::string_view entry = entry_of(line);
+        checksum_ = checksum(entry, checksum_);
+        const bool is_sound = line == line_of(entry, checksum_);
+        parsed.push_back(is_sound ? json::parse(entry, nullptr, false) : json());
+        if (!parsed.back().is_object())
+            throw Error(ErrorKind::invalid_input,
+                        fmt::format("line {} of the journal '{}' is damaged, or one before it is missing: its checksum "
+                                    "is another; remove the file to begin anew",
+                                    parsed.size(), path_.string()));
+    }
+    return parsed;
+}
+
 void Journal::write_line(const json& line)
 {
-    const std::string text = line.dump() + "\n";
+    const std::string entry = text_of(line);
+    checksum_ = checksum(entry, checksum_);
+    const std::string text = line_of(entry, checksum_) + "\n";
     for (std::size_t done = 0; done < text.size();) {
         const ssize_t written = ::write(file_, text.data() + done, text.size() - done);
         if (written < 0 && errno == EINTR) continue;

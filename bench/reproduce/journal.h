@@ -1,22 +1,27 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
 
-/// What a long run has finished so far, so that a killed run can continue. It is a JSON file with one entry a line;
-/// each entry is on the disk before append() returns. The first line, the head, identifies the run; only the same run
-/// can continue from it.
+/// What a long run has finished so far, so that a killed run can continue. It is a file of one JSON object a line,
+/// {"checksum": ..., "entry": ...}; each is on the disk before append() returns. The checksum is hash_of() the entry's
+/// text, seeded with that of the line before. The first entry, the head, identifies the run; only the same run can
+/// continue from it.
 class Journal {
 public:
     /// Begins a journal, or continues one.
     /// head: an object that names everything that determines the entries. resume: use the entries of an existing
     /// journal; if there is none, begin one.
     /// An incomplete last line is dropped. Throws Error{usage} where there is an unfinished journal and resume is
-    /// false, where its head differs (the text names the differences), or where another process is writing it;
-    /// Error{invalid_input} naming file and line where it cannot be read or written.
+    /// false, where its head differs (the text names the differences), where it is older than checksums, or where
+    /// another process is writing it; Error{invalid_input} naming file and line where a line is damaged, missing or out
+    /// of its order, where it is no regular file, exceeds 1 GiB, or cannot be read or written.
     Journal(std::filesystem::path path, const nlohmann::json& head, bool resume);
     ~Journal();
     Journal(const Journal&) = delete;
@@ -33,12 +38,15 @@ public:
 private:
     void open_and_lock();
     [[nodiscard]] bool read(const nlohmann::json& head, bool resume);
+    [[nodiscard]] std::string read_text() const;
+    [[nodiscard]] std::vector<nlohmann::json> parse(std::string_view text);
     void write_line(const nlohmann::json& line);
     [[noreturn]] void fail(const char* doing) const;
 
     std::filesystem::path path_;
     int file_ = -1;
     bool finished_ = false;
+    std::uint64_t checksum_ = 0; ///< of the last line
     std::vector<nlohmann::json> entries_;
 };
 

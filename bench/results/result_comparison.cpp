@@ -1,12 +1,12 @@
 #include "bench/results/result_comparison.h"
 
+#include "bench/options/name_filter.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <regex>
 
 namespace tetrace {
 
@@ -40,8 +40,8 @@ std::string why_untimed(const char* label, const ResultRow* row)
 
 std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile& after, const std::string& filter)
 {
-    const std::regex expression(filter);
-    const auto kept = [&](const ResultRow& row) { return std::regex_search(row.name, expression); };
+    const NameFilter names("--filter", filter);
+    const auto kept = [&](const ResultRow& row) { return names.keeps(row.name); };
     std::vector<ComparedRow> rows;
     for (const ResultRow& row : before.rows)
         if (kept(row)) rows.push_back({&row, after.find_row(row.name), {}, {}, {}});

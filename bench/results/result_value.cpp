@@ -1,8 +1,8 @@
 #include "bench/results/result_value.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -60,8 +60,7 @@ std::string ResultValue::text() const
 std::string ResultValue::line() const
 {
     std::string line = text();
-    const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7f; };
-    if (std::ranges::any_of(line, is_control)) reject("holds a control character");
+    if (printable_line(line) != line) reject("holds a control character");
     return line;
 }
 

@@ -1,14 +1,22 @@
 #include "bench/rows/ray_json.h"
 
+#include "bench/rows/json_numbers.h"
+
 namespace tetrace {
 
 namespace {
 
 using nlohmann::json;
 
+std::uint32_t word_from(const json& value)
+{
+    return count_from<std::uint32_t>(value);
+}
+
 Hit hit_from(const json& object)
 {
-    return {object.at("face_id"), object.at("tet"), object.at("t"), object.at("u"), object.at("v"), object.at("steps")};
+    return {word_from(object.at("face_id")), word_from(object.at("tet")), float_from(object.at("t")),
+            float_from(object.at("u")),      float_from(object.at("v")),  word_from(object.at("steps"))};
 }
 
 } // namespace
@@ -37,14 +45,15 @@ json differing_ray_json(const DifferingRay& ray)
 WrongRay wrong_ray_from(const json& object)
 {
     const json& exact = object.at("exact");
-    return {object.at("view"),   object.at("x"), object.at("y"),     hit_from(object.at("ours")),
-            exact.at("face_id"), exact.at("t"),  object.at("reason")};
+    return {word_from(object.at("view")), word_from(object.at("x")),      word_from(object.at("y")),
+            hit_from(object.at("ours")),  word_from(exact.at("face_id")), float_from(exact.at("t")),
+            object.at("reason")};
 }
 
 DifferingRay differing_ray_from(const json& object)
 {
-    return {object.at("view"), object.at("x"), object.at("y"), hit_from(object.at("ours")),
-            hit_from(object.at("openmp"))};
+    return {word_from(object.at("view")), word_from(object.at("x")), word_from(object.at("y")),
+            hit_from(object.at("ours")), hit_from(object.at("openmp"))};
 }
 
 } // namespace tetrace

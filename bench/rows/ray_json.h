@@ -12,7 +12,8 @@ namespace tetrace {
 [[nodiscard]] nlohmann::json wrong_ray_json(const WrongRay& ray);
 [[nodiscard]] nlohmann::json differing_ray_json(const DifferingRay& ray);
 
-// The reverse. These throw nlohmann::json's exceptions for input that the three above did not write.
+// The reverse. These throw nlohmann::json's exceptions or std::domain_error for input that the three above did not
+// write.
 
 [[nodiscard]] WrongRay wrong_ray_from(const nlohmann::json& object);
 [[nodiscard]] DifferingRay differing_ray_from(const nlohmann::json& object);

@@ -1,6 +1,7 @@
 #include "bench/rows/row_run.h"
 
 #include "bench/rows/device_abilities.h"
+#include "core/base/printable.h"
 #include "scenes/cache.h"
 
 #include <algorithm>
@@ -137,13 +138,13 @@ void guarded(RowRun& row, const std::function<void()>& work)
     } catch (const Error& error) {
         if (error.kind() == ErrorKind::interrupted) throw;
         if (error.kind() == ErrorKind::unsupported)
-            row.outcome = Skipped{Status::unsupported, error.what()};
+            row.outcome = Skipped{Status::unsupported, printable_text(error.what())};
         else
-            row.outcome = Failed{error.kind(), error.what()};
+            row.outcome = Failed{error.kind(), printable_text(error.what())};
     } catch (const std::bad_alloc&) {
         row.outcome = Skipped{Status::unsupported, "out of memory; use a smaller --size or fewer rows"};
     } catch (const std::exception& error) {
-        row.outcome = Failed{ErrorKind::internal, error.what()};
+        row.outcome = Failed{ErrorKind::internal, printable_text(error.what())};
     }
     row.session.reset();
 }

@@ -1,12 +1,12 @@
 #include "bench/rows/rows.h"
 
+#include "bench/options/name_filter.h"
 #include "bench/rows/scene_work.h"
 #include "core/base/error.h"
 
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
-#include <regex>
 
 namespace tetrace {
 
@@ -99,8 +99,8 @@ std::vector<std::size_t> devices_with_rows(const Options& options, const Backend
 /// Whether --layout, --filter or --benchmark_filter names the layout rt.
 bool names_rt(const Options& options)
 {
-    static const std::regex word("\\brt\\b");
-    const auto names_it = [](const std::string& filter) { return std::regex_search(filter, word); };
+    static const NameFilter word("layout rt", "\\brt\\b");
+    const auto names_it = [](const std::string& filter) { return word.keeps(filter); };
     const auto& flags = options.benchmark_flags;
     return !options.layouts.empty() || names_it(options.filter) ||
            std::ranges::any_of(flags, [&](const std::string& flag) {
@@ -114,11 +114,6 @@ bool wanted_there(const Options& options, const Backend& backend, std::size_t de
 {
     if (kernel.layout != Layout::rt || names_rt(options)) return true;
     return backend.devices()[device].kind != DeviceKind::emulated && backend.why_not(device, kernel).empty();
-}
-
-bool filter_keeps(const std::string& filter, const std::string& name)
-{
-    return filter.empty() || std::regex_search(name, std::regex(filter));
 }
 
 void add_rows(std::vector<RowKey>& rows, const Options& options, RowKey key, const Backend& backend)
@@ -170,10 +165,11 @@ std::vector<RowKey> rows_of_kinds(const Options& options, const std::string& sce
 std::string device_names(const Options& options, const std::vector<Backend*>& backends)
 {
     std::vector<std::pair<std::string, std::string>> names;
-    for (const Backend* backend : backends)
+    for (const Backend* backend : backends) {
+        if (!wanted(options.backends, backend->name())) continue;
         for (std::size_t i = 0; i < backend->devices().size(); ++i) {
             const Device& device = backend->devices()[i];
-            if (!device.usable || !wanted(options.backends, backend->name())) continue;
+            if (!device.usable) continue;
             const std::string api = i == 0 ? backend->name() : fmt::format("{}:{}", backend->name(), i);
             const auto known = std::ranges::find(names, device.name, &std::pair<std::string, std::string>::first);
             if (known == names.end())
@@ -181,6 +177,7 @@ std::string device_names(const Options& options, const std::vector<Backend*>& ba
             else
                 known->second += ", " + api;
         }
+    }
     std::string text;
     for (const auto& [name, apis] : names)
         text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, apis);
@@ -191,6 +188,7 @@ std::string device_names(const Options& options, const std::vector<Backend*>& ba
 /// device, its rows give the reason.
 void require_named_devices(const Options& options, const std::vector<Backend*>& backends)
 {
+    if (options.devices.empty()) return;
     const std::string names = device_names(options, backends);
     if (names.empty()) return;
     for (const std::string& text : options.devices) {
@@ -229,8 +227,8 @@ std::string reasons(const Options& options)
                         reasons(options) +
                         fmt::format("\n'tetrace {} --list' prints the rows of the defaults",
                                     options.verb == Verb::check ? "check" : "bench"));
-    std::string text =
-        fmt::format("--filter '{}' matches none of the {} rows selected otherwise:", options.filter, unfiltered.size());
+    std::string text = fmt::format("--filter '{:.200}' matches none of the {} rows selected otherwise:", options.filter,
+                                   unfiltered.size());
     for (const RowKey& key : unfiltered)
         text += "\n  " + row_name(key);
     throw Error(ErrorKind::usage, text);
@@ -314,8 +312,9 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
 {
     std::vector<std::string> sentences;
     for (const Backend* backend : backends) {
+        if (!wanted(options.backends, backend->name())) continue; // nor is its driver loaded
         const bool has_rows = has_usable_device(*backend) || (is_named(options, *backend) && has_any_kernel(*backend));
-        if (wanted(options.backends, backend->name()) && !has_rows)
+        if (!has_rows)
             sentences.push_back(fmt::format("{}: no device: {}", backend->name(), backend->devices().front().reason));
     }
     return sentences;
@@ -349,8 +348,9 @@ std::vector<RowKey> select_rows(const Options& options, const std::vector<std::s
     for (const std::string& scene : scene_labels)
         for (const RowKey& key : rows_of_kinds(options, scene, backends))
             unfiltered.push_back(key);
+    const NameFilter filter("--filter", options.filter);
     for (const RowKey& key : unfiltered)
-        if (filter_keeps(options.filter, row_name(key))) rows.push_back(key);
+        if (filter.keeps(row_name(key))) rows.push_back(key);
     if (rows.empty()) reject_selection(options, unfiltered);
     return rows;
 }

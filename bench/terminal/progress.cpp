@@ -3,6 +3,7 @@
 #include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
+#include "core/base/printable.h"
 
 #include <algorithm>
 #include <atomic>
@@ -99,7 +100,7 @@ void ProgressLine::show(const std::string& stage, double fraction, double left_s
     const double pause_s = !has_drawn_ ? quiet_s : detail != detail_ ? rename_s : redraw_s;
     if (since_draw_.seconds() < pause_s) return;
     detail_ = detail;
-    const std::string what = detail.empty() ? stage : stage + ", " + detail;
+    const std::string what = printable_line(detail.empty() ? stage : stage + ", " + detail);
     const std::string text = progress_text(what, in_stage_.seconds(), fraction, terminal_width() - 1, left_s);
     const std::size_t columns = display_width(text);
     const std::string rest(drawn_ > columns ? drawn_ - columns : 0, ' ');
@@ -138,7 +139,7 @@ ProgressLine& progress_line()
 void say(const std::string& message)
 {
     progress_line().clear();
-    std::fputs((message + "\n").c_str(), stderr);
+    std::fputs((printable_text(message) + "\n").c_str(), stderr);
 }
 
 void print(const std::string& text)

@@ -42,7 +42,8 @@ private:
 /// set. SIGINT and SIGTERM then clear the line before they end the program.
 [[nodiscard]] ProgressLine& progress_line();
 
-/// Clears the progress line, then writes a message and a line end to standard error.
+/// Clears the progress line, then writes a message and a line end to standard error: printable_text(), which
+/// may quote files and drivers.
 void say(const std::string& message);
 
 /// Clears the progress line, then writes a result to standard output. Throws Error{invalid_input} where writing fails.

@@ -55,7 +55,8 @@ public:
     /// Lines indented by `indent` blanks: titles, units where a column has one, rows. Columns with only empty cells are
     /// left out.
     [[nodiscard]] std::string text(std::size_t indent = 0) const;
-    /// RFC 4180, except that lines end in \n: keys, then rows; an empty cell is empty.
+    /// RFC 4180, except that lines end in \n: keys, then rows; an empty cell is empty. A text that a spreadsheet would
+    /// take for a formula has an apostrophe before it.
     [[nodiscard]] std::string csv() const;
     /// A GitHub table; the header shows each unit after its title.
     [[nodiscard]] std::string markdown() const;

@@ -1,5 +1,7 @@
 #include "bench/terminal/text.h"
 
+#include "core/base/printable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -58,26 +60,6 @@ std::string filled(const std::string& text, std::size_t width, std::size_t inden
     return result;
 }
 
-/// Length in bytes of the UTF-8 character at `i`; 0 where there is none that XML can hold.
-std::size_t character_length(const std::string& text, std::size_t i)
-{
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-    if (byte(i) < 0x80) return byte(i) >= 0x20 || text[i] == '\n' || text[i] == '\t' ? 1 : 0;
-    const std::size_t length = byte(i) >= 0xC2 && byte(i) < 0xE0   ? 2
-                               : byte(i) >= 0xE0 && byte(i) < 0xF0 ? 3
-                               : byte(i) >= 0xF0 && byte(i) < 0xF5 ? 4
-                                                                   : 0;
-    if (length == 0 || i + length > text.size()) return 0;
-    std::uint32_t code = byte(i) & (0x7Fu >> length);
-    for (std::size_t k = 1; k < length; ++k) {
-        if ((byte(i + k) & 0xC0) != 0x80) return 0;
-        code = code << 6 | (byte(i + k) & 0x3Fu);
-    }
-    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-    const bool forbidden = (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF || code > 0x10FFFF;
-    return overlong || forbidden ? 0 : length;
-}
-
 } // namespace
 
 std::string wrapped(const std::string& text, std::size_t width, std::size_t indent)
@@ -117,18 +99,15 @@ std::string seconds_text(double seconds)
 std::string xml_text(const std::string& text)
 {
     std::string result;
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = character_length(text, i);
-        switch (length == 1 ? text[i] : 0) {
+    for (const char c : printable_text(text))
+        switch (c) {
         case '&': result += "&amp;"; break;
         case '<': result += "&lt;"; break;
         case '>': result += "&gt;"; break;
         case '"': result += "&quot;"; break;
         case '\'': result += "&apos;"; break;
-        default: result += length == 0 ? "?" : text.substr(i, length);
+        default: result += c;
         }
-        i += std::max<std::size_t>(length, 1);
-    }
     return result;
 }
 

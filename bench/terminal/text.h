@@ -23,7 +23,7 @@ namespace tetrace {
 [[nodiscard]] std::string seconds_text(double seconds);
 
 /// Text escaped for XML and HTML, attributes included. The five special characters are escaped; question marks replace
-/// what XML cannot hold (control characters, bytes that are not UTF-8).
+/// what XML cannot hold and more, see printable_text().
 [[nodiscard]] std::string xml_text(const std::string& text);
 
 } // namespace tetrace

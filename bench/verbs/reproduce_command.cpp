@@ -133,9 +133,12 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
         for (const RowKey& key : select_search_rows(options))
             head["rows"].push_back(row_name(key));
     }
-    for (const Backend* backend : all_backends())
+    for (const Backend* backend : all_backends()) {
+        const auto& named = options.backends;
+        if (!named.empty() && std::ranges::find(named, backend->name()) == named.end()) continue; // nor loaded
         for (const Device& device : backend->devices())
             if (device.usable) head["devices"].push_back({backend->name(), device.name, device.driver});
+    }
     return head;
 }
 

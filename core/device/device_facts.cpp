@@ -1,5 +1,7 @@
 #include "core/device/device_facts.h"
 
+#include "core/base/printable.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -52,6 +54,14 @@ Device unusable_device(const std::string& name, const std::string& reason)
     device.kind = DeviceKind::gpu;
     device.usable = false;
     device.reason = reason;
+    return device;
+}
+
+Device printable(Device device)
+{
+    for (std::string* const line : {&device.name, &device.driver, &device.implementation, &device.id})
+        *line = printable_line(*line);
+    device.reason = printable_text(device.reason);
     return device;
 }
 

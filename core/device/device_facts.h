@@ -28,13 +28,16 @@ namespace tetrace {
 /// gives no version. A name without letters and digits is "unknown".
 [[nodiscard]] std::string implementation_name(std::string_view driver, std::string_view version);
 
-/// The facts of the devices that an API found, in the API's order.
+/// The device with texts that any terminal and any result can have, whatever its driver calls itself.
+[[nodiscard]] Device printable(Device device);
+
+/// The facts of the devices that an API found, in the API's order, printable.
 template <class Found>
 [[nodiscard]] std::vector<Device> facts_of(const std::vector<Found>& found)
 {
     std::vector<Device> devices;
     for (const Found& device : found)
-        devices.push_back(device.facts);
+        devices.push_back(printable(device.facts));
     return devices;
 }
 

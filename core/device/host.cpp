@@ -1,5 +1,7 @@
 #include "core/device/host.h"
 
+#include "core/base/printable.h"
+
 #include <unistd.h>
 
 #include <fstream>
@@ -13,7 +15,7 @@ std::string processor_name()
     std::ifstream info("/proc/cpuinfo");
     for (std::string line; std::getline(info, line);)
         if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
-            return line.substr(line.find(": ") + 2);
+            return printable_line(line.substr(line.find(": ") + 2));
     return "CPU";
 }
 

@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "scenes/builder/build.h"
 #include "scenes/builder/failure.h"
 #include "scenes/scene_file.h"
@@ -18,8 +19,9 @@ namespace {
 
 using namespace tetrace;
 
-void say(const char* kind, const std::string& text)
+void say(const char* kind, const std::string& what)
 {
+    const std::string text = printable_text(what);
     for (std::size_t begin = 0; begin <= text.size();) {
         const auto end = std::min(text.find('\n', begin), text.size());
         fmt::print(stderr, "{}: {}\n", kind, text.substr(begin, end - begin));

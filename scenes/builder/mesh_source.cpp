@@ -1,5 +1,7 @@
 #include "scenes/builder/mesh_source.h"
 
+#include "core/base/printable.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +13,9 @@ namespace tetrace {
 
 void MeshSource::fail(const std::string& place, const std::string& problem, const std::string& remedy) const
 {
-    throw Error(ErrorKind::invalid_input, fmt::format("reading {}: {}: {}; {}", name_, place, problem, remedy));
+    // All may quote the file.
+    throw Error(ErrorKind::invalid_input,
+                printable_line(fmt::format("reading {}: {}: {}; {}", name_, place, problem, remedy)));
 }
 
 void MeshSource::fail(const std::string& place, const std::string& problem) const

@@ -55,6 +55,22 @@ TEST(Session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
     EXPECT_TRUE(contains(error_of([&] { behind.read_back(hits); }), "behind its output"));
 }
 
+TEST(Devices, have_texts_that_can_be_shown)
+{
+    struct Found {
+        Device facts;
+    };
+    Device device;
+    device.name = device.id = "GPU\x1b]0;title\x07\n2";
+    device.driver = "caf\xe9";
+    device.reason = "two\nlines\x1b[2J";
+    const Device shown = facts_of(std::vector<Found>{{device}}).front();
+    EXPECT_EQ(shown.name, "GPU?]0;title??2");
+    EXPECT_EQ(shown.id, shown.name);
+    EXPECT_EQ(shown.driver, "caf?");
+    EXPECT_EQ(shown.reason, "two\nlines?[2J");
+}
+
 TEST(Output, is_refused_beyond_the_largest_buffer_with_both_numbers)
 {
     EXPECT_NO_THROW(require_output_fits(250, 1000));

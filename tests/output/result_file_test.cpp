@@ -120,7 +120,15 @@ TEST_F(ResultFiles, that_is_not_there_is_missing)
 
 TEST_F(ResultFiles, without_an_end_is_refused_and_not_read_for_ever)
 {
-    EXPECT_TRUE(contains(error_of([] { static_cast<void>(read_result("/dev/zero")); }), "larger than 256 MiB"));
+    EXPECT_TRUE(contains(error_of([] { static_cast<void>(read_result("/dev/zero")); }), "larger than 64 MiB"));
+}
+
+TEST_F(ResultFiles, whose_values_would_fill_the_memory_is_refused)
+{
+    std::string text = R"({"tetrace": [)";
+    for (int i = 0; i < 2'100'000; ++i)
+        text += "[],";
+    EXPECT_TRUE(contains(error_of_text(text + "0]}"), "it has more than 2,000,000 values, which no result has"));
 }
 
 TEST_F(ResultFiles, that_is_no_json_or_was_cut_off_names_file_and_place)

@@ -48,6 +48,16 @@ TEST(Table, csv_has_keys_all_digits_and_quotes_where_needed)
     EXPECT_EQ(table.csv(), "a,b_s\n\"x, \"\"y\"\"\",0.123456789\n,1234567\n");
 }
 
+TEST(Table, csv_has_no_cell_that_a_spreadsheet_computes)
+{
+    Table table({{"a", "a"}, {"b", "b"}});
+    table.add({std::string("=1+2"), std::string("@SUM(A1)")});
+    table.add({std::string("-2+cmd|' /C'!A0, \"x\""), std::string("+A1")});
+    table.add({std::string("-0.5 %"), -0.5});
+    table.add({std::string("a=b"), std::string("-")});
+    EXPECT_EQ(table.csv(), "a,b\n'=1+2,'@SUM(A1)\n\"'-2+cmd|' /C'!A0, \"\"x\"\"\",'+A1\n-0.5 %,-0.5\na=b,-\n");
+}
+
 TEST(Table, markdown_names_units_in_the_header_and_escapes_bars)
 {
     Table table({{"a", "a"}, {"b_s", "b", "s", 1}});

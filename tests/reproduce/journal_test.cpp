@@ -1,8 +1,11 @@
 #include "bench/reproduce/image_record.h"
 #include "bench/reproduce/journal.h"
+#include "tests/support/journal_lines.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <sstream>
+#include <sys/stat.h>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -105,6 +108,70 @@ TEST_F(Journals, with_a_damaged_line_is_refused_by_its_number)
     Journal(path_, head_, false).append({{"view", 1}});
     std::ofstream(path_, std::ios::app) << "damage\n{}\n";
     EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "invalid_input: line 3"));
+}
+
+TEST_F(Journals, with_any_byte_changed_is_refused)
+{
+    {
+        Journal journal(path_, head_, false);
+        journal.append({{"seconds", 0.125}, {"rays", 1000}});
+        journal.append({{"seconds", 0.25}, {"rays", 2000}});
+    }
+    const std::string whole = read_text(path_);
+    ASSERT_EQ(journal_of(entries_of(whole)), whole) << "a line has the checksum of its text and of the lines before";
+    for (std::size_t place = 0; place + 1 < whole.size(); ++place) {
+        std::string damaged = whole;
+        damaged[place] = static_cast<char>(damaged[place] ^ 1);
+        write_file(path_, damaged);
+        const std::string error = error_of([&] { (void)resumed(head_); });
+        ASSERT_TRUE(contains(error, "invalid_input: line ")) << place << error;
+        ASSERT_TRUE(contains(error, "remove the file to begin anew")) << error;
+    }
+}
+
+TEST_F(Journals, with_lines_missing_or_in_another_order_is_refused)
+{
+    {
+        Journal journal(path_, head_, false);
+        for (const int view : {1, 2, 3})
+            journal.append({{"view", view}});
+    }
+    std::istringstream text(read_text(path_));
+    std::vector<std::string> lines(4);
+    for (std::string& line : lines)
+        std::getline(text, line), line += "\n";
+    for (const std::vector<std::size_t>& order : {std::vector<std::size_t>{0, 2, 3}, {0, 2, 1, 3}, {0, 1, 1, 2, 3}}) {
+        std::string damaged;
+        for (const std::size_t line : order)
+            damaged += lines[line];
+        write_file(path_, damaged);
+        EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "one before it is missing"));
+    }
+}
+
+TEST_F(Journals, of_an_older_tetrace_is_refused_unless_its_run_ended)
+{
+    const std::string old = json{{"journal", head_}}.dump() + "\n" + json{{"view", 1}}.dump() + "\n";
+    write_file(path_, old);
+    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "usage: '"));
+    EXPECT_TRUE(contains(error_of([&] { Journal(path_, head_, false); }), "have no checksums; end that run with its"));
+    write_file(path_, old + "{\"finished\":true}\n");
+    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "have no checksums"));
+    EXPECT_TRUE(Journal(path_, head_, false).entries().empty()) << "a new one begins";
+}
+
+TEST_F(Journals, in_whose_place_is_no_file_is_refused)
+{
+    const auto refused = [&](const std::filesystem::path& path) {
+        EXPECT_TRUE(contains(error_of([&] { Journal(path, head_, true); }), "invalid_input: the journal '")) << path;
+        EXPECT_TRUE(contains(error_of([&] { Journal(path, head_, false); }), "is no regular file")) << path;
+    };
+    refused(folder_.path());
+    refused("/dev/zero");
+    ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    refused(folder_ / "pipe");
+    std::filesystem::create_symlink("/dev/zero", folder_ / "link");
+    refused(folder_ / "link");
 }
 
 TEST_F(Journals, is_written_by_one_run_at_a_time)

@@ -1,3 +1,4 @@
+#include "tests/support/journal_lines.h"
 #include "tests/support/reproduce_fixture.h"
 
 #include <functional>
@@ -16,16 +17,11 @@ TEST_F(Resume, a_damaged_journal_is_refused)
 {
     const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
     ASSERT_EQ(run(arguments).code, 0);
-    const std::string journal = read_text(folder_ / "r.json.journal");
+    const std::vector<json> journal = entries_of(read_text(folder_ / "r.json.journal"));
     const auto resumed = [&](const std::function<void(json & entry, json & row)>& damage) {
-        std::istringstream whole(journal);
-        std::string damaged, line;
-        for (std::size_t number = 1; std::getline(whole, line); ++number) {
-            json entry = json::parse(line);
-            if (number == 2) damage(entry, entry["rows"].front());
-            damaged += entry.dump() + "\n";
-        }
-        write_file(folder_ / "r.json.journal", damaged);
+        std::vector<json> damaged = journal;
+        damage(damaged[1], damaged[1]["rows"].front());
+        write_file(folder_ / "r.json.journal", journal_of(damaged));
         const Ended ended = run(arguments + " --resume");
         return std::to_string(ended.code) + " " + ended.errors;
     };
@@ -43,6 +39,10 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     refused("stoull", [](json&, json& row) { row["chained_hash"] = "none"; });
     refused("no such status", [](json&, json& row) { row = {{"skipped", "so"}, {"status", 99}}; });
     refused("has 9 rays, not 8", [](json&, json& row) { row["verdict"]["totals"][0] = 9; });
+    refused("1e+308 is no number of things", [](json&, json& row) { row["verdict"]["totals"][1] = 1e308; });
+    refused("-1.5 is no number of things", [](json&, json& row) { row["lost_at_cap"] = -1.5; });
+    refused("9 of 8 rays", [](json&, json& row) { row["verdict"]["verdicts"]["counts"][4] = 9; });
+    refused("-1.0 is no number, negative", [](json&, json& row) { row["verdict"]["seconds"][0] = -1.0; });
     const std::string samples = "wants 3 samples, all above 0 s";
     refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
     refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
@@ -56,10 +56,11 @@ TEST_F(Resume, a_damaged_yardstick_in_the_journal_is_refused)
 {
     const std::string arguments = "table5 --searches 20x8 --method maria --layout tet80 --samples 3 --out r.json";
     ASSERT_EQ(run(arguments).code, 0);
-    std::string journal = read_text(folder_ / "r.json.journal");
-    const std::size_t place = journal.find("\"copy_bytes_per_s\":");
-    ASSERT_NE(place, std::string::npos);
-    write_file(folder_ / "r.json.journal", journal.insert(place + 19, 1, '-'));
+    std::vector<json> journal = entries_of(read_text(folder_ / "r.json.journal"));
+    const auto entry = std::ranges::find_if(journal, [](const json& one) { return one.contains("yardstick"); });
+    ASSERT_NE(entry, journal.end());
+    (*entry)["copy_bytes_per_s"] = -1.0;
+    write_file(folder_ / "r.json.journal", journal_of(journal));
     const Ended ended = run(arguments + " --resume");
     EXPECT_EQ(ended.code, 2);
     EXPECT_TRUE(contains(ended.errors, "a yardstick in the journal is damaged; remove 'r.json.journal'"));

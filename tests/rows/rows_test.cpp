@@ -1,6 +1,7 @@
 #include "backends/embree/backend.h"
 #include "backends/openmp/backend.h"
 #include "bench/options/benchmark_flags.h"
+#include "bench/options/name_filter.h"
 #include "bench/rows/rows.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 using namespace tetrace;
+using tetrace::test::contains;
 using tetrace::test::error_of;
 
 namespace {
@@ -257,6 +259,22 @@ TEST(Rows, an_empty_selection_is_an_error_that_says_so)
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("Embree traces its own BVH only"), std::string::npos) << error.what();
     }
+}
+
+TEST(Rows, no_filter_takes_the_stack_or_for_ever)
+{
+    std::string nested(12'000, '('), evil = "(x+x+)+y", many = std::string(5000, 'x');
+    nested += "tet80" + std::string(12'000, ')');
+    for (const std::string& filter : {nested, evil, many, std::string("((a{1000}){1000}){1000}")}) {
+        try {
+            EXPECT_FALSE(NameFilter("--filter", filter).keeps(std::string(1000, 'x')));
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_LT(std::string(error.what()).size(), 600u) << "the message is short, however long the filter";
+        }
+    }
+    EXPECT_TRUE(NameFilter("--filter", "").keeps("anything"));
+    EXPECT_TRUE(contains(error_of([] { NameFilter("--filter", "(?=a)"); }), "usage: --filter: '(?=a)' is not"));
 }
 
 TEST(Rows, google_benchmarks_filter_negates_with_a_minus)

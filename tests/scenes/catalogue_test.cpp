@@ -58,6 +58,7 @@ TEST_F(Catalogue, labels_a_path_by_its_stem_and_a_row_by_its_name)
 {
     EXPECT_EQ(scene_label("bunny"), "bunny");
     EXPECT_EQ(scene_label("/some/where/dragon.v2.ply"), "dragon.v2");
+    EXPECT_EQ(scene_label("some/\xff\x1b[2J\n.ply"), "??[2J?") << "of any name a text that can be shown";
 }
 
 TEST_F(Catalogue, prefers_a_mesh_in_the_folder_that_the_user_names)

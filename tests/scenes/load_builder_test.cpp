@@ -3,6 +3,7 @@
 #include "tests/scenes/load_fixture.h"
 
 #include <csignal>
+#include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -218,6 +219,20 @@ TEST_F(Load, tells_an_interrupt)
     ::sigaction(SIGINT, &before, nullptr);
     EXPECT_TRUE(contains(error, "interrupted: building scene thing"));
     EXPECT_TRUE(cache_is_clean());
+}
+
+TEST_F(Load, reads_a_large_mesh_in_pieces)
+{
+    constexpr std::uintmax_t large = std::uintmax_t{400} << 20; // a sparse file
+    std::filesystem::resize_file(mesh, large);
+    const auto most_bytes = [] {
+        rusage usage{};
+        ::getrusage(RUSAGE_SELF, &usage);
+        return static_cast<std::uintmax_t>(usage.ru_maxrss) << 10;
+    };
+    const std::uintmax_t before = most_bytes();
+    EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "another mesh"));
+    EXPECT_LT(most_bytes(), before + large / 2) << "the memory limit is the builder's alone";
 }
 
 TEST_F(Load, trusts_no_builder_that_reports_success)

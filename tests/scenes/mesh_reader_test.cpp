@@ -311,6 +311,31 @@ TEST_F(MeshReader, refuses_counts_that_the_file_cannot_hold)
     expect_error("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n", {"corners"});
 }
 
+// Nothing of the file is read for such an element, so that its size bounds neither their number nor the time.
+TEST_F(MeshReader, refuses_elements_without_properties_and_cuts_long_names)
+{
+    const std::string end = "end_header\n", big = "ply\nformat binary_little_endian 1.0\nelement nothing 70\n" + end;
+    expect_error("a.ply", big + std::string(70, ' '), {"header", "announces 70 elements 'nothing' without properties"});
+    expect_error("a.ply", "ply\nformat ascii 1.0\nelement nothing 3\n" + end + "\n\n\n", {"without properties"});
+    const std::string none = "ply\nformat ascii 1.0\nelement nothing 0\n" + stanford_ply("ascii").substr(21);
+    EXPECT_EQ(read("a.ply", none).triangles.size(), read("b.ply", stanford_ply("ascii")).triangles.size());
+    const std::string named = "ply\nformat ascii 1.0\nelement " + std::string(9000, 'e') + " 3\nproperty int x\n" + end;
+    EXPECT_LT(error_of("a.ply", named + "1\nx\n").size(), 400u);
+}
+
+TEST_F(MeshReader, quotes_a_file_without_its_escapes)
+{
+    expect_error("a.obj", "\x1b[2J\xff 1 2 3\n", {"'?[2J?' is no keyword"});
+    expect_error("a.off", "OFF\x1b]0;x\x07\n", {"it begins with 'OFF?]0;x?'"});
+    const std::filesystem::path named = write("a\x1b[2J\n.obj", "v 0 0\n");
+    try {
+        (void)read_mesh(named);
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find_first_of("\x1b\n"), std::string::npos) << error.what();
+    }
+}
+
 TEST_F(MeshReader, refuses_files_cut_short_and_files_too_long)
 {
     expect_error("a.off", tetrahedron_off.substr(0, 30), {"vertex"});

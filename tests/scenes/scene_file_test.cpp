@@ -30,7 +30,7 @@ constexpr const char* section_names[] = {"information",  "mesh vertices", "trian
 Scene sample_scene()
 {
     Scene scene = make_cubes(3);
-    scene.name = "a name with spaces, \xff and a \n line end";
+    scene.name = "a name with spaces, \u00ff and \"quotes\"";
     const OptimisedInfo optimised = {TetsKind::rays,
                                      TetsKind::cdt,
                                      "a \n reason",
@@ -99,6 +99,16 @@ TEST_F(SceneFile, writes_the_same_bytes_again)
 {
     write_scene(folder / "again.tet", read_scene(path));
     EXPECT_EQ(read_text(folder / "again.tet"), good);
+}
+
+TEST_F(SceneFile, has_texts_that_can_be_shown_whoever_wrote_it)
+{
+    Scene scene = sample_scene();
+    scene.name = "two\nlines\x1b[2J";
+    scene.build.tool = "caf\xe9";
+    write_scene(path, scene);
+    EXPECT_EQ(read_scene(path).name, "two?lines?[2J");
+    EXPECT_EQ(read_scene(path).build.tool, "caf?");
 }
 
 TEST_F(SceneFile, says_that_a_file_is_missing)
