@@ -58,8 +58,9 @@ inline constexpr double slower_tolerance = 0.1;
 /// fastest_claim() for the walk through the scenes, on a CPU; and overtaking_claim().
 [[nodiscard]] std::vector<Claim> speed_claims(const RecordedRuns& runs);
 
-/// "Time is proportional to the tets traversed", for the rows of one kind of device: over each row's views, the points
-/// lie on a line (correlation), and the line passes near the origin (its value at 0 tets, as a part of the mean time).
+/// "Time is proportional to the tets traversed", for maria's rows on one kind of device: over each row's views, the
+/// points lie on a line (correlation), and the line passes near the origin (its value at 0 tets, as a part of the mean
+/// time).
 [[nodiscard]] Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind);
 /// "Time is linear in the tets traversed": the points lie on a line.
 [[nodiscard]] Claim linear_claim(const RecordedRuns& runs, DeviceKind kind);

@@ -14,7 +14,7 @@ using Numbers = std::vector<Estimate>;
 using NumbersOfViews =
     std::function<Numbers(const std::vector<double>& steps, const std::vector<double>& seconds, Sampling sampling)>;
 
-/// A claim about each row of the CDT on a device of a kind.
+/// A claim about each row of maria, the paper's method, on a device of a kind.
 struct ClaimOfRows {
     Claim claim;
     NumbersOfViews numbers_of;
@@ -46,7 +46,7 @@ Claim decided(const ClaimOfRows& what, const RecordedRuns& runs, DeviceKind kind
         for (std::size_t i = 0; i < run->rows.size(); ++i) {
             const RowRun& row = run->rows[i];
             const auto seconds = view_seconds(*run, i);
-            if (!is_cdt(row) || row.device.kind != kind || seconds.empty()) continue;
+            if (row.key.kernel.method != Method::maria || row.device.kind != kind || seconds.empty()) continue;
             const auto steps = view_steps(*run, i);
             if (!correlation(steps, seconds, run->sampling)) {
                 is_short = true;
@@ -62,7 +62,7 @@ Claim decided(const ClaimOfRows& what, const RecordedRuns& runs, DeviceKind kind
         return claim;
     }
     if (rows.empty()) {
-        claim.evidence = fmt::format("No row of a {} has a rate.", device_text(kind));
+        claim.evidence = fmt::format("No row of maria has a rate on a {}.", device_text(kind));
         return claim;
     }
     claim.verdict = what.judge(rows);
@@ -77,7 +77,7 @@ Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind)
 {
     return decided(
         {{fmt::format("time-is-proportional-to-tets-{}", name_of(kind)),
-          fmt::format("time is proportional to the tets traversed, on a {}", device_text(kind))},
+          fmt::format("the time of maria is proportional to the tets traversed, on a {}", device_text(kind))},
          [](const auto& steps, const auto& seconds, Sampling sampling) -> Numbers {
              return {correlation(steps, seconds, sampling).value(), intercept_share(steps, seconds, sampling)};
          },
@@ -96,7 +96,7 @@ Claim proportional_claim(const RecordedRuns& runs, DeviceKind kind)
 Claim linear_claim(const RecordedRuns& runs, DeviceKind kind)
 {
     return decided({{fmt::format("time-is-linear-in-tets-{}", name_of(kind)),
-                     fmt::format("time is linear in the tets traversed, on a {}", device_text(kind))},
+                     fmt::format("the time of maria is linear in the tets traversed, on a {}", device_text(kind))},
                     [](const auto& steps, const auto& seconds, Sampling sampling) -> Numbers {
                         return {correlation(steps, seconds, sampling).value()};
                     },
@@ -114,17 +114,18 @@ Claim slower_tets_claim(const RecordedRuns& runs, DeviceKind kind)
             each.push_back(seconds[view] / steps[view]);
         return each;
     };
-    return decided({{fmt::format("a-tet-takes-longer-where-more-are-traversed-{}", name_of(kind)),
-                     fmt::format("a tet takes longer in views that traverse more tets, on a {}", device_text(kind))},
-                    [&](const auto& steps, const auto& seconds, Sampling sampling) -> Numbers {
-                        return {correlation(steps, seconds_a_tet(steps, seconds), sampling).value_or(Estimate{})};
-                    },
-                    [](const Numbers& row) {
-                        return fmt::format("r of a tet's time and their number = {}", estimate_text(row[0]));
-                    },
-                    [](const std::vector<Numbers>& rows) { return judge_above(column(rows, 0), 0); },
-                    "The paper gives cache misses as the reason."},
-                   runs, kind);
+    return decided(
+        {{fmt::format("a-tet-takes-longer-where-more-are-traversed-{}", name_of(kind)),
+          fmt::format("a tet of maria takes longer in views that traverse more tets, on a {}", device_text(kind))},
+         [&](const auto& steps, const auto& seconds, Sampling sampling) -> Numbers {
+             return {correlation(steps, seconds_a_tet(steps, seconds), sampling).value_or(Estimate{})};
+         },
+         [](const Numbers& row) {
+             return fmt::format("r of a tet's time and their number = {}", estimate_text(row[0]));
+         },
+         [](const std::vector<Numbers>& rows) { return judge_above(column(rows, 0), 0); },
+         "The paper gives cache misses as the reason."},
+        runs, kind);
 }
 
 } // namespace tetrace

@@ -19,7 +19,7 @@ constexpr std::uint64_t oldest_schema_version = 1;
 // The largest result so far has 2.3 MB and 65,000 values. What a value takes in memory its text does not show: 60 MB of
 // "[]," took 1.3 GB.
 constexpr std::size_t largest_file = std::size_t{64} << 20;
-constexpr std::size_t most_values = 2'000'000;
+constexpr std::size_t most_values = 6'000'000;
 constexpr std::size_t longest_name = 1000; // of a row, in bytes
 
 [[noreturn]] void reject_file(const std::filesystem::path& path, ErrorKind kind, const std::string& why)
@@ -62,7 +62,7 @@ nlohmann::json parse(const std::filesystem::path& path)
         return nlohmann::json::parse(bytes, [&, values = std::size_t{0}](int, Event event, nlohmann::json&) mutable {
             const bool is_value = event == Event::object_start || event == Event::array_start || event == Event::value;
             if (is_value && ++values > most_values)
-                reject_file(path, ErrorKind::invalid_input, "it has more than 2,000,000 values, which no result has");
+                reject_file(path, ErrorKind::invalid_input, "it has more than 6,000,000 values, which no result has");
             return true;
         });
     } catch (const nlohmann::json::exception& problem) {

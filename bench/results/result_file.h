@@ -74,7 +74,7 @@ struct ResultFile {
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
 /// ResultFile's members hold.
 /// Throws Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
-/// read, exceeds 64 MiB or 2,000,000 values, is no JSON, no result, of another schema version, lacks a key or has one
+/// read, exceeds 64 MiB or 6,000,000 values, is no JSON, no result, of another schema version, lacks a key or has one
 /// of another type.
 [[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
 

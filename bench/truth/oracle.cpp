@@ -55,8 +55,8 @@ Oracle::Oracle(const TriangleMesh& mesh, unsigned threads) : parts_(std::make_un
 
 Oracle::~Oracle() = default;
 
-Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_t width, std::uint32_t height,
-                       std::span<const Hit> hits, HitFormula formula)
+Verdicts Oracle::judge(std::uint32_t view_number, const View& view, std::uint32_t width,
+                       [[maybe_unused]] std::uint32_t height, std::span<const Hit> hits, HitFormula formula)
 {
     assert(hits.size() == std::size_t{width} * height);
     parts_->find_first_hits(view, width, hits.size());
