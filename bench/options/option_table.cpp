@@ -174,9 +174,7 @@ std::vector<OptionRow> row_options()
          "project on half32. Embree has a schedule of its own. Default: tiles and packets.",
          tracing, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
-         "Keep the rows whose names contain a match, for example 'tet96.*openmp'; a regular expression as RE2 has "
-         "them, "
-         "Perl's without back references and look-around. Default: all.",
+         "Keep the rows whose names contain a match of a regular expression (RE2's): 'tet96.*openmp'. Default: all.",
          measuring | bit(Verb::compare), false, [](Options& o, const std::string& v) { o.filter = parse_filter(v); }},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };

@@ -76,7 +76,7 @@ TEST_F(Load, lets_the_second_of_two_processes_wait_for_the_first)
     while (builder_runs() == 0)
         ::usleep(1000);
     bool waited = false;
-    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double) {
+    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, auto...) {
         waited = waited || stage.find("waiting for another process") != std::string::npos;
     });
     int status = -1;

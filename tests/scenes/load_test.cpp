@@ -13,7 +13,7 @@ TEST_F(Load, makes_cubes_in_place)
     request.name = "cubes";
     request.build = {.resolution = 5};
     std::vector<std::string> stages;
-    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, double) { stages.push_back(stage); });
+    const LoadedScene loaded = load_scene(request, [&](const std::string& stage, auto...) { stages.push_back(stage); });
     EXPECT_EQ(loaded.hash, scene_hash(make_cubes(5)));
     EXPECT_FALSE(loaded.from_cache);
     EXPECT_TRUE(loaded.file.empty());
