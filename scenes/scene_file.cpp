@@ -1,7 +1,6 @@
 // The `.tet` format, little endian throughout, no padding between parts:
 //   FileHeader | SectionEntry per section | checksum of both (8 bytes) | the sections, in the table's order
-// Every byte is under a checksum, and header and table state each size twice, so that no allocation rests on one
-// number.
+// Every byte is under a checksum, and header and table state each size twice: no allocation rests on one number.
 #include "scenes/scene_file.h"
 
 #include "core/base/atomic_file.h"
@@ -30,8 +29,7 @@
 namespace tetrace {
 
 static_assert(std::endian::native == std::endian::little, ".tet files are little endian and are not swapped");
-static_assert(sizeof(float) == 4 && sizeof(Float3) == 12 && sizeof(Tet) == 48,
-              "these are written as they lie in memory");
+static_assert(sizeof(float) == 4 && sizeof(Float3) == 12 && sizeof(Tet) == 48, "written as they lie in memory");
 
 namespace {
 
