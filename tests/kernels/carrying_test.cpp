@@ -4,6 +4,7 @@
 #include "core/base/exact.h"
 #include "core/device/scene_buffers.h"
 #include "core/mesh/locate.h"
+#include "tests/support/cut_anew.h"
 #include "tests/support/device_rays.h"
 
 #include <gtest/gtest.h>
@@ -136,7 +137,8 @@ TEST(Carrying, has_the_same_bits_on_every_device)
 
 TEST(Carrying, has_the_same_bits_with_the_tets_in_parts)
 {
-    const Scene scene = make_cubes(8);
+    Scene scene = make_cubes(8);
+    scene.domain = cut_anew(scene.domain, 1); // the lists of boundary faces are not cut: shorter than a part
     const std::vector<Float3> origins = {{0.25f, 0.5f, 3}, {0.125f, 0.0625f, 0.03125f}};
     const auto right = hits_on(openmp_backend(), 0, scene, Layout::tet80, origins);
     for (const Layout layout : carrying_layouts) {

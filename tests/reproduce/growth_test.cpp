@@ -3,7 +3,7 @@
 #include "bench/statistics/power_law.h"
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/timed_runs.h"
+#include "tests/reproduce/timed_runs.h"
 
 #include <list>
 #include <random>

@@ -1,6 +1,6 @@
 #include "bench/reproduce/image_record.h"
 #include "bench/reproduce/journal.h"
-#include "tests/support/journal_lines.h"
+#include "tests/reproduce/journal_lines.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "bench/reproduce/flat_tets.h"
-#include "tests/support/journal_lines.h"
-#include "tests/support/reproduce_fixture.h"
+#include "tests/reproduce/journal_lines.h"
+#include "tests/reproduce/reproduce_fixture.h"
 
 using namespace tetrace;
 using namespace tetrace::test;

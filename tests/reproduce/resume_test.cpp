@@ -1,5 +1,5 @@
-#include "tests/support/journal_lines.h"
-#include "tests/support/reproduce_fixture.h"
+#include "tests/reproduce/journal_lines.h"
+#include "tests/reproduce/reproduce_fixture.h"
 
 #include <functional>
 

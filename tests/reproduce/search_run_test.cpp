@@ -2,7 +2,7 @@
 
 #include "backends/openmp/backend.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/timed_runs.h"
+#include "tests/reproduce/timed_runs.h"
 #include "tests/support/wrapped_session.h"
 
 #include <algorithm>

@@ -93,6 +93,7 @@ protected:
     {
         BuilderOptions asked = options(mesh, domain, switches);
         asked.tets = TetsKind::rays;
+        asked.divisions = 8;
         Scene scene = build(asked);
         expect_sound(scene);
         expect_faces_inside_their_triangles(scene);

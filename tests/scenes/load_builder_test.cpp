@@ -111,8 +111,9 @@ TEST_F(Load, says_each_remedy_once)
 TEST_F(Load, sets_a_scene_apart_whose_optimiser_was_stopped)
 {
     request.build = default_build(TetsKind::rays);
+    request.build.divisions = 3;
     Scene made = expected();
-    made.domain = make_cubes(3).domain; // three divisions
+    made.domain = make_cubes(3).domain;
     made.build.switches = request.build.switches;
     made.build.optimised = {TetsKind::rays, TetsKind::rays, "", request.build.effort, 2, 1, 0.1};
     for (const OptimiserEnd end : {OptimiserEnd::out_of_time, OptimiserEnd::interrupted}) {
