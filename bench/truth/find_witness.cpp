@@ -88,31 +88,30 @@ private:
             lines_.push_back(edge.line);
     }
 
-    // A point of the answer's triangle inside the tube, between where its edges enter and leave that; the places on
-    // both sides of it meet a triangle that is seen edge-on, at that depth.
+    // A point of the answer's triangle inside the tube, and one near the origin where curves begin anywhere there.
     void add_answer_places()
     {
         for (const Facet& facet : facets_) {
             if (facet.triangle != question_.answer) continue;
             const auto& [first, second, third] = facet.corners;
             std::tie(answer_from_, answer_to_) = std::minmax({first.z, second.z, third.z});
-            Double3 sum;
-            double count = 0;
-            for (std::size_t i = 0; i < 3; ++i)
-                for (const Double3 end : clipped(facet.corners[i], facet.corners[(i + 1) % 3], radius_ * 0.98)) {
-                    sum = sum + end;
-                    ++count;
-                }
-            if (count == 0) return;
-            Double3 middle = sum * (1 / count); // maybe on an edge: moved inwards
-            const Double3 inwards = (first + second + third) * (1.0 / 3) - middle;
-            middle = middle + inwards * std::min(0.25, radius_ / (64 * std::max(length(across(inwards)), 1e-300)));
-            const Double2 slope = across(cross(second - first, third - first));
-            const Double2 aside = slope * (radius_ / (1024 * std::max(length(slope), 1e-300)));
-            for (const Double2 place : {across(middle), across(middle) + aside, across(middle) - aside})
-                if (length(place) <= radius_) places_.push_back(place);
-            answer_depth_ = middle.z;
+            const double reach = radius_ * 0.98;
+            if (question_.part.start != NO_HIT)
+                add_places_at(facet, point_within(facet, reach, [](Double3 point) { return point; }));
+            add_places_at(facet, point_within(facet, reach, across));
         }
+    }
+
+    // That one of the answer's triangle, and on both sides of it, where one that is seen edge-on is met at its depth.
+    void add_places_at(const Facet& facet, const std::optional<Double3>& point)
+    {
+        if (!point) return;
+        const auto& [first, second, third] = facet.corners;
+        const Double2 slope = across(cross(second - first, third - first));
+        const Double2 aside = slope * (radius_ / (1024 * std::max(length(slope), 1e-300)));
+        for (const Double2 place : {across(*point), across(*point) + aside, across(*point) - aside})
+            if (length(place) <= radius_) places_.push_back(place);
+        answer_depth_ = point->z;
     }
 
     // Whether one triangle covers the tube's cross-section before the answer's triangle: then there is no way.

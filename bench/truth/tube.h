@@ -105,19 +105,40 @@ struct EdgeLine {
     [[nodiscard]] double side(Double2 place) const { return cross(along, place - point); }
 };
 
-/// Both ends of the part of a segment within a radius of the ray; nothing where there is none.
-inline std::vector<Double3> clipped(Double3 from, Double3 to, double radius)
+/// Both ends of the part of a segment where what `at` makes of it, a linear map, is within a radius of zero; nothing
+/// where there is none.
+template <class At>
+std::vector<Double3> clipped(Double3 from, Double3 to, double radius, const At& at)
 {
-    const Double2 p = across(from), pq = across(to) - p;
+    const auto p = at(from), pq = at(to) - p;
     const double square = dot(pq, pq), reach = radius * radius;
     if (square == 0) return dot(p, p) <= reach ? std::vector{from, to} : std::vector<Double3>{};
     const double middle = -dot(p, pq) / square;
-    const Double2 foot = p + pq * middle;
+    const auto foot = p + pq * middle;
     const double half = (reach - dot(foot, foot)) / square;
     if (half < 0) return {};
     const double first = std::max(0.0, middle - std::sqrt(half)), last = std::min(1.0, middle + std::sqrt(half));
     if (first > last) return {};
     return {from + (to - from) * first, from + (to - from) * last};
+}
+
+/// A point of a facet, mostly inside it, between where its edges enter and leave that radius (see clipped); nothing
+/// where none of them does.
+template <class At>
+std::optional<Double3> point_within(const Facet& facet, double radius, const At& at)
+{
+    const auto& [a, b, c] = facet.corners;
+    Double3 sum;
+    double count = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const Double3 end : clipped(facet.corners[i], facet.corners[(i + 1) % 3], radius, at)) {
+            sum = sum + end;
+            ++count;
+        }
+    if (count == 0) return std::nullopt;
+    const Double3 middle = sum * (1 / count); // maybe on an edge: moved inwards
+    const Double3 inwards = (a + b + c) * (1.0 / 3) - middle;
+    return middle + inwards * std::min(0.25, radius / (64 * std::max(length(across(inwards)), 1e-300)));
 }
 
 /// Least and most depth, within a radius of the ray, of a facet that covers all that lies within it; for any other

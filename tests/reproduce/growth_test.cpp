@@ -2,8 +2,8 @@
 #include "bench/reproduce/tables/tables.h"
 #include "bench/statistics/power_law.h"
 #include "core/base/error.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/reproduce/timed_runs.h"
+#include "tests/support/temporary_folder.h"
 
 #include <list>
 #include <random>

@@ -1,7 +1,7 @@
 // The paper's claims about scenes and pairs, on rows whose times are the test's.
 #include "bench/reproduce/speed.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/reproduce/timed_runs.h"
+#include "tests/support/temporary_folder.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 #include "bench/reproduce/tables/tables.h"
 
 #include "backends/openmp/backend.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/reproduce/timed_runs.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "bench/reproduce/tables/tables.h"
 #include "core/base/error.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/reproduce/timed_runs.h"
+#include "tests/support/temporary_folder.h"
 
 #include <random>
 

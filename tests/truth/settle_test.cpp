@@ -216,6 +216,27 @@ TEST(Settle, a_part_that_starts_on_a_triangle_begins_within_the_bound_and_leaves
     EXPECT_EQ(two.along(ray, 2).kind, Kind::wrong) << "a ray that starts on none begins at its origin";
 }
 
+TEST(Settle, a_part_that_starts_at_a_corner_may_meet_a_thin_triangle_that_leads_back_from_it)
+{
+    // Walls round the corner 2 of cells as thin as 1 : 10,000. A curve that meets triangle 5 first must begin
+    // behind it, and only less than half the bound from the corner can it do so.
+    constexpr float h = 4.99999987e-05f;
+    const Settled cells({{{-0.5f, -0.5f, -h},
+                          {0, -0.5f, -h},
+                          {-0.5f, 0, -h},
+                          {0, 0, -h},
+                          {-0.5f, 0.5f, -h},
+                          {0, 0.5f, -h},
+                          {0, -0.5f, 0},
+                          {-0.5f, 0, 0},
+                          {-0.5f, 0.5f, 0}},
+                         {{0, 3, 1}, {0, 7, 2}, {0, 1, 6}, {0, 2, 3}, {2, 5, 3}, {2, 8, 4}, {2, 7, 8}, {2, 4, 5}}});
+    const RayPart part{.start = 8}; // on none of these
+    const ExactRay ray{{-0.5f, 0, -h}, {0.25f, -0.5f, 0}};
+    EXPECT_EQ(cells.along(ray, 5, part).kind, Kind::tie);
+    EXPECT_EQ(cells.along({{-0.25f, -0.5f, -h}, ray.direction}, 5, part).kind, Kind::wrong);
+}
+
 TEST(Settle, a_part_ends_within_the_bound_of_its_end)
 {
     const Settled one(layers({{0, 4}}));
