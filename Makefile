@@ -1,11 +1,14 @@
 # What a person types; everything else is CMake (see CMakePresets.json). `make` alone prints what there is.
 JOBS ?= $(shell nproc)
 TETRACE = build/release/bin/tetrace
+# QUICK=1: one scene, small images, under a minute once all is built.
+scenes = $(if $(QUICK),--scene bunny)
 
 .PHONY: help bench test sanitize build bundle format lint clean
 
 help:
-	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/)"
+	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/);"
+	@echo "              QUICK=1: bunny alone, in small images"
 	@echo "make test     install what is missing, build, run all tests"
 	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
@@ -22,13 +25,14 @@ build:
 
 bench: build
 	@mkdir -p build/bench
-	$(TETRACE) bench --out build/bench/result.json
-	$(TETRACE) render --views 0 --picture normals,steps --out build/bench
+	$(TETRACE) bench $(scenes) $(if $(QUICK),--size 384 --budget 40s) --out build/bench/result.json
+	$(TETRACE) render $(scenes) --views 0 --picture normals,steps --out build/bench
 	pictures=$$(ls build/bench/*.png 2>/dev/null | paste -sd,); \
 	    $(TETRACE) report build/bench/result.json $${pictures:+--picture "$$pictures"} --out build/bench/report.html
 	@echo "Page: build/bench/report.html; result: build/bench/result.json (its schema: results/README.md)"
 
 bundle: build
+	cmake --preset release -DTETRACE_CUDA_CODE=all
 	cmake --build --preset release -j $(JOBS) --target bundle
 
 test:
