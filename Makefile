@@ -4,7 +4,7 @@ TETRACE = build/release/bin/tetrace
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench test sanitize build bundle format lint clean
+.PHONY: help bench test sanitize build bundle deb format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/);"
@@ -13,6 +13,7 @@ help:
 	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
+	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
 	@echo "make format   format the sources"
 	@echo "make lint     check formatting, and the sources with clang-tidy"
 	@echo "make clean    remove build/"
@@ -34,6 +35,11 @@ bench: build
 bundle: build
 	cmake --preset release -DTETRACE_CUDA_CODE=all
 	cmake --build --preset release -j $(JOBS) --target bundle
+
+deb: build
+	@scripts/install-packages package
+	cd build/release && cpack
+	@ls build/release/*.deb
 
 test:
 	@scripts/install-packages build test

@@ -1,6 +1,7 @@
 #include "bench/options/help.h"
 
 #include "bench/options/identity.h"
+#include "bench/options/manual.h"
 #include "bench/options/option_table.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
@@ -10,13 +11,6 @@
 namespace tetrace {
 
 namespace {
-
-struct VerbHelp {
-    Verb verb;
-    const char* summary;
-    const char* description;
-    const char* examples;
-};
 
 const VerbHelp verb_help[] = {
     {Verb::devices, "list the devices of every backend",
@@ -158,16 +152,19 @@ const VerbHelp verb_help[] = {
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
     {Verb::help, "describe the program or a verb",
-     "Describes the program, or a verb; 'tetrace help options' prints a Markdown table of all options.",
-     "  tetrace help bench\n"},
+     "Describes the program, or a verb. 'tetrace help options' prints a Markdown table of all options, 'tetrace help "
+     "man' a manual page for man, and 'tetrace help bash' or 'zsh' what completes a command line in that shell.",
+     "  tetrace help bench\n"
+     "  source <(tetrace help bash)               complete verbs and options with the tabulator key\n"},
 };
 
-const char* const exit_codes = "Exit codes\n"
-                               "  0  good\n"
-                               "  1  a wrong result, or a regression\n"
-                               "  2  a command line, a mesh or another input that is not accepted\n"
-                               "  3  something required is missing or not supported here\n"
-                               "  4  an internal error\n";
+std::string exit_codes()
+{
+    std::string text = "Exit codes\n";
+    for (const auto& [code, meaning] : exit_code_meanings)
+        text += fmt::format("  {}  {}\n", code, meaning);
+    return text;
+}
 
 constexpr std::size_t page_width = 100;
 
@@ -199,7 +196,7 @@ std::string verb_text(const VerbHelp& entry)
                     wrapped_without_orphans(entry.description, page_width, 0));
     if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
     text += fmt::format("Examples\n{}\n", entry.examples);
-    return text + exit_codes;
+    return text + exit_codes();
 }
 
 std::string program_text()
@@ -216,7 +213,7 @@ std::string program_text()
             "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"
             "  tetrace build --scene dragon.ply          your own mesh\n\n";
-    return text + exit_codes;
+    return text + exit_codes();
 }
 
 std::string verbs_of(const OptionRow& row)
@@ -248,10 +245,18 @@ std::string options_markdown()
 
 } // namespace
 
+std::span<const VerbHelp> verb_helps()
+{
+    return verb_help;
+}
+
 std::string help_text(const std::string& topic)
 {
     if (topic.empty()) return program_text();
     if (topic == "options") return options_markdown();
+    if (topic == "man") return man_page();
+    if (topic == "bash") return bash_completion();
+    if (topic == "zsh") return zsh_completion();
     for (const VerbHelp& entry : verb_help)
         if (name_of(entry.verb) == topic) return verb_text(entry);
     throw Error(ErrorKind::internal, "help_text: no help for '" + topic + "'");

@@ -1,11 +1,38 @@
 #pragma once
 
+#include "bench/options/options.h"
+
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace tetrace {
 
-/// What `tetrace help TOPIC` prints: the program (empty topic), a verb, or "options", the Markdown table of all
-/// options.
+/// What help says of a verb, besides its options.
+struct VerbHelp {
+    Verb verb;
+    const char* summary;
+    const char* description; ///< paragraphs, with an empty line between
+    const char* examples;    ///< lines
+};
+
+/// Of every verb, in the order in which help lists them.
+[[nodiscard]] std::span<const VerbHelp> verb_helps();
+
+/// What the program's exit codes mean.
+inline constexpr std::pair<int, const char*> exit_code_meanings[] = {
+    {0, "good"},
+    {1, "a wrong result, or a regression"},
+    {2, "a command line, a mesh or another input that is not accepted"},
+    {3, "something required is missing or not supported here"},
+    {4, "an internal error"}};
+
+/// Other topics of help than verbs.
+inline constexpr std::string_view other_topics[] = {"options", "man", "bash", "zsh"};
+
+/// What `tetrace help TOPIC` prints: the program (empty topic), a verb, "options", the Markdown table of all options,
+/// or what manual.h makes.
 [[nodiscard]] std::string help_text(const std::string& topic);
 
 /// The program's version, commit, compiler and licence.

@@ -184,7 +184,8 @@ Options parse_help(const std::vector<std::string>& topics)
 {
     Options options;
     if (topics.empty()) return options;
-    if (topics.front() != "options") static_cast<void>(choose("help", topics.front(), all_verbs()));
+    if (std::ranges::find(other_topics, topics.front()) == std::end(other_topics))
+        static_cast<void>(choose("help", topics.front(), all_verbs()));
     if (topics.size() > 1) throw Error(ErrorKind::usage, "help: one verb at a time");
     options.help_topic = topics.front();
     return options;
