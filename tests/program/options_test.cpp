@@ -184,6 +184,18 @@ TEST(Options, compare_takes_two_files_and_a_tolerance_in_percent)
         EXPECT_THROW(static_cast<void>(parse_percent("--tolerance", bad)), Error) << bad;
 }
 
+TEST(Options, of_the_files_for_other_projects_ci_are_accepted)
+{
+    for (const char* name : {"github.yml", "gitlab.yml"}) {
+        const std::string file = read_text(std::filesystem::path(TETRACE_DOCS) / "ci" / name);
+        const std::size_t at = file.find("/bin/tetrace check ");
+        ASSERT_NE(at, std::string::npos) << name;
+        std::istringstream line(file.substr(at + 13, file.find('\n', at) - at - 13));
+        const std::vector<std::string> words{std::istream_iterator<std::string>(line), {}};
+        EXPECT_EQ(parse_options(words).verb, Verb::check) << name;
+    }
+}
+
 TEST(OptionValues, views_take_numbers_ranges_and_strides)
 {
     EXPECT_EQ(parse_views("0,3,10-12", 20), (std::vector<std::uint32_t>{0, 3, 10, 11, 12}));
