@@ -226,9 +226,10 @@ void read_vertex(MeshSource& source, ValueReader& values, const Element& element
     source.add_vertex(position, values.place());
 }
 
-void read_face(MeshSource& source, ValueReader& values, const Element& element, std::size_t vertex_count)
+// The indices of vertices of a face, or of a strip of triangles.
+std::vector<std::int64_t> read_indices(ValueReader& values, const Element& element)
 {
-    std::vector<std::int64_t> corners;
+    std::vector<std::int64_t> indices;
     for (const Property& property : element.properties) {
         const bool wanted =
             property.list_size && (property.name == "vertex_indices" || property.name == "vertex_index");
@@ -238,9 +239,25 @@ void read_face(MeshSource& source, ValueReader& values, const Element& element, 
         }
         const std::int64_t count = values.list_length(property);
         for (std::int64_t i = 0; i < count; ++i)
-            corners.push_back(values.integer(property.type));
+            indices.push_back(values.integer(property.type));
     }
-    source.add_face(corners, vertex_count, values.place());
+    return indices;
+}
+
+// Every three vertices in a row are a triangle; every other one is turned round, so that all have one orientation. A
+// negative index begins a new strip. Triangles with a vertex twice join strips, and are none.
+void add_strips(MeshSource& source, const std::vector<std::int64_t>& indices, std::size_t vertex_count,
+                const std::string& place)
+{
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] < 0) first = i + 1;
+        if (i < first + 2) continue;
+        const auto a = indices[i - 2], b = indices[i - 1], c = indices[i];
+        if (a == b || b == c || c == a) continue;
+        const bool is_turned = (i - first) % 2 == 1;
+        source.add_face({is_turned ? b : a, is_turned ? a : b, c}, vertex_count, place);
+    }
 }
 
 std::size_t least_bytes(const Element& element, Encoding encoding)
@@ -264,8 +281,11 @@ void require_properties(const MeshSource& source, const Element& element)
     };
     if (element.name == "vertex" && !(has("x") && has("y") && has("z")))
         source.fail("header", "its vertices lack a property x, y or z", "export the mesh again, with positions");
-    if (element.name == "face" && !has("vertex_indices") && !has("vertex_index"))
-        source.fail("header", "its faces lack the list vertex_indices", "export the mesh again, as polygons");
+    const bool has_faces = element.name == "face" || element.name == "tristrips";
+    if (has_faces && !has("vertex_indices") && !has("vertex_index"))
+        source.fail("header",
+                    fmt::format("its {} lack the list vertex_indices", element.name == "face" ? "faces" : "strips"),
+                    "export the mesh again, as polygons");
 }
 
 } // namespace
@@ -287,7 +307,9 @@ void read_ply(MeshSource& source)
             if (element.name == "vertex")
                 read_vertex(source, values, element);
             else if (element.name == "face")
-                read_face(source, values, element, vertex_count);
+                source.add_face(read_indices(values, element), vertex_count, values.place());
+            else if (element.name == "tristrips")
+                add_strips(source, read_indices(values, element), vertex_count, values.place());
             else
                 for (const Property& property : element.properties)
                     skip_property(values, property);

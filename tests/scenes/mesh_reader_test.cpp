@@ -180,6 +180,26 @@ TEST_F(MeshReader, reads_stanford_ply_in_every_encoding)
         EXPECT_EQ(read("b.ply", stanford_ply(format)), ascii) << format;
 }
 
+TEST_F(MeshReader, reads_the_triangle_strips_of_ply_with_one_orientation)
+{
+    const auto strips = [](const std::string& list) {
+        return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+               "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+               "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n" +
+               list + "\n";
+    };
+    const auto triangles = [&](const std::string& list) { return read("a.ply", strips(list)).triangles; };
+    using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+    EXPECT_EQ(triangles("5 0 1 2 3 4"), (Triangles{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}}));
+    EXPECT_EQ(triangles("8 0 1 2 -1 2 3 4 5"), (Triangles{{0, 1, 2}, {2, 3, 4}, {4, 3, 5}})) << "two strips";
+    EXPECT_EQ(triangles("9 -1 0 1 2 2 2 3 4 -1"), (Triangles{{0, 1, 2}, {2, 3, 4}})) << "joined by what is no triangle";
+    expect_error("a.ply", strips("3 0 1 6"), {"tristrips 0", "index 6 is out of range"});
+    expect_error("a.ply", strips("4 0 -1 1 2"), {});
+    std::string nameless = strips("3 0 1 2");
+    nameless.replace(nameless.find("vertex_indices"), 14, "indices");
+    expect_error("a.ply", nameless, {"header", "strips lack the list vertex_indices"});
+}
+
 TEST_F(MeshReader, reads_ply_with_foreign_elements_and_types)
 {
     const std::string text =
