@@ -239,22 +239,29 @@ bool build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
     if (builder.empty()) fail_without_builder(label);
     BuildOptions tried = options;
     Run run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
-    if (run.tetgen_failed() && fallback_switches(options) != options.switches) {
-        tried.switches = fallback_switches(options);
-        notes.push_back(fmt::format("{}: TetGen failed with switches {}; built with {} instead", label,
-                                    options.switches, tried.switches));
+    std::string failed;
+    for (const std::string& switches : fallback_switches(options)) {
+        if (!run.tetgen_failed()) break;
+        failed += tried.switches + ", then ";
+        notes.push_back(fmt::format("TetGen failed with switches {} ({}); trying {} instead", tried.switches,
+                                    ending_of(run.outcome, tried).what, switches));
+        tried.switches = switches;
+        tried.time_limit_s = std::max(tried.time_limit_s - run.outcome.wall_s, options.time_limit_s / 10);
         run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
     }
     notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
     if (run.is_good()) return run.outcome.interrupted;
-    fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), tried.switches),
+    fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), failed + tried.switches),
          ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
 }
 
-std::string fallback_switches(const BuildOptions& options)
+std::vector<std::string> fallback_switches(const BuildOptions& options)
 {
-    const bool usual = options.tets == TetsKind::rays && options.switches == default_build(TetsKind::rays).switches;
-    return usual ? default_build(TetsKind::cdt).switches : options.switches;
+    std::vector<std::string> all{default_build(TetsKind::rays).switches, default_build(TetsKind::cdt).switches,
+                                 default_build(TetsKind::cdt).switches + "MT1e-13", "p"};
+    if (options.switches != default_build(options.tets).switches) return {};
+    all.erase(all.begin(), std::ranges::find(all, options.switches) + 1);
+    return all;
 }
 
 } // namespace tetrace

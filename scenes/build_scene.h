@@ -13,12 +13,13 @@ namespace tetrace {
 /// else in PATH; empty where none can be executed.
 [[nodiscard]] std::filesystem::path find_builder();
 
-/// The switches that a build tries where TetGen fails with the options' own; those where there are no others. Tets for
-/// rays have others, unless the user chose some: TetGen crashes on some meshes with pY, and not with pq5Y.
-[[nodiscard]] std::string fallback_switches(const BuildOptions& options);
+/// The switches that a build tries, in this order, where TetGen fails with the options' own; none where the user chose
+/// those. TetGen crashes on some meshes with pY and not with pq5Y, and refuses some with pq5Y and not with facets that
+/// stay apart (M) and a finer tolerance (T), or without Y and q.
+[[nodiscard]] std::vector<std::string> fallback_switches(const BuildOptions& options);
 
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. Where TetGen fails, runs it again
-/// with fallback_switches().
+/// with each of fallback_switches() in what is left of the time, or a tenth of it, until one of them will do.
 /// notes: the builder's remarks are appended. progress: called with the stage about ten times a second.
 /// Returns whether Ctrl-C came; with keep_unfinished there may be a scene nevertheless, finished or not.
 /// Throws Error; its text says how the builder ended, its switches, its last stage and what to try. Kinds: missing (no

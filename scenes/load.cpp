@@ -11,6 +11,7 @@
 #include "scenes/procedural.h"
 #include "scenes/scene_file.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,7 +115,8 @@ std::string MeshSceneLoader::mismatch(const Scene& scene) const
     if (scene.build.source_hash != mesh_hash_) return "it was made from another mesh";
     if (scene.domain.kind != asked.domain || scene.domain.divisions != asked.divisions)
         return "its domain is another one";
-    if (scene.build.switches != asked.switches && scene.build.switches != fallback_switches(asked))
+    const std::vector<std::string> others = fallback_switches(asked);
+    if (scene.build.switches != asked.switches && std::ranges::find(others, scene.build.switches) == others.end())
         return fmt::format("it was made with the switches {}, not {}", scene.build.switches, asked.switches);
     const OptimisedInfo& made = scene.build.optimised;
     if (made.asked != asked.tets)

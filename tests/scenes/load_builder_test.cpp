@@ -174,11 +174,24 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     const LoadedScene loaded = load();
     EXPECT_EQ(loaded.scene.build.switches, "pq5Y");
     ASSERT_FALSE(loaded.messages.empty());
-    EXPECT_TRUE(contains(loaded.messages.front(), "TetGen failed with switches pY; built with pq5Y instead"));
+    EXPECT_TRUE(contains(loaded.messages.front(), "TetGen failed with switches pY (the builder crashed"));
+    EXPECT_TRUE(contains(loaded.messages.front(), "; trying pq5Y instead"));
     EXPECT_TRUE(load().from_cache);
     request.build.switches = "pYM"; // the user's own: no others are tried
     use_builder("case \"$*\" in *'--switches pYM '*) kill -SEGV $$;; esac");
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "crashed (signal 11"));
+}
+
+TEST_F(Load, tries_all_other_switches_in_order_and_names_them_where_none_helps)
+{
+    request.build = default_build(TetsKind::cdt);
+    request.build.divisions = 5;
+    const std::string refused = std::to_string(BUILDER_TETGEN_REFUSED);
+    const std::string error = error_with("exit " + refused);
+    EXPECT_TRUE(contains(error, "with switches pq5Y, then pq5YMT1e-13, then p: TetGen refused the mesh")) << error;
+    EXPECT_EQ(fallback_switches(default_build(TetsKind::rays)), (std::vector<std::string>{"pq5Y", "pq5YMT1e-13", "p"}));
+    EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "with switches pq5Y: "))
+        << "other switches do not help";
 }
 
 TEST_F(Load, tells_a_crash)
