@@ -265,8 +265,8 @@ std::string help_text(const std::string& topic)
 std::string version_text()
 {
     const BuildIdentity build = build_identity();
-    return fmt::format("tetrace {} ({})\n{}, {}\nApache License 2.0\n", build.version, build.commit, build.compiler,
-                       build.flags);
+    return fmt::format("tetrace {} ({})\n{}, {}\n{}\nApache License 2.0\n", build.version, build.commit, build.compiler,
+                       build.flags, build.libraries);
 }
 
 } // namespace tetrace

@@ -35,7 +35,7 @@ inline constexpr std::string_view other_topics[] = {"options", "man", "bash", "z
 /// or what manual.h makes.
 [[nodiscard]] std::string help_text(const std::string& topic);
 
-/// The program's version, commit, compiler and licence.
+/// The program's version, commit, compiler, libraries and licence.
 [[nodiscard]] std::string version_text();
 
 } // namespace tetrace

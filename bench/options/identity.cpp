@@ -47,7 +47,8 @@ BuildIdentity build_identity()
     const char* const compiler = "GCC " __VERSION__;
 #endif
     return {TETRACE_VERSION, TETRACE_COMMIT, compiler,
-            TETRACE_FLAGS "; kernels exact: " TETRACE_FLAGS_EXACT "; kernels fast: " TETRACE_FLAGS_FAST};
+            TETRACE_FLAGS "; kernels exact: " TETRACE_FLAGS_EXACT "; kernels fast: " TETRACE_FLAGS_FAST,
+            TETRACE_LIBRARIES};
 }
 
 HostIdentity host_identity()

@@ -10,7 +10,8 @@ struct BuildIdentity {
     std::string version;
     std::string commit; ///< git describe at build time; "unknown" outside a repository
     std::string compiler;
-    std::string flags; ///< build type and compiler flags; then those of the host's kernels in each math mode
+    std::string flags;     ///< build type and compiler flags; then those of the host's kernels in each math mode
+    std::string libraries; ///< that it was built with, with their versions
 };
 [[nodiscard]] BuildIdentity build_identity();
 

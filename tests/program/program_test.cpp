@@ -23,7 +23,8 @@ class Program : public ProgramTest {};
 TEST_F(Program, describes_itself)
 {
     EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
-    EXPECT_TRUE(contains(run("--version").out, "tetrace "));
+    for (const char* part : {"tetrace ", "; kernels exact: ", "Embree ", ", fmt ", "Apache License"})
+        EXPECT_TRUE(contains(run("--version").out, part)) << part;
     for (const char* const verb :
          {"devices", "scenes", "build", "bench", "check", "render", "reproduce", "compare", "report", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
