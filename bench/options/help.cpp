@@ -124,7 +124,8 @@ const VerbHelp verb_help[] = {
      "intervals. Default scenes: banana, bunny and armadillo, as far as they are available. With --out FILE, each "
      "finished view or batch of searches is kept in FILE.journal, so that --resume can continue a run that was "
      "stopped; pictures are written next to FILE. CSV has a row for each number, text, verdict and point of a figure; "
-     "Markdown leaves out the points. Exits with 1 if a row differs from openmp's.",
+     "Markdown leaves out the points. Exits with 1 if a row differs from openmp's, and with 3 if no row "
+     "could run here.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"

@@ -288,6 +288,19 @@ Report reproduction_report(const Reproduction& all, const Options& options)
     return report;
 }
 
+/// Throws Error{missing} as bench and check do where no row of any scene or search could run here.
+void require_any_answer(const Reproduction& all)
+{
+    std::vector<const RowRun*> rows;
+    for (const SceneRun& run : all.runs)
+        for (const RowRun& row : run.rows)
+            rows.push_back(&row);
+    if (all.searches)
+        for (const RowRun& row : all.searches->rows)
+            rows.push_back(&row);
+    require_answers(rows, "measured");
+}
+
 int rows_exit_code(const Reproduction& all)
 {
     int code = all.searches ? exit_code(all.searches->rows, true) : 0;
@@ -337,6 +350,7 @@ int reproduce_command(const Options& asked)
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (keeping.journal != nullptr) keeping.journal->finish();
+    require_any_answer(all);
     return rows_exit_code(all);
 }
 

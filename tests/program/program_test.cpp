@@ -228,6 +228,7 @@ TEST_F(Program, a_run_of_which_no_row_could_run_does_not_pass)
     };
     expect_missing("check", "nothing was checked");
     expect_missing("bench", "nothing was measured");
+    expect_missing("reproduce table3 --views 0", "nothing was measured");
 }
 
 TEST_F(Program, a_check_that_ends_early_says_why_in_its_junit_and_on_standard_error)
