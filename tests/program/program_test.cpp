@@ -147,7 +147,7 @@ TEST_F(Program, benches_as_csv_and_markdown)
     ASSERT_EQ(csv.code, 0) << csv.errors;
     EXPECT_EQ(csv.out.rfind("name,scene,structure,method,", 0), 0u);
     EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
-    EXPECT_EQ(bench("--format markdown").out.rfind("| name | scene |", 0), 0u);
+    EXPECT_TRUE(contains(bench("--format markdown").out, "\n| row | backend | Mrays/s |"));
     const Ended to_file = bench("--format csv --out table.csv");
     EXPECT_EQ(to_file.out, "");
     EXPECT_EQ(file("table.csv").rfind("name,scene", 0), 0u);
