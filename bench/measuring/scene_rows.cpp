@@ -100,16 +100,24 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
     return result;
 }
 
-void require_answers(const std::vector<RowRun>& rows, const char* done)
+void require_answers(const std::vector<const RowRun*>& rows, const char* done)
 {
-    const auto unanswered = [](const RowRun& row) {
-        const Status status = status_of(row);
+    const auto unanswered = [](const RowRun* row) {
+        const Status status = status_of(*row);
         return status == Status::skipped || status == Status::unsupported;
     };
-    if (std::ranges::all_of(rows, unanswered))
+    if (!rows.empty() && std::ranges::all_of(rows, unanswered))
         throw Error(ErrorKind::missing,
                     fmt::format("nothing was {}: no selected row could run here, for example {}: {}", done,
-                                row_name(rows.front().key), reason_of(rows.front())));
+                                row_name(rows.front()->key), reason_of(*rows.front())));
+}
+
+void require_answers(const std::vector<RowRun>& rows, const char* done)
+{
+    std::vector<const RowRun*> all;
+    for (const RowRun& row : rows)
+        all.push_back(&row);
+    require_answers(all, done);
 }
 
 Verdicts all_verdicts(const std::vector<RowRun>& rows)

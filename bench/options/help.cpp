@@ -118,13 +118,14 @@ const VerbHelp verb_help[] = {
      "intervals. Default scenes: banana, bunny and armadillo, as far as they are available. With --out FILE, each "
      "finished view or batch of searches is kept in FILE.journal, so that --resume can continue a run that was "
      "stopped; pictures are written next to FILE. CSV has a row for each number, text, verdict and point of a figure; "
-     "Markdown leaves out the points. Exits with 1 if a row differs from openmp's.",
+     "Markdown leaves out the points. Exits with 1 if a row differs from openmp's, and with 3 if no row "
+     "could run here.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce growth --sizes 1500,25000,400000,1000000 --backend openmp,embree\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
-    {Verb::compare, "compare two results of bench, row by row",
+    {Verb::compare, "compare results of bench, row by row",
      "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "
      "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "
      "of the rates (of the medians; above 1, B is faster) with its interval, and a verdict: 'SAME', the interval lies "
@@ -138,11 +139,23 @@ const VerbHelp verb_help[] = {
      "the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from 10 samples a row "
      "on; with fewer, down to 5, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples "
      "do not show: that is what the tolerance is for.\n\n"
-     "Exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see --allow-missing). Exits with "
-     "2, and names the rows, if all are DIFFERENT.",
+     "Three results and more stand side by side, a column each, with the ratios to the first: of the rows that did the "
+     "same work, while the others are listed with the reason. They are shown, not judged, and the exit code is 0.\n\n"
+     "Of two results, exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see "
+     "--allow-missing). Exits with 2, and names the rows, if all are DIFFERENT.",
      "  tetrace compare before.json after.json\n"
      "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
-     "  tetrace compare main.json branch.json --allow-missing --format markdown\n"},
+     "  tetrace compare main.json branch.json --allow-missing --format markdown\n"
+     "  tetrace compare zen3.json zen5.json xeon.json\n"},
+    {Verb::show, "print a result again",
+     "Prints what the run that wrote RESULT.json printed: the same tables and sentences, made by the same code from "
+     "the "
+     "JSON, for results of bench, check and reproduce. A line 'Not here' at the end names what the JSON does not have: "
+     "of a check, the tets that a differing ray walks through, which its 'path' lists; of older results, what they did "
+     "not record. --format markdown is for posting it.",
+     "  tetrace show bench.json\n"
+     "  tetrace show bench.json --columns mrays_per_s,spread,status\n"
+     "  tetrace show check.json --format markdown\n"},
     {Verb::report, "write one HTML page from results",
      "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
      "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, and pictures. The "

@@ -18,8 +18,8 @@ constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
 constexpr unsigned tracing = measuring | bit(Verb::render);
 constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
 constexpr unsigned building = bit(Verb::build) | reproducing;
-constexpr unsigned reporting =
-    measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) | bit(Verb::reproduce) | bit(Verb::compare);
+constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) |
+                               bit(Verb::reproduce) | bit(Verb::compare) | bit(Verb::show);
 
 /// The distinct values that all kernels have in one part of their id: the accepted values of an option.
 template <class T>
@@ -193,8 +193,9 @@ std::vector<OptionRow> ray_options()
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
          "Default: all.",
          with_rays, true, [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
-        {"Rays", "--size", "WxH", "Image size in pixels, one ray each; N means NxN. Default: 1024x1024.", with_rays,
-         false, [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
+        {"Rays", "--size", "WxH",
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; of 'check' 256x256.", with_rays, false,
+         [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
          "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
@@ -273,7 +274,8 @@ std::vector<OptionRow> output_options()
     return {
         {"Output", "--format", "FORMAT",
          "Form of the result: table, json, csv or markdown. With --out, all but table go to that file; otherwise they "
-         "replace the table on standard output. Default: table.",
+         "replace the table on standard output. Markdown of bench, check, compare, reproduce and show is what the "
+         "terminal prints, ready to post. Default: table.",
          reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
         {"Output", "--out", "FILE",
          "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
@@ -281,6 +283,11 @@ std::vector<OptionRow> output_options()
          "the "
          "form of --format.",
          reporting, false, set_result_file},
+        {"Output", "--columns", "LIST",
+         "Print these columns of the tables that have them, after the first one, named as in CSV and JSON: "
+         "mrays_per_s,spread. A wrong name is answered by those that there are. Default: all, or on a terminal those "
+         "that fit, the least important left out first.",
+         bit(Verb::bench) | bit(Verb::show), true, [](Options& o, const std::string& v) { o.columns.push_back(v); }},
         {"Output", "--label", "TEXT",
          "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. "
          "Default: the processor's name, family, model and stepping.",
@@ -321,7 +328,8 @@ std::vector<OptionRow> make_table()
 
 FileArguments file_arguments(Verb verb)
 {
-    if (verb == Verb::compare) return {"A.json B.json", 2, 2};
+    if (verb == Verb::compare) return {"A.json B.json [C.json...]", 2, 26};
+    if (verb == Verb::show) return {"RESULT.json", 1, 1};
     if (verb == Verb::report) return {"RESULT...", 1, 1000};
     return {};
 }

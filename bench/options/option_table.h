@@ -11,7 +11,7 @@ namespace tetrace {
 /// Takes one value of an option. Throws Error{usage}.
 using ApplyOption = std::function<void(Options&, const std::string&)>;
 
-/// One option of the program. Parsing, every --help and the README's table are generated from it.
+/// One option of the program. Parsing and every --help are generated from it.
 struct OptionRow {
     std::string group; ///< heading in help
     std::string name;  ///< with its dashes

@@ -145,6 +145,7 @@ Options defaults_of(Verb verb)
 {
     Options options;
     options.verb = verb;
+    if (verb == Verb::check) options.width = options.height = 256; // seconds for the scene cubes on all devices
     if (verb != Verb::reproduce) return options;
     options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};

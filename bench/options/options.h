@@ -13,11 +13,11 @@
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
-enum class Verb { devices, scenes, build, bench, check, render, reproduce, compare, report, help, version };
+enum class Verb { devices, scenes, build, bench, check, render, reproduce, compare, show, report, help, version };
 template <>
 inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
-                                                                    "render", "reproduce", "compare", "report", "help",
-                                                                    "version");
+                                                                    "render", "reproduce", "compare", "show", "report",
+                                                                    "help", "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -112,6 +112,7 @@ struct Options {
 
     std::optional<std::filesystem::path> out;
     std::optional<Format> format;
+    std::vector<std::string> columns;         ///< keys of the columns to print; empty: all that fit
     std::string label;                        ///< what the user calls the machine, or this run of it
     bool anonymous = false;                   ///< no host name and no folders in results
     std::vector<std::string> benchmark_flags; ///< Google Benchmark's, as given

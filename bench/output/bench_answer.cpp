@@ -126,21 +126,20 @@ std::string trust_text(const BenchResult& result)
 
 } // namespace
 
-std::string answer_text(const BenchResult& result)
+Sheet answer_of(const BenchResult& result)
 {
     const auto contests = contests_of(result);
-    std::string text;
+    Sheet sheet;
     if (!contests.empty())
-        text +=
-            labelled("Fastest", joined(contests, [](const Contest& contest) {
-                                    const RowRun& best = *contest.best();
-                                    return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
-                                }) + ".");
+        sheet.labelled("Fastest", joined(contests, [](const Contest& contest) {
+                                      const RowRun& best = *contest.best();
+                                      return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
+                                  }) + ".");
     std::string compared = structures_text(contests);
     if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;
-    if (!compared.empty()) text += labelled("Compared", compared + ".");
-    if (result.measurement.wall_s > 0) text += labelled("Trust", trust_text(result));
-    return text;
+    if (!compared.empty()) sheet.labelled("Compared", compared + ".");
+    if (is_timed(result)) sheet.labelled("Trust", trust_text(result));
+    return sheet;
 }
 
 } // namespace tetrace

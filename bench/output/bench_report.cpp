@@ -15,18 +15,25 @@ namespace tetrace {
 
 namespace {
 
-std::string timed_sentence(const BenchResult& result, const Options& options)
+std::string timed_sentence(const BenchResult& result)
 {
     const Measurement& measurement = result.measurement;
-    const std::string instead = measurement.lowered ? fmt::format(" ({} asked for; --budget {})", options.samples,
-                                                                  seconds_text(options.budget_s))
-                                                    : "";
+    const bool knows_more = measurement.lowered && result.samples_asked > 0;
+    const std::string instead =
+        knows_more ? fmt::format(" ({} asked for; --budget {})", result.samples_asked, seconds_text(result.budget_s))
+                   : "";
+    const std::string in_all =
+        measurement.wall_s > 0 ? fmt::format(", {} in all", seconds_text(measurement.wall_s)) : "";
     const char* const few = measurement.samples < fewest_samples ? " Fewer than 5 samples give no interval." : "";
-    return fmt::format(
-        "medians of {} samples a row{}, rows interleaved at random, {} in all. A sample is {} views of {} "
-        "at {}x{} on {} threads.{}",
-        measurement.samples, instead, seconds_text(measurement.wall_s), selected_views(options).size(),
-        name_of(options.camera_set), options.width, options.height, resolved_threads(options), few);
+    std::string text = fmt::format("medians of {} samples a row{}, rows interleaved at random{}.", measurement.samples,
+                                   instead, in_all);
+    if (!result.scenes.empty()) {
+        const ResultValue scene(result.scenes.front(), "scene");
+        text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads.", scene.at("views").items().size(),
+                            scene.at("camera_set").line(), scene.at("width").count(), scene.at("height").count(),
+                            result.threads);
+    }
+    return text + few;
 }
 
 /// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.
@@ -59,7 +66,7 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowRun>
                             kernel_title(row->key), static_cast<double>(result->visits.nodes) / rays,
                             static_cast<double>(result->visits.triangles) / rays);
     }
-    return text.empty() ? text : wrapped(text, 110, 0);
+    return text;
 }
 
 const char* const rate_columns =
@@ -74,21 +81,20 @@ const char* const time_columns =
     "kernel, launching and waiting; download: hits to the host; wall: launch to end. Medians of the samples but for "
     "download.";
 
-std::string closing_lines(const BenchResult& result, const Options& options)
+Sheet closing_lines(const BenchResult& result)
 {
-    std::string text = labelled("Verified", verdict_sentence(result.run.rows));
-    if (result.measurement.wall_s > 0) {
-        text += labelled("Timed", timed_sentence(result, options));
-        text += labelled("Rates", rate_columns);
-        text += labelled("Times", time_columns);
+    Sheet sheet;
+    sheet.labelled("Verified", verdict_sentence(result.run.rows));
+    if (is_timed(result)) {
+        sheet.labelled("Timed", timed_sentence(result));
+        sheet.labelled("Rates", rate_columns);
+        sheet.labelled("Times", time_columns);
     }
-    for (const std::string& sentence : missing_devices(options))
-        text += labelled("Missing", sentence);
-    for (const std::string& sentence : result.missing_scenes)
-        text += labelled("Missing", sentence);
-    text += answer_text(result);
-    if (options.out) text += labelled("Result", options.out->string());
-    return text;
+    for (const auto& sentences : {result.missing_devices, result.missing_scenes})
+        for (const std::string& sentence : sentences)
+            sheet.labelled("Missing", sentence);
+    sheet.append(answer_of(result));
+    return sheet;
 }
 
 /// Of a row whose scene could not be loaded only the beginning of the reason: standard error has had all of it.
@@ -104,13 +110,17 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     nlohmann::json section = result_head(options);
     section["samples_a_row"] = result.measurement.samples;
     section["samples_lowered"] = result.measurement.lowered;
-    section["threads"] = resolved_threads(options);
+    if (result.measurement.lowered) {
+        section["samples_asked"] = result.samples_asked;
+        section["budget_s"] = result.budget_s;
+    }
+    if (result.measurement.wall_s > 0) section["timed_s"] = result.measurement.wall_s;
+    section["threads"] = result.threads;
     if (const auto& load = result.measurement.load)
         section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
     section["missing_scenes"] = result.missing_scenes;
-    section["scenes"] = nlohmann::json::array();
-    for (const auto& scene : result.run.scenes)
-        section["scenes"].push_back(scene_json(*scene, options));
+    section["missing_devices"] = result.missing_devices;
+    section["scenes"] = result.scenes;
     section["devices"] = nlohmann::json::array();
     for (const RowDevice& device : result.devices)
         section["devices"].push_back(row_device_json(device));
@@ -127,28 +137,30 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
 
 } // namespace
 
-std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& rows)
+bool is_timed(const BenchResult& result)
 {
-    const LoadedScene& loaded = scene.loaded();
-    std::string sizes;
-    for (const RowRun* row : rows_of(scene.label(), rows))
-        if (row->packed != nullptr && sizes.empty() && row->key.kernel.structure == Structure::cdt)
-            sizes = size_text(row->packed->data.bytes()) + ", ";
-    std::string how = fmt::format("{} {}x{}", name_of(loaded.scene.domain.kind), loaded.scene.domain.divisions,
-                                  loaded.scene.domain.divisions);
-    if (loaded.scene.build.optimised.tets == TetsKind::rays) how += ", for rays";
-    if (loaded.scene.build.optimised.end != OptimiserEnd::finished) how += ", unfinished";
-    if (!loaded.scene.build.switches.empty()) how += ", -" + loaded.scene.build.switches;
-    if (loaded.from_cache) how += ", cached";
-    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({})\n", scene.label(),
-                       with_commas(scene.counts().tets), with_commas(scene.counts().occlusive_faces),
-                       with_commas(scene.counts().free_faces), sizes, seconds_text(loaded.scene.build.build_s), how);
+    return result.measurement.wall_s > 0 ||
+           std::ranges::any_of(result.run.rows, [](const RowRun& row) { return figures_of(row).has_value(); });
 }
 
-std::string labelled(const std::string& label, const std::string& text)
+std::string scene_headline(const ResultValue& scene)
 {
-    constexpr std::size_t width = 110, margin = 10;
-    return fmt::format("{:<{}}", label, margin) + wrapped(text, width, margin).substr(margin);
+    const auto text_of = [&](const char* key) {
+        const auto value = scene.find(key);
+        return value ? value->line() : std::string();
+    };
+    const auto size = scene.find("packed_bytes"), optimised = scene.find("optimised");
+    const std::uint64_t divisions = scene.at("divisions").count();
+    std::string how = fmt::format("{} {}x{}", scene.at("domain").line(), divisions, divisions);
+    if (text_of("tets_kind") == "rays") how += ", for rays";
+    if (const auto end = optimised ? optimised->find("end") : std::nullopt; end && end->line() != "finished")
+        how += ", unfinished";
+    if (const std::string switches = text_of("switches"); !switches.empty()) how += ", -" + switches;
+    if (scene.at("from_cache").flag()) how += ", cached";
+    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({})\n", scene.at("name").line(),
+                       with_commas(scene.at("tets").count()), with_commas(scene.at("occlusive_faces").count()),
+                       with_commas(scene.at("free_faces").count()), size ? size_text(size->count()) + ", " : "",
+                       seconds_text(scene.at("build_s").number()), how);
 }
 
 std::string verdict_sentence(const std::vector<RowRun>& rows)
@@ -164,7 +176,7 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
                               with_commas(sum.wrong), with_commas(sum.lost));
 }
 
-std::string failure_lines(const std::vector<RowRun>& rows)
+Sheet failure_lines(const std::vector<RowRun>& rows)
 {
     struct Failure {
         const RowRun* first;
@@ -181,25 +193,49 @@ std::string failure_lines(const std::vector<RowRun>& rows)
         });
         ++(same == failures.end() ? failures.emplace_back(Failure{&row, what}) : *same).count;
     }
-    std::string text;
+    Sheet sheet;
     for (const Failure& failure : failures)
-        text += failure.count == 1 ? fmt::format("{}: {}\n", row_name(failure.first->key), failure.what)
-                                   : fmt::format("{} rows of {}, such as {}: {}\n", failure.count,
-                                                 failure.first->key.scene, row_name(failure.first->key), failure.what);
-    return text.empty() ? text : text + "\n";
+        sheet.line(failure.count == 1
+                       ? fmt::format("{}: {}", row_name(failure.first->key), failure.what)
+                       : fmt::format("{} rows of {}, such as {}: {}", failure.count, failure.first->key.scene,
+                                     row_name(failure.first->key), failure.what));
+    if (!failures.empty()) sheet.gap();
+    return sheet;
+}
+
+Sheet bench_sheet(const BenchResult& result)
+{
+    Sheet sheet;
+    for (const nlohmann::json& scene : result.scenes) {
+        const ResultValue value(scene, "scene");
+        const std::string name = value.at("name").line();
+        sheet.heading(scene_headline(value));
+        sheet.line(steps_sentences(name, result.run.rows));
+        sheet.prose(visits_sentences(name, result.run.rows));
+        sheet.gap();
+        sheet.table(rate_table(name, result));
+        sheet.gap();
+    }
+    if (is_timed(result)) {
+        sheet.heading("where the time goes");
+        sheet.gap();
+        sheet.table(time_table(result));
+        sheet.gap();
+        sheet.heading("devices");
+        sheet.gap();
+        sheet.table(device_table(result.devices));
+        sheet.gap();
+    }
+    sheet.append(failure_lines(result.run.rows));
+    sheet.append(closing_lines(result));
+    return sheet;
 }
 
 Report bench_report(const BenchResult& result, const Options& options)
 {
-    Report report{{}, flat_table(result), bench_json(result, options)};
-    for (const auto& scene : result.run.scenes)
-        report.text += scene_headline(*scene, result.run.rows) + steps_sentences(scene->label(), result.run.rows) +
-                       visits_sentences(scene->label(), result.run.rows) + "\n" +
-                       rate_table(scene->label(), result).text(2) + "\n";
-    if (result.measurement.wall_s > 0)
-        report.text += "where the time goes\n\n" + time_table(result).text(2) + "\ndevices\n\n" +
-                       device_table(result.devices).text(2) + "\n";
-    report.text += failure_lines(result.run.rows) + closing_lines(result, options);
+    Report report{bench_sheet(result), flat_table(result), bench_json(result, options)};
+    report.markdown = report.sheet.markdown({.columns = options.columns});
+    if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
 }
 

@@ -5,6 +5,7 @@
 #include "bench/measuring/row_devices.h"
 #include "bench/measuring/scene_rows.h"
 #include "bench/output/report.h"
+#include "bench/results/result_value.h"
 
 namespace tetrace {
 
@@ -15,20 +16,29 @@ struct BenchResult {
     std::vector<RowDevice> devices;
     std::vector<std::optional<Comparison>> comparisons; ///< row by row
     std::vector<std::string> missing_scenes;            ///< sentences, see missing_default_scenes()
+    std::vector<std::string> missing_devices;           ///< sentences, see missing_devices()
+    std::vector<nlohmann::json> scenes;                 ///< as results record them
+    unsigned threads = 0;
+    unsigned samples_asked = 0; ///< a row; known, as the next one is, where fewer were taken
+    double budget_s = 0;
 };
+
+/// Whether any row has a rate.
+[[nodiscard]] bool is_timed(const BenchResult& result);
+
+/// What `bench` prints, and `show` prints again.
+[[nodiscard]] Sheet bench_sheet(const BenchResult& result);
 
 [[nodiscard]] Report bench_report(const BenchResult& result, const Options& options);
 
-/// A scene's heading: counts, size, build; shared by bench and check.
-[[nodiscard]] std::string scene_headline(const SceneWork& scene, const std::vector<RowRun>& rows);
-
-/// A closing line: a label, and text filled to its right.
-[[nodiscard]] std::string labelled(const std::string& label, const std::string& text);
+/// A scene's heading: counts, size, build; shared by bench and check. scene: as results record it. Throws
+/// Error{invalid_input} where it lacks one of them.
+[[nodiscard]] std::string scene_headline(const ResultValue& scene);
 
 /// The oracle's findings over all rows, in one sentence.
 [[nodiscard]] std::string verdict_sentence(const std::vector<RowRun>& rows);
 
-/// Rows without an answer and their reasons: a line for all rows of a scene that have the same one.
-[[nodiscard]] std::string failure_lines(const std::vector<RowRun>& rows);
+/// Rows without an answer and their reasons: a line for all rows of a scene that have the same one, and an empty line.
+[[nodiscard]] Sheet failure_lines(const std::vector<RowRun>& rows);
 
 } // namespace tetrace

@@ -94,11 +94,11 @@ Table time_table(const BenchResult& result)
 {
     const auto rows = facts_of(result);
     Table table(columns_of(&RowField::times));
-    for (const auto& scene : result.run.scenes) {
-        table.add_heading(scene->label());
+    for (const nlohmann::json& scene : result.scenes) {
+        const auto name = scene.at("name").get<std::string>();
+        table.add_heading(name);
         for (const std::size_t i : by_device(result))
-            if (rows[i].row->key.scene == scene->label() && rows[i].figures)
-                table.add(cells_of(&RowField::times, rows[i]));
+            if (rows[i].row->key.scene == name && rows[i].figures) table.add(cells_of(&RowField::times, rows[i]));
     }
     return table;
 }
@@ -131,6 +131,15 @@ Table device_table(const std::vector<RowDevice>& devices)
                    text_cell(device.problem)});
     }
     return table;
+}
+
+std::vector<std::string> bench_columns()
+{
+    Sheet sheet;
+    sheet.table(Table(columns_of(&RowField::rates)));
+    sheet.table(Table(columns_of(&RowField::times)));
+    sheet.table(device_table({}));
+    return sheet.column_keys();
 }
 
 Table flat_table(const BenchResult& result)

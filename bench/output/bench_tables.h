@@ -19,6 +19,9 @@ namespace tetrace {
 /// The rows' devices and their peak rates.
 [[nodiscard]] Table device_table(const std::vector<RowDevice>& devices);
 
+/// The keys of all columns of the three tables above.
+[[nodiscard]] std::vector<std::string> bench_columns();
+
 /// Every row with all its figures, flat.
 [[nodiscard]] Table flat_table(const BenchResult& result);
 

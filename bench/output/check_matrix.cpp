@@ -1,7 +1,6 @@
 #include "bench/output/check_matrix.h"
 
 #include "bench/measuring/conformity.h"
-#include "bench/terminal/table.h"
 #include "core/base/hash.h"
 
 #include <algorithm>
@@ -64,7 +63,7 @@ std::string devices_of(const Answer& answer, const Pointers& rows)
 
 } // namespace
 
-std::string matrix_text(const std::string& scene, const std::vector<RowRun>& all)
+Table matrix_table(const std::string& scene, const std::vector<RowRun>& all)
 {
     const Pointers rows = rows_of(scene, all);
     const auto devices = names_of(rows, device_label);
@@ -80,21 +79,21 @@ std::string matrix_text(const std::string& scene, const std::vector<RowRun>& all
         }
         table.add(std::move(cells));
     }
-    return table.text(2);
+    return table;
 }
 
-std::string answers_text(const std::string& scene, const std::vector<RowRun>& all)
+Table answers_table(const std::string& scene, const std::vector<RowRun>& all)
 {
     Table table({{"row", "row"},
-                 {"hits", "hit hash"},
+                 {.key = "hits", .title = "hit hash", .rank = 2},
                  {"rays", "rays"},
                  {"agreed", "agreed"},
                  {"ties", "ties"},
                  {"largest", "largest"},
                  {"settled", "settled"},
                  {"offset", "offset"},
-                 {"wrong", "wrong"},
-                 {"lost", "lost"},
+                 {.key = "wrong", .title = "wrong", .rank = 0},
+                 {.key = "lost", .title = "lost", .rank = 0},
                  {"devices", "from"}});
     const Pointers rows = rows_of(scene, all);
     for (const Answer& answer : answers_of(rows)) {
@@ -104,10 +103,10 @@ std::string answers_text(const std::string& scene, const std::vector<RowRun>& al
                    verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
                    verdicts.settled, verdicts.offset, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
     }
-    return table.rows().empty() ? "" : table.text(2);
+    return table;
 }
 
-std::string devices_text(const std::vector<RowRun>& rows)
+Table self_test_table(const std::vector<RowRun>& rows)
 {
     Table table({{"label", "device"}, {"name", "name"}, {"type", "type"}, {"self_test", "self-test, exact mode"}});
     std::vector<std::string> told;
@@ -120,7 +119,7 @@ std::string devices_text(const std::vector<RowRun>& rows)
         table.add({label, row.device.name, std::string(name_of(row.device.kind)),
                    row.self_test ? Cell(row.self_test->brief()) : Cell()});
     }
-    return told.empty() ? "" : table.text(2);
+    return table;
 }
 
 nlohmann::json matrix_json(const std::vector<RowRun>& rows)

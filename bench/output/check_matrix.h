@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/rows/row_run.h"
+#include "bench/terminal/table.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,13 +14,13 @@ namespace tetrace {
 
 /// Each device's result for each row: one line per kernel, one column per device, cells as conformity_text() gives
 /// them.
-[[nodiscard]] std::string matrix_text(const std::string& scene, const std::vector<RowRun>& rows);
+[[nodiscard]] Table matrix_table(const std::string& scene, const std::vector<RowRun>& rows);
 
 /// The distinct answers: the hash of each answer's hits, the devices that gave it, and the oracle's counts.
-[[nodiscard]] std::string answers_text(const std::string& scene, const std::vector<RowRun>& rows);
+[[nodiscard]] Table answers_table(const std::string& scene, const std::vector<RowRun>& rows);
 
 /// Explains the columns of all matrices: each device and its self-test in exact mode, one per line.
-[[nodiscard]] std::string devices_text(const std::vector<RowRun>& rows);
+[[nodiscard]] Table self_test_table(const std::vector<RowRun>& rows);
 
 /// {scene: {row: {device: {"cell": ..., "hit_hash": ...}}}}.
 [[nodiscard]] nlohmann::json matrix_json(const std::vector<RowRun>& rows);

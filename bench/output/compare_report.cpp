@@ -1,6 +1,5 @@
 #include "bench/output/compare_report.h"
 
-#include "bench/output/bench_report.h"
 #include "bench/statistics/statistics.h"
 
 #include <algorithm>
@@ -37,45 +36,14 @@ std::string ratio_text(const SpeedChange& change)
 Table rows_table(const ResultComparison& comparison)
 {
     Table table({{"name", "row"},
-                 {"before", "A", "Mrays/s"},
-                 {"after", "B", "Mrays/s"},
+                 {.key = "before", .title = "A", .unit = "Mrays/s", .rank = 2},
+                 {.key = "after", .title = "B", .unit = "Mrays/s", .rank = 2},
                  {"ratio", "B / A"},
-                 {.key = "verdict", .title = "verdict", .coloured = true}});
+                 {.key = "verdict", .title = "verdict", .coloured = true, .rank = 0}});
     for (const ComparedRow& row : comparison.rows)
         table.add({row.name(), rate_of(row.before), rate_of(row.after),
                    row.change ? Cell(ratio_text(*row.change)) : Cell(), row.verdict()});
     return table;
-}
-
-Table flat_rows(const ResultComparison& comparison)
-{
-    Table table({{"name", "name"},
-                 {"verdict", "verdict"},
-                 {"ratio", "B / A", "", 3},
-                 {"low", "low", "", 3},
-                 {"high", "high", "", 3},
-                 {"confidence", "confidence", "", 5},
-                 {"before_median_s", "A", "s", 6},
-                 {"after_median_s", "B", "s", 6},
-                 {"before_mrays_per_s", "A", "Mrays/s"},
-                 {"after_mrays_per_s", "B", "Mrays/s"},
-                 {"note", "note"}});
-    for (const ComparedRow& row : comparison.rows) {
-        const SpeedChange change = row.change.value_or(SpeedChange{});
-        const FactorInterval interval = change.interval.value_or(FactorInterval{});
-        const bool has_interval = change.interval.has_value();
-        table.add({row.name(), row.verdict(), cell_if(row.change.has_value(), change.ratio),
-                   cell_if(has_interval, interval.low), cell_if(has_interval, interval.high),
-                   cell_if(has_interval, 1 - change.error), median_of(row.before), median_of(row.after),
-                   rate_of(row.before), rate_of(row.after), cell_if(!row.note().empty(), row.note())});
-    }
-    return table;
-}
-
-std::string source_text(const ResultFile& file)
-{
-    return fmt::format("{}: {} by tetrace {} ({}) on {}, {}", file.path.string(), file.head.date, file.head.version,
-                       file.head.commit, file.head.machine, file.head.system);
 }
 
 std::string device_text(const ResultFile& file, const ResultRow& row)
@@ -141,26 +109,29 @@ std::string differences_text(const ResultComparison& comparison)
                                : fmt::format("{}.", fmt::join(differences, ", "));
 }
 
-std::string head_text(const ResultComparison& comparison)
+Sheet head_of(const ResultComparison& comparison)
 {
-    std::string text = labelled("A", source_text(*comparison.before)) + labelled("B", source_text(*comparison.after)) +
-                       labelled("Differ in", differences_text(comparison));
+    Sheet sheet;
+    sheet.labelled("A", source_text(*comparison.before));
+    sheet.labelled("B", source_text(*comparison.after));
+    sheet.labelled("Differ in", differences_text(comparison));
     for (const std::string& sentence : device_sentences(comparison))
-        text += labelled("Device", sentence);
-    return text;
+        sheet.labelled("Device", sentence);
+    return sheet;
 }
 
 /// Each note, for all rows that have it: "FAILED" or "MISSING" of many rows has one cause as a rule.
-std::string notes_text(const ResultComparison& comparison)
+Sheet notes_of(const ResultComparison& comparison)
 {
     std::map<std::string, std::vector<const ComparedRow*>> notes;
     for (const ComparedRow& row : comparison.rows)
         if (!row.note().empty()) notes[row.verdict() + ": " + row.note()].push_back(&row);
-    std::string text;
+    Sheet sheet;
     for (const auto& [note, rows] : notes)
-        text += rows.size() == 1 ? fmt::format("{}: {}\n", rows.front()->name(), note)
-                                 : fmt::format("{} rows, such as {}: {}\n", rows.size(), rows.front()->name(), note);
-    return text.empty() ? text : text + "\n";
+        sheet.line(rows.size() == 1 ? fmt::format("{}: {}", rows.front()->name(), note)
+                                    : fmt::format("{} rows, such as {}: {}", rows.size(), rows.front()->name(), note));
+    if (!notes.empty()) sheet.gap();
+    return sheet;
 }
 
 std::size_t count_of(const ResultComparison& comparison, SpeedVerdict verdict)
@@ -197,24 +168,21 @@ std::string summary_text(const ResultComparison& comparison)
 }
 
 /// A line for each row that has become slower, one for all that failed, and one for all that are missing.
-std::string regressions_text(const ResultComparison& comparison, bool allow_missing)
+void add_regressions(Sheet& sheet, const ResultComparison& comparison, bool allow_missing)
 {
-    std::string text;
     std::map<std::string, std::vector<std::string>> without_rate;
     for (const ComparedRow* row : comparison.regressions(allow_missing)) {
         if (!row->change)
             without_rate[row->verdict()].push_back(row->name());
         else
-            text += labelled("Regressed",
-                             fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row->name(),
-                                         100 * (1 / row->change->ratio - 1), 100 * comparison.tolerance));
+            sheet.labelled("Regressed",
+                           fmt::format("{}: {:.1f} % slower, more than the tolerance of {:g} %.", row->name(),
+                                       100 * (1 / row->change->ratio - 1), 100 * comparison.tolerance));
     }
     for (const auto& [verdict, names] : without_rate)
-        text +=
-            labelled("Regressed", names.size() == 1
-                                      ? fmt::format("{}: {}, and A has its rate.", names.front(), verdict)
-                                      : fmt::format("{} rows are {}, and A has their rates.", names.size(), verdict));
-    return text;
+        sheet.labelled("Regressed", names.size() == 1
+                                        ? fmt::format("{}: {}, and A has its rate.", names.front(), verdict)
+                                        : fmt::format("{} rows are {}, and A has their rates.", names.size(), verdict));
 }
 
 std::string promise_text(const ResultComparison& comparison)
@@ -241,14 +209,20 @@ std::string verdicts_text(double tolerance)
         1 / (1 + tolerance), 1 + tolerance, fewest_samples);
 }
 
-std::string closing_text(const ResultComparison& comparison, const Options& options)
+Sheet comparison_sheet(const ResultComparison& comparison, const Options& options)
 {
-    std::string text = labelled("Compared", summary_text(comparison));
-    text += regressions_text(comparison, options.allow_missing);
-    if (comparison.count(RowOutcome::compared) > 0)
-        text += labelled("B / A", promise_text(comparison)) + labelled("Verdicts", verdicts_text(comparison.tolerance));
-    if (options.out) text += labelled("Result", options.out->string());
-    return text;
+    Sheet sheet = head_of(comparison);
+    sheet.gap();
+    sheet.table(rows_table(comparison));
+    sheet.gap();
+    sheet.append(notes_of(comparison));
+    sheet.labelled("Compared", summary_text(comparison));
+    add_regressions(sheet, comparison, options.allow_missing);
+    if (comparison.count(RowOutcome::compared) > 0) {
+        sheet.labelled("B / A", promise_text(comparison));
+        sheet.labelled("Verdicts", verdicts_text(comparison.tolerance));
+    }
+    return sheet;
 }
 
 nlohmann::json source_json(const ResultFile& file)
@@ -260,27 +234,58 @@ nlohmann::json source_json(const ResultFile& file)
             {"host", {{"cpu", file.head.cpu}, {"system", file.head.system}}}};
 }
 
-nlohmann::json comparison_json(const ResultComparison& comparison, const Options& options)
+} // namespace
+
+std::string source_text(const ResultFile& file)
+{
+    return fmt::format("{}: {} by tetrace {} ({}) on {}, {}", file.path.string(), file.head.date, file.head.version,
+                       file.head.commit, file.head.machine, file.head.system);
+}
+
+Table flat_rows(const ResultComparison& comparison)
+{
+    Table table({{"name", "name"},
+                 {"verdict", "verdict"},
+                 {"ratio", "B / A", "", 3},
+                 {"low", "low", "", 3},
+                 {"high", "high", "", 3},
+                 {"confidence", "confidence", "", 5},
+                 {"before_median_s", "A", "s", 6},
+                 {"after_median_s", "B", "s", 6},
+                 {"before_mrays_per_s", "A", "Mrays/s"},
+                 {"after_mrays_per_s", "B", "Mrays/s"},
+                 {"note", "note"}});
+    for (const ComparedRow& row : comparison.rows) {
+        const SpeedChange change = row.change.value_or(SpeedChange{});
+        const FactorInterval interval = change.interval.value_or(FactorInterval{});
+        const bool has_interval = change.interval.has_value();
+        table.add({row.name(), row.verdict(), cell_if(row.change.has_value(), change.ratio),
+                   cell_if(has_interval, interval.low), cell_if(has_interval, interval.high),
+                   cell_if(has_interval, 1 - change.error), median_of(row.before), median_of(row.after),
+                   rate_of(row.before), rate_of(row.after), cell_if(!row.note().empty(), row.note())});
+    }
+    return table;
+}
+
+nlohmann::json comparison_json(const ResultComparison& comparison, bool allow_missing)
 {
     nlohmann::json json = {{"before", source_json(*comparison.before)}, {"after", source_json(*comparison.after)},
                            {"tolerance", comparison.tolerance},         {"error", comparison.error()},
                            {"rows", to_json(flat_rows(comparison))},    {"regressions", nlohmann::json::array()}};
-    for (const ComparedRow* row : comparison.regressions(options.allow_missing))
+    for (const ComparedRow* row : comparison.regressions(allow_missing))
         json["regressions"].push_back(row->name());
     if (const auto mean = comparison.geometric_mean()) json["geometric_mean"] = *mean;
     return json;
 }
 
-} // namespace
-
 Report compare_report(const ResultComparison& comparison, const Options& options)
 {
     nlohmann::json section = result_head(options);
-    section["comparison"] = comparison_json(comparison, options);
-    return {head_text(comparison) + "\n" + rows_table(comparison).text(2) + "\n" + notes_text(comparison) +
-                closing_text(comparison, options),
-            flat_rows(comparison),
-            {{"tetrace", std::move(section)}}};
+    section["comparison"] = comparison_json(comparison, options.allow_missing);
+    Report report{comparison_sheet(comparison, options), flat_rows(comparison), {{"tetrace", std::move(section)}}};
+    report.markdown = report.sheet.markdown();
+    if (options.out) report.sheet.labelled("Result", options.out->string());
+    return report;
 }
 
 } // namespace tetrace

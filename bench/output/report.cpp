@@ -8,7 +8,9 @@
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 namespace tetrace {
@@ -35,13 +37,18 @@ std::string json_text(const nlohmann::json& value)
     return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
+SheetStyle style_of(const Options& options, std::size_t width)
+{
+    return {width, options.columns};
+}
+
 std::string in_format(const Report& report, Format format, const Options& options)
 {
     const auto shown = [&](const std::string& text) {
         return options.anonymous ? anonymous_text(text, options) : text;
     };
     switch (format) {
-    case Format::table: return shown(without_colour(report.text));
+    case Format::table: return shown(without_colour(report.sheet.text(style_of(options, 0))));
     case Format::json: return json_text(options.anonymous ? anonymous_json(report.json, options) : report.json);
     case Format::csv: return shown(report.table.csv());
     case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
@@ -78,6 +85,14 @@ void check_writable(const char* option, const std::filesystem::path& path)
     }
 }
 
+void check_columns(const Options& options, const std::vector<std::string>& keys)
+{
+    for (const std::string& key : options.columns)
+        if (std::ranges::find(keys, key) == keys.end())
+            throw Error(ErrorKind::usage, fmt::format("--columns: no table has the column '{}'; accepted: {}", key,
+                                                      fmt::join(keys, ", ")));
+}
+
 void deliver_to_file(const Options& options, const Report& report)
 {
     write_whole(*options.out, in_format(report, format_of_file(options), options));
@@ -87,9 +102,11 @@ void deliver(const Options& options, const Report& report)
 {
     if (options.out) deliver_to_file(options, report);
     const Format format = options.format.value_or(Format::table);
-    if (format == Format::table && has_colour(STDOUT_FILENO))
-        print(options.anonymous ? anonymous_text(report.text, options) : report.text);
-    else if (format == Format::table || !options.out)
+    if (format == Format::table) {
+        const std::string text = report.sheet.text(style_of(options, terminal_columns(STDOUT_FILENO)));
+        const std::string shown = has_colour(STDOUT_FILENO) ? text : without_colour(text);
+        print(options.anonymous ? anonymous_text(shown, options) : shown);
+    } else if (!options.out)
         print(in_format(report, format, options));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/options/options.h"
-#include "bench/terminal/table.h"
+#include "bench/terminal/sheet.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,10 +10,10 @@ namespace tetrace {
 
 /// A verb's result, in each form that can be requested.
 struct Report {
-    std::string text; ///< for people; may be in colour
-    Table table;      ///< flat, for CSV and Markdown
+    Sheet sheet; ///< for people; may be in colour
+    Table table; ///< flat, for CSV, and for Markdown where no other is given
     nlohmann::json json;
-    std::string markdown = {}; ///< where it has more than the table's JSON; empty: the table's
+    std::string markdown = {}; ///< empty: the table's
 };
 
 /// Fails early where deliver() would fail: the file's ending does not determine the form, or the file cannot be
@@ -32,6 +32,10 @@ void check_writable(const char* option, const std::filesystem::path& path);
 /// as bench/options/anonymous.h describes.
 /// Throws Error{invalid_input} naming the file and the system's reason.
 void deliver(const Options& options, const Report& report);
+
+/// Throws Error{usage} where --columns names a column that none of the tables has; the message lists those that they
+/// have.
+void check_columns(const Options& options, const std::vector<std::string>& keys);
 
 /// Writes the report only to the file of --out. Precondition: --out is given.
 void deliver_to_file(const Options& options, const Report& report);

@@ -19,7 +19,7 @@ std::vector<Column> columns_of(Place place, const std::string& reference)
         if (const Shown& shown = field.*place; shown.title != nullptr)
             columns.push_back({shown.key != nullptr ? shown.key : field.key,
                                fmt::format(fmt::runtime(shown.title), fmt::arg("reference", reference)), shown.unit,
-                               shown.decimals, std::string_view(field.key) == "status"});
+                               shown.decimals, std::string_view(field.key) == "status", shown.rank});
     return columns;
 }
 

@@ -116,7 +116,7 @@ std::vector<RowField> identity_fields()
          recorded("line", required, "structure/method/layout/scene/rays/math:mode/api:backend: the keys below in one"),
          csv("name"), check("row")},
         {"", "row", kernel_title, rates("row"), times("row")},
-        {"", "backend", device_label, rates("backend"), times("backend")},
+        {"", "backend", device_label, rates({.title = "backend", .rank = 0}), times({.title = "backend", .rank = 0})},
         {"", "scene", &RowKey::scene, recorded("line", required), csv("scene")},
         {"", "structure", in(&RowKey::kernel, named(&KernelId::structure)),
          recorded(R"({ "enum": ["cdt", "bvh"] })", required), csv("structure")},
@@ -161,9 +161,9 @@ std::vector<RowField> rate_fields()
     return {
         {"rates", "mrays_per_s", &Figures::mrays_per_s,
          recorded("positive", required, "of the median sample, as all rates"), csv("rate", "Mrays/s"),
-         rates("Mrays/s")},
+         rates({.title = "Mrays/s", .rank = 0})},
         {"rates", "msteps_per_s", &Figures::msteps_per_s, recorded("positive"), csv("rate", "Msteps/s", 1),
-         rates("Msteps/s", "", 1)},
+         rates({.title = "Msteps/s", .decimals = 1, .rank = 5})},
         {"counts", "mean_steps", [](const Traced& trace) { return mean_steps(trace.totals).all; },
          recorded("not_negative"), csv("steps per ray")},
         {"counts", "mean_steps_hit", [](const Traced& trace) { return mean_steps(trace.totals).hit; },
@@ -198,7 +198,7 @@ std::vector<RowField> rate_fields()
          recorded("line", required), csv("reference")},
         {"rates", "ratio_to_single", &RowFacts::ratio_to_single,
          recorded("positive", optional, "to Embree's single rays on the same scene, same run; of rows on the host"),
-         csv("ratio to Embree single"), rates("x single")},
+         csv("ratio to Embree single"), rates({.title = "x single", .rank = 4})},
         {"rates", "estimated_gb_per_s", &Figures::gb_per_s,
          recorded("positive", optional, "steps times bytes_per_step"), csv("estimated", "GB/s", 1)},
         {"rates", "bytes_per_step",
@@ -216,7 +216,7 @@ std::vector<RowField> rate_fields()
          recorded("line")},
         {"rates", "share_of_copy_bandwidth", &RowFacts::share_of_copy,
          recorded("positive", optional, "of the row's own device"), csv("share of copy"),
-         rates({.title = "of copy", .cell = percent<0>})},
+         rates({.title = "of copy", .cell = percent<0>, .rank = 3})},
     };
 }
 
@@ -258,7 +258,7 @@ std::vector<RowField> time_fields()
         {"times", "upper_quartile_s", in(&Figures::kernel_s, &Statistics::upper_quartile), recorded("positive")},
         {"times", "spread", in(&Figures::kernel_s, &Statistics::spread),
          recorded("not_negative", optional, "interquartile range over median"), csv("spread", "", 3),
-         rates({.title = "spread", .cell = percent<1>})},
+         rates({.title = "spread", .cell = percent<1>, .rank = 2})},
         {"times", "noisy", in(&Figures::kernel_s, &Statistics::noisy),
          recorded(R"({ "type": "boolean" })", optional, "spread above 5 %")},
         {"times", "overhead_s", &Figures::overhead_s,
@@ -276,7 +276,7 @@ std::vector<RowField> time_fields()
          recorded("count", optional, "of the structure and its scene data on the device"),
          times("size", "MB", 1, megabytes), report("size", "MB", 1, megabytes)},
         {"", "samples", [](const RowRun& row) { return row.samples_s.size(); }, csv("samples")},
-        {"", "status", status_text, rates("status")},
+        {"", "status", status_text, rates({.title = "status", .rank = 0})},
     };
 }
 

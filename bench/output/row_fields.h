@@ -15,6 +15,7 @@ struct Shown {
     int decimals = 2;
     Cell (*cell)(const nlohmann::json&) = plain_cell;
     const char* key = nullptr; ///< of the column; null: the field's
+    int rank = 1;              ///< of the column, see Column
 };
 
 /// How results have a field in JSON.

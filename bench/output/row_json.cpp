@@ -59,6 +59,19 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
     return object;
 }
 
+std::vector<nlohmann::json> scene_records(const SceneRows& run, const Options& options)
+{
+    std::vector<nlohmann::json> records;
+    for (const auto& scene : run.scenes) {
+        nlohmann::json& record = records.emplace_back(scene_json(*scene, options));
+        for (const RowRun* row : rows_of(scene->label(), run.rows))
+            if (row->packed != nullptr && row->key.kernel.structure == Structure::cdt &&
+                !record.contains("packed_bytes"))
+                record["packed_bytes"] = row->packed->data.bytes();
+    }
+    return records;
+}
+
 nlohmann::json row_json(const RowFacts& facts)
 {
     nlohmann::json object;

@@ -125,6 +125,7 @@ bool is_timed(const RowRun& row)
 
 std::string reason_of(const RowRun& row)
 {
+    if (!row.recorded_reason.empty()) return row.recorded_reason;
     if (const auto* skipped = std::get_if<Skipped>(&row.outcome)) return skipped->reason;
     if (const auto* failed = std::get_if<Failed>(&row.outcome)) return failed->what;
     return traced_reason(row, std::get<Traced>(row.outcome));

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace tetrace {
@@ -52,6 +53,17 @@ bool is_colour_refused()
 {
     const char* const no_colour = std::getenv("NO_COLOR");
     return no_colour != nullptr && *no_colour != '\0';
+}
+
+std::size_t terminal_columns(int file)
+{
+    if (::isatty(file) != 1) return 0;
+    constexpr long least = 20, most = 10'000; // else it is no width
+    const char* const columns = std::getenv("COLUMNS");
+    if (const long asked = columns != nullptr ? std::strtol(columns, nullptr, 10) : 0; asked > least && asked < most)
+        return static_cast<std::size_t>(asked);
+    winsize size{};
+    return ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > least ? size.ws_col : 80u;
 }
 
 bool has_colour(int file)

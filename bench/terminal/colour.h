@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace tetrace {
@@ -18,5 +19,9 @@ namespace tetrace {
 /// Whether what is written to the file (STDOUT_FILENO, STDERR_FILENO) is in colour: it is a terminal that has colours,
 /// and NO_COLOR does not ask otherwise.
 [[nodiscard]] bool has_colour(int file);
+
+/// How many columns the terminal behind a file has: $COLUMNS, else what the terminal says, else 80. 0 where there is no
+/// terminal.
+[[nodiscard]] std::size_t terminal_columns(int file);
 
 } // namespace tetrace

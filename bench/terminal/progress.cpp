@@ -6,6 +6,7 @@
 #include "core/base/printable.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -13,7 +14,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace tetrace {
@@ -24,12 +24,6 @@ constexpr double quiet_s = 2.0;
 constexpr double redraw_s = 0.1;
 constexpr double rename_s = 0.005; // soon: a stage that takes minutes must not show the previous stage's name
 
-std::size_t terminal_width()
-{
-    winsize size{};
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80u;
-}
-
 bool draws_here()
 {
     const char* term = std::getenv("TERM");
@@ -39,7 +33,12 @@ bool draws_here()
 /// Columns that the process's line takes up, for the signal handler.
 std::atomic<std::size_t> columns_to_clear{0};
 
-/// Clears the line, then lets the signal end the process as usual. Makes only async-signal-safe calls.
+/// What the signal handler writes; its length is 0 while it is changed.
+std::array<char, 4096> last_words;
+std::atomic<std::size_t> last_words_length{0};
+
+/// Clears the line and writes the last words, then lets the signal end the process as usual. Makes only
+/// async-signal-safe calls.
 void clear_and_end(int signal)
 {
     char blanks[256];
@@ -48,6 +47,8 @@ void clear_and_end(int signal)
     const std::size_t columns = std::min(columns_to_clear.load(), sizeof blanks - 2);
     blanks[columns + 1] = '\r';
     if (columns > 0) (void)!::write(STDERR_FILENO, blanks, columns + 2);
+    if (const std::size_t length = last_words_length; length > 0)
+        (void)!::write(STDERR_FILENO, last_words.data(), length);
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
@@ -88,20 +89,31 @@ std::string progress_text(const std::string& stage, double elapsed_s, double fra
     return text.substr(0, end);
 }
 
-ProgressLine::ProgressLine(bool draws, bool colour) : draws_(draws), colour_(colour) {}
+ProgressLine::ProgressLine(bool draws, bool colour, double line_s) : draws_(draws), colour_(colour), line_s_(line_s) {}
 
 void ProgressLine::show(const std::string& stage, double fraction, double left_s, const std::string& detail)
 {
-    if (!draws_) return;
     if (stage != stage_) {
         stage_ = stage;
         in_stage_ = {};
     }
-    const double pause_s = !has_drawn_ ? quiet_s : detail != detail_ ? rename_s : redraw_s;
-    if (since_draw_.seconds() < pause_s) return;
+    const double drawing_s = !has_drawn_ ? quiet_s : detail != detail_ ? rename_s : redraw_s;
+    if (since_draw_.seconds() < (draws_ ? drawing_s : line_s_)) return;
     detail_ = detail;
-    const std::string what = printable_line(detail.empty() ? stage : stage + ", " + detail);
-    const std::string text = progress_text(what, in_stage_.seconds(), fraction, terminal_width() - 1, left_s);
+    draw(printable_line(detail.empty() ? stage : stage + ", " + detail), fraction, left_s);
+    since_draw_ = {};
+}
+
+void ProgressLine::draw(const std::string& what, double fraction, double left_s)
+{
+    constexpr std::size_t log_width = 200;
+    const std::size_t known = terminal_columns(STDERR_FILENO);
+    const std::size_t width = !draws_ ? log_width : (known > 0 ? known : 80) - 1;
+    const std::string text = progress_text(what, in_stage_.seconds(), fraction, width, left_s);
+    if (!draws_) {
+        std::fputs((text + "\n").c_str(), stderr);
+        return;
+    }
     const std::size_t columns = display_width(text);
     const std::string rest(drawn_ > columns ? drawn_ - columns : 0, ' ');
     std::fputs(fmt::format(fmt::runtime(colour_ ? "\r\x1b[2m{}\x1b[0m{}" : "\r{}{}"), text, rest).c_str(), stderr);
@@ -109,7 +121,6 @@ void ProgressLine::show(const std::string& stage, double fraction, double left_s
     drawn_ = columns;
     has_drawn_ = true;
     columns_to_clear = columns;
-    since_draw_ = {};
 }
 
 Progress ProgressLine::callback()
@@ -134,6 +145,22 @@ ProgressLine& progress_line()
 {
     static ProgressLine line = make_progress_line();
     return line;
+}
+
+void say_when_interrupted(const std::string& text)
+{
+    last_words_length = 0;
+    const std::string line = text.empty() ? text : printable_line(text) + "\n";
+    if (line.size() > last_words.size()) return;
+    std::ranges::copy(line, last_words.begin());
+    last_words_length = line.size();
+    if (!line.empty()) clear_when_interrupted();
+}
+
+std::string words_when_interrupted()
+{
+    const std::size_t length = last_words_length;
+    return length == 0 ? std::string() : std::string(last_words.data(), length - 1);
 }
 
 void say(const std::string& message)

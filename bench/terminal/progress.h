@@ -8,11 +8,12 @@
 namespace tetrace {
 
 /// The progress line on a terminal's standard error: stage, elapsed time, and the percentage where it is known. Nothing
-/// is drawn without a terminal, or in the first 2 seconds.
+/// is drawn in the first 2 seconds. Without a terminal, such as in a log, it is a line of its own every 30 seconds.
 class ProgressLine {
 public:
-    /// draws: whether to draw at all. colour: whether escape sequences may be written.
-    ProgressLine(bool draws, bool colour);
+    /// draws: whether there is a terminal to draw on. colour: whether escape sequences may be written. line_s: seconds
+    /// between lines where nothing is drawn.
+    ProgressLine(bool draws, bool colour, double line_s = 30);
     ~ProgressLine() { clear(); }
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
@@ -26,8 +27,11 @@ public:
     [[nodiscard]] Progress callback();
 
 private:
+    void draw(const std::string& what, double fraction, double left_s);
+
     bool draws_;
     bool colour_;
+    double line_s_;
     std::size_t drawn_ = 0; ///< columns that the line takes up now
     bool has_drawn_ = false;
     std::string stage_, detail_;
@@ -41,6 +45,12 @@ private:
 /// The program's progress line. Draws where standard error is a terminal that is not dumb, in colour unless NO_COLOR is
 /// set. SIGINT and SIGTERM then clear the line before they end the program.
 [[nodiscard]] ProgressLine& progress_line();
+
+/// What SIGINT and SIGTERM write to standard error before they end the program: how to go on, in one line. Empty:
+/// nothing.
+void say_when_interrupted(const std::string& text);
+/// That text, for an end that no signal handler makes.
+[[nodiscard]] std::string words_when_interrupted();
 
 /// Clears the progress line, then writes a message and a line end to standard error: printable_text(), which
 /// may quote files and drivers.

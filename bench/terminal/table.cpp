@@ -12,6 +12,8 @@ namespace tetrace {
 
 namespace {
 
+constexpr std::string_view gap = "  "; // between columns
+
 template <class... Visitors>
 struct Overloaded : Visitors... {
     using Visitors::operator()...;
@@ -93,26 +95,93 @@ bool Table::is_number(std::size_t column) const
                                 [&](const auto& row) { return std::holds_alternative<std::string>(row[column]); });
 }
 
-std::string Table::text(std::size_t indent) const
+std::size_t Table::width_of(std::size_t column) const
+{
+    std::size_t width = std::max(display_width(columns_[column].title), display_width(columns_[column].unit));
+    for (const auto& row : rows_)
+        width = std::max(width, display_width(cell_text(row[column], columns_[column])));
+    return width;
+}
+
+std::vector<std::size_t> Table::fitting(std::size_t indent, std::size_t width) const
+{
+    std::vector<std::size_t> wanted;
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+        if (has_cells(c)) wanted.push_back(c);
+    if (width == 0 || wanted.empty()) return wanted;
+    std::ranges::stable_sort(wanted.begin() + 1, wanted.end(),
+                             [&](std::size_t a, std::size_t b) { return columns_[a].rank < columns_[b].rank; });
+    std::vector<std::size_t> kept = {wanted.front()};
+    std::size_t length = indent + width_of(wanted.front());
+    for (const std::size_t c : wanted) {
+        const std::size_t longer = length + gap.size() + width_of(c);
+        if (c == wanted.front() || longer > width) continue;
+        length = longer;
+        kept.push_back(c);
+    }
+    std::ranges::sort(kept);
+    return kept;
+}
+
+std::vector<std::string> Table::dropped(std::size_t indent, std::size_t width) const
+{
+    const auto kept = fitting(indent, width);
+    std::vector<std::string> titles;
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+        if (has_cells(c) && std::ranges::find(kept, c) == kept.end()) titles.push_back(columns_[c].title);
+    return titles;
+}
+
+Table Table::of_columns(const std::vector<std::size_t>& kept) const
+{
+    std::vector<Column> columns;
+    for (const std::size_t c : kept)
+        columns.push_back(columns_[c]);
+    Table table(std::move(columns));
+    for (const auto& row : rows_) {
+        std::vector<Cell> cells;
+        for (const std::size_t c : kept)
+            cells.push_back(row[c]);
+        table.add(std::move(cells));
+    }
+    table.headings_ = headings_;
+    return table;
+}
+
+Table Table::with_columns(const std::vector<std::string>& keys) const
+{
+    std::vector<std::size_t> kept;
+    bool has_any = false;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        const bool is_chosen = std::ranges::find(keys, columns_[c].key) != keys.end();
+        if (c == 0 || is_chosen) kept.push_back(c);
+        has_any = has_any || is_chosen;
+    }
+    return has_any ? of_columns(kept) : *this;
+}
+
+Table Table::without_empty_columns() const
+{
+    return of_columns(fitting(0, 0));
+}
+
+std::string Table::text(std::size_t indent, std::size_t width) const
 {
     const std::string margin(indent, ' ');
     std::string titles = margin, units = margin;
     std::vector<std::string> lines(rows_.size(), margin);
-    bool any_unit = false;
-    std::string gap;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-        if (!has_cells(c)) continue;
+    bool any_unit = false, is_first = true;
+    for (const std::size_t c : fitting(indent, width)) {
         const Column& column = columns_[c];
-        std::size_t width = std::max(display_width(column.title), display_width(column.unit));
-        for (const auto& row : rows_)
-            width = std::max(width, display_width(cell_text(row[c], column)));
+        const std::size_t columns = width_of(c);
         const bool right = is_number(c);
-        titles += gap + padded(column.title, width, right);
-        units += gap + padded(column.unit, width, right);
+        const std::string_view before = is_first ? std::string_view() : gap;
+        is_first = false;
+        titles.append(before) += padded(column.title, columns, right);
+        units.append(before) += padded(column.unit, columns, right);
         any_unit = any_unit || !column.unit.empty();
         for (std::size_t r = 0; r < rows_.size(); ++r)
-            lines[r] += gap + padded(cell_text(rows_[r][c], column), width, right, column.coloured);
-        gap = "  ";
+            lines[r].append(before) += padded(cell_text(rows_[r][c], column), columns, right, column.coloured);
     }
     std::string result = without_trailing_blanks(titles);
     if (any_unit) result += without_trailing_blanks(units);
@@ -148,10 +217,17 @@ std::string Table::markdown() const
         rule += is_number(c) ? "---:|" : "---|";
     }
     std::string result = titles + "\n" + rule + "\n";
-    for (const auto& row : rows_) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        const auto [first, last] = headings_.equal_range(r);
+        for (auto heading = first; heading != last; ++heading) {
+            result += fmt::format("| **{}** |", in_markdown(heading->second));
+            for (std::size_t c = 1; c < columns_.size(); ++c)
+                result += " |";
+            result += "\n";
+        }
         result += "|";
-        for (std::size_t c = 0; c < row.size(); ++c)
-            result.append(" ").append(in_markdown(cell_text(row[c], columns_[c]))).append(" |");
+        for (std::size_t c = 0; c < columns_.size(); ++c)
+            result.append(" ").append(in_markdown(cell_text(rows_[r][c], columns_[c]))).append(" |");
         result += "\n";
     }
     return result;

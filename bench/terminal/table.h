@@ -37,6 +37,7 @@ struct Column {
     std::string unit = {};
     int decimals = 2;      ///< of real numbers, in text and Markdown; CSV keeps all digits
     bool coloured = false; ///< whether text() shows its words by in_colour()
+    int rank = 1;          ///< the lower, the more important where a terminal is too narrow for all
 };
 
 /// A table that prints itself as aligned text, CSV or Markdown. Numbers are right-aligned, texts left-aligned.
@@ -46,19 +47,25 @@ public:
 
     /// Throws Error{internal} where the number of cells differs from the number of columns.
     void add(std::vector<Cell> cells);
-    /// A line of text above the rows that are added next; only text() shows it.
+    /// A line of text above the rows that are added next; CSV does not have it.
     void add_heading(const std::string& text) { headings_.emplace(rows_.size(), text); }
 
     [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
     [[nodiscard]] const std::vector<std::vector<Cell>>& rows() const { return rows_; }
 
     /// Lines indented by `indent` blanks: titles, units where a column has one, rows. Columns with only empty cells are
-    /// left out.
-    [[nodiscard]] std::string text(std::size_t indent = 0) const;
+    /// left out, and so are the dropped() ones.
+    [[nodiscard]] std::string text(std::size_t indent = 0, std::size_t width = 0) const;
+    /// The titles of the columns that do not fit into lines of `width` columns (0: any length), in the table's order:
+    /// the first column stays, and of the others those that still fit, by rank, and among equal ones from the left.
+    [[nodiscard]] std::vector<std::string> dropped(std::size_t indent, std::size_t width) const;
+    /// The first column and those with these keys; the whole table where it has none of them.
+    [[nodiscard]] Table with_columns(const std::vector<std::string>& keys) const;
+    [[nodiscard]] Table without_empty_columns() const;
     /// RFC 4180, except that lines end in \n: keys, then rows; an empty cell is empty. A text that a spreadsheet would
     /// take for a formula has an apostrophe before it.
     [[nodiscard]] std::string csv() const;
-    /// A GitHub table; the header shows each unit after its title.
+    /// A GitHub table; the header shows each unit after its title, and a heading is a row in bold.
     [[nodiscard]] std::string markdown() const;
 
     /// Whether no cell of the column holds text.
@@ -66,6 +73,10 @@ public:
 
 private:
     [[nodiscard]] bool has_cells(std::size_t column) const;
+    [[nodiscard]] std::size_t width_of(std::size_t column) const;
+    /// The columns that fit, in their order.
+    [[nodiscard]] std::vector<std::size_t> fitting(std::size_t indent, std::size_t width) const;
+    [[nodiscard]] Table of_columns(const std::vector<std::size_t>& kept) const;
 
     std::vector<Column> columns_;
     std::vector<std::vector<Cell>> rows_;

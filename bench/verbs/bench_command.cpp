@@ -1,4 +1,5 @@
-#include "bench/output/bench_report.h"
+#include "bench/output/bench_tables.h"
+#include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
@@ -38,6 +39,7 @@ int bench_command(const Options& options)
         selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
     if (options.list || flags.list_tests) return list_rows(keys);
     check_output(options);
+    check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
     BenchResult result;
     result.missing_scenes = missing_default_scenes(options);
@@ -48,6 +50,11 @@ int bench_command(const Options& options)
     result.devices = devices_of(result.run.rows);
     measure_devices(result.devices, session_options(options));
     result.comparisons = compare_rows(result.run.rows);
+    result.missing_devices = missing_devices(options);
+    result.scenes = scene_records(result.run, options);
+    result.threads = resolved_threads(options);
+    result.samples_asked = options.samples;
+    result.budget_s = options.budget_s;
     const Report report = bench_report(result, options);
     // Google Benchmark has already written its own form to standard output, where it was asked to.
     if (!flags.format)

@@ -210,10 +210,10 @@ const Built* find_cdt(const std::vector<Built>& all, const Built& rays)
 }
 
 /// Cost and steps before and after the optimiser, and what each of its operations did.
-std::string optimiser_text(const std::vector<Built>& all, const Built& built)
+void add_optimiser(Sheet& sheet, const std::vector<Built>& all, const Built& built)
 {
     const OptimisedInfo& made = built.optimised;
-    if (made.operations.empty()) return "";
+    if (made.operations.empty()) return;
     std::string steps;
     if (const Built* cdt = find_cdt(all, built))
         steps = fmt::format("; steps a ray {:.2f} in the CDT, {:.2f} now", mean_steps(cdt->totals).all.value_or(0),
@@ -228,10 +228,13 @@ std::string optimiser_text(const std::vector<Built>& all, const Built& built)
                    100 * operation.gain / (made.cost_before - made.cost_after), operation.seconds});
     const std::string early =
         made.end == OptimiserEnd::finished ? "" : fmt::format(", stopped early ({})", name_of(made.end));
-    return fmt::format("\n{} ({}, {}), the optimiser in {} rounds{}: cost {:.2f} before, {:.2f} after{}\n\n{}",
-                       scene_label(built.request.name), name_of(built.request.build.domain),
-                       built.request.build.divisions, made.rounds, early, made.cost_before, made.cost_after, steps,
-                       table.text(2));
+    sheet.gap();
+    sheet.heading(fmt::format("{} ({}, {}), the optimiser in {} rounds{}: cost {:.2f} before, {:.2f} after{}",
+                              scene_label(built.request.name), name_of(built.request.build.domain),
+                              built.request.build.divisions, made.rounds, early, made.cost_before, made.cost_after,
+                              steps));
+    sheet.gap();
+    sheet.table(table);
 }
 
 Report build_report(const std::vector<Built>& all, const Options& options)
@@ -243,15 +246,17 @@ Report build_report(const std::vector<Built>& all, const Options& options)
         section["builds"][i]["status"] = all[i].scene ? "ok" : "error";
         if (all[i].scene) section["builds"][i]["scene_record"] = *all[i].scene;
     }
-    std::string text = build_table(all, false).text();
+    Sheet sheet;
+    sheet.table(build_table(all, false), 0);
     for (const Built& built : all)
-        text += optimiser_text(all, built);
-    text += fmt::format(
-        "\nSteps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
+        add_optimiser(sheet, all, built);
+    sheet.gap();
+    sheet.line(fmt::format(
+        "Steps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
         "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
-        "inside closed objects.\n",
-        selected_views(options).size(), name_of(options.camera_set), options.width, options.height);
-    return {std::move(text), full, {{"tetrace", std::move(section)}}};
+        "inside closed objects.",
+        selected_views(options).size(), name_of(options.camera_set), options.width, options.height));
+    return {std::move(sheet), full, {{"tetrace", std::move(section)}}};
 }
 
 } // namespace

@@ -1,18 +1,18 @@
 #include "bench/measuring/conformity.h"
 #include "bench/options/anonymous.h"
-#include "bench/output/bench_report.h"
 #include "bench/output/check_differences.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/output/junit.h"
+#include "bench/output/report.h"
 #include "bench/output/row_json.h"
+#include "bench/show/check_sheet.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/whole_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <set>
 
 namespace tetrace {
 
@@ -21,21 +21,6 @@ namespace {
 bool on_standard_output(const std::optional<std::filesystem::path>& file)
 {
     return file && *file == "-";
-}
-
-RowFacts check_facts(const RowRun& row)
-{
-    RowFacts facts(row);
-    facts.conformity = conformity_text(row);
-    return facts;
-}
-
-Table check_table(const std::vector<RowRun>& rows)
-{
-    Table table(columns_of(&RowField::check));
-    for (const RowRun& row : rows)
-        table.add(cells_of(&RowField::check, check_facts(row)));
-    return table;
 }
 
 /// Whether the row fails the check. A row without an answer does not fail by itself (see exit_code and --require).
@@ -61,9 +46,7 @@ nlohmann::json check_row_json(const RowRun& row)
 nlohmann::json check_json(const Checked& checked, const Options& options)
 {
     nlohmann::json section = result_head(options);
-    section["scenes"] = nlohmann::json::array();
-    for (const auto& scene : checked.run.scenes)
-        section["scenes"].push_back(scene_json(*scene, options));
+    section["scenes"] = scene_records(checked.run, options);
     section["matrix"] = matrix_json(checked.run.rows);
     section["rows"] = nlohmann::json::array();
     for (const RowRun& row : checked.run.rows)
@@ -72,57 +55,17 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
-/// With an empty line after it; empty input stays empty.
-std::string paragraph(const std::string& text)
-{
-    return text.empty() ? text : text + "\n";
-}
-
-std::string scene_text(const SceneWork& scene, const std::vector<RowRun>& rows)
-{
-    return scene_headline(scene, rows) + "\n" + paragraph(matrix_text(scene.label(), rows)) +
-           paragraph(answers_text(scene.label(), rows));
-}
-
-/// Devices that compute differently from what exact mode guarantees, each once.
-std::string inexact_devices_text(const std::vector<RowRun>& rows)
-{
-    std::set<std::string> sentences;
-    for (const RowRun& row : rows)
-        if (conformity_of(row) == Conformity::not_exact)
-            sentences.insert(
-                fmt::format("{}: its answers are openmp's here, but its self-test in exact mode found: {}; "
-                            "other scenes may differ\n",
-                            device_label(row.key), row.self_test->text()));
-    std::string text;
-    for (const std::string& sentence : sentences)
-        text += sentence;
-    return text;
-}
-
-std::string closing_text(const Checked& checked, const Options& options)
-{
-    std::string text = labelled("Verified", verdict_sentence(checked.run.rows));
-    for (const std::string& sentence : checked.missing)
-        text += labelled("Missing", sentence);
-    if (checked.pictures != nullptr)
-        for (const auto& file : checked.pictures->files())
-            text += labelled("Picture", file.string());
-    if (options.junit && !on_standard_output(options.junit)) text += labelled("JUnit", options.junit->string());
-    if (options.out) text += labelled("Result", options.out->string());
-    return text;
-}
-
 Report check_report(const Checked& checked, const Options& options)
 {
     const auto& rows = checked.run.rows;
-    Report report{{}, check_table(rows), check_json(checked, options)};
-    for (const auto& scene : checked.run.scenes)
-        report.text += scene_text(*scene, rows);
-    report.text += paragraph(devices_text(rows)) + failure_lines(rows);
-    for (const RowRun& row : rows)
-        report.text += differences_text(row);
-    report.text += inexact_devices_text(rows) + closing_text(checked, options);
+    Report report{check_sheet({&rows, scene_records(checked.run, options), checked.missing}), check_table(rows),
+                  check_json(checked, options)};
+    report.markdown = report.sheet.markdown();
+    if (checked.pictures != nullptr)
+        for (const auto& file : checked.pictures->files())
+            report.sheet.labelled("Picture", file.string());
+    if (options.junit && !on_standard_output(options.junit)) report.sheet.labelled("JUnit", options.junit->string());
+    if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
 }
 

@@ -239,8 +239,9 @@ int devices_command(const Options& options)
     const auto devices = find_devices();
     progress_line().clear();
     const Table optional = part_table();
-    Report report{host_identity().system + "\n\n" + devices_text(devices) + optional.text(), device_table(devices),
-                  result_head(options)};
+    Report report{{}, device_table(devices), result_head(options)};
+    report.sheet.verbatim(host_identity().system + "\n\n" + devices_text(devices));
+    report.sheet.table(optional, 0);
     report.json["devices"] = devices_json(devices);
     report.json["parts"] = to_json(optional);
     report.json = {{"tetrace", report.json}};

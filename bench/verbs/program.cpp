@@ -3,12 +3,30 @@
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 
 namespace tetrace {
 
 namespace {
+
+std::vector<std::string>& command_line()
+{
+    static std::vector<std::string> arguments;
+    return arguments;
+}
+
+/// In single quotes where a shell would not take it as one word.
+std::string quoted(const std::string& word)
+{
+    constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word)
+        text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+}
 
 int run_verb(const Options& options)
 {
@@ -21,6 +39,7 @@ int run_verb(const Options& options)
     case Verb::render: return render_command(options);
     case Verb::reproduce: return reproduce_command(options);
     case Verb::compare: return compare_command(options);
+    case Verb::show: return show_command(options);
     case Verb::report: return report_command(options);
     case Verb::help: print(help_text(options.help_topic)); return 0;
     case Verb::version: print(version_text()); return 0;
@@ -30,12 +49,24 @@ int run_verb(const Options& options)
 
 } // namespace
 
+std::string command_with(const std::string& option)
+{
+    std::string text = "tetrace";
+    for (const std::string& argument : command_line())
+        text += " " + quoted(argument);
+    const bool has = std::ranges::find(command_line(), option) != command_line().end();
+    return has ? text : text + " " + option;
+}
+
 int run_program(const std::vector<std::string>& arguments)
 {
+    command_line() = arguments;
     try {
         return run_verb(parse_options(arguments));
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());
+        const std::string words = words_when_interrupted();
+        if (error.kind() == ErrorKind::interrupted && !words.empty()) say(words);
         return exit_code(error.kind());
     } catch (const std::bad_alloc&) {
         say("tetrace: out of memory; use a smaller --size, fewer scenes or fewer --views");

@@ -5,6 +5,7 @@
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/tables/paper_table.h"
 #include "bench/reproduce/tables/pictures.h"
+#include "bench/reproduce/tables/recorded_tables.h"
 #include "bench/reproduce/tables/tables.h"
 #include "bench/reproduce/yardsticks.h"
 #include "bench/terminal/progress.h"
@@ -263,29 +264,31 @@ json reproduction_json(const Reproduction& all, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
-std::string closing_text(const Reproduction& all, const Options& options)
-{
-    std::string text;
-    for (const auto& sentences : {all.missing_scenes, missing_devices(options)})
-        for (const std::string& sentence : sentences)
-            text += labelled("Missing", sentence);
-    if (options.out) text += labelled("Result", options.out->string());
-    return text;
-}
-
 Report reproduction_report(const Reproduction& all, const Options& options)
 {
-    Report report{{}, tidy_table(all.tables, all.figures), reproduction_json(all, options), {}};
-    for (const PaperTable& table : all.tables) {
-        report.text += table_text(table);
+    Report report{tables_sheet({all.tables, all.figures, all.missing_scenes, missing_devices(options)}),
+                  tidy_table(all.tables, all.figures),
+                  reproduction_json(all, options),
+                  {}};
+    for (const PaperTable& table : all.tables)
         report.markdown += table_markdown(table);
-    }
-    for (const PaperFigure& figure : all.figures) {
-        report.text += figure_text(figure);
+    for (const PaperFigure& figure : all.figures)
         report.markdown += figure_markdown(figure);
-    }
-    report.text += closing_text(all, options);
+    if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
+}
+
+/// Throws Error{missing} as bench and check do where no row of any scene or search could run here.
+void require_any_answer(const Reproduction& all)
+{
+    std::vector<const RowRun*> rows;
+    for (const SceneRun& run : all.runs)
+        for (const RowRun& row : run.rows)
+            rows.push_back(&row);
+    if (all.searches)
+        for (const RowRun& row : all.searches->rows)
+            rows.push_back(&row);
+    require_answers(rows, "measured");
 }
 
 int rows_exit_code(const Reproduction& all)
@@ -331,12 +334,17 @@ int reproduce_command(const Options& asked)
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
     all.progress.all = parts_of(builds, options);
+    if (keeping.journal != nullptr)
+        say_when_interrupted(fmt::format("tetrace: what is finished is in '{}.journal'; to go on: {}",
+                                         options.out->string(), command_with("--resume")));
     for (const SceneBuild& build : builds)
         run_scene(all, build, options, keeping);
     if (wants(options, PaperTarget::table5)) run_all_searches(all, options, keeping);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (keeping.journal != nullptr) keeping.journal->finish();
+    say_when_interrupted({});
+    require_any_answer(all);
     return rows_exit_code(all);
 }
 

@@ -21,17 +21,16 @@ Table catalogue_table()
 }
 
 /// One remedy often applies to several scenes.
-std::string remedies()
+void add_remedies(Sheet& sheet)
 {
     std::vector<std::string> reasons;
     for (const CatalogueEntry& entry : catalogue()) {
         const std::string reason = why_not_available(entry.name);
         if (!reason.empty() && std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
     }
-    std::string text;
     for (const std::string& reason : reasons)
-        text += wrapped("missing: " + reason, 100, 0);
-    return text.empty() ? text : text + "\n";
+        sheet.prose("missing: " + reason);
+    if (!reasons.empty()) sheet.gap();
 }
 
 Table cache_table(const std::vector<CachedFile>& files)
@@ -42,14 +41,32 @@ Table cache_table(const std::vector<CachedFile>& files)
     return table;
 }
 
-std::string cache_text(const std::vector<CachedFile>& files)
+bool is_program(const CachedFile& file)
+{
+    return file.path.parent_path().filename() == "programs";
+}
+
+std::uint64_t bytes_of(const std::vector<CachedFile>& files)
 {
     std::uint64_t bytes = 0;
     for (const CachedFile& file : files)
         bytes += file.bytes;
-    const std::string head = fmt::format("cache {}: {} {}, {}\n", cache_directory().string(), files.size(),
-                                         files.size() == 1 ? "file" : "files", size_text(bytes));
-    return files.empty() ? head : head + cache_table(files).text(2);
+    return bytes;
+}
+
+/// Each file but the compiled programs, hundreds whose names say nothing: those are one line.
+void add_cache(Sheet& sheet, const std::vector<CachedFile>& files)
+{
+    sheet.line(fmt::format("cache {}: {} {}, {}", cache_directory().string(), files.size(),
+                           files.size() == 1 ? "file" : "files", size_text(bytes_of(files))));
+    std::vector<CachedFile> others, programs;
+    for (const CachedFile& file : files)
+        (is_program(file) ? programs : others).push_back(file);
+    Table table = cache_table(others);
+    if (!programs.empty())
+        table.add({fmt::format("{} compiled {}", programs.size(), programs.size() == 1 ? "program" : "programs"),
+                   bytes_of(programs)});
+    if (!files.empty()) sheet.table(table);
 }
 
 } // namespace
@@ -60,9 +77,12 @@ int scenes_command(const Options& options)
     const std::uint64_t cleared = options.clear ? clear_cache() : 0;
     const Table scenes = catalogue_table();
     const auto files = list_cache();
-    Report report{scenes.text() + "\n" + remedies(), scenes, result_head(options)};
-    if (options.clear) report.text += fmt::format("cleared {} from the cache\n", size_text(cleared));
-    report.text += cache_text(files);
+    Report report{{}, scenes, result_head(options)};
+    report.sheet.table(scenes, 0);
+    report.sheet.gap();
+    add_remedies(report.sheet);
+    if (options.clear) report.sheet.line(fmt::format("cleared {} from the cache", size_text(cleared)));
+    add_cache(report.sheet, files);
     report.json["scenes"] = to_json(scenes);
     report.json["cache"] = {{"directory", cache_directory().string()}, {"files", to_json(cache_table(files))}};
     if (options.clear) report.json["cache"]["cleared_bytes"] = cleared;

@@ -90,7 +90,7 @@ TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
     result_.comparisons = compare_rows(result_.run.rows);
     result_.measurement.wall_s = 1;
     result_.measurement.load = MachineLoad{0.05, 2.1, 2};
-    const auto unwrapped = [&] { return std::regex_replace(answer_text(result_), std::regex("\\s+"), " "); };
+    const auto unwrapped = [&] { return std::regex_replace(answer_of(result_).text(), std::regex("\\s+"), " "); };
     const std::string quiet = unwrapped();
     EXPECT_TRUE(contains(quiet, "bunny (CPU): bvh bvh2 on openmp, 800.0 Mrays/s")) << quiet;
     EXPECT_TRUE(contains(quiet, "bunny (H200): ")) << quiet;

@@ -32,6 +32,19 @@ TEST(Progress, draws_nothing_where_it_may_not_or_before_two_seconds)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(Progress, without_a_terminal_is_a_line_now_and_then)
+{
+    testing::internal::CaptureStderr();
+    {
+        ProgressLine log(false, true, 0.05);
+        log.show("work", 0.25, 3);
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        log.show("work", 0.5, 2, "bvh2");
+        log.show("work", 0.75, 1);
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "work, bvh2  0.1 s  50 %  2.0 s left\n");
+}
+
 TEST(Progress, draws_after_two_seconds_and_leaves_the_line_empty)
 {
     testing::internal::CaptureStderr();

@@ -1,4 +1,4 @@
-#include "bench/terminal/table.h"
+#include "bench/terminal/sheet.h"
 
 #include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
@@ -29,7 +29,7 @@ TEST(Table, numbers_stand_right_texts_left_and_empty_columns_are_left_out)
                                 "Dürer       12      -\n");
 }
 
-TEST(Table, a_heading_stands_before_its_rows_and_in_text_alone)
+TEST(Table, a_heading_stands_before_its_rows_in_text_and_in_bold_in_markdown)
 {
     Table table(std::vector<Column>{{"a", "a"}});
     table.add_heading("first");
@@ -38,6 +38,56 @@ TEST(Table, a_heading_stands_before_its_rows_and_in_text_alone)
     table.add({std::string("y")});
     EXPECT_EQ(table.text(1), " a\n first\n x\n second: longer than any cell\n y\n");
     EXPECT_EQ(table.csv(), "a\nx\ny\n");
+    EXPECT_EQ(table.markdown(), "| a |\n|---|\n| **first** |\n| x |\n| **second: longer than any cell** |\n| y |\n");
+}
+
+TEST(Table, on_a_narrow_terminal_goes_without_the_least_important_columns)
+{
+    Table table({{.key = "a", .title = "a", .rank = 9}, {"b", "b"}, {.key = "c", .title = "c", .rank = 2}, {"d", "d"}});
+    table.add({std::string("12345"), std::string("12345"), std::string("12345"), std::string("12345")});
+    EXPECT_EQ(table.text(0, 26), table.text()) << "it fits";
+    EXPECT_EQ(table.text(0, 25), "a      b      d\n12345  12345  12345\n");
+    EXPECT_EQ(table.dropped(0, 25), std::vector<std::string>{"c"});
+    EXPECT_EQ(table.text(0, 18), "a      b\n12345  12345\n") << "the rightmost of equal ones first";
+    EXPECT_EQ(table.text(0, 3), "a\n12345\n") << "the first stays";
+    EXPECT_EQ(table.with_columns({"d"}).text(), "a      d\n12345  12345\n");
+    EXPECT_EQ(table.with_columns({"e"}).text(), table.text());
+}
+
+TEST(Sheet, is_wrapped_to_a_terminal_and_says_what_it_leaves_out)
+{
+    Table table({{"a", "a"}, {"b", "a title that is long"}, {"c", "another title that is long"}});
+    table.add({std::string("x"), std::string("y"), std::string("z")});
+    Sheet sheet;
+    sheet.line("A line of a few words that is longer than forty columns.");
+    sheet.table(table);
+    sheet.labelled("Label", "words and words and words and words and words");
+    EXPECT_EQ(sheet.text(), "A line of a few words that is longer than forty columns.\n"
+                            "  a  a title that is long  another title that is long\n"
+                            "  x  y                     z\n"
+                            "Label     words and words and words and words and words\n");
+    EXPECT_EQ(sheet.text({.width = 40}), "A line of a few words that is longer\n"
+                                         "than forty columns.\n"
+                                         "  a  a title that is long\n"
+                                         "  x  y\n"
+                                         "  Left out in 40 columns: another title\n"
+                                         "  that is long.\n"
+                                         "Label     words and words and words and\n"
+                                         "          words and words\n");
+    EXPECT_EQ(sheet.text({.width = 40, .columns = {"c"}}).find("Left out"), std::string::npos);
+}
+
+TEST(Sheet, is_markdown_to_post)
+{
+    Sheet sheet;
+    sheet.heading("a scene");
+    sheet.gap();
+    sheet.line("a <line> of cuda_host");
+    sheet.verbatim("  as it is\n");
+    sheet.labelled("One", "first");
+    sheet.labelled("Two", "second");
+    EXPECT_EQ(sheet.markdown(), "### a scene\n\na \\<line> of cuda\\_host\n\n```\n  as it is\n```\n\n"
+                                "- **One**: first\n- **Two**: second\n");
 }
 
 TEST(Table, csv_has_keys_all_digits_and_quotes_where_needed)

@@ -54,7 +54,7 @@ TEST(PaperTable, a_figure_without_its_points_says_where_they_are)
     PaperFigure figure = figure_of_two_points();
     const std::string sentence = "The 2 points are in the result's CSV and JSON.";
     EXPECT_TRUE(contains(figure_markdown(figure), "- " + sentence));
-    EXPECT_TRUE(contains(figure_text(figure), sentence));
+    EXPECT_TRUE(contains(figure_sheet(figure).text(), sentence));
     figure.series.clear();
     EXPECT_FALSE(contains(figure_markdown(figure), "points are"));
 }

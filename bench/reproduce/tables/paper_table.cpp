@@ -119,20 +119,14 @@ Cell ratio_cell(const PaperCell& cell, const Column&)
     return number != nullptr ? cell_of(number->ratio()) : Cell();
 }
 
-std::string claims_text(const std::vector<Claim>& claims)
+void add_claims_and_notes(Sheet& sheet, const std::vector<Claim>& claims, const std::vector<std::string>& notes)
 {
-    std::string text;
+    if (!claims.empty()) sheet.gap();
     for (const Claim& claim : claims)
-        text += wrapped(fmt::format("{}: {}. {}", claim.text, name_of(claim.verdict), claim.evidence), 110, 2);
-    return text.empty() ? text : "\n" + text;
-}
-
-std::string notes_text(const std::vector<std::string>& notes)
-{
-    std::string text;
+        sheet.prose(fmt::format("{}: {}. {}", claim.text, name_of(claim.verdict), claim.evidence), 2);
+    if (!notes.empty()) sheet.gap();
     for (const std::string& note : notes)
-        text += wrapped(note, 110, 2);
-    return text.empty() ? text : "\n" + text;
+        sheet.prose(note, 2);
 }
 
 std::string claims_markdown(const std::vector<Claim>& claims)
@@ -356,10 +350,15 @@ Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperF
     return tidy;
 }
 
-std::string table_text(const PaperTable& table)
+Sheet table_sheet(const PaperTable& table)
 {
-    return headline(table.id, table.title, table.source) + "\n\n" + with_paper_columns(table).text(2) +
-           claims_text(table.claims) + notes_text(table.notes) + "\n";
+    Sheet sheet;
+    sheet.heading(headline(table.id, table.title, table.source));
+    sheet.gap();
+    sheet.table(with_paper_columns(table));
+    add_claims_and_notes(sheet, table.claims, table.notes);
+    sheet.gap();
+    return sheet;
 }
 
 std::string table_markdown(const PaperTable& table)
@@ -368,13 +367,15 @@ std::string table_markdown(const PaperTable& table)
            claims_markdown(table.claims) + notes_markdown(table.notes) + "\n";
 }
 
-std::string figure_text(const PaperFigure& figure)
+Sheet figure_sheet(const PaperFigure& figure)
 {
-    std::string text = headline(figure.id, figure.title, figure.source) + "\n" + claims_text(figure.claims) +
-                       notes_text(notes_of(figure));
+    Sheet sheet;
+    sheet.heading(headline(figure.id, figure.title, figure.source));
+    add_claims_and_notes(sheet, figure.claims, notes_of(figure));
     for (const std::string& picture : figure.pictures)
-        text += "  picture: " + picture + "\n";
-    return text + "\n";
+        sheet.line("  picture: " + picture);
+    sheet.gap();
+    return sheet;
 }
 
 std::string figure_markdown(const PaperFigure& figure)

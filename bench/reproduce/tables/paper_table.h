@@ -2,7 +2,7 @@
 
 #include "bench/reproduce/claims.h"
 #include "bench/rows/row_run.h"
-#include "bench/terminal/table.h"
+#include "bench/terminal/sheet.h"
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -77,10 +77,10 @@ struct PaperFigure {
 /// claim with its verdict and evidence; a note.
 [[nodiscard]] Table tidy_table(const std::vector<PaperTable>& tables, const std::vector<PaperFigure>& figures);
 
-/// Title, rows, claims and notes as readable text.
-[[nodiscard]] std::string table_text(const PaperTable& table);
+/// Title, rows, claims and notes, for people.
+[[nodiscard]] Sheet table_sheet(const PaperTable& table);
 [[nodiscard]] std::string table_markdown(const PaperTable& table);
-[[nodiscard]] std::string figure_text(const PaperFigure& figure);
+[[nodiscard]] Sheet figure_sheet(const PaperFigure& figure);
 [[nodiscard]] std::string figure_markdown(const PaperFigure& figure);
 
 } // namespace tetrace

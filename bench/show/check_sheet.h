@@ -1,0 +1,29 @@
+#pragma once
+
+#include "bench/output/row_fields.h"
+#include "bench/terminal/sheet.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// What `tetrace check` found; refers to the rows.
+struct CheckFindings {
+    const std::vector<RowRun>* rows = nullptr;
+    std::vector<nlohmann::json> scenes; ///< as results record them
+    std::vector<std::string> missing;   ///< devices, a sentence each
+};
+
+/// What a row's fields are read from, its conformity included.
+[[nodiscard]] RowFacts check_facts(const RowRun& row);
+
+/// Every row, flat.
+[[nodiscard]] Table check_table(const std::vector<RowRun>& rows);
+
+/// What `check` prints, and `show` prints again: without the walks of differing rays where the rows were read from a
+/// result.
+[[nodiscard]] Sheet check_sheet(const CheckFindings& found);
+
+} // namespace tetrace

@@ -1,0 +1,94 @@
+#include "bench/show/show_report.h"
+
+#include "bench/output/bench_tables.h"
+#include "bench/show/check_sheet.h"
+#include "bench/show/recorded_rows.h"
+#include "core/base/printable.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+std::vector<std::string> sentences_at(const ResultValue& section, const char* key)
+{
+    std::vector<std::string> sentences;
+    if (const auto list = section.find(key))
+        for (const ResultValue& sentence : list->items())
+            sentences.push_back(printable_text(sentence.text()));
+    return sentences;
+}
+
+std::vector<nlohmann::json> scenes_of(const ResultValue& section)
+{
+    std::vector<nlohmann::json> scenes;
+    for (const ResultValue& scene : section.at("scenes").items())
+        scenes.push_back(scene.json());
+    return scenes;
+}
+
+unsigned small_count(const ResultValue& value)
+{
+    constexpr unsigned most = 1'000'000;
+    return static_cast<unsigned>(std::min<std::uint64_t>(value.count(), most));
+}
+
+std::optional<MachineLoad> load_of(const ResultValue& section)
+{
+    const auto load = section.find("load");
+    if (!load) return std::nullopt;
+    return MachineLoad{load->at("others").number(), load->at("average").number(), small_count(load->at("processors"))};
+}
+
+RunAgain bench_again(const ResultFile& file)
+{
+    const ResultValue section = file.section();
+    BenchResult result;
+    result.run.rows = read_rows(file);
+    result.devices = read_devices(file, result.run.rows);
+    result.comparisons = compare_rows(result.run.rows);
+    result.scenes = scenes_of(section);
+    result.missing_scenes = sentences_at(section, "missing_scenes");
+    result.missing_devices = sentences_at(section, "missing_devices");
+    result.threads = small_count(section.at("threads"));
+    result.measurement.samples = small_count(section.at("samples_a_row"));
+    result.measurement.lowered = section.at("samples_lowered").flag();
+    result.measurement.load = load_of(section);
+    if (const auto timed = section.find("timed_s")) result.measurement.wall_s = timed->number();
+    if (const auto asked = section.find("samples_asked")) result.samples_asked = small_count(*asked);
+    if (const auto budget = section.find("budget_s")) result.budget_s = budget->number();
+    Sheet sheet = bench_sheet(result);
+    if (!section.find("timed_s") && is_timed(result))
+        sheet.labelled("Not here", "how long the run took, how many samples were asked for, the size of the tets, and "
+                                   "which APIs had no device: the result is of a version that did not record them.");
+    return {std::move(sheet), flat_table(result)};
+}
+
+RunAgain check_again(const ResultFile& file)
+{
+    const ResultValue section = file.section();
+    const std::vector<RowRun> rows = read_rows(file);
+    Sheet sheet = check_sheet({&rows, scenes_of(section), sentences_at(section, "missing_devices")});
+    const auto differs = [](const RowRun& row) {
+        const Traced* found = traced(row);
+        return found != nullptr && (found->first_different || found->verdicts.first_wrong);
+    };
+    if (std::ranges::any_of(rows, differs))
+        sheet.labelled("Not here", "the tets that the differing rays walk through: 'path' and 'own_path' in the JSON.");
+    return {std::move(sheet), check_table(rows)};
+}
+
+} // namespace
+
+RunAgain run_again(const ResultFile& file)
+{
+    if (file.head.verb == "bench") return bench_again(file);
+    if (file.head.verb == "check") return check_again(file);
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("showing '{}', of 'tetrace {}': results of bench, check and reproduce can be shown again",
+                            file.path.string(), file.head.verb));
+}
+
+} // namespace tetrace

@@ -1,0 +1,105 @@
+#include "tests/support/program_fixture.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace tetrace::test;
+
+namespace {
+
+/// `tetrace show`: results printed again, and several side by side.
+class Show : public ProgramTest {
+protected:
+    /// What `show` prints after the line that names the run, and what the run printed before the line that names the
+    /// file.
+    static std::string without_head(const std::string& text) { return text.substr(text.find("\n\n") + 2); }
+    static std::string without_result(const std::string& text) { return text.substr(0, text.find("Result    ")); }
+
+    void expect_the_same(const std::string& arguments)
+    {
+        const Ended first = run(arguments + " --out result.json");
+        ASSERT_EQ(first.code, 0) << first.errors;
+        const Ended again = run("show result.json");
+        EXPECT_EQ(again.code, 0) << again.errors;
+        EXPECT_EQ(without_head(again.out), without_result(first.out));
+        EXPECT_TRUE(contains(again.out, arguments.substr(0, arguments.find(' ')))) << again.out;
+    }
+
+    const std::string tiny_ = " --scene cubes --resolution 4 --size 24 ";
+};
+
+} // namespace
+
+TEST_F(Show, prints_what_bench_printed)
+{
+    expect_the_same("bench --samples 5 --backend openmp,embree,cuda-host" + tiny_);
+}
+
+TEST_F(Show, prints_what_bench_printed_of_given_rays_and_rows_that_did_not_run)
+{
+    expect_the_same("bench --samples 3 --backend openmp,cuda-host --rays shadow,random --layout half32,bvh2" + tiny_);
+}
+
+TEST_F(Show, prints_what_check_printed)
+{
+    expect_the_same("check --backend openmp,embree,cuda-host" + tiny_);
+}
+
+TEST_F(Show, prints_what_reproduce_printed)
+{
+    expect_the_same("reproduce table3,table4,figure6 --backend openmp --views 0-1281:400" + tiny_);
+}
+
+TEST_F(Show, is_ready_to_post_as_markdown_and_chooses_columns)
+{
+    ASSERT_EQ(bench("--out result.json").code, 0);
+    const std::string posted = run("show result.json --format markdown").out;
+    EXPECT_TRUE(contains(posted, "### cubes: ")) << posted;
+    EXPECT_TRUE(contains(posted, "| cdt maria tet80 | openmp | ")) << posted;
+    EXPECT_TRUE(contains(posted, "\n- **Verified**: ")) << posted;
+    const std::string narrow = run("show result.json --columns mrays_per_s,status").out;
+    EXPECT_TRUE(contains(narrow, "Mrays/s  status")) << narrow;
+    const Ended wrong = run("show result.json --columns speed");
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_TRUE(contains(wrong.errors, "no table has the column 'speed'; accepted: row, backend, mrays_per_s"))
+        << wrong.errors;
+    EXPECT_EQ(bench("--columns speed").code, 2) << "before anything is measured";
+}
+
+TEST_F(Show, names_the_verbs_whose_results_it_shows)
+{
+    ASSERT_EQ(run("scenes --out scenes.json").code, 0);
+    const Ended scenes = run("show scenes.json");
+    EXPECT_EQ(scenes.code, 2);
+    EXPECT_TRUE(contains(scenes.errors, "results of bench, check and reproduce")) << scenes.errors;
+    EXPECT_EQ(run("show missing.json").code, 3);
+}
+
+TEST_F(Show, every_result_of_this_repository)
+{
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(TETRACE_RESULTS)) {
+        if (entry.path().extension() != ".json" || entry.path().filename() == "result.schema.json") continue;
+        const Ended shown = run("show '" + entry.path().string() + "'");
+        EXPECT_EQ(shown.code, 0) << entry.path() << shown.errors;
+        EXPECT_GT(shown.out.size(), 1000u) << entry.path();
+    }
+}
+
+TEST_F(Show, several_results_stand_side_by_side)
+{
+    for (const char* const name : {"a", "b", "c"})
+        ASSERT_EQ(run(std::string("bench --samples 5 --backend openmp --layout tet80,half32 --label ") + name +
+                      " --out " + name + ".json" + tiny_)
+                      .code,
+                  0);
+    auto other = nlohmann::json::parse(file("c.json"));
+    other["tetrace"]["rows"][0]["hit_hash"] = "0000000000000000";
+    write_file(folder_ / "c.json", other.dump());
+    const Ended ended = run("compare a.json b.json c.json --out all.json");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "on b,")) << ended.out;
+    EXPECT_TRUE(contains(ended.out, " DIFFERENT\n")) << ended.out;
+    EXPECT_TRUE(contains(ended.out, "DIFFERENT in C: hit hash")) << ended.out;
+    EXPECT_TRUE(contains(ended.out, "C / A ")) << ended.out;
+    EXPECT_EQ(nlohmann::json::parse(file("all.json"))["tetrace"]["comparisons"].size(), 2u);
+}
