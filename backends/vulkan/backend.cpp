@@ -1,5 +1,6 @@
 #include "backends/vulkan/backend.h"
 
+#include "backends/vulkan/code/executable.h"
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
@@ -12,7 +13,7 @@
 namespace tetrace {
 namespace {
 
-class VulkanBackend : public Backend {
+class VulkanBackend : public Backend, public CodeSource {
 public:
     [[nodiscard]] std::string name() const override { return "vulkan"; }
     [[nodiscard]] std::string clock() const override { return "Vulkan timestamps"; }
@@ -54,6 +55,14 @@ public:
     {
         return vulkan::measure_device(vulkan::Context(found().devices.at(device)),
                                       largest_buffer(devices().at(device), options));
+    }
+
+    [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
+                                        bool starts_outside) const override
+    {
+        const vulkan::FoundDevice& wanted = found().devices.at(device);
+        if (!wanted.facts.usable && !wanted.facts.compile_only) throw Error(ErrorKind::missing, wanted.facts.reason);
+        return vulkan::compiled_code(wanted, kernel, starts_outside);
     }
 
 private:

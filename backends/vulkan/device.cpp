@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <thread>
 
 namespace tetrace::vulkan {
@@ -138,6 +139,12 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     facts.id = id_of(facts);
     facts.reason = why_not_usable(found.limits);
     facts.usable = facts.reason.empty();
+    if (facts.usable && is_null_hardware(facts.implementation, facts.name)) {
+        facts.usable = false;
+        facts.compile_only = true;
+        facts.reason = "compile only: hardware that is not here, which the driver offers because RADV_FORCE_FAMILY is "
+                       "set; it compiles for it and runs nothing ('tetrace inspect' asks it)";
+    }
     found.build_key = facts.name + ";" + facts.driver + ";" + std::to_string(properties.driverVersion) + ";" +
                       hexadecimal(properties.pipelineCacheUUID);
     return found;
@@ -160,6 +167,15 @@ std::uint32_t most_steps_of(std::string_view implementation)
         std::from_chars(implementation.data() + lavapipe.size() + 1, implementation.data() + implementation.size(),
                         version);
     return version >= first_without_limit ? 0 : 28'000;
+}
+
+bool is_null_hardware(std::string_view implementation, std::string_view device_name)
+{
+    // Mesa 22.3 calls it "Null hardware (RADV GFX1100)". Other versions may not: where the variable is set, radv lists
+    // nothing else.
+    const char* const family = std::getenv("RADV_FORCE_FAMILY");
+    return implementation.starts_with("radv") &&
+           (device_name.starts_with("Null hardware") || (family != nullptr && *family != '\0'));
 }
 
 std::string why_not_usable(const Limits& limits)

@@ -54,6 +54,10 @@ inline constexpr std::uint32_t least_storage_buffers = storage_buffers_needed(5,
 /// Every device of every driver, or one entry that says why there is none. Throws nothing.
 [[nodiscard]] std::vector<FoundDevice> find_devices();
 
+/// Whether a driver offers hardware that is not here: it compiles for it, and can run nothing. radv does so where
+/// RADV_FORCE_FAMILY names a family of GPUs. implementation: as implementation_of() names it.
+[[nodiscard]] bool is_null_hardware(std::string_view implementation, std::string_view device_name);
+
 /// The most steps of a walk on an implementation, as implementation_of() names it; 0: no limit. lavapipe before Mesa 25
 /// ends the loops of an invocation after 65,535 iterations in all, without an error (tests/expected/README.md,
 /// `loop_of_70000_iterations`). A walk that asks whether it goes in circles follows its path twice: 2 * 28,000 steps

@@ -30,17 +30,7 @@ bool is_hit(const vk::PipelineCreationFeedback& feedback)
     return (feedback.flags & hit) == hit;
 }
 
-} // namespace
-
-Program::Program(const Context& context, const ProgramId& id, const ProgramCache& cache)
-{
-    context.run("compiling " + id.name, 0, [&] {
-        make_layout(context, id);
-        make_pipeline(context, id, cache);
-    });
-}
-
-void Program::make_layout(const Context& context, const ProgramId& id)
+std::vector<vk::DescriptorSetLayoutBinding> bindings_of(const ProgramId& id)
 {
     std::vector<vk::DescriptorSetLayoutBinding> bindings;
     const auto add = [&](std::uint32_t binding, vk::DescriptorType type) {
@@ -55,34 +45,44 @@ void Program::make_layout(const Context& context, const ProgramId& id)
     for (const TexelBinding& texels : id.texels)
         add(texels.binding, vk::DescriptorType::eUniformTexelBuffer);
     if (id.structure) add(*id.structure, vk::DescriptorType::eAccelerationStructureKHR);
-    set_layout_ = context.device().createDescriptorSetLayout(vk::DescriptorSetLayoutCreateInfo{}.setBindings(bindings));
-    const std::array sets = {*set_layout_};
+    return bindings;
+}
+
+const EmbeddedKernel& module_of(const ProgramId& id)
+{
+    const EmbeddedKernel* const kernel = find_kernel(id.kernels, id.name);
+    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + id.name);
+    return *kernel;
+}
+
+} // namespace
+
+vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device, const ProgramId& id)
+{
+    const auto bindings = bindings_of(id);
+    return device.createDescriptorSetLayout(vk::DescriptorSetLayoutCreateInfo{}.setBindings(bindings));
+}
+
+vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, const ProgramId& id,
+                                              const vk::raii::DescriptorSetLayout& set_layout)
+{
+    const std::array sets = {*set_layout};
     const auto push =
         vk::PushConstantRange{}.setStageFlags(vk::ShaderStageFlagBits::eCompute).setSize(id.push_constant_bytes);
     auto info = vk::PipelineLayoutCreateInfo{}.setSetLayouts(sets);
     if (id.push_constant_bytes != 0) info.setPushConstantRanges(push);
-    layout_ = context.device().createPipelineLayout(info);
-    if (bindings.empty()) return;
-    std::vector<vk::DescriptorPoolSize> sizes;
-    for (const auto& binding : bindings)
-        sizes.emplace_back(binding.descriptorType, 1);
-    pool_ = context.device().createDescriptorPool(vk::DescriptorPoolCreateInfo{}
-                                                      .setFlags(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet)
-                                                      .setMaxSets(1)
-                                                      .setPoolSizes(sizes));
-    const auto allocation = vk::DescriptorSetAllocateInfo{}.setDescriptorPool(*pool_).setSetLayouts(sets);
-    set_ = std::move(vk::raii::DescriptorSets(context.device(), allocation).front());
+    return device.createPipelineLayout(info);
 }
 
-void Program::make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache)
+vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id, const vk::raii::PipelineLayout& layout,
+                           vk::Optional<const vk::raii::PipelineCache> cache, vk::ComputePipelineCreateInfo info)
 {
-    const EmbeddedKernel* const kernel = find_kernel(id.kernels, id.name);
-    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + id.name);
+    const EmbeddedKernel& kernel = module_of(id);
     // Embedded bytes are aligned for words.
-    const vk::raii::ShaderModule module = context.device().createShaderModule(
-        vk::ShaderModuleCreateInfo{}
-            .setCodeSize(kernel->bytes.size())
-            .setPCode(reinterpret_cast<const std::uint32_t*>(kernel->bytes.data())));
+    const vk::raii::ShaderModule module =
+        device.createShaderModule(vk::ShaderModuleCreateInfo{}
+                                      .setCodeSize(kernel.bytes.size())
+                                      .setPCode(reinterpret_cast<const std::uint32_t*>(kernel.bytes.data())));
     const std::array<std::uint32_t, 3> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE,
                                                  id.selects_minima ? VK_TRUE : VK_FALSE};
     std::array<vk::SpecializationMapEntry, values.size()> entries;
@@ -95,16 +95,47 @@ void Program::make_pipeline(const Context& context, const ProgramId& id, const P
                      .setModule(*module)
                      .setPName("main");
     if (id.tile_height != 0) stage.setPSpecializationInfo(&constants);
+    return device.createComputePipeline(cache, info.setStage(stage).setLayout(*layout));
+}
+
+Program::Program(const Context& context, const ProgramId& id, const ProgramCache& cache)
+{
+    context.run("compiling " + id.name, 0, [&] {
+        make_layout(context, id);
+        make_pipeline(context, id, cache);
+    });
+}
+
+void Program::make_layout(const Context& context, const ProgramId& id)
+{
+    const auto bindings = bindings_of(id);
+    set_layout_ = make_set_layout(context.device(), id);
+    layout_ = make_pipeline_layout(context.device(), id, set_layout_);
+    if (bindings.empty()) return;
+    std::vector<vk::DescriptorPoolSize> sizes;
+    for (const auto& binding : bindings)
+        sizes.emplace_back(binding.descriptorType, 1);
+    pool_ = context.device().createDescriptorPool(vk::DescriptorPoolCreateInfo{}
+                                                      .setFlags(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet)
+                                                      .setMaxSets(1)
+                                                      .setPoolSizes(sizes));
+    const std::array sets = {*set_layout_};
+    const auto allocation = vk::DescriptorSetAllocateInfo{}.setDescriptorPool(*pool_).setSetLayouts(sets);
+    set_ = std::move(vk::raii::DescriptorSets(context.device(), allocation).front());
+}
+
+void Program::make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache)
+{
     vk::PipelineCreationFeedback feedback, stage_feedback;
     auto feedbacks = vk::PipelineCreationFeedbackCreateInfo{}
                          .setPPipelineCreationFeedback(&feedback)
                          .setPipelineStageCreationFeedbackCount(1)
                          .setPPipelineStageCreationFeedbacks(&stage_feedback);
-    auto info = vk::ComputePipelineCreateInfo{}.setStage(stage).setLayout(*layout_);
+    vk::ComputePipelineCreateInfo info;
     if (context.found().tells_cache_hits) info.setPNext(&feedbacks);
-    const std::uint64_t key = key_of(context.found(), id, kernel->bytes);
+    const std::uint64_t key = key_of(context.found(), id, module_of(id).bytes);
     const vk::raii::PipelineCache pipelines = make_cache(context, cache, key);
-    pipeline_ = context.device().createComputePipeline(pipelines, info);
+    pipeline_ = compile(context.device(), id, layout_, pipelines, info);
     is_cached_ = is_hit(feedback);
     if (!is_cached_) cache.keep(key, pipelines.getData());
 }

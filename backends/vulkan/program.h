@@ -31,6 +31,16 @@ struct ProgramId {
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 
+// The steps from an id to a pipeline, for those who need no queue.
+[[nodiscard]] vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device, const ProgramId& id);
+[[nodiscard]] vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, const ProgramId& id,
+                                                            const vk::raii::DescriptorSetLayout& set_layout);
+/// info: flags and further structures; stage and layout are set here. Throws Error{internal} where id names no program.
+[[nodiscard]] vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id,
+                                         const vk::raii::PipelineLayout& layout,
+                                         vk::Optional<const vk::raii::PipelineCache> cache,
+                                         vk::ComputePipelineCreateInfo info);
+
 /// A compute pipeline with its buffers.
 class Program {
 public:

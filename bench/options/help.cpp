@@ -125,6 +125,21 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce growth --sizes 1500,25000,400000,1000000 --backend openmp,embree\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
+    {Verb::inspect, "show what real GPU compilers make of the kernels",
+     "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the compilers "
+     "say: registers, spills, scratch memory, the subgroups that a processor of the GPU holds at once, instructions, "
+     "branches, loads, and AMD's own estimate of cycles. Nothing is run. AMD's targets are asked through Mesa's RADV "
+     "on "
+     "null hardware (package mesa-vulkan-drivers), NVIDIA's through nvcc and ptxas. A target without its compiler is "
+     "'skipped', with the package that brings it.\n\n"
+     "In exact mode no sign may be decided by a fused operation. The code of each program is searched for one: AMD's "
+     "machine code, NVIDIA's PTX. 'none' means that there is none; 'boxes' counts those in the box tests of BVHs, "
+     "which "
+     "decide nothing; 'DECISIONS' counts the forbidden ones, and the first is printed. Exits with 1 where there is "
+     "one. docs/inspect.md says what each column is, and what it cannot say.",
+     "  tetrace inspect\n"
+     "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
+     "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require sm_90\n"},
     {Verb::compare, "compare results of bench, row by row",
      "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "
      "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "

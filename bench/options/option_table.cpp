@@ -17,9 +17,10 @@ constexpr unsigned bit(Verb verb)
 constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
 constexpr unsigned tracing = measuring | bit(Verb::render);
 constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
+constexpr unsigned selecting = tracing | bit(Verb::inspect);
 constexpr unsigned building = bit(Verb::build) | reproducing;
 constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) |
-                               bit(Verb::reproduce) | bit(Verb::compare) | bit(Verb::show);
+                               bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::compare) | bit(Verb::show);
 
 /// The distinct values that all kernels have in one part of their id: the accepted values of an option.
 template <class T>
@@ -64,6 +65,27 @@ std::vector<OptionRow> reproduce_options()
          "Sizes of growth: triangles of banana, or cubes along an axis with --scene cubes. Default: 1500, 6000, 25000, "
          "100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
          bit(Verb::reproduce), true, append_count("--sizes", &Options::sizes, 2, most_banana)},
+    };
+}
+
+std::vector<OptionRow> inspect_options()
+{
+    return {
+        {"Compilers", "--target", "GPU",
+         "Compile for this GPU, which need not be here: one of AMD's as RADV names it (gfx1100, navi21, gfx906, ...), "
+         "or one of NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
+         bit(Verb::inspect), true, [](Options& o, const std::string& v) { o.gpus.push_back(v); }},
+        {"Compilers", "--entry", "NAME",
+         "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or in "
+         "a tet; 'rays', given ones; 'search', exit searches of table5. Default: all.",
+         bit(Verb::inspect), true, append("--entry", &Options::entries)},
+        {"Compilers", "--require", "GPU",
+         "Fail with exit code 3 unless this target's compiler is here and every program came out of it.",
+         bit(Verb::inspect), true, [](Options& o, const std::string& v) { o.required.push_back(v); }},
+        {"Compilers", "--code", "FOLDER",
+         "Write the code of every program into this folder: assembly of AMD's; PTX of NVIDIA's, and machine code where "
+         "nvdisasm is. Default: none.",
+         bit(Verb::inspect), false, set_path("--code", &Options::code_folder)},
     };
 }
 
@@ -127,19 +149,19 @@ std::vector<OptionRow> row_options()
          "Keep the rows of this structure: cdt or bvh. Default: both. 'check' leaves out the rows of Embree's and a "
          "driver's own BVHs unless --structure, --method, --layout, --backend, --filter or '--require embree' is "
          "given.",
-         tracing, true, append("--structure", &Options::structures)},
+         selecting, true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
              " (the number of rays that a BVH gets at once), or 'all'. Default: maria, project on half32, and the "
              "methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria with BVHs.",
-         reproducing, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
+         reproducing | selecting, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet20 or tet16 (cdt with project), bvh2 or "
          "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its ray queries). "
          "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
          "where rt is named here or in a filter.",
-         reproducing, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
+         reproducing | selecting, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
          "only if it is named here or by --require; they are skipped, with the reason. Default: all that have a usable "
@@ -162,7 +184,7 @@ std::vector<OptionRow> row_options()
         {"Rows", "--math", "MODE",
          "'exact': no contraction, the same bits everywhere; 'fast': the compiler is free. Embree has one build, and "
          "its rows appear in both modes. Default: exact.",
-         tracing, true, append("--math", &Options::math)},
+         selecting, true, append("--math", &Options::math)},
         {"Rows", "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but the tets that "
          "no ray from outside reaches come last; 'input', as TetGen wrote them. For rows of structure cdt only. "
@@ -172,7 +194,7 @@ std::vector<OptionRow> row_options()
          "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
          "project on half32. Embree has a schedule of its own. Default: tiles and packets.",
-         tracing, true, append("--schedule", &Options::schedules)},
+         selecting, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match of a regular expression (RE2's): 'tet96.*openmp'. Default: all.",
          measuring | bit(Verb::compare), false, [](Options& o, const std::string& v) { o.filter = parse_filter(v); }},
@@ -317,8 +339,8 @@ std::vector<OptionRow> output_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part :
-         {reproduce_options, scene_options, row_options, ray_options, judging_options, report_options, output_options})
+    for (auto part : {reproduce_options, inspect_options, scene_options, row_options, ray_options, judging_options,
+                      report_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     return table;

@@ -13,11 +13,11 @@
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
-enum class Verb { devices, scenes, build, bench, check, render, reproduce, compare, show, report, help, version };
+enum class Verb { devices, scenes, build, bench, check, render, reproduce, inspect, compare, show, report, help, version };
 template <>
-inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
-                                                                    "render", "reproduce", "compare", "show", "report",
-                                                                    "help", "version");
+inline constexpr auto enum_names<Verb> =
+    names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check", "render", "reproduce", "inspect",
+                               "compare", "show", "report", "help", "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -41,6 +41,12 @@ inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::growth>
 enum class PaperBuild { ours, paper, rays };
 template <>
 inline constexpr auto enum_names<PaperBuild> = names_up_to<PaperBuild::rays>("ours", "paper", "rays");
+
+/// What rays an entry point of a kernel is for: primary ones from outside the domain, primary ones from inside, given
+/// ones, and single exit searches.
+enum class Entry { outside, inside, rays, search };
+template <>
+inline constexpr auto enum_names<Entry> = names_up_to<Entry::search>("outside", "inside", "rays", "search");
 
 /// The number of exit searches behind Table 5. Default: the paper's.
 struct SearchSize {
@@ -99,7 +105,11 @@ struct Options {
     std::vector<std::uint32_t> sizes;     ///< of `reproduce growth`; empty: growth_sizes()
     bool resume = false;                  ///< of `reproduce`: continue from the journal
 
-    std::vector<std::string> required; ///< backends that must have a usable device
+    std::vector<std::string> gpus;                    ///< of `inspect`: targets; empty: those of targets_of()
+    std::vector<Entry> entries;                       ///< of `inspect`; empty: all
+    std::optional<std::filesystem::path> code_folder; ///< of `inspect`: where the code goes
+
+    std::vector<std::string> required; ///< backends that must have a usable device; of `inspect`, targets to be asked
     bool allow_flawed = false;
     double tolerance = 0.03;    ///< of `compare`, a fraction: a row that is slower by more is a regression
     bool allow_missing = false; ///< of `compare`

@@ -15,6 +15,7 @@ int bench_command(const Options& options);
 int check_command(const Options& options);
 int render_command(const Options& options);
 int reproduce_command(const Options& options);
+int inspect_command(const Options& options);
 int compare_command(const Options& options);
 int show_command(const Options& options);
 int report_command(const Options& options);

@@ -99,7 +99,10 @@ Table device_table(const std::vector<ApiDevice>& devices)
                    count_cell(device.memory_bytes), count_cell(device.max_buffer_bytes),
                    count_cell(device.max_group_items), count_cell(device.group_width),
                    device.timer_period_s > 0 ? Cell(device.timer_period_s) : Cell(), text_cell(found.self_test_text),
-                   std::string(device.usable ? "usable" : "missing"), text_cell(device.reason)});
+                   std::string(device.usable         ? "usable"
+                               : device.compile_only ? "compile only"
+                                                     : "missing"),
+                   text_cell(device.reason)});
     }
     return table;
 }

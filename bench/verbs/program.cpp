@@ -1,3 +1,4 @@
+#include "bench/inspection/null_hardware.h"
 #include "bench/options/help.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
@@ -38,6 +39,7 @@ int run_verb(const Options& options)
     case Verb::check: return check_command(options);
     case Verb::render: return render_command(options);
     case Verb::reproduce: return reproduce_command(options);
+    case Verb::inspect: return inspect_command(options);
     case Verb::compare: return compare_command(options);
     case Verb::show: return show_command(options);
     case Verb::report: return report_command(options);
@@ -62,6 +64,8 @@ int run_program(const std::vector<std::string>& arguments)
 {
     command_line() = arguments;
     try {
+        if (!arguments.empty() && arguments.front() == null_hardware_word)
+            return run_null_hardware({arguments.begin() + 1, arguments.end()});
         return run_verb(parse_options(arguments));
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());

@@ -38,7 +38,8 @@ struct Device {
     double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
     unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
-    std::string reason; ///< why not, where not usable
+    bool compile_only = false; ///< not usable, but its driver compiles for it: hardware that is not here
+    std::string reason;        ///< why not, where not usable
 };
 
 /// What a session works on; the caller keeps it alive. `packed` is null for kernels that are not portable, which build

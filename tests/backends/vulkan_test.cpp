@@ -197,6 +197,17 @@ TEST(VulkanImplementation, only_lavapipe_before_mesa_25_limits_the_steps_of_a_wa
         EXPECT_EQ(vulkan::most_steps_of(free), 0u) << free;
 }
 
+TEST(VulkanImplementation, hardware_that_radv_invents_is_told_from_hardware)
+{
+    ::unsetenv("RADV_FORCE_FAMILY");
+    EXPECT_TRUE(vulkan::is_null_hardware("radv-22.3", "Null hardware (RADV GFX1100)"));
+    EXPECT_FALSE(vulkan::is_null_hardware("radv-22.3", "AMD Radeon RX 7900 XTX (RADV NAVI31)"));
+    ::setenv("RADV_FORCE_FAMILY", "navi31", 1);
+    EXPECT_TRUE(vulkan::is_null_hardware("radv-25.0", "AMD Radeon RX 7900 XTX (RADV NAVI31)"));
+    EXPECT_FALSE(vulkan::is_null_hardware("lavapipe-25.0", "llvmpipe"));
+    ::unsetenv("RADV_FORCE_FAMILY");
+}
+
 TEST(VulkanLimits, each_is_told_with_its_number)
 {
     const vulkan::Limits good{VK_API_VERSION_1_1, 0, 64, 128, 13, 128, 128, 65535, 1u << 30};

@@ -25,8 +25,8 @@ TEST_F(Program, describes_itself)
     EXPECT_TRUE(contains(run("").out, "Usage: tetrace VERB"));
     for (const char* part : {"tetrace ", "; kernels exact: ", "Embree ", ", fmt ", "Apache License"})
         EXPECT_TRUE(contains(run("--version").out, part)) << part;
-    for (const char* const verb :
-         {"devices", "scenes", "build", "bench", "check", "render", "reproduce", "compare", "report", "help"}) {
+    for (const char* const verb : {"devices", "scenes", "build", "bench", "check", "render", "reproduce", "inspect",
+                                   "compare", "show", "report", "help"}) {
         const Ended help = run(std::string(verb) + (std::string(verb) == "help" ? "" : " --help"));
         EXPECT_EQ(help.code, 0);
         EXPECT_TRUE(contains(help.out, "Examples")) << verb;

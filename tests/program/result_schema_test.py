@@ -122,7 +122,8 @@ class ResultSchema(unittest.TestCase):
             cls.compare = fresh(["compare", file.name, file.name])
         cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--method", "maria",
-                                    "--layout", "tet80", "--backend", "openmp", "--threads", "1"])}
+                                    "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
+                   "inspect": fresh(["inspect", "--target", "gfx1100", "--method", "maria", "--layout", "tet80"], (0, 3))}
 
     def accepts(self, result, name):
         errors = [f"{'.'.join(map(str, e.absolute_path))}: {e.message[:300]}" for e in VALIDATOR.iter_errors(result)]
@@ -191,6 +192,9 @@ class ResultSchema(unittest.TestCase):
             ("table5", "searches", "rows", 0, "batch_medians_s", []),
             ("table5", "searches", "rows", 0, "verification", "wrong", -1),
             ("compare", "comparison", "rows", 0, "verdict", "same"),
+            ("inspect", "programs", 0, "status", "fine"),
+            ("inspect", "programs", 0, "target", "/dev/null"),
+            ("inspect", "programs", 0, "registers", -1),
         ):
             self.refuses(put(*bad), str(bad))
 
@@ -199,6 +203,7 @@ class ResultSchema(unittest.TestCase):
             "bench": ("rows", "devices", "ratios", "scenes", "host", "commit"),
             "check": ("rows", "matrix", "missing_devices"),
             "compare": ("comparison",),
+            "inspect": ("programs", "skipped_targets"),
         }.items():
             for key in keys:
                 self.refuses(twin(self.all[verb], (key,), lambda parent, name: parent.pop(name)), f"{verb}: no {key}")

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "bench/inspection/entry_point.h"
+#include "bench/inspection/machine_code.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// Whether a program came out of its compiler.
+enum class InspectedStatus { ok, skipped, error };
+template <>
+inline constexpr auto enum_names<InspectedStatus> = names_up_to<InspectedStatus::error>("ok", "skipped", "error");
+
+/// Where fused operations are: nowhere; where they decide nothing (boxes of BVHs, docs/spec/bvhs.md, B7); where signs
+/// are decided, which exact mode forbids; or wherever the compiler likes, in math mode fast.
+enum class FusedIn { nothing, boxes, decisions, anything };
+template <>
+inline constexpr auto enum_names<FusedIn> = names_up_to<FusedIn::anything>("nothing", "boxes", "decisions", "anything");
+
+/// A program: an entry point, compiled for a target. What its compiler does not tell is empty.
+struct Inspected {
+    Target target;
+    EntryPoint point;
+    InspectedStatus status = InspectedStatus::ok;
+    std::string reason;   ///< where it is not ok
+    std::string compiler; ///< with version
+
+    using Count = std::optional<std::uint64_t>;
+    Count registers;         ///< of a lane
+    Count scalar_registers;  ///< of a subgroup, on AMD
+    Count spilled_registers; ///< AMD
+    Count spill_store_bytes; ///< NVIDIA, of a lane
+    Count spill_load_bytes;  ///< NVIDIA, of a lane
+    Count scratch_bytes;     ///< memory of a lane (NVIDIA) or subgroup (AMD) for what has no register
+    Count lanes;             ///< of a subgroup
+    Count subgroups;         ///< that a SIMD (AMD) or a multiprocessor (NVIDIA) holds at once
+    Count most_subgroups;    ///< that it holds of an empty kernel
+    Count code_bytes;
+    Count instructions, branches, loads, loads_in_loops;
+    std::optional<double> latency_cycles, cycles_a_subgroup; ///< ACO's estimates: latency, inverse throughput
+    Count fused, divisions;                                  ///< as CodeFigures has them
+    std::uint64_t unrounded = 0;                             ///< as CodeFigures has it
+    std::string first_fused;
+    Count sass_fused; ///< in NVIDIA's machine code, sequences of divisions included
+
+    [[nodiscard]] std::optional<double> occupancy() const
+    {
+        if (!subgroups || !most_subgroups || *most_subgroups == 0) return std::nullopt;
+        return static_cast<double>(*subgroups) / static_cast<double>(*most_subgroups);
+    }
+    /// Whether any register went to memory.
+    [[nodiscard]] bool spills() const
+    {
+        return spilled_registers.value_or(0) + spill_store_bytes.value_or(0) + spill_load_bytes.value_or(0) > 0;
+    }
+    [[nodiscard]] std::optional<FusedIn> fused_in() const
+    {
+        if (!fused) return std::nullopt;
+        if (point.kernel.math == MathMode::fast) return FusedIn::anything;
+        if (*fused == 0) return FusedIn::nothing;
+        const bool stated = point.kernel.structure == Structure::bvh && unrounded == 0;
+        return stated ? FusedIn::boxes : FusedIn::decisions;
+    }
+};
+
+/// The rows of a target that was not asked.
+[[nodiscard]] inline std::vector<Inspected> unasked(const Target& target, const std::vector<EntryPoint>& points,
+                                                    const std::string& reason)
+{
+    std::vector<Inspected> rows;
+    for (const EntryPoint& point : points) {
+        Inspected& row = rows.emplace_back();
+        row.target = target;
+        row.point = point;
+        row.status = InspectedStatus::skipped;
+        row.reason = reason;
+    }
+    return rows;
+}
+
+} // namespace tetrace

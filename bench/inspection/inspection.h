@@ -1,0 +1,27 @@
+#pragma once
+
+#include "bench/inspection/inspected.h"
+
+#include <functional>
+
+namespace tetrace {
+
+/// What every compiler at hand made of the programs asked for.
+struct Inspection {
+    std::vector<Inspected> rows;      ///< target after target
+    std::vector<std::string> skipped; ///< "sm_90: no nvcc here, ..." for each target that could not be asked
+};
+
+/// Compiles every entry point that the options keep for every target that they name; runs nothing.
+/// on_target: called with each target's name before it is asked.
+/// Throws Error{usage} where no kernel is kept.
+[[nodiscard]] Inspection inspect(const Options& options, const std::function<void(const std::string&)>& on_target);
+
+/// Throws Error{missing} naming the first required target that could not be asked, with the reason, or Error{usage}
+/// naming one that is not among those asked.
+void require_asked(const Inspection& inspection, const std::vector<std::string>& required);
+
+/// Whether a program of exact mode has a fused operation where signs are decided.
+[[nodiscard]] bool decides_fused(const Inspected& row);
+
+} // namespace tetrace

@@ -1,0 +1,256 @@
+#include "bench/inspection/null_hardware.h"
+
+#include "bench/inspection/work_folder.h"
+#include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/device/backend.h"
+#include "core/device/code_source.h"
+#include "scenes/child_process.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace tetrace {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* no_radv = "no RADV here, Mesa's Vulkan driver for AMD's GPUs; install mesa-vulkan-drivers";
+constexpr double most_child_s = 600; // of a child; all programs of a target take about a minute
+
+/// RADV's file among those that the Vulkan loader reads; empty where there is none.
+fs::path driver_file()
+{
+    std::vector<fs::path> files;
+    for (const char* const name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
+        const char* const set = std::getenv(name);
+        std::istringstream list(set != nullptr ? set : "");
+        for (std::string file; std::getline(list, file, ':');)
+            files.emplace_back(file);
+    }
+    for (const char* const folder : {"/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d",
+                                     "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
+        std::error_code not_there;
+        for (const auto& entry : fs::directory_iterator(folder, not_there))
+            files.push_back(entry.path());
+    }
+    const auto found = std::ranges::find_if(files, [](const fs::path& file) {
+        return file.filename().string().starts_with("radeon_icd") && fs::exists(file);
+    });
+    return found == files.end() ? fs::path() : *found;
+}
+
+json figures_json(const CodeFigures& figures)
+{
+    return {{"branches", figures.branches},
+            {"loads", figures.loads},
+            {"loads_in_loops", figures.loads_in_loops},
+            {"fused", figures.fused},
+            {"first_fused", figures.first_fused},
+            {"instructions", figures.instructions}};
+}
+
+std::string code_name(const std::string& target, const EntryPoint& point)
+{
+    std::string entry = name_of(point);
+    std::ranges::replace(entry, ' ', '-');
+    return fmt::format("{}-{}-{}-{}-{}.s", target, name_of(point.kernel.method), name_of(point.kernel.layout),
+                       name_of(point.kernel.math), entry);
+}
+
+json compiled_json(const CodeSource& source, std::size_t device, const EntryPoint& point, const fs::path& code)
+try {
+    const CompiledCode compiled = source.compiled(device, point.kernel, point.entry == Entry::outside);
+    if (!code.empty()) std::ofstream(code) << compiled.text;
+    json line = {{"compiler", compiled.compiler}, {"lanes", compiled.lanes}, {"statistics", compiled.statistics}};
+    if (!compiled.text.empty()) line["code"] = figures_json(read_amd(compiled.text));
+    return line;
+} catch (const Error& error) {
+    return {{"error", error.what()}};
+}
+
+/// The device that the variable makes RADV offer.
+struct NullDevice {
+    const CodeSource* source = nullptr;
+    std::size_t index = 0;
+    std::string reason; ///< why there is none
+};
+
+NullDevice find_null_device()
+{
+    NullDevice found{nullptr, 0, "this build has no Vulkan"};
+    for (const Backend* backend : all_backends()) {
+        const auto* const source = dynamic_cast<const CodeSource*>(backend);
+        if (source == nullptr) continue;
+        const auto& devices = backend->devices();
+        found.reason = devices.front().reason;
+        for (std::size_t i = 0; i < devices.size(); ++i)
+            if (devices[i].compile_only) return {source, i, {}};
+    }
+    return found;
+}
+
+Inspected::Count count_of(const json& object, const char* key)
+{
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_number()) return std::nullopt;
+    return static_cast<std::uint64_t>(std::max(0.0, found->get<double>()));
+}
+
+std::optional<double> number_of(const json& object, const char* key)
+{
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_number()) return std::nullopt;
+    return found->get<double>();
+}
+
+/// Statistics are called as Mesa 22.3 to 25 call them.
+void take_line(Inspected& row, const json& line)
+{
+    if (line.contains("error")) {
+        row.status = InspectedStatus::error;
+        row.reason = printable_line(line["error"].get<std::string>());
+        return;
+    }
+    row.status = InspectedStatus::ok;
+    row.reason.clear();
+    row.compiler = printable_line(line.at("compiler").get<std::string>());
+    row.lanes = count_of(line, "lanes");
+    const json& told = line.at("statistics");
+    row.registers = count_of(told, "VGPRs");
+    row.scalar_registers = count_of(told, "SGPRs");
+    const auto vectors = count_of(told, "Spilled VGPRs"), scalars = count_of(told, "Spilled SGPRs");
+    if (vectors || scalars) row.spilled_registers = vectors.value_or(0) + scalars.value_or(0);
+    row.scratch_bytes = count_of(told, "Scratch size");
+    row.subgroups = count_of(told, "Subgroups per SIMD");
+    row.code_bytes = count_of(told, "Code size");
+    row.instructions = count_of(told, "Instructions");
+    row.branches = count_of(told, "Branches");
+    row.latency_cycles = number_of(told, "Latency");
+    row.cycles_a_subgroup = number_of(told, "Inverse Throughput");
+    const auto code = line.find("code");
+    if (code == line.end()) return;
+    row.loads = count_of(*code, "loads");
+    row.loads_in_loops = count_of(*code, "loads_in_loops");
+    row.fused = count_of(*code, "fused");
+    row.first_fused = printable_line(code->at("first_fused").get<std::string>());
+}
+
+std::string last_line(const std::string& text)
+{
+    std::istringstream stream(text);
+    std::string last;
+    for (std::string line; std::getline(stream, line);)
+        if (!line.empty()) last = printable_line(line.substr(0, 300));
+    return last;
+}
+
+/// What a child reported; `reason` where it could not begin.
+struct Answer {
+    std::vector<Inspected> rows;
+    std::string reason;
+};
+
+Answer ask_family(const std::string& family, const fs::path& driver, const std::vector<Inspected>& unknown,
+                  const std::vector<std::size_t>& numbers, const fs::path& code)
+{
+    const WorkFolder folder;
+    const fs::path report = folder.path() / "report";
+    std::vector<std::string> arguments = {null_hardware_word, family, driver.string(), report.string(),
+                                          code.empty() ? "-" : code.string()};
+    for (const std::size_t number : numbers)
+        arguments.push_back(std::to_string(number));
+    const ChildOutcome outcome = run_child(fs::read_symlink("/proc/self/exe"), arguments, {.time_s = most_child_s});
+    if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "inspect: interrupted");
+    Answer answer{unknown, {}};
+    Inspected::Count most;
+    std::size_t taken = 0;
+    std::ifstream lines(report);
+    for (std::string text; std::getline(lines, text);) {
+        const json line = json::parse(text, nullptr, false);
+        if (line.is_discarded()) break; // the child died while it wrote
+        if (line.contains("reason")) return {{}, printable_line(line["reason"].get<std::string>())};
+        if (line.contains("most_subgroups"))
+            most = count_of(line, "most_subgroups");
+        else if (taken < answer.rows.size())
+            take_line(answer.rows[taken++], line);
+    }
+    const std::string words = last_line(outcome.errors);
+    if (!most) return {{}, words.empty() ? "the driver told nothing" : words};
+    for (Inspected& row : answer.rows) {
+        row.most_subgroups = most;
+        if (row.status == InspectedStatus::skipped) {
+            row.status = InspectedStatus::error;
+            row.reason = "the driver ended before it came to this program" + (words.empty() ? "" : ": " + words);
+        }
+    }
+    return answer;
+}
+
+std::vector<std::size_t> numbers_of(const std::vector<EntryPoint>& points)
+{
+    const auto all = all_entry_points(Maker::amd);
+    std::vector<std::size_t> numbers;
+    for (const EntryPoint& point : points)
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (all[i].kernel == point.kernel && all[i].entry == point.entry) numbers.push_back(i);
+    return numbers;
+}
+
+} // namespace
+
+std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector<EntryPoint>& points,
+                                         const fs::path& code)
+{
+    const fs::path driver = driver_file();
+    if (driver.empty()) return unasked(target, points, no_radv);
+    const auto unknown = unasked(target, points, "not asked");
+    const auto numbers = numbers_of(points);
+    std::string first_reason;
+    for (const std::string& family : family_names(target.name)) {
+        Answer answer = ask_family(family, driver, unknown, numbers, code);
+        if (answer.reason.empty()) return answer.rows;
+        if (first_reason.empty()) first_reason = answer.reason;
+    }
+    return unasked(target, points, first_reason);
+}
+
+int run_null_hardware(const std::vector<std::string>& arguments)
+{
+    constexpr std::size_t before_numbers = 4;
+    if (arguments.size() < before_numbers) return exit_code(ErrorKind::usage);
+    const std::string &family = arguments[0], &driver = arguments[1];
+    const fs::path code = arguments[3] == "-" ? fs::path() : fs::path(arguments[3]);
+    ::setenv("RADV_FORCE_FAMILY", family.c_str(), 1);
+    ::setenv("VK_DRIVER_FILES", driver.c_str(), 1);  // of loaders from 1.3.207 on
+    ::setenv("VK_ICD_FILENAMES", driver.c_str(), 1); // of all others
+    ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    std::ofstream report(arguments[2]);
+    const NullDevice device = find_null_device();
+    if (device.source == nullptr) {
+        report << json{{"reason", device.reason}}.dump() << std::endl;
+        return exit_code(ErrorKind::missing);
+    }
+    const auto all = all_entry_points(Maker::amd);
+    const CompiledCode nothing = device.source->compiled(device.index, std::nullopt, true);
+    const auto most = nothing.statistics.find("Subgroups per SIMD");
+    report << json{{"most_subgroups", most == nothing.statistics.end() ? 0.0 : most->second}}.dump() << std::endl;
+    for (std::size_t i = before_numbers; i < arguments.size(); ++i) {
+        std::size_t number = 0;
+        std::from_chars(arguments[i].data(), arguments[i].data() + arguments[i].size(), number);
+        const EntryPoint& point = all.at(number);
+        const json line =
+            compiled_json(*device.source, device.index, point, code.empty() ? code : code / code_name(family, point));
+        report << line.dump(-1, ' ', false, json::error_handler_t::replace) << std::endl;
+    }
+    return 0;
+}
+
+} // namespace tetrace

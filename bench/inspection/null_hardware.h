@@ -1,0 +1,24 @@
+#pragma once
+
+#include "bench/inspection/inspected.h"
+
+#include <filesystem>
+
+namespace tetrace {
+
+/// Asks RADV on null hardware for each program of an AMD target, in a child process: a driver reads its environment
+/// once, and one that does not know a family aborts. Rows that the child did not come to are errors, with its last
+/// words; all are skipped where there is no RADV here, or none that knows the family.
+/// points: a part of all_entry_points(Maker::amd). code: folder for the programs' texts; empty: they are not kept.
+[[nodiscard]] std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector<EntryPoint>& points,
+                                                       const std::filesystem::path& code);
+
+/// The first word of the child's command line; no verb of users.
+inline constexpr const char* null_hardware_word = "compile-for-null-hardware";
+
+/// The child: compiles the entry points with the numbers given, and writes a line of JSON each.
+/// arguments: family, RADV's driver file, file to write, folder for code or "-", then numbers in
+/// all_entry_points(Maker::amd). Returns the exit code.
+[[nodiscard]] int run_null_hardware(const std::vector<std::string>& arguments);
+
+} // namespace tetrace

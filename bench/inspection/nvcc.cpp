@@ -1,0 +1,229 @@
+#include "bench/inspection/nvcc.h"
+
+#include "backends/cuda/driver_backend.h"
+#include "bench/inspection/occupancy.h"
+#include "bench/inspection/work_folder.h"
+#include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/device/open_checks.h"
+#include "scenes/child_process.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <unistd.h>
+
+namespace tetrace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double most_kernel_s = 300; // of one kernel; the slowest take 10
+constexpr std::uint64_t persistent_block = 128;
+
+fs::path find_program(const char* name)
+{
+    std::vector<fs::path> folders;
+    const auto add = [&](const char* variable, const char* below) {
+        const char* const value = std::getenv(variable);
+        std::istringstream list(value != nullptr ? value : "");
+        for (std::string folder; std::getline(list, folder, ':');)
+            if (!folder.empty()) folders.push_back(fs::path(folder) / below);
+    };
+    add("PATH", "");
+    add("CUDA_PATH", "bin");
+    add("CUDA_HOME", "bin");
+    folders.insert(folders.end(), {"/usr/local/cuda/bin", "/opt/cuda/bin"});
+    for (const fs::path& folder : folders)
+        if (::access((folder / name).c_str(), X_OK) == 0) return folder / name;
+    return {};
+}
+
+ChildOutcome run(const fs::path& program, const std::vector<std::string>& arguments)
+{
+    ChildOutcome outcome = run_child(program, arguments, {.time_s = most_kernel_s});
+    if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "inspect: interrupted");
+    return outcome;
+}
+
+bool succeeded(const ChildOutcome& outcome)
+{
+    return outcome.end == ChildOutcome::End::exited && outcome.code == 0;
+}
+
+std::string first_line(const std::string& text)
+{
+    return printable_line(text.substr(0, std::min<std::size_t>(text.find('\n'), 300)));
+}
+
+std::string text_of(const fs::path& file)
+{
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// As kernel.cu calls it.
+std::string entry_name(const EntryPoint& point, const cuda::ProgramId& program)
+{
+    const char* const prefix = point.entry == Entry::inside   ? "inside"
+                               : point.entry == Entry::rays   ? "rays"
+                               : point.entry == Entry::search ? "search"
+                                                              : "trace";
+    return fmt::format("{}_{}_{}", prefix, name_of(point.kernel.schedule), program.name());
+}
+
+/// What became of a kernel: the texts of its code and ptxas's words, or the reason why there are none.
+struct Compiled {
+    std::string ptx, sass;
+    std::map<std::string, PtxasReport> reports;
+    std::string reason;
+};
+
+Compiled compile(const Nvcc& nvcc, const Target& target, const cuda::ProgramId& program, const fs::path& code)
+{
+    const WorkFolder folder;
+    const fs::path source = folder.path() / (program.name() + ".cu"),
+                   binary = folder.path() / (program.name() + ".cubin");
+    const EmbeddedKernel* const kernel = find_kernel(cuda::embedded_sources(), program.source);
+    if (kernel == nullptr) return {{}, {}, {}, "this build has no source of " + program.source};
+    std::ofstream(source) << std::string(kernel->text());
+    std::vector<std::string> arguments = {
+        "--cubin", "-std=c++17", "--keep", "--keep-dir", folder.path().string(), "-arch=" + target.name,
+        "-Xptxas", "-v"};
+    for (const std::string& option : cuda::compiler_options(program))
+        arguments.push_back(option);
+    arguments.insert(arguments.end(), {"-o", binary.string(), source.string()});
+    const ChildOutcome outcome = run(nvcc.program, arguments);
+    if (!succeeded(outcome)) return {{}, {}, {}, first_line(outcome.errors)};
+    Compiled compiled{text_of(folder.path() / (program.name() + ".ptx")), {}, read_ptxas(outcome.errors), {}};
+    const std::string name = target.name + "-" + program.name();
+    if (!code.empty()) std::ofstream(code / (name + ".ptx")) << compiled.ptx;
+    if (nvcc.disassembler.empty()) return compiled;
+    const fs::path listing = folder.path() / "listing"; // longer than what run_child() keeps
+    if (succeeded(run("/bin/sh", {"-c", "exec \"$0\" -c \"$1\" > \"$2\"", nvcc.disassembler, binary, listing})))
+        compiled.sass = text_of(listing);
+    if (!code.empty()) std::ofstream(code / (name + ".sass")) << compiled.sass;
+    return compiled;
+}
+
+void take(Inspected& row, const Compiled& compiled, const std::string& entry)
+{
+    const auto report = compiled.reports.find(entry);
+    if (report == compiled.reports.end() || compiled.ptx.empty()) {
+        row.status = InspectedStatus::error;
+        row.reason = compiled.reason.empty() ? "ptxas says nothing of " + entry : compiled.reason;
+        return;
+    }
+    row.registers = report->second.registers;
+    row.spill_store_bytes = report->second.spill_store_bytes;
+    row.spill_load_bytes = report->second.spill_load_bytes;
+    row.scratch_bytes = report->second.stack_bytes;
+    row.lanes = 32;
+    unsigned capability = 0;
+    std::from_chars(row.target.name.data() + 3, row.target.name.data() + row.target.name.size(), capability);
+    const std::uint64_t block = row.point.kernel.schedule == Schedule::persistent
+                                    ? persistent_block
+                                    : std::uint64_t{TILE_WIDTH} * tile_height_of({});
+    if (const auto warps = resident_warps(capability, *row.registers, block)) {
+        row.subgroups = warps->resident;
+        row.most_subgroups = warps->most;
+    }
+    const CodeFigures ptx = read_ptx(compiled.ptx, entry);
+    row.loads = ptx.loads;
+    row.loads_in_loops = ptx.loads_in_loops;
+    row.fused = ptx.fused;
+    row.unrounded = ptx.unrounded;
+    row.first_fused = printable_line(ptx.first_fused);
+    row.divisions = ptx.divisions;
+    const CodeFigures sass = read_sass(compiled.sass, entry);
+    if (sass.instructions == 0) return;
+    row.instructions = sass.instructions;
+    row.branches = sass.branches;
+    row.loads = sass.loads;
+    row.loads_in_loops = sass.loads_in_loops;
+    row.sass_fused = sass.fused;
+    // Without a division nothing may be fused in machine code that PTX did not fuse.
+    if (ptx.divisions == 0 && sass.fused > ptx.fused) {
+        row.fused = sass.fused;
+        row.first_fused = printable_line(sass.first_fused);
+    }
+}
+
+} // namespace
+
+Nvcc find_nvcc()
+{
+    Nvcc nvcc;
+    nvcc.program = find_program("nvcc");
+    if (nvcc.program.empty()) {
+        nvcc.reason = "no nvcc here, NVIDIA's compiler; its CUDA toolkit brings it (Debian: nvidia-cuda-toolkit)";
+        return nvcc;
+    }
+    const ChildOutcome version = run(nvcc.program, {"--version"}), known = run(nvcc.program, {"--list-gpu-code"});
+    std::smatch found;
+    if (!succeeded(version) || !succeeded(known) ||
+        !std::regex_search(version.out, found, std::regex("release ([0-9.]+)"))) {
+        nvcc.reason = nvcc.program.string() + " does not work: " + first_line(version.errors + known.errors);
+        return nvcc;
+    }
+    nvcc.version = "nvcc " + found[1].str();
+    std::istringstream lines(known.out);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("sm_")) nvcc.targets.push_back(printable_line(line));
+    nvcc.disassembler = find_program("nvdisasm");
+    return nvcc;
+}
+
+std::map<std::string, PtxasReport> read_ptxas(const std::string& messages)
+{
+    static const std::regex begins("Compiling entry function '([^']+)'"),
+        frame("([0-9]+) bytes stack frame, ([0-9]+) "
+              "bytes spill stores, ([0-9]+) bytes "
+              "spill loads"),
+        used("Used ([0-9]+) registers");
+    std::map<std::string, PtxasReport> reports;
+    PtxasReport* current = nullptr;
+    std::istringstream lines(messages);
+    std::smatch found;
+    for (std::string line; std::getline(lines, line);)
+        if (std::regex_search(line, found, begins))
+            current = &reports[found[1].str()];
+        else if (current != nullptr && std::regex_search(line, found, frame)) {
+            current->stack_bytes = std::stoull(found[1].str());
+            current->spill_store_bytes = std::stoull(found[2].str());
+            current->spill_load_bytes = std::stoull(found[3].str());
+        } else if (current != nullptr && std::regex_search(line, found, used))
+            current->registers = std::stoull(found[1].str());
+    return reports;
+}
+
+std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const std::vector<EntryPoint>& points,
+                                const fs::path& code)
+{
+    if (!nvcc.reason.empty()) return unasked(target, points, nvcc.reason);
+    if (std::ranges::find(nvcc.targets, target.name) == nvcc.targets.end())
+        return unasked(
+            target, points,
+            fmt::format("{} does not know {}, but {}", nvcc.version, target.name, fmt::join(nvcc.targets, ", ")));
+    std::map<std::string, Compiled> kernels;
+    std::vector<Inspected> rows;
+    for (const EntryPoint& point : points) {
+        const cuda::ProgramId program = cuda::program_of(point.kernel);
+        auto found = kernels.find(program.name());
+        if (found == kernels.end()) found = kernels.emplace(program.name(), compile(nvcc, target, program, code)).first;
+        Inspected& row = rows.emplace_back();
+        row.target = target;
+        row.point = point;
+        row.compiler = nvcc.version;
+        take(row, found->second, entry_name(point, program));
+    }
+    return rows;
+}
+
+} // namespace tetrace

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace tetrace {
+
+/// How many warps a multiprocessor of NVIDIA's holds.
+struct Warps {
+    std::uint64_t resident = 0; ///< of a kernel
+    std::uint64_t most = 0;     ///< of any
+};
+
+/// capability: 10 * major + minor. registers: of a thread. block: threads. Empty for a capability that is not known.
+/// Source: CUDA C++ Programming Guide, technical specifications per compute capability: registers are allocated to
+/// warps in units of 256, and a warp's lie in one of four parts of the multiprocessor's 65,536.
+[[nodiscard]] std::optional<Warps> resident_warps(unsigned capability, std::uint64_t registers, std::uint64_t block);
+
+} // namespace tetrace

@@ -1,0 +1,45 @@
+#include "bench/inspection/inspection_report.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/error.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace tetrace {
+
+namespace {
+
+void make_code_folder(const Options& options)
+{
+    if (!options.code_folder) return;
+    std::error_code failed;
+    std::filesystem::create_directories(*options.code_folder, failed);
+    if (failed)
+        throw Error(ErrorKind::invalid_input,
+                    "--code: the folder '" + options.code_folder->string() + "' cannot be made: " + failed.message());
+}
+
+} // namespace
+
+int inspect_command(const Options& options)
+{
+    check_output(options);
+    for (const std::string& name : options.required)
+        static_cast<void>(parse_target("--require", name));
+    make_code_folder(options);
+    const Inspection inspection =
+        inspect(options, [](const std::string& target) { progress_line().show("compiling for " + target, -1); });
+    progress_line().clear();
+    deliver(options, inspection_report(inspection, options));
+    require_asked(inspection, options.required);
+    const auto has = [&](auto matches) { return std::ranges::any_of(inspection.rows, matches); };
+    if (has(decides_fused)) return exit_code(ErrorKind::wrong_result);
+    if (has([](const Inspected& row) { return row.status == InspectedStatus::error; }))
+        return exit_code(ErrorKind::internal);
+    if (!has([](const Inspected& row) { return row.status == InspectedStatus::ok; }))
+        throw Error(ErrorKind::missing, "inspect: no target could be asked");
+    return 0;
+}
+
+} // namespace tetrace
