@@ -164,7 +164,7 @@ const VerbHelp verb_help[] = {
 
 const char* const exit_codes = "Exit codes\n"
                                "  0  good\n"
-                               "  1  a wrong result, or a regression\n"
+                               "  1  a wrong result, a regression, or a driver that crashed or hung\n"
                                "  2  a command line, a mesh or another input that is not accepted\n"
                                "  3  something required is missing or not supported here\n"
                                "  4  an internal error\n";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/isolation/isolation.h"
 #include "core/pack/kernel_id.h"
 #include "core/rays/camera.h"
 #include "scenes/catalogue.h"
@@ -98,6 +99,9 @@ struct Options {
     SearchSize searches;                  ///< of `reproduce`
     std::vector<std::uint32_t> sizes;     ///< of `reproduce growth`; empty: growth_sizes()
     bool resume = false;                  ///< of `reproduce`: continue from the journal
+
+    Isolation isolation = Isolation::device;
+    double driver_limit_s = 0; ///< for each call of a driver; 0: by the size of its work
 
     std::vector<std::string> required; ///< backends that must have a usable device
     bool allow_flawed = false;
