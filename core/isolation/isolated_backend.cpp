@@ -39,7 +39,7 @@ void IsolatedBackend::find_devices() const
     try {
         spare_ = std::make_shared<DriverChild>(processes_, name());
         devices_ = list(*spare_);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         devices_ = {broken_device(error.what())};
     }
     children_.resize(devices_.size());
@@ -87,7 +87,7 @@ std::string IsolatedBackend::why_not(std::size_t device, const KernelId& kernel)
         return child_of(device)
             ->call({"saying whether it runs " + name_of(kernel), request, -1, call_limit_s(0)})
             .get_text();
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         return error.what();
     }
 }

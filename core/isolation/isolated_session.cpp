@@ -14,7 +14,7 @@ IsolatedSession::IsolatedSession(const IsolatedBackend& backend, std::size_t dev
 
 IsolatedSession::~IsolatedSession()
 {
-    if (child_ == nullptr || child_->is_lost()) return;
+    if (number_ == 0 || child_->is_lost()) return;
     try {
         call(Request::close, "closing " + name_of(kernel_), {}, {}, call_limit_s(0));
     } catch (const std::exception&) { // the next session starts another process
@@ -35,28 +35,31 @@ ByteReader IsolatedSession::call(Request what, const std::string& doing, const B
 
 void IsolatedSession::open()
 {
+    number_ = 0;
+    remote_scene_ = nullptr;
     child_ = backend_->child_of(device_);
     const void* const scene = scene_of(kernel_, scene_);
-    remote_scene_ = scene == nullptr ? nullptr : child_->find_scene(scene);
-    const bool is_new = scene != nullptr && remote_scene_ == nullptr;
-    if (is_new) remote_scene_ = child_->add_scene(scene);
+    auto remote = scene == nullptr ? nullptr : child_->find_scene(scene);
+    const bool is_new = scene != nullptr && remote == nullptr;
+    if (is_new) remote = child_->add_scene(scene);
     ByteWriter request;
     request.put(Request::open);
     request.put(std::uint64_t{device_});
     request.put(kernel_);
     put_options(request, options_);
-    request.put(remote_scene_ == nullptr ? std::uint64_t{0} : remote_scene_->number);
+    request.put(remote == nullptr ? std::uint64_t{0} : remote->number);
     request.put(is_new);
     const SharedMemory memory = is_new ? put_scene(request, kernel_, scene_) : SharedMemory();
     ByteReader answer =
         child_->call({"opening " + name_of(kernel_), request, memory.file(), call_limit_s(0, memory.bytes().size())});
     number_ = answer.get<std::uint64_t>();
+    remote_scene_ = std::move(remote);
     facts_ = answer.get<SessionFacts>();
 }
 
 bool IsolatedSession::is_still_open()
 {
-    if (!child_->is_lost()) return true;
+    if (number_ != 0 && !child_->is_lost()) return true;
     open();
     if (has_rays_) send_rays();
     return false;

@@ -46,7 +46,7 @@ private:
 
     std::shared_ptr<DriverChild> child_;
     std::shared_ptr<const RemoteScene> remote_scene_; ///< of child_
-    std::uint64_t number_ = 0;                        ///< of the session in child_
+    std::uint64_t number_ = 0;                        ///< of the session in child_; 0: it could not be opened there
 
     SharedMemory rays_; ///< kept for another process
     std::uint64_t quads_ = 0;

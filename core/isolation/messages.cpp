@@ -1,7 +1,6 @@
 #include "core/isolation/messages.h"
 
 #include <algorithm>
-#include <array>
 #include <new>
 #include <stdexcept>
 #include <tuple>
@@ -21,7 +20,7 @@ void each_text(Device& device, const Visit& visit)
     auto& [name, kind, driver, implementation, id, uuid, pci, memory_bytes, max_buffer_bytes, max_group_items,
            group_width, most_steps, timer_period_s, threads, usable, broken, reason] = device;
     static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, most_steps,
-                               timer_period_s, threads, usable, broken)); // see NUMBERS
+                               timer_period_s, threads, usable, broken)); // see each_number()
     for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &reason})
         visit(*text);
 }

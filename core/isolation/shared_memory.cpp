@@ -28,8 +28,10 @@ SharedMemory::SharedMemory(std::size_t bytes)
     file_ = Descriptor(::memfd_create("tetrace", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!file_.open()) fail(bytes, errno);
     // All of it now: memory that is missing later would be a signal instead of an error.
-    if (const int reason = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes)); reason != 0)
-        fail(bytes, reason);
+    int reason = EINTR;
+    while (reason == EINTR)
+        reason = ::posix_fallocate(file_.get(), 0, static_cast<off_t>(bytes));
+    if (reason != 0) fail(bytes, reason);
     ::fcntl(file_.get(), F_ADD_SEALS, F_SEAL_SHRINK); // the other process cannot take it away from under us
     map(bytes);
 }

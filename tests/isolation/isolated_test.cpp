@@ -223,6 +223,21 @@ TEST_F(Isolated, driver_that_crashes_when_a_session_closes_harms_no_other)
     EXPECT_EQ(use(*bystander, 1), use(*open_directly(), 1));
 }
 
+TEST_F(Isolated, session_that_cannot_be_opened_again_harms_no_other)
+{
+    auto refused = open("reopen " + std::to_string(static_cast<int>(ErrorKind::unsupported)));
+    const auto bystander = open("");
+    const ScopedVariable next("MOODY_REOPENS", "1");
+    EXPECT_NE(error_of([&] { use(*open("launch abort"), 1); }), "");
+    const auto direct = open_directly();
+    EXPECT_EQ(use(*bystander, 1), use(*direct, 1)); // the first in its new process, as `refused` was in the old one
+    EXPECT_TRUE(contains(error_of([&] { use(*refused, 1); }), "unsupported: "));
+    EXPECT_TRUE(contains(error_of([&] { use(*refused, 1); }), "unsupported: "));
+    refused.reset();
+    EXPECT_EQ(use(*bystander, 2), use(*direct, 2));
+    EXPECT_EQ(use(*open(""), 1), use(*open_directly(), 1));
+}
+
 TEST_F(Isolated, devices_have_processes_of_their_own)
 {
     const auto other = backend_->open(1, {}, {&mesh_, &scene_}, {});

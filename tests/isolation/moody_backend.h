@@ -15,7 +15,7 @@
 namespace tetrace::test {
 
 /// What a driver does at a call, as SessionOptions::program_cache says it: "launch abort". Calls: open, set_rays,
-/// launch, wait, read, close, and by the environment variable MOODY_AT_LIST list.
+/// launch, relaunch, wait, read, close; reopen, while the environment has MOODY_REOPENS; and list, by MOODY_AT_LIST.
 inline void misbehave(const std::string& mood, const std::string& call)
 {
     if (mood.rfind(call + " ", 0) != 0) return;
@@ -28,7 +28,6 @@ inline void misbehave(const std::string& mood, const std::string& call)
         ::pause();
     if (how == "bad_alloc") throw std::bad_alloc();
     if (how == "other") throw std::runtime_error("something else");
-    if (how == "close all files") ::close_range(0, ~0u, 0), ::pause();
     for (const ErrorKind kind :
          {ErrorKind::missing, ErrorKind::unsupported, ErrorKind::internal, ErrorKind::wrong_result})
         if (how == std::to_string(static_cast<int>(kind))) throw Error(kind, how + ": 12 of 34 bytes\nat " + call);
@@ -41,6 +40,7 @@ public:
         : mood_(options.program_cache.string()), task_(kernel.task)
     {
         misbehave(mood_, "open");
+        if (std::getenv("MOODY_REOPENS") != nullptr) misbehave(mood_, "reopen");
         ByteWriter all;
         all.put(kernel);
         put_options(all, options);
