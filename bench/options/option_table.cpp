@@ -237,6 +237,25 @@ std::vector<OptionRow> ray_options()
     };
 }
 
+std::vector<OptionRow> driver_options()
+{
+    const unsigned with_drivers = reproducing | bit(Verb::devices);
+    return {
+        {"Drivers", "--isolate", "KIND",
+         "Where the drivers of opencl, vulkan and cuda run: 'device', a process of its own for each device, so that a "
+         "driver that crashes or hangs ends only its row; 'none', in tetrace's process, for debuggers. Default: "
+         "device.",
+         with_drivers, false,
+         [](Options& o, const std::string& v) { o.isolation = choose<Isolation>("--isolate", v); }},
+        {"Drivers", "--driver-limit", "TIME",
+         "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, m "
+         "or h. Needs --isolate device. Default: 5 minutes, and a millisecond a ray or a second for each megabyte of "
+         "data.",
+         with_drivers, false,
+         [](Options& o, const std::string& v) { o.driver_limit_s = parse_seconds("--driver-limit", v); }},
+    };
+}
+
 std::vector<OptionRow> judging_options()
 {
     return {
@@ -339,7 +358,7 @@ std::vector<OptionRow> output_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {reproduce_options, inspect_options, scene_options, row_options, ray_options, judging_options,
+    for (auto part : {reproduce_options, inspect_options, scene_options, row_options, ray_options, driver_options, judging_options,
                       report_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));

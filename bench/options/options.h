@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/isolation/isolation.h"
 #include "core/pack/kernel_id.h"
 #include "core/rays/camera.h"
 #include "scenes/catalogue.h"
@@ -108,6 +109,8 @@ struct Options {
     std::vector<std::string> gpus;                    ///< of `inspect`: targets; empty: those of targets_of()
     std::vector<Entry> entries;                       ///< of `inspect`; empty: all
     std::optional<std::filesystem::path> code_folder; ///< of `inspect`: where the code goes
+    Isolation isolation = Isolation::device;
+    double driver_limit_s = 0; ///< for each call of a driver; 0: by the size of its work
 
     std::vector<std::string> required; ///< backends that must have a usable device; of `inspect`, targets to be asked
     bool allow_flawed = false;

@@ -24,6 +24,7 @@ bool find_device(RowRun& row, const std::vector<Backend*>& backends)
 {
     row.backend = &backend_named(row.key.backend, backends);
     row.device = row.backend->devices().at(row.key.device);
+    if (row.device.broken) throw Error(ErrorKind::driver, row.device.reason);
     if (!row.device.usable) {
         row.outcome = Skipped{Status::skipped, fmt::format("{}: {}", row.device.name, row.device.reason)};
         return false;

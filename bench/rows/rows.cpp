@@ -86,10 +86,17 @@ bool wanted_device(const Options& options, const Backend& backend, std::size_t i
     return options.devices.empty() || std::ranges::any_of(options.devices, holds);
 }
 
+/// Whether the backend's driver failed before any device was known: a run must not pass over that, unless it is on
+/// certain devices.
+bool fails_whole(const Options& options, const Backend& backend)
+{
+    return backend.devices().front().broken && options.devices.empty();
+}
+
 /// Indices of the devices that have rows.
 std::vector<std::size_t> devices_with_rows(const Options& options, const Backend& backend)
 {
-    if (!has_usable_device(backend) && is_named(options, backend)) return {0};
+    if (!has_usable_device(backend) && (is_named(options, backend) || fails_whole(options, backend))) return {0};
     std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < backend.devices().size(); ++i)
         if (backend.devices()[i].usable && wanted_device(options, backend, i)) indices.push_back(i);
@@ -313,7 +320,8 @@ std::vector<std::string> missing_devices(const Options& options, const std::vect
     std::vector<std::string> sentences;
     for (const Backend* backend : backends) {
         if (!wanted(options.backends, backend->name())) continue; // nor is its driver loaded
-        const bool has_rows = has_usable_device(*backend) || (is_named(options, *backend) && has_any_kernel(*backend));
+        const bool has_rows = has_usable_device(*backend) || fails_whole(options, *backend) ||
+                              (is_named(options, *backend) && has_any_kernel(*backend));
         if (!has_rows)
             sentences.push_back(fmt::format("{}: no device: {}", backend->name(), backend->devices().front().reason));
     }

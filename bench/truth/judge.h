@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,16 +47,25 @@ public:
     /// Counts a wrong or lost ray.
     void blame(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit, Flaw flaw) const;
 
-    /// Calls what(verdicts, i) for each i below count, on all threads, and sums up.
+    /// Calls what(verdicts, i) for each i below count, on all threads, and sums up. Throws the first exception of these
+    /// calls; one that left its thread would end the program.
     template <class What>
     [[nodiscard]] Verdicts for_each(std::size_t count, const What& what) const
     {
         constexpr std::size_t rays_at_once = 1024; // one thread judges these, one after the other
         std::vector<Verdicts> blocks((count + rays_at_once - 1) / rays_at_once);
+        std::exception_ptr thrown;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-        for (std::size_t block = 0; block < blocks.size(); ++block)
-            for (std::size_t i = block * rays_at_once; i < std::min((block + 1) * rays_at_once, count); ++i)
-                what(blocks[block], i);
+        for (std::size_t block = 0; block < blocks.size(); ++block) {
+            try {
+                for (std::size_t i = block * rays_at_once; i < std::min((block + 1) * rays_at_once, count); ++i)
+                    what(blocks[block], i);
+            } catch (...) {
+#pragma omp critical(tetrace_judge)
+                if (thrown == nullptr) thrown = std::current_exception();
+            }
+        }
+        if (thrown != nullptr) std::rethrow_exception(thrown);
         return sum_of(blocks, count);
     }
 

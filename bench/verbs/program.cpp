@@ -3,6 +3,8 @@
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
+#include "core/isolation/driver_server.h"
+#include "core/isolation/isolation.h"
 
 #include <algorithm>
 #include <exception>
@@ -31,6 +33,7 @@ std::string quoted(const std::string& word)
 
 int run_verb(const Options& options)
 {
+    set_isolation(options.isolation, options.driver_limit_s);
     switch (options.verb) {
     case Verb::devices: return devices_command(options);
     case Verb::scenes: return scenes_command(options);
@@ -66,6 +69,8 @@ int run_program(const std::vector<std::string>& arguments)
     try {
         if (!arguments.empty() && arguments.front() == null_hardware_word)
             return run_null_hardware({arguments.begin() + 1, arguments.end()});
+        if (!arguments.empty() && arguments.front() == driver_verb) // started by DriverChild; no verb for users
+            return serve_driver({arguments.begin() + 1, arguments.end()}, direct_backends());
         return run_verb(parse_options(arguments));
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());

@@ -12,6 +12,7 @@ enum class ErrorKind {
     missing,       ///< a required file, program or device is missing
     unsupported,   ///< not possible here: a limit of the device or of the build
     internal,      ///< our own fault
+    driver,        ///< a device's driver ended its process, or never answered
     wrong_result,  ///< a device returned what its kernel cannot have written
     interrupted,   ///< by the user
 };
@@ -26,7 +27,8 @@ private:
     ErrorKind kind_;
 };
 
-/// The program's exit codes: 1 a wrong result, 2 usage or bad input, 3 missing, 4 internal; 0 is good.
+/// The program's exit codes: 1 a wrong result or a driver that crashed, 2 usage or bad input, 3 missing, 4 internal; 0
+/// is good.
 [[nodiscard]] constexpr int exit_code(ErrorKind kind) noexcept
 {
     switch (kind) {
@@ -35,6 +37,7 @@ private:
     case ErrorKind::missing:
     case ErrorKind::unsupported: return 3;
     case ErrorKind::internal: return 4;
+    case ErrorKind::driver:
     case ErrorKind::wrong_result: return 1;
     case ErrorKind::interrupted: return 130;
     }

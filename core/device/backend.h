@@ -39,6 +39,7 @@ struct Device {
     unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
     bool compile_only = false; ///< not usable, but its driver compiles for it: hardware that is not here
+    bool broken = false;       ///< not usable because its driver failed: its rows are errors, and not skipped
     std::string reason;        ///< why not, where not usable
 };
 
@@ -101,7 +102,8 @@ struct Yardstick {
 };
 
 /// One scene on one device with one kernel. Every call throws Error, and only Error: unsupported where memory or a
-/// limit is too small (reported with both numbers), internal where the device was lost or its driver failed.
+/// limit is too small (reported with both numbers), internal where the device was lost or its driver failed, driver
+/// where that ended its own process or never answered (core/isolation).
 class Session {
 public:
     virtual ~Session() = default;
@@ -126,7 +128,7 @@ public:
     /// The same for task search.
     [[nodiscard]] double search(const TraceJob& job, std::span<std::uint32_t> faces);
     /// Seconds that copying the output took in the last read_back(), without its checks.
-    [[nodiscard]] double download_s() const { return download_s_; }
+    [[nodiscard]] virtual double download_s() const { return download_s_; }
     [[nodiscard]] virtual SetupTimes setup_times() const = 0;
     /// Device bytes that the structure and its scene data occupy.
     [[nodiscard]] virtual std::uint64_t bytes() const = 0;

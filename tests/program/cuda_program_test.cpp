@@ -80,3 +80,23 @@ TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
         EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok")) << failure;
     }
 }
+
+TEST_F(CudaProgram, crash_at_a_launch_is_its_rows_error_and_openmps_row_goes_on)
+{
+    const Ended ended = run(small_bench, "crash-launch");
+    EXPECT_EQ(ended.code, 1) << ended.errors;
+    EXPECT_TRUE(contains(row_of(ended.out, "cuda"), "error"));
+    EXPECT_TRUE(contains(ended.out + ended.errors, "the driver of cuda (")) << ended.out;
+    EXPECT_TRUE(contains(ended.out + ended.errors, "SIGABRT")) << ended.out;
+    EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok"));
+}
+
+TEST(CudaDriver, that_crashes_at_its_start_is_named_and_openmps_row_goes_on)
+{
+    const Ended ended = run(small_bench, "crash");
+    EXPECT_EQ(ended.code, 1) << ended.errors;
+    EXPECT_TRUE(contains(ended.out + ended.errors,
+                         "the driver of cuda was ended by signal 6 (SIGABRT, Aborted) while listing its devices"));
+    EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok"));
+    EXPECT_TRUE(contains(run("devices", "crash").out, "openmp"));
+}

@@ -82,8 +82,8 @@ std::string error_of(const Action& action)
     try {
         action();
     } catch (const Error& error) {
-        const char* kinds[] = {"usage",    "invalid_input", "missing",    "unsupported",
-                               "internal", "wrong_result",  "interrupted"};
+        const char* kinds[] = {"usage",    "invalid_input", "missing",      "unsupported",
+                               "internal", "driver",        "wrong_result", "interrupted"};
         return std::string(kinds[static_cast<int>(error.kind())]) + ": " + error.what();
     }
     return "";

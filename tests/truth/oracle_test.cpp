@@ -228,3 +228,14 @@ TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
         EXPECT_TRUE(neighbours) << "step " << i;
     }
 }
+
+TEST(Judge, has_a_threads_exception_end_only_the_judging)
+{
+    const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    const Judge judge(mesh, 2);
+    const auto without_memory = [](Verdicts&, std::size_t i) {
+        if (i >= 3000) throw std::bad_alloc();
+    };
+    EXPECT_THROW(static_cast<void>(judge.for_each(9000, without_memory)), std::bad_alloc);
+    EXPECT_NO_THROW(static_cast<void>(judge.for_each(3000, without_memory)));
+}

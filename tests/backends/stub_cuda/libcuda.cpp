@@ -3,6 +3,7 @@
 //   alloc   no memory is left             module  a module's assembly is newer than the driver
 //   launch  a kernel cannot be launched   lost    a kernel fails, and with it all that follows until the context's last
 //   session has released it
+//   crash   the driver aborts at its start crash-launch  the driver aborts at a launch
 #include "backends/cuda_host/driver.h"
 
 #include <array>
@@ -36,6 +37,8 @@ bool needs_context(std::string_view symbol)
 
 Result failure_of(std::string_view symbol)
 {
+    if (symbol == "cuInit" && asked_for("crash")) std::abort();
+    if (symbol == "cuLaunchKernel" && asked_for("crash-launch")) std::abort();
     if (symbol == "cuDevicePrimaryCtxRetain") ++sessions;
     if (symbol == "cuDevicePrimaryCtxRelease_v2" && --sessions == 0) context_is_lost = false;
     if (context_is_lost && needs_context(symbol)) return error_launch_failed;

@@ -1,0 +1,96 @@
+#include "core/isolation/channel.h"
+
+#include "core/base/error.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <poll.h>
+#include <string>
+#include <sys/socket.h>
+
+namespace tetrace {
+
+namespace {
+
+/// What sendmsg() and recvmsg() take: one piece of memory, and room for one file.
+class Envelope {
+public:
+    Envelope(void* bytes, std::size_t count) : piece_{bytes, count}
+    {
+        header_.msg_iov = &piece_;
+        header_.msg_iovlen = 1;
+        header_.msg_control = control_.data();
+        header_.msg_controllen = control_.size();
+    }
+    void put_file(int file)
+    {
+        if (file < 0) {
+            header_.msg_control = nullptr;
+            header_.msg_controllen = 0;
+            return;
+        }
+        cmsghdr* const control = CMSG_FIRSTHDR(&header_);
+        control->cmsg_level = SOL_SOCKET;
+        control->cmsg_type = SCM_RIGHTS;
+        control->cmsg_len = CMSG_LEN(sizeof file);
+        std::memcpy(CMSG_DATA(control), &file, sizeof file);
+    }
+    [[nodiscard]] Descriptor take_file()
+    {
+        const cmsghdr* const control = CMSG_FIRSTHDR(&header_);
+        if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return Descriptor();
+        int file = -1;
+        std::memcpy(&file, CMSG_DATA(control), sizeof file);
+        return Descriptor(file);
+    }
+    [[nodiscard]] msghdr* header() { return &header_; }
+
+private:
+    iovec piece_;
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control_{};
+    msghdr header_{};
+};
+
+} // namespace
+
+Channel::Pair Channel::make_pair()
+{
+    std::array<int, 2> ends{};
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+        throw Error(ErrorKind::internal, std::string("no socket for a driver's process: ") + std::strerror(errno));
+    return {Channel(Descriptor(ends[0])), Channel(Descriptor(ends[1]))};
+}
+
+bool Channel::send(std::span<const std::byte> bytes, int file) const
+{
+    if (bytes.size() > most_message_bytes)
+        throw Error(ErrorKind::internal, "a message of " + std::to_string(bytes.size()) +
+                                             " bytes for a driver's process, at most " +
+                                             std::to_string(most_message_bytes) + " are possible");
+    Envelope envelope(const_cast<std::byte*>(bytes.data()), bytes.size()); // sendmsg() only reads
+    envelope.put_file(file);
+    ssize_t sent = 0;
+    while ((sent = ::sendmsg(socket_.get(), envelope.header(), MSG_NOSIGNAL)) < 0 && errno == EINTR) {
+    }
+    return sent == static_cast<ssize_t>(bytes.size());
+}
+
+bool Channel::wait(int milliseconds) const
+{
+    pollfd end = {socket_.get(), POLLIN, 0};
+    return ::poll(&end, 1, milliseconds) > 0;
+}
+
+std::optional<Message> Channel::receive() const
+{
+    buffer_.resize(most_message_bytes);
+    Envelope envelope(buffer_.data(), buffer_.size());
+    ssize_t got = 0;
+    while ((got = ::recvmsg(socket_.get(), envelope.header(), MSG_CMSG_CLOEXEC)) < 0 && errno == EINTR) {
+    }
+    if (got <= 0) return std::nullopt;
+    return Message{{buffer_.begin(), buffer_.begin() + got}, envelope.take_file()};
+}
+
+} // namespace tetrace

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/isolation/descriptor.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tetrace {
+
+/// Bytes, and a file that goes with them.
+struct Message {
+    std::vector<std::byte> bytes;
+    Descriptor file; ///< closed where there is none
+};
+
+/// The largest message; what may be larger goes through SharedMemory.
+inline constexpr std::size_t most_message_bytes = 128 * 1024;
+
+/// One end of a socket for whole messages.
+class Channel {
+public:
+    explicit Channel(Descriptor socket) : socket_(std::move(socket)) {}
+
+    /// Two connected ends; other programs that are started do not inherit them. Throws Error{internal}.
+    struct Pair;
+    [[nodiscard]] static Pair make_pair();
+
+    /// file: goes with the message; -1 for none. False where the other end is closed. Throws Error{internal} for a
+    /// message above most_message_bytes.
+    [[nodiscard]] bool send(std::span<const std::byte> bytes, int file = -1) const;
+    /// Whether receive() would return at once. Waits up to that long.
+    [[nodiscard]] bool wait(int milliseconds) const;
+    /// The next message; empty where the other end is closed.
+    [[nodiscard]] std::optional<Message> receive() const;
+
+    [[nodiscard]] int number() const { return socket_.get(); }
+
+private:
+    Descriptor socket_;
+    mutable std::vector<std::byte> buffer_; ///< of receive()
+};
+
+struct Channel::Pair {
+    Channel ours, theirs;
+};
+
+} // namespace tetrace

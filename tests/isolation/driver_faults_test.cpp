@@ -1,0 +1,139 @@
+// The program with drivers that misbehave: the rows of docs/faults.md.
+#include "tests/support/program_fixture.h"
+
+#include <csignal>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+class DriverFaults : public ProgramTest {
+protected:
+    /// Every driver of OpenCL is one that aborts when it is loaded.
+    void break_opencl() const { write_file(folder_ / "vendors/broken.icd", TETRACE_ABORTING_DRIVER "\n"); }
+    [[nodiscard]] std::string vendors() const { return (folder_ / "vendors").string(); }
+
+    [[nodiscard]] bool has(const std::string& backends) { return run("devices --require " + backends).code == 0; }
+
+    /// The verb on openmp and OpenCL, whose drivers misbehave.
+    Ended run_faulty(const std::string& fault, const std::string& arguments)
+    {
+        const ScopedVariable faulty("FAULTY_OPENCL", fault);
+        const ScopedVariable preload("LD_PRELOAD", TETRACE_FAULTY_OPENCL);
+        return run(arguments + " --backend openmp,opencl --scene cubes --resolution 4 --size 24 --threads 2 "
+                               "--method maria");
+    }
+
+    std::string crash_ = "was ended by signal 6 (SIGABRT, Aborted) while ";
+};
+
+} // namespace
+
+TEST_F(DriverFaults, opencl_that_crashes_at_load_is_named_and_vulkans_matrix_is_whole)
+{
+    if (!has("vulkan")) GTEST_SKIP() << "there is no Vulkan device";
+    const std::string check =
+        "check --backend opencl,vulkan --scene cubes --resolution 4 --size 16 --threads 2 --views 0 ";
+    break_opencl();
+    const ScopedVariable broken("OCL_ICD_VENDORS", vendors());
+    const Ended ended = run(check + "--junit check.xml");
+    EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "the driver of opencl " + crash_ + "listing its devices"));
+    EXPECT_TRUE(contains(ended.out, "bit-exact"));
+    const std::string xml = file("check.xml");
+    EXPECT_TRUE(contains(xml, "<error message=\"error: the driver of opencl was ended by signal 6"));
+    const auto cases_of = [&](const std::string& part) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = xml.find(part, at)) != std::string::npos; ++at)
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(cases_of("classname=\"tetrace.vulkan"), 5u);
+    EXPECT_EQ(cases_of("<error "), cases_of("classname=\"tetrace.opencl"));
+}
+
+TEST_F(DriverFaults, devices_are_listed_beside_a_driver_that_crashes_at_load)
+{
+    break_opencl();
+    const ScopedVariable broken("OCL_ICD_VENDORS", vendors());
+    const Ended ended = run("devices");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "openmp"));
+    EXPECT_TRUE(contains(ended.out, "SIGABRT"));
+    EXPECT_EQ(run("devices --require opencl").code, 3);
+    EXPECT_EQ(run("devices --isolate none").code, 128 + SIGABRT); // and no list
+}
+
+#ifdef TETRACE_FAULTY_OPENCL
+TEST_F(DriverFaults, driver_that_ends_at_any_call_ends_its_row_and_openmps_goes_on)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    const struct {
+        const char *fault, *reason;
+    } faults[] = {
+        {"build:2 abort", "was ended by signal 6 (SIGABRT, Aborted) while opening cdt/maria/tet80"},
+        {"launch:3 segv", "was ended by signal 11 (SIGSEGV, Segmentation fault) while launching"},
+        {"launch:3 exit", "ended its process with exit code 7 while launching"},
+        {"launch:3 kill", "was ended by signal 9 (SIGKILL, Killed), as the system does where memory is short"},
+        {"read:2 abort", "was ended by signal 6 (SIGABRT, Aborted) while reading the hits"}};
+    for (const auto& [fault, reason] : faults) {
+        const Ended ended = run_faulty(fault, "check --views 0 --layout tet80");
+        EXPECT_EQ(ended.code, 1) << fault << ended.out << ended.errors;
+        EXPECT_TRUE(contains(ended.out, "the driver of opencl (")) << fault;
+        EXPECT_TRUE(contains(ended.out, reason)) << fault << ended.errors;
+        EXPECT_TRUE(contains(ended.out, "Verified  576 rays")) << fault; // openmp's
+    }
+}
+
+TEST_F(DriverFaults, what_a_driver_reports_has_the_status_that_it_has_without_isolation)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    for (const char* fault : {"launch:3 out-of-memory", "launch:3 lost"}) {
+        const Ended apart = run_faulty(fault, "check --views 0 --layout tet80");
+        const Ended within = run_faulty(fault, "check --views 0 --layout tet80 --isolate none");
+        EXPECT_EQ(apart.code, within.code) << fault;
+        EXPECT_EQ(apart.out, within.out) << fault;
+        EXPECT_TRUE(contains(apart.out, "CL_OUT_OF_")) << fault;
+    }
+}
+
+TEST_F(DriverFaults, row_of_a_crash_is_the_only_one_that_fails)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    // The first process builds the self-test and a row; the second builds only the other row.
+    const Ended ended = run_faulty("build:2 abort", "check --views 0 --layout tet80,tet96 --junit check.xml");
+    EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
+    const std::string xml = file("check.xml");
+    EXPECT_TRUE(contains(xml, "errors=\"1\""));
+    EXPECT_TRUE(contains(xml, "the driver of opencl"));
+    EXPECT_TRUE(contains(xml, crash_ + "opening"));
+}
+
+TEST_F(DriverFaults, crash_in_the_middle_of_timing_costs_no_other_rows_samples)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    const Ended ended = run_faulty("launch:40 abort", "bench --samples 20 --layout tet80 --out bench.json");
+    EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
+    EXPECT_TRUE(contains(ended.out, crash_ + "launching cdt/maria/tet80"));
+    EXPECT_TRUE(contains(file("bench.json"), "\"samples_s\""));
+}
+
+TEST_F(DriverFaults, hang_ends_at_its_limit)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    const Ended ended = run_faulty("launch:3 hang", "check --views 0 --layout tet80 --driver-limit 15");
+    EXPECT_EQ(ended.code, 1) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "gave no answer for 15 s, and was ended, while launching cdt/maria/tet80"));
+}
+
+TEST_F(DriverFaults, garbage_and_nan_in_results_are_wrong)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    for (const char* fault : {"read:2 garbage", "read:2 nan"}) {
+        const Ended ended = run_faulty(fault, "check --views 0 --layout tet80");
+        EXPECT_EQ(ended.code, 1) << fault << ended.errors;
+        EXPECT_TRUE(contains(ended.out, "wrong")) << fault;
+    }
+}
+#endif
