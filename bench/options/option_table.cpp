@@ -358,8 +358,8 @@ std::vector<OptionRow> output_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {reproduce_options, inspect_options, scene_options, row_options, ray_options, driver_options, judging_options,
-                      report_options, output_options})
+    for (auto part : {reproduce_options, inspect_options, scene_options, row_options, ray_options, driver_options,
+                      judging_options, report_options, output_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     return table;

@@ -14,11 +14,25 @@
 namespace tetrace {
 
 /// What the program is asked to do; the first word of its command line.
-enum class Verb { devices, scenes, build, bench, check, render, reproduce, inspect, compare, show, report, help, version };
+enum class Verb {
+    devices,
+    scenes,
+    build,
+    bench,
+    check,
+    render,
+    reproduce,
+    inspect,
+    compare,
+    show,
+    report,
+    help,
+    version
+};
 template <>
-inline constexpr auto enum_names<Verb> =
-    names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check", "render", "reproduce", "inspect",
-                               "compare", "show", "report", "help", "version");
+inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
+                                                                    "render", "reproduce", "inspect", "compare", "show",
+                                                                    "report", "help", "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };

@@ -18,9 +18,9 @@ template <class Visit>
 void each_text(Device& device, const Visit& visit)
 {
     auto& [name, kind, driver, implementation, id, uuid, pci, memory_bytes, max_buffer_bytes, max_group_items,
-           group_width, most_steps, timer_period_s, threads, usable, broken, reason] = device;
+           group_width, most_steps, timer_period_s, threads, usable, compile_only, broken, reason] = device;
     static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, most_steps,
-                               timer_period_s, threads, usable, broken)); // see each_number()
+                               timer_period_s, threads, usable, compile_only, broken)); // see each_number()
     for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &reason})
         visit(*text);
 }
@@ -37,6 +37,7 @@ void each_number(Device& device, const Visit& visit)
     visit(device.timer_period_s);
     visit(device.threads);
     visit(device.usable);
+    visit(device.compile_only);
     visit(device.broken);
 }
 
