@@ -52,6 +52,20 @@ ApplyOption set_path(const std::string& option, std::optional<std::filesystem::p
     };
 }
 
+void set_cameras(Options& options, const std::string& text)
+{
+    if (text.ends_with(".json")) {
+        options.own_cameras = read_cameras(text);
+        return;
+    }
+    for (const CameraSet set : values_of<CameraSet>())
+        if (name_of(set) == text) {
+            options.camera_set = set;
+            return;
+        }
+    reject_value("--camera-set", text, join_names(values_of<CameraSet>()) + ", or a file that ends in .json");
+}
+
 void set_result_file(Options& options, const std::string& text)
 {
     if (text.empty()) throw Error(ErrorKind::usage, "--out: the file name is empty");

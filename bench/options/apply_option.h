@@ -42,6 +42,8 @@ template <class T>
                                        unsigned high);
 /// A file's name, not empty.
 [[nodiscard]] ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path);
+/// A set of tetrace's by its name, or the user's own from a file.
+void set_cameras(Options& options, const std::string& text);
 /// The file of --out; "-" means none.
 void set_result_file(Options& options, const std::string& text);
 

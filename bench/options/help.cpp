@@ -236,7 +236,9 @@ std::string program_text()
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
     text += "\n'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options.\n"
             "Results go to standard output, or to --out FILE. A file appears whole, or not at all with exit code 2.\n"
-            "Messages and progress go to standard error. Terminals get colours unless NO_COLOR is set.\n\n"
+            "Messages and progress go to standard error: progress is a line that is redrawn, or without a terminal a\n"
+            "line each 30 seconds. Terminals get colours unless NO_COLOR is set, and tables and sentences that fit "
+            "them.\n\n"
             "Examples\n"
             "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"

@@ -207,10 +207,10 @@ std::vector<OptionRow> ray_options()
     const unsigned with_rays = reproducing | bit(Verb::build);
     return {
         {"Rays", "--camera-set", "SET",
-         "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii. "
-         "Default: smoke.",
-         tracing | bit(Verb::build), false,
-         [](Options& o, const std::string& v) { o.camera_set = choose<CameraSet>("--camera-set", v); }},
+         "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; "
+         "or "
+         "a file that ends in .json, with cameras of your own (docs/cameras.md). Default: smoke.",
+         tracing | bit(Verb::build), false, set_cameras},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
          "Default: all.",

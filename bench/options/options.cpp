@@ -230,9 +230,19 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     return requests;
 }
 
+std::string camera_set_name(const Options& options)
+{
+    return options.own_cameras ? options.own_cameras->name : std::string(name_of(options.camera_set));
+}
+
+std::size_t camera_set_size(const Options& options)
+{
+    return options.own_cameras ? options.own_cameras->views.size() : view_count(options.camera_set);
+}
+
 std::vector<std::uint32_t> selected_views(const Options& options)
 {
-    return parse_views(options.views, view_count(options.camera_set));
+    return parse_views(options.views, camera_set_size(options));
 }
 
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/options/camera_file.h"
 #include "core/isolation/isolation.h"
 #include "core/pack/kernel_id.h"
 #include "core/rays/camera.h"
@@ -104,7 +105,8 @@ struct Options {
     bool list = false;
 
     CameraSet camera_set = CameraSet::smoke;
-    std::string views; ///< as parse_views() takes it; empty: all of the set
+    std::optional<OwnCameras> own_cameras; ///< in place of camera_set
+    std::string views;                     ///< as parse_views() takes it; empty: all of the set
     std::uint32_t width = 1024, height = 1024;
 
     unsigned threads = 0;           ///< 0: all that the process may use
@@ -153,6 +155,10 @@ struct Options {
 /// domain, one kind of tets, at most one number of divisions and set of switches (parse_options ensures it, except for
 /// `build`, which combines them, and `render`, which shows several kinds of tets).
 [[nodiscard]] std::vector<SceneRequest> scene_requests(const Options& options);
+
+/// The camera set's name, and its number of views: the user's own where one is given.
+[[nodiscard]] std::string camera_set_name(const Options& options);
+[[nodiscard]] std::size_t camera_set_size(const Options& options);
 
 /// The view numbers asked for, ascending. Throws Error{usage} as parse_views() does.
 [[nodiscard]] std::vector<std::uint32_t> selected_views(const Options& options);

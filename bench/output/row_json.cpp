@@ -43,11 +43,12 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"tool", build.tool},
                              {"build_s", build.build_s},
                              {"from_cache", loaded.from_cache},
-                             {"camera_set", name_of(options.camera_set)},
+                             {"camera_set", camera_set_name(options)},
                              {"views", scene.view_numbers()},
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
+    if (options.own_cameras) object["camera_set_hash"] = hash_text(options.own_cameras->hash());
     if (build.optimised.asked == TetsKind::rays) object["optimised"] = optimised_json(build.optimised);
     if (const auto& walk = scene.start_walk())
         object["start_walk"] = {{"walked", walk->counts.walked},

@@ -14,7 +14,9 @@ SceneWork::SceneWork(LoadedScene loaded, const Options& options)
     : loaded_(std::move(loaded)), counts_(count_faces(loaded_.scene.tets)), width_(options.width),
       height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
 {
-    const auto cameras = make_cameras(options.camera_set, bounding_sphere(loaded_.scene.mesh));
+    const BoundingSphere sphere = bounding_sphere(loaded_.scene.mesh);
+    const auto cameras =
+        options.own_cameras ? options.own_cameras->cameras(sphere) : make_cameras(options.camera_set, sphere);
     std::vector<Float3> origins;
     for (const std::uint32_t number : view_numbers_) {
         views_.push_back(make_view(cameras.at(number), width_, height_));

@@ -115,7 +115,7 @@ std::vector<std::size_t> Table::fitting(std::size_t indent, std::size_t width) c
     std::size_t length = indent + width_of(wanted.front());
     for (const std::size_t c : wanted) {
         const std::size_t longer = length + gap.size() + width_of(c);
-        if (c == wanted.front() || longer > width) continue;
+        if (c == wanted.front() || (longer > width && columns_[c].rank > 0)) continue;
         length = longer;
         kept.push_back(c);
     }

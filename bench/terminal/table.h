@@ -37,7 +37,7 @@ struct Column {
     std::string unit = {};
     int decimals = 2;      ///< of real numbers, in text and Markdown; CSV keeps all digits
     bool coloured = false; ///< whether text() shows its words by in_colour()
-    int rank = 1;          ///< the lower, the more important where a terminal is too narrow for all
+    int rank = 1;          ///< the lower, the more important on a narrow terminal; 0: it is always there
 };
 
 /// A table that prints itself as aligned text, CSV or Markdown. Numbers are right-aligned, texts left-aligned.
@@ -57,7 +57,8 @@ public:
     /// left out, and so are the dropped() ones.
     [[nodiscard]] std::string text(std::size_t indent = 0, std::size_t width = 0) const;
     /// The titles of the columns that do not fit into lines of `width` columns (0: any length), in the table's order:
-    /// the first column stays, and of the others those that still fit, by rank, and among equal ones from the left.
+    /// the first column stays, those of rank 0, and of the others those that still fit, by rank, and among equal ones
+    /// from the left.
     [[nodiscard]] std::vector<std::string> dropped(std::size_t indent, std::size_t width) const;
     /// The first column and those with these keys; the whole table where it has none of them.
     [[nodiscard]] Table with_columns(const std::vector<std::string>& keys) const;

@@ -255,7 +255,7 @@ Report build_report(const std::vector<Built>& all, const Options& options)
         "Steps of primary rays: {} views of {} at {}x{}. Cost: free faces outside the objects that a "
         "uniform line crosses, before and after optimising. Reached: what rays from outside can load; the rest is "
         "inside closed objects.",
-        selected_views(options).size(), name_of(options.camera_set), options.width, options.height));
+        selected_views(options).size(), camera_set_name(options), options.width, options.height));
     return {std::move(sheet), full, {{"tetrace", std::move(section)}}};
 }
 

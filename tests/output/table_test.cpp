@@ -50,6 +50,9 @@ TEST(Table, on_a_narrow_terminal_goes_without_the_least_important_columns)
     EXPECT_EQ(table.dropped(0, 25), std::vector<std::string>{"c"});
     EXPECT_EQ(table.text(0, 18), "a      b\n12345  12345\n") << "the rightmost of equal ones first";
     EXPECT_EQ(table.text(0, 3), "a\n12345\n") << "the first stays";
+    Table important({{"a", "a"}, {"b", "b"}, {.key = "c", .title = "c", .rank = 0}});
+    important.add({std::string("12345"), std::string("12345"), std::string("12345")});
+    EXPECT_EQ(important.text(0, 3), "a      c\n12345  12345\n") << "and so do those of rank 0";
     EXPECT_EQ(table.with_columns({"d"}).text(), "a      d\n12345  12345\n");
     EXPECT_EQ(table.with_columns({"e"}).text(), table.text());
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -151,4 +152,37 @@ TEST_F(Messages, google_benchmarks_console_obeys_and_has_its_units_right)
     EXPECT_TRUE(std::regex_search(plain.out, std::regex("Mrays/s=[0-9.]+[a-zA-Z]?\\s"))) << plain.out;
     EXPECT_TRUE(contains(console("--benchmark_color=true").out, "\x1b["));
     EXPECT_FALSE(contains(console("--benchmark_color=false").out, "\x1b["));
+}
+
+TEST_F(Messages, an_interrupted_reproduce_says_how_to_go_on)
+{
+    const std::string command = fmt::format(
+        "cd '{0}' && timeout -s INT 2 '{1}' reproduce table3 --scene cubes --resolution 20 --backend openmp "
+        "--out 'my tables.json' > out 2> errors",
+        folder_.path().string(), TETRACE_PROGRAM);
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 124) << "it takes longer than two seconds";
+    EXPECT_TRUE(contains(file("errors"), "to go on: tetrace reproduce table3 --scene cubes --resolution 20 --backend "
+                                         "openmp --out 'my tables.json' --resume\n"))
+        << file("errors");
+    EXPECT_TRUE(contains(file("errors"), "is in 'my tables.json.journal'")) << file("errors");
+}
+
+TEST_F(Messages, tables_and_sentences_fit_the_terminal)
+{
+    ASSERT_EQ(run("bench --backend openmp --scene cubes --resolution 6 --size 24 --samples 5 --out a.json").code, 0);
+    const ScopedVariable term("TERM", "xterm"), none("NO_COLOR", "1");
+    for (const char* const columns : {"80", "60"}) {
+        const ScopedVariable width("COLUMNS", columns);
+        Terminal terminal;
+        if (terminal.name().empty()) GTEST_SKIP() << "no terminal";
+        run("show a.json > " + terminal.name() + " 2> /dev/null #");
+        std::istringstream screen(terminal.screen());
+        for (std::string line; std::getline(screen, line);) {
+            line.erase(line.find_last_not_of('\r') + 1);
+            EXPECT_LE(line.size(), std::stoul(columns)) << line;
+        }
+        EXPECT_TRUE(contains(terminal.screen(), std::string("Left out in ") + columns + " columns: "))
+            << terminal.screen();
+        EXPECT_TRUE(contains(terminal.screen(), "Mrays/s")) << terminal.screen();
+    }
 }

@@ -91,7 +91,7 @@ TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert, reached or input"));
     EXPECT_TRUE(contains(rejection({"draw"}),
-                         "devices, scenes, build, bench, check, render, reproduce, inspect, compare, report or help"));
+                         "devices, scenes, build, bench, check, render, reproduce, inspect, compare, show, report or help"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));
 }
 
@@ -171,13 +171,14 @@ TEST(Options, every_row_is_taken_by_a_verb_and_described_with_a_full_sentence)
     }
 }
 
-TEST(Options, compare_takes_two_files_and_a_tolerance_in_percent)
+TEST(Options, compare_takes_two_files_or_more_and_a_tolerance_in_percent)
 {
     const Options options = parse_options({"compare", "a.json", "--tolerance", "2.5%", "b.json"});
     EXPECT_EQ(options.files, (std::vector<std::filesystem::path>{"a.json", "b.json"}));
     EXPECT_DOUBLE_EQ(options.tolerance, 0.025);
     EXPECT_TRUE(contains(rejection({"compare", "a.json"}), "one file is given; usage: tetrace compare A.json B.json"));
-    EXPECT_TRUE(contains(rejection({"compare", "a", "b", "c"}), "3 files are given"));
+    EXPECT_EQ(parse_options({"compare", "a", "b", "c"}).files.size(), 3u);
+    EXPECT_TRUE(contains(rejection({"show", "a", "b"}), "2 files are given"));
     EXPECT_TRUE(contains(rejection({"compare", "a", "b", "--samples", "3"}), "--tolerance"));
     EXPECT_EQ(parse_percent("--tolerance", "0"), 0);
     for (const char* const bad : {"", "%", "-1", "101", "nan", "3 %", "three"})

@@ -120,7 +120,8 @@ class ResultSchema(unittest.TestCase):
             json.dump(cls.bench, file)
             file.flush()
             cls.compare = fresh(["compare", file.name, file.name])
-        cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "reproduce": reproduced(cls.bench),
+            several = fresh(["compare", file.name, file.name, file.name])
+        cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
                    "inspect": fresh(["inspect", "--target", "gfx1100", "--method", "maria", "--layout", "tet80"], (0, 3))}
@@ -145,6 +146,16 @@ class ResultSchema(unittest.TestCase):
         for verb, result in self.all.items():
             self.accepts(result, verb)
         self.assertTrue(any("samples_s" in row.get("times", {}) for row in self.bench["tetrace"]["rows"]))
+
+    def test_own_cameras_are_what_their_schema_says(self):
+        docs = RESULTS.parent / "docs"
+        schema = jsonschema.Draft202012Validator(json.loads((docs / "cameras.schema.json").read_text()))
+        example = json.loads((docs / "cameras.example.json").read_text())
+        self.assertTrue(schema.is_valid(example))
+        self.assertIn(json.dumps(example["views"][1]), (docs / "cameras.md").read_text().replace("{ ", "{").replace(" }", "}"))
+        for wrong in ({**example, "name": "orbit"}, {**example, "views": []}, {**example, "views": [{"target": [0, 0, 0]}]}):
+            self.assertFalse(schema.is_valid(wrong))
+        self.accepts(tiny("bench", "--samples", "3", "--camera-set", str(docs / "cameras.example.json")), "own cameras")
 
     def test_anonymous_results_are_valid(self):
         self.accepts(tiny("bench", "--samples", "3", "--anonymous"), "bench")

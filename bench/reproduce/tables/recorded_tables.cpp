@@ -39,8 +39,9 @@ std::optional<double> number_at(const ResultValue& object, const char* key)
 PaperCell read_cell(const ResultValue& cell)
 {
     if (cell.json().is_string()) return printable_text(cell.text());
+    if (cell.json().is_number()) return exact_cell(cell.number());
     const auto value = number_at(cell, "value");
-    if (!value) return {};
+    if (!value) return known_text(shown_at(cell, "text"));
     const bool is_compared = cell.find("ratio").has_value();
     return Quantity{{*value, number_at(cell, "low"), number_at(cell, "high")}, number_at(cell, "paper"), is_compared};
 }

@@ -1,0 +1,137 @@
+#include "bench/options/camera_file.h"
+
+#include "bench/options/option_values.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/base/printable.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t largest_file = std::size_t{16} << 20, most_views = 100'000, longest_name = 100;
+
+/// A file, and the entry of it that is being read.
+class CameraReader {
+public:
+    explicit CameraReader(const std::filesystem::path& path) : path_(path) {}
+
+    [[nodiscard]] OwnCameras read() const
+    {
+        const json whole = parsed();
+        check_keys(whole, "the file", {"name", "views"});
+        OwnCameras set{name_of_set(whole), {}};
+        const auto views = whole.find("views");
+        if (views == whole.end() || !views->is_array() || views->empty())
+            reject("views: is not a list of one view or more");
+        if (views->size() > most_views) reject("views: has more than 100,000 views");
+        for (std::size_t i = 0; i < views->size(); ++i)
+            set.views.push_back(aim_of(views->at(i), fmt::format("views[{}]", i)));
+        return set;
+    }
+
+private:
+    [[noreturn]] void reject(const std::string& what, ErrorKind kind = ErrorKind::invalid_input) const
+    {
+        throw Error(kind, fmt::format("--camera-set: reading '{}': {}", path_.string(), what));
+    }
+
+    [[nodiscard]] json parsed() const
+    {
+        std::error_code ignored;
+        if (!std::filesystem::exists(path_, ignored)) reject("there is no such file", ErrorKind::missing);
+        if (!std::filesystem::is_regular_file(path_, ignored)) reject("it is no file");
+        std::ifstream file(path_, std::ios::binary);
+        std::string bytes(largest_file + 1, '\0');
+        file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        bytes.resize(static_cast<std::size_t>(file.gcount()));
+        if (bytes.size() > largest_file) reject("it is larger than 16 MiB");
+        try {
+            return json::parse(bytes);
+        } catch (const json::exception& problem) {
+            reject(fmt::format("it is not JSON: {}", printable_line(problem.what())));
+        }
+    }
+
+    void check_keys(const json& object, const std::string& what, const std::vector<std::string>& accepted) const
+    {
+        if (!object.is_object()) reject(what + ": is not an object");
+        for (const auto& [key, value] : object.items())
+            if (std::ranges::find(accepted, key) == accepted.end())
+                reject(fmt::format("{}: has a key '{}'; accepted: {}", what, printable_line(key),
+                                   join_alternatives(accepted)));
+    }
+
+    [[nodiscard]] std::string name_of_set(const json& whole) const
+    {
+        const auto name = whole.find("name");
+        const std::string text = name != whole.end() && name->is_string() ? name->get<std::string>() : std::string();
+        if (text.empty() || text.size() > longest_name || printable_line(text) != text)
+            reject("name: is not a text of one line, of 1 to 100 bytes");
+        for (const CameraSet set : values_of<CameraSet>())
+            if (text == tetrace::name_of(set))
+                reject(fmt::format("name: '{}' is the name of a set of tetrace's", text));
+        return text;
+    }
+
+    [[nodiscard]] Aim aim_of(const json& view, const std::string& what) const
+    {
+        check_keys(view, what, {"origin", "target", "up"});
+        if (!view.contains("origin")) reject(what + ": has no 'origin'");
+        Aim aim;
+        const std::array<std::pair<const char*, Double3*>, 3> members = {
+            {{"origin", &aim.origin}, {"target", &aim.target}, {"up", &aim.up}}};
+        for (const auto& [key, member] : members)
+            if (const auto value = view.find(key); value != view.end())
+                *member = vector_of(*value, fmt::format("{}.{}", what, key));
+        if (const std::string why = why_no_camera(aim); !why.empty()) reject(what + "." + why);
+        return aim;
+    }
+
+    [[nodiscard]] Double3 vector_of(const json& value, const std::string& what) const
+    {
+        const auto is_number = [](const json& one) { return one.is_number() && std::isfinite(one.get<double>()); };
+        if (!value.is_array() || value.size() != 3 || !std::ranges::all_of(value, is_number))
+            reject(what + ": is not a list of three numbers");
+        return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+    }
+
+    std::filesystem::path path_;
+};
+
+} // namespace
+
+std::uint64_t OwnCameras::hash() const
+{
+    std::vector<double> numbers;
+    for (const Aim& aim : views)
+        for (const Double3& v : {aim.origin, aim.target, aim.up})
+            for (const double number : {v.x, v.y, v.z})
+                numbers.push_back(number + 0.0); // -0 is 0
+    return hash_of(numbers);
+}
+
+std::vector<Camera> OwnCameras::cameras(const BoundingSphere& sphere) const
+{
+    std::vector<Camera> made;
+    for (const Aim& aim : views)
+        made.push_back(aimed_camera(aim, sphere));
+    return made;
+}
+
+OwnCameras read_cameras(const std::filesystem::path& path)
+{
+    return CameraReader(path).read();
+}
+
+} // namespace tetrace
