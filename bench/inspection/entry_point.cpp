@@ -40,8 +40,7 @@ std::vector<EntryPoint> all_entry_points(Maker maker)
 bool wants(const Options& options, const EntryPoint& point)
 {
     const KernelId& kernel = point.kernel;
-    const bool wants_method = options.methods.empty() ? is_default(kernel) || !options.layouts.empty()
-                                                      : keeps(options.methods, kernel.method);
+    const bool wants_method = options.methods.empty() ? is_default(kernel) : keeps(options.methods, kernel.method);
     const bool wants_math = options.math.empty() ? kernel.math == MathMode::exact : keeps(options.math, kernel.math);
     return keeps(options.structures, kernel.structure) && wants_method && wants_math &&
            keeps(options.layouts, kernel.layout) && keeps(options.schedules, kernel.schedule) &&

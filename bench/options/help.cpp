@@ -173,7 +173,8 @@ const VerbHelp verb_help[] = {
      "  tetrace show check.json --format markdown\n"},
     {Verb::report, "write one HTML page from results",
      "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
-     "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, and pictures. The "
+     "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, what compilers "
+     "told inspect, and pictures. The "
      "page loads nothing and runs no script. It follows the reader's choice of light or dark, and prints. Rows of "
      "several results share a chart if they traced the same rays through the same scene. Emulated devices and GPUs "
      "never share one.",

@@ -83,7 +83,7 @@ std::string report_page(const ReportInput& input)
 {
     std::vector<Section> sections;
     for (const auto make : {machine_section, rate_section, ratio_section, roofline_section, conformance_section,
-                            paper_section, picture_section, time_section})
+                            compiler_section, paper_section, picture_section, time_section})
         sections.push_back(make(input));
     Html body;
     for (const Section& section : sections)

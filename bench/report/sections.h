@@ -28,6 +28,7 @@ struct ReportInput {
 
 [[nodiscard]] Section machine_section(const ReportInput& input);     ///< results, devices, scenes
 [[nodiscard]] Section conformance_section(const ReportInput& input); ///< the matrix of `check`
+[[nodiscard]] Section compiler_section(const ReportInput& input);    ///< what `inspect` was told of each kernel
 [[nodiscard]] Section rate_section(const ReportInput& input);        ///< bars per scene, and rows without a rate
 [[nodiscard]] Section ratio_section(const ReportInput& input);       ///< APIs compared with each other
 [[nodiscard]] Section roofline_section(const ReportInput& input);    ///< every device with its rows

@@ -67,6 +67,39 @@ TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
     EXPECT_FALSE(contains(section_of(page_of({bench_json()}), "machines"), "others"));
 }
 
+TEST_F(ReportPage, what_compilers_told_is_a_table_of_programs)
+{
+    json inspected = {{"tetrace", head_json("inspect", innocent)}};
+    inspected["tetrace"]["skipped_targets"] = {"sm_90: no nvcc"};
+    inspected["tetrace"]["programs"] = {{{"target", "gfx1100"},
+                                         {"structure", "cdt"},
+                                         {"method", "project"},
+                                         {"layout", "half32"},
+                                         {"math", "exact"},
+                                         {"schedule", "tiles"},
+                                         {"entry", "outside"},
+                                         {"status", "ok"},
+                                         {"compiler", "radv <22>"},
+                                         {"registers", 60},
+                                         {"subgroups", 24},
+                                         {"most_subgroups", 32},
+                                         {"fused", 0},
+                                         {"fused_in", "nothing"}},
+                                        {{"target", "sm_90"},
+                                         {"structure", "cdt"},
+                                         {"method", "maria"},
+                                         {"layout", "tet80"},
+                                         {"math", "exact"},
+                                         {"schedule", "tiles"},
+                                         {"entry", "outside"},
+                                         {"status", "skipped"},
+                                         {"reason", "no nvcc"}}};
+    const std::string section = section_of(page_of({inspected}), "compilers");
+    for (const char* const shown : {"gfx1100", "project half32", "radv &lt;22&gt;", ">75<", "none", "no nvcc"})
+        EXPECT_TRUE(contains(section, shown)) << shown;
+    EXPECT_TRUE(contains(section_of(page_of({bench_json()}), "compilers"), "tetrace inspect"));
+}
+
 TEST_F(ReportPage, other_rays_have_a_chart_of_their_own)
 {
     json other = bench_json();
