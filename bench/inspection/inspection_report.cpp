@@ -181,9 +181,12 @@ Report inspection_report(const Inspection& inspection, const Options& options)
     for (const Inspected& row : inspection.rows)
         section["programs"].push_back(row_json(row));
     section["skipped_targets"] = inspection.skipped;
-    Report report{short_table(inspection).text(), inspection_table(inspection), {{"tetrace", std::move(section)}}};
-    if (!(failures + skipped).empty()) report.text += "\n" + failures + skipped;
-    if (options.out) report.text += "\nResult: " + options.out->string() + "\n";
+    Report report{{}, inspection_table(inspection), {{"tetrace", std::move(section)}}};
+    report.sheet.table(short_table(inspection), 0);
+    if (!(failures + skipped).empty()) report.sheet.gap();
+    report.sheet.verbatim(failures + skipped);
+    if (options.out) report.sheet.gap();
+    if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
 }
 
