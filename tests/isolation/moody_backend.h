@@ -117,6 +117,7 @@ public:
                           7,
                           true,
                           false,
+                          false,
                           ""};
             devices_.push_back(device);
         }

@@ -230,7 +230,9 @@ void expect_all_caught(const char* name, const TriangleMesh& mesh, std::uint32_t
         EXPECT_EQ(count.caught + count.excused + count.exact, count.falsified);
         EXPECT_EQ(count.overlooked, 0u) << name << ", " << kinds[kind] << ": a ray nearby explains what was caught";
         const bool is_point = kind >= static_cast<std::size_t>(Falsified::t_off);
-        if (is_point) EXPECT_EQ(count.caught, count.falsified) << name << ", " << kinds[kind];
+        if (is_point) {
+            EXPECT_EQ(count.caught, count.falsified) << name << ", " << kinds[kind];
+        }
     }
     EXPECT_GT(counts[static_cast<std::size_t>(Falsified::no_hit)].caught, 0u) << name;
 }

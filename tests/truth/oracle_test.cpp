@@ -1,6 +1,7 @@
 #include "bench/truth/oracle.h"
 
 #include "backends/openmp/backend.h"
+#include "bench/truth/judge.h"
 #include "bench/truth/walk_path.h"
 #include "core/mesh/locate.h"
 #include "scenes/procedural.h"
@@ -10,6 +11,7 @@
 
 #include <bit>
 #include <cmath>
+#include <new>
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #endif
