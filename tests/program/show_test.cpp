@@ -80,6 +80,11 @@ TEST_F(Show, every_result_of_this_repository)
     for (const auto& entry : std::filesystem::recursive_directory_iterator(TETRACE_RESULTS)) {
         if (entry.path().extension() != ".json" || entry.path().filename() == "result.schema.json") continue;
         const Ended shown = run("show '" + entry.path().string() + "'");
+        if (entry.path().parent_path().filename() == "compilers") { // of inspect
+            EXPECT_EQ(shown.code, 2);
+            EXPECT_TRUE(contains(shown.errors, "results of bench, check and reproduce can be shown again"));
+            continue;
+        }
         EXPECT_EQ(shown.code, 0) << entry.path() << shown.errors;
         EXPECT_GT(shown.out.size(), 1000u) << entry.path();
     }
