@@ -1,5 +1,6 @@
 #include "scenes/child_process.h"
 
+#include "core/base/descriptor.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
@@ -27,28 +28,6 @@ namespace {
 constexpr std::size_t kept_bytes = 64 * 1024;
 constexpr int tick_ms = 100;
 constexpr double grace_s = 1.0; ///< between SIGTERM and SIGKILL
-
-/// Owns a file descriptor.
-class Descriptor {
-public:
-    explicit Descriptor(int number = -1) : number_(number) {}
-    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept
-    {
-        std::swap(number_, other.number_);
-        return *this;
-    }
-    ~Descriptor() { close(); }
-    [[nodiscard]] int get() const { return number_; }
-    [[nodiscard]] bool open() const { return number_ >= 0; }
-    void close()
-    {
-        if (open()) ::close(std::exchange(number_, -1));
-    }
-
-private:
-    int number_;
-};
 
 struct Pipe {
     Descriptor read, write;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/isolation/descriptor.h"
+#include "core/base/descriptor.h"
 
 #include <cstddef>
 #include <span>
