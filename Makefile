@@ -1,6 +1,7 @@
 # What a person types; everything else is CMake (see CMakePresets.json). `make` alone prints what there is.
 JOBS ?= $(shell nproc)
 TETRACE = build/release/bin/tetrace
+comma := ,
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
@@ -10,7 +11,8 @@ help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/);"
 	@echo "              QUICK=1: bunny alone, in small images"
 	@echo "make test     install what is missing, build, run all tests"
-	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer;"
+	@echo "              ROOMS=core,scenes: those of these folders of tests/ alone"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
@@ -51,8 +53,8 @@ test:
 sanitize:
 	@scripts/install-packages build test
 	cmake --preset asan -G Ninja -DBUILD_TESTING=ON
-	cmake --build --preset asan -j $(JOBS) --target small_tests
-	ctest --preset asan -j $(JOBS) -L small --output-log build/asan/test.log
+	cmake --build --preset asan -j $(JOBS) --target $(if $(ROOMS),$(patsubst %,small_tests_%,$(subst $(comma), ,$(ROOMS))),small_tests)
+	ctest --preset asan -j $(JOBS) -L small $(if $(ROOMS),-L '-($(subst $(comma),|,$(ROOMS)))$$') --output-log build/asan/test.log
 	@echo "== asan"; grep -A 1000 '% tests passed' build/asan/test.log
 
 format:

@@ -57,6 +57,15 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
 endif()
 
+# tetrace_host_kernel_headers(<target> <math> <header>...): precompiles what each kernel reads besides itself, which took
+# longer than compiling the kernel. It and the kernels that reuse it have the same flags.
+function(tetrace_host_kernel_headers target math)
+  add_library(${target} OBJECT ${PROJECT_SOURCE_DIR}/backends/precompiled.cpp)
+  target_link_libraries(${target} PRIVATE tetrace_options OpenMP::OpenMP_CXX)
+  target_compile_options(${target} PRIVATE ${TETRACE_HOST_FLAGS_${math}})
+  target_precompile_headers(${target} PRIVATE ${ARGN})
+endfunction()
+
 # Packets of rays: the widths that are compiled, from 4 lanes up. The program checks at run time which of them the
 # processor can run.
 set(TETRACE_PACKET_LANES 16 CACHE STRING "Most lanes of a packet: 16 (AVX-512), 8 (AVX2) or 4; other processors than x86-64 have 4")
