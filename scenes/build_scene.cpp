@@ -213,10 +213,13 @@ Run run_builder(const fs::path& builder, const std::vector<std::string>& argumen
     if (address_space_is_shadowed) limits.memory_bytes = 0;
     run.outcome = run_child(
         builder, arguments, limits, [&](const std::string& line) { run.report.take(line); },
-        [&](double) {
-            if (progress)
-                progress(fmt::format("building {}: {}", label, run.report.stage), run.report.fraction,
-                         run.report.detail);
+        [&](double elapsed_s) {
+            if (!progress) return;
+            // TetGen does not tell how far it is.
+            const bool knows = run.report.fraction >= 0 || options.time_limit_s <= elapsed_s;
+            const double most_min = std::ceil((options.time_limit_s - elapsed_s) / 60);
+            progress(fmt::format("building {}: {}", label, run.report.stage), run.report.fraction,
+                     knows ? run.report.detail : fmt::format("at most {:.0f} min more", most_min));
         });
     return run;
 }

@@ -4,6 +4,7 @@
 #include "bench/inspection/machine_code.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,6 +67,9 @@ struct Inspected {
         return stated ? FusedIn::boxes : FusedIn::decisions;
     }
 };
+
+/// Called with the part of a target's programs that is done, in [0, 1].
+using PartDone = std::function<void(double)>;
 
 /// The rows of a target that was not asked.
 [[nodiscard]] inline std::vector<Inspected> unasked(const Target& target, const std::vector<EntryPoint>& points,

@@ -27,7 +27,7 @@ bool is_skipped(const Inspected& row)
 
 } // namespace
 
-Inspection inspect(const Options& options, const std::function<void(const std::string&)>& on_target)
+Inspection inspect(const Options& options, const Progress& tell)
 {
     const auto targets = targets_of(options.gpus);
     Inspection inspection;
@@ -38,11 +38,13 @@ Inspection inspect(const Options& options, const std::function<void(const std::s
         if (points.empty())
             throw Error(ErrorKind::usage, "inspect: no kernel has this combination of --structure, --method, --layout, "
                                           "--schedule, --math and --entry");
-        on_target(target.name);
+        const double first = static_cast<double>(&target - targets.data()), all = static_cast<double>(targets.size());
+        const PartDone tell_part = [&](double part) { tell("compiling", (first + part) / all, "for " + target.name); };
+        tell_part(0);
         if (target.maker == Maker::nvidia && !nvcc) nvcc = find_nvcc();
         const std::filesystem::path code = options.code_folder.value_or("");
-        auto rows = target.maker == Maker::amd ? ask_null_hardware(target, points, code)
-                                               : ask_nvcc(*nvcc, target, points, code);
+        auto rows = target.maker == Maker::amd ? ask_null_hardware(target, points, code, tell_part)
+                                               : ask_nvcc(*nvcc, target, points, code, tell_part);
         if (std::ranges::all_of(rows, is_skipped))
             inspection.skipped.push_back(fmt::format("{}: {}", target.name, rows.front().reason));
         std::ranges::move(rows, std::back_inserter(inspection.rows));

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "bench/inspection/inspected.h"
-
-#include <functional>
+#include "core/base/progress.h"
 
 namespace tetrace {
 
@@ -13,9 +12,9 @@ struct Inspection {
 };
 
 /// Compiles every entry point that the options keep for every target that they name; runs nothing.
-/// on_target: called with each target's name before it is asked.
+/// tell: see core/base/progress.h.
 /// Throws Error{usage} where no kernel is kept.
-[[nodiscard]] Inspection inspect(const Options& options, const std::function<void(const std::string&)>& on_target);
+[[nodiscard]] Inspection inspect(const Options& options, const Progress& tell);
 
 /// Throws Error{missing} naming the first required target that could not be asked, with the reason, or Error{usage}
 /// naming one that is not among those asked.

@@ -143,12 +143,15 @@ void take_line(Inspected& row, const json& line)
     row.first_fused = printable_line(code->at("first_fused").get<std::string>());
 }
 
+/// What the child says on standard error after each program.
+constexpr const char* compiled_word = "compiled";
+
 std::string last_line(const std::string& text)
 {
     std::istringstream stream(text);
     std::string last;
     for (std::string line; std::getline(stream, line);)
-        if (!line.empty()) last = printable_line(line.substr(0, 300));
+        if (!line.empty() && line != compiled_word) last = printable_line(line.substr(0, 300));
     return last;
 }
 
@@ -159,7 +162,7 @@ struct Answer {
 };
 
 Answer ask_family(const std::string& family, const fs::path& driver, const std::vector<Inspected>& unknown,
-                  const std::vector<std::size_t>& numbers, const fs::path& code)
+                  const std::vector<std::size_t>& numbers, const fs::path& code, const PartDone& tell)
 {
     const WorkFolder folder;
     const fs::path report = folder.path() / "report";
@@ -167,7 +170,10 @@ Answer ask_family(const std::string& family, const fs::path& driver, const std::
                                           code.empty() ? "-" : code.string()};
     for (const std::size_t number : numbers)
         arguments.push_back(std::to_string(number));
-    const ChildOutcome outcome = run_child(fs::read_symlink("/proc/self/exe"), arguments, {.time_s = most_child_s});
+    double done = 0;
+    const auto count = [&](const std::string& line) { done += line == compiled_word ? 1 : 0; };
+    const ChildOutcome outcome = run_child(fs::read_symlink("/proc/self/exe"), arguments, {.time_s = most_child_s},
+                                           count, [&](double) { tell(done / static_cast<double>(numbers.size())); });
     if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "inspect: interrupted");
     Answer answer{unknown, {}};
     Inspected::Count most;
@@ -207,7 +213,7 @@ std::vector<std::size_t> numbers_of(const std::vector<EntryPoint>& points)
 } // namespace
 
 std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector<EntryPoint>& points,
-                                         const fs::path& code)
+                                         const fs::path& code, const PartDone& tell)
 {
     const fs::path driver = driver_file();
     if (driver.empty()) return unasked(target, points, no_radv);
@@ -215,7 +221,7 @@ std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector
     const auto numbers = numbers_of(points);
     std::string first_reason;
     for (const std::string& family : family_names(target.name)) {
-        Answer answer = ask_family(family, driver, unknown, numbers, code);
+        Answer answer = ask_family(family, driver, unknown, numbers, code, tell);
         if (answer.reason.empty()) return answer.rows;
         if (first_reason.empty()) first_reason = answer.reason;
     }
@@ -249,6 +255,7 @@ int run_null_hardware(const std::vector<std::string>& arguments)
         const json line =
             compiled_json(*device.source, device.index, point, code.empty() ? code : code / code_name(family, point));
         report << line.dump(-1, ' ', false, json::error_handler_t::replace) << std::endl;
+        std::fprintf(stderr, "%s\n", compiled_word);
     }
     return 0;
 }

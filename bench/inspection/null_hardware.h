@@ -11,7 +11,7 @@ namespace tetrace {
 /// words; all are skipped where there is no RADV here, or none that knows the family.
 /// points: a part of all_entry_points(Maker::amd). code: folder for the programs' texts; empty: they are not kept.
 [[nodiscard]] std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector<EntryPoint>& points,
-                                                       const std::filesystem::path& code);
+                                                       const std::filesystem::path& code, const PartDone& tell);
 
 /// The first word of the child's command line; no verb of users.
 inline constexpr const char* null_hardware_word = "compile-for-null-hardware";

@@ -204,7 +204,7 @@ std::map<std::string, PtxasReport> read_ptxas(const std::string& messages)
 }
 
 std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const std::vector<EntryPoint>& points,
-                                const fs::path& code)
+                                const fs::path& code, const PartDone& tell)
 {
     if (!nvcc.reason.empty()) return unasked(target, points, nvcc.reason);
     if (std::ranges::find(nvcc.targets, target.name) == nvcc.targets.end())
@@ -214,6 +214,7 @@ std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const st
     std::map<std::string, Compiled> kernels;
     std::vector<Inspected> rows;
     for (const EntryPoint& point : points) {
+        tell(static_cast<double>(rows.size()) / static_cast<double>(points.size()));
         const cuda::ProgramId program = cuda::program_of(point.kernel);
         auto found = kernels.find(program.name());
         if (found == kernels.end()) found = kernels.emplace(program.name(), compile(nvcc, target, program, code)).first;

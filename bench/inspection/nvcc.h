@@ -23,7 +23,8 @@ struct Nvcc {
 /// skipped where nvcc is missing or does not know the target; those of a kernel that does not compile are errors.
 /// code: as in ask_null_hardware(): PTX, and machine code where there is a disassembler.
 [[nodiscard]] std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target,
-                                              const std::vector<EntryPoint>& points, const std::filesystem::path& code);
+                                              const std::vector<EntryPoint>& points, const std::filesystem::path& code,
+                                              const PartDone& tell);
 
 /// What `ptxas -v` says of an entry.
 struct PtxasReport {

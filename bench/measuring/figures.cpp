@@ -45,6 +45,7 @@ std::optional<Figures> figures_of(const RowRun& row)
     const RayTotals& totals = traced(row)->totals;
     Figures figures;
     figures.kernel_s = statistics_of(row.samples_s);
+    figures.noisy = figures.kernel_s.noisy() || !row.disturbance.empty();
     const double seconds = figures.kernel_s.median;
     add_wall(figures, row);
     figures.mrays_per_s = 1e-6 * static_cast<double>(totals.rays) / seconds;

@@ -16,6 +16,7 @@ struct Figures {
     std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
     std::optional<double> wall_s;       ///< from launch to the end of wait by the host's clock, all views; median
     std::optional<double> overhead_s;   ///< launching and waiting: median of the samples' wall minus device seconds
+    bool noisy = false;                 ///< the samples' spread, or what disturbed them, speaks against the rate
 };
 
 /// Empty unless the row is ok or flawed and has samples.

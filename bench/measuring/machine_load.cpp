@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sched.h>
@@ -26,23 +27,29 @@ std::set<unsigned> allowed_processors()
     return numbers;
 }
 
+std::string text_of(const std::filesystem::path& path)
+{
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 std::optional<double> busy_seconds(const std::set<unsigned>& processors)
 {
-    std::ifstream file("/proc/stat");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const auto ticks = busy_ticks(text, processors);
+    const auto ticks = busy_ticks(text_of("/proc/stat"), processors);
     return ticks ? std::optional(*ticks / static_cast<double>(::sysconf(_SC_CLK_TCK))) : std::nullopt;
 }
 
-/// Processor time of this process, in all its threads.
-double own_seconds()
+/// Of children that still run; those that have ended are in the process's own usage.
+double running_children_seconds()
 {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& time) {
-        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    double ticks = 0;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
+        if (entry.path().filename().string().find_first_not_of("0123456789") != std::string::npos) continue;
+        const auto process = process_times(text_of(entry.path() / "stat"));
+        if (process && process->parent == ::getpid()) ticks += process->ticks;
+    }
+    return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 double now_seconds()
@@ -66,6 +73,36 @@ std::optional<double> busy_ticks(std::string_view text, const std::set<unsigned>
             sum = sum.value_or(0) + user + nice + system + interrupts + soft_interrupts + stolen;
     }
     return sum;
+}
+
+double own_seconds()
+{
+    double sum = running_children_seconds();
+    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage usage{};
+        ::getrusage(who, &usage);
+        for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+            sum += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+    return sum;
+}
+
+std::optional<ProcessTimes> process_times(std::string_view text)
+{
+    const std::size_t name_end = text.rfind(')'); // a name may hold anything
+    if (name_end == std::string_view::npos) return std::nullopt;
+    std::istringstream words{std::string(text.substr(name_end + 1))};
+    ProcessTimes process;
+    std::string skipped;
+    words >> skipped >> process.parent; // the state comes first
+    for (int i = 0; i < 9; ++i)
+        words >> skipped;
+    for (int i = 0; i < 4; ++i) {
+        double ticks = 0;
+        words >> ticks;
+        process.ticks += ticks;
+    }
+    return words ? std::optional(process) : std::nullopt;
 }
 
 LoadMeter::LoadMeter()

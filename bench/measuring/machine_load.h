@@ -20,7 +20,18 @@ struct MachineLoad {
 /// Empty where it shows none of them.
 [[nodiscard]] std::optional<double> busy_ticks(std::string_view text, const std::set<unsigned>& processors);
 
-/// Measures the load from its construction on.
+/// A process as a text such as /proc/1/stat shows it.
+struct ProcessTimes {
+    long parent = 0;  ///< its number
+    double ticks = 0; ///< of work of its own, and of those of its children that have ended
+};
+/// Empty where the text shows none.
+[[nodiscard]] std::optional<ProcessTimes> process_times(std::string_view text);
+
+/// Processor time of this process, in all its threads, and of its children.
+[[nodiscard]] double own_seconds();
+
+/// Measures the load from its construction on. The work of this process's children is its own: drivers run there.
 class LoadMeter {
 public:
     LoadMeter();

@@ -1,5 +1,6 @@
 #include "bench/measuring/measure.h"
 
+#include "backends/openmp/yardstick.h"
 #include "bench/measuring/reporters.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
@@ -29,6 +30,7 @@ void set_counters(benchmark::State& state, const RowRun& row)
 /// Counts the repetitions of all rows, for the progress line.
 struct Sweep {
     const Budget* budget; ///< whose clock is read
+    Pulses* pulses;
     double done = 0, all = 1;
 };
 
@@ -63,13 +65,11 @@ Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
 /// Verification has already paid the costs of a row's first passes: compiling at the first launch, finding the launch
 /// size, touching memory. One more pass just before the samples wakes the device up, shows what a sample costs, and
 /// times the download.
-void warm_up(RowRun& row, Budget& budget)
+void warm_up(RowRun& row, Budget& budget, const std::function<void(double)>& tell_progress)
 {
     guarded(row, [&] {
         std::vector<Hit> hits;
-        const Pass pass = trace_views(row, budget, &hits, [&](double done) {
-            progress_line().show("warming up " + row.key.scene, done, -1, row_label(row.key));
-        });
+        const Pass pass = trace_views(row, budget, &hits, tell_progress);
         std::get<Traced>(row.outcome).download_s = pass.download_s;
         row.warm_s = pass.wall_s;
         budget.traced(row, row.scene->views().size(), pass.wall_s);
@@ -79,9 +79,15 @@ void warm_up(RowRun& row, Budget& budget)
 /// Seconds of one sample of every row.
 double warm_up_rows(std::vector<RowRun>& rows, Budget& budget)
 {
+    double done = 0;
     for (RowRun& row : rows) {
         budget.review_timed();
-        if (is_timed(row)) warm_up(row, budget);
+        const auto tell = [&](double part) {
+            progress_line().show("warming up", (done + part) / static_cast<double>(rows.size()), -1,
+                                 row.key.scene + ", " + row_label(row.key));
+        };
+        if (is_timed(row)) warm_up(row, budget, tell);
+        done += 1;
     }
     budget.review_timed();
     double sweep_s = 0;
@@ -92,10 +98,13 @@ double warm_up_rows(std::vector<RowRun>& rows, Budget& budget)
 
 double take_sample(RowRun& row, const Sweep& sweep)
 {
+    sweep.pulses->take_if_due();
+    const double begin_s = sweep.budget->now();
     const Pass pass = trace_views(row, *sweep.budget, nullptr, [&](double done) {
         progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
                              row.key.scene + ", " + row_label(row.key));
     });
+    sweep.pulses->sampled(row, begin_s, sweep.budget->now());
     row.wall_samples_s.push_back(pass.wall_s);
     return pass.kernel_s;
 }
@@ -178,15 +187,6 @@ void require_printed(const BenchmarkFlags& flags)
                                               "check that there is space left, or use --benchmark_out FILE");
 }
 
-/// Precondition: a view of the row has rays.
-std::size_t last_view_with_rays(const RowRun& row)
-{
-    std::size_t view = row.scene->views().size() - 1;
-    while (ray_count(row, view) == 0)
-        --view;
-    return view;
-}
-
 /// A device that answers differently under repetition must lose its rate.
 void check_last_view(RowRun& row)
 {
@@ -206,6 +206,11 @@ void check_rows_after(std::vector<RowRun>& rows)
             });
 }
 
+Pulses::Work pulse_of_host(const Options& options)
+{
+    return [threads = resolved_threads(options)] { return std::optional(openmp::pulse_s(threads)); };
+}
+
 } // namespace
 
 unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
@@ -215,7 +220,8 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
     return std::clamp(fitting, std::min(asked, fewest_samples), asked);
 }
 
-Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget)
+Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget,
+                         const Pulses::Work& host_pulse)
 {
     Measurement result;
     const LoadMeter meter;
@@ -225,14 +231,19 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
     const Stopwatch watch;
-    Sweep sweep{&budget, 0, static_cast<double>(timed) * result.samples};
+    Pulses pulses(rows, host_pulse ? host_pulse : pulse_of_host(options), budget.clock());
+    Sweep sweep{&budget, &pulses, 0, static_cast<double>(timed) * result.samples};
     register_rows(rows, result.samples, sweep);
     std::ostringstream json;
     const auto display = make_display(flags, json);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
+    pulses.take();
     // The filter was applied to the rows themselves, under the reported names.
     benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    pulses.take();
     result.load = meter.load();
+    result.pulses = pulses.found();
+    pulses.judge_rows(rows, result.load);
     progress_line().clear();
     require_printed(flags);
     if (file != nullptr) write_whole(flags.out, file->text());

@@ -2,6 +2,7 @@
 
 #include "bench/measuring/budget.h"
 #include "bench/measuring/machine_load.h"
+#include "bench/measuring/pulse.h"
 #include "bench/options/benchmark_flags.h"
 #include "bench/rows/row_run.h"
 
@@ -18,6 +19,7 @@ struct Measurement {
     nlohmann::json google_benchmark; ///< its own JSON: context and benchmarks; null where nothing was timed
     double wall_s = 0;
     std::optional<MachineLoad> load; ///< while warming up and timing; empty where the system does not tell
+    std::vector<Pulse> pulses;       ///< of the host and of each GPU
 };
 
 /// Number of samples that fit the budget: the number asked for, or fewer, but at least 5 where at least 5 were asked
@@ -27,9 +29,10 @@ struct Measurement {
 /// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
 /// of each. One sample traces all selected views once; its seconds are the sum of the device's. Afterwards the hits of
 /// the last view must still equal the verified ones. Rows that fail end with their reason, and so do rows for which the
-/// budget has no time. Writes the file of --benchmark_out. Throws Error{invalid_input} where that, or what Google
-/// Benchmark prints, cannot be written.
+/// budget has no time. Meanwhile the pulse is taken, and rows learn what it says of their rates. Writes the file of
+/// --benchmark_out. host_pulse: the host's; openmp::pulse_s() where it is empty. Throws Error{invalid_input} where that
+/// file, or what Google Benchmark prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
-                                       Budget& budget = no_budget());
+                                       Budget& budget = no_budget(), const Pulses::Work& host_pulse = {});
 
 } // namespace tetrace

@@ -3,6 +3,7 @@
 #include "bench/measuring/figures.h"
 #include "bench/rows/device_abilities.h"
 #include "bench/rows/physical_device.h"
+#include "bench/terminal/progress.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -87,8 +88,12 @@ std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows)
 
 void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options)
 {
-    for (RowDevice& device : devices)
+    for (RowDevice& device : devices) {
+        const double done = static_cast<double>(&device - devices.data()) / static_cast<double>(devices.size());
+        progress_line().show("measuring the devices themselves", done, -1, device.backend->name());
         measure_device(device, options);
+    }
+    progress_line().clear();
 }
 
 std::optional<double> share_of_copy(const RowRun& row, const std::vector<RowDevice>& devices)

@@ -27,7 +27,8 @@ void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRe
     try {
         auto scene = std::make_unique<SceneWork>(load_work(request, options));
         for (const RowKey& key : keys) {
-            progress_line().show("opening " + scene->label(), -1, -1, row_label(key));
+            const double done = static_cast<double>(&key - keys.data()) / static_cast<double>(keys.size());
+            progress_line().show("opening " + scene->label(), done, -1, row_label(key));
             result.rows.push_back(open_row(key, *scene, options));
         }
         result.scenes.push_back(std::move(scene));

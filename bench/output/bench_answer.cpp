@@ -59,8 +59,10 @@ std::string contest_title(const Contest& contest, bool with_device)
 
 std::string row_text(const RowRun& row)
 {
-    const bool flawed = status_of(row) == Status::flawed;
-    return fmt::format("{}{}", row_label(row.key), flawed ? " (flawed)" : "");
+    std::string remarks;
+    if (status_of(row) == Status::flawed) remarks = "flawed";
+    if (figures_of(row)->noisy) remarks += remarks.empty() ? "noisy" : ", noisy";
+    return row_label(row.key) + (remarks.empty() ? "" : " (" + remarks + ")");
 }
 
 /// One phrase for each contest, from those that have something to tell.
@@ -107,20 +109,37 @@ std::string apis_text(const BenchResult& result)
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+std::string load_text(const std::optional<MachineLoad>& load)
+{
+    if (!load) return "this system does not tell its load";
+    return fmt::format("others used {:.2f} of {} processors while measuring, load average {:.1f}", load->others,
+                       load->processors, load->average);
+}
+
+std::string pulses_text(const std::vector<Pulse>& pulses)
+{
+    std::string text;
+    for (const Pulse& pulse : pulses)
+        text += fmt::format("; the pulse of {}, taken {} times, at most {:.2f} of its fastest",
+                            pulse.of == "host" ? "the host" : pulse.of, pulse.readings.size(), pulse.ratio());
+    return text;
+}
+
 std::string trust_text(const BenchResult& result)
 {
-    std::size_t timed = 0, noisy = 0;
+    std::size_t timed = 0, noisy = 0, disturbed = 0;
     for (const RowRun& row : result.run.rows)
         if (const auto figures = figures_of(row)) {
             ++timed;
-            noisy += figures->kernel_s.noisy() ? 1 : 0;
+            noisy += figures->noisy ? 1 : 0;
+            disturbed += row.disturbance.empty() ? 0 : 1;
         }
-    const std::string rows = fmt::format("{} of {} rows noisy", noisy, timed);
     const auto& load = result.measurement.load;
-    if (!load) return fmt::format("this system does not tell its load; {}.", rows);
-    const std::string what = fmt::format("others used {:.2f} of {} processors while measuring, load average {:.1f}; {}",
-                                         load->others, load->processors, load->average, rows);
-    if (!load->is_quiet()) return what + ": do not trust these rates; measure again on a quieter machine.";
+    const std::string what =
+        fmt::format("{}{}; {} of {} rows noisy", load_text(load), pulses_text(result.measurement.pulses), noisy, timed);
+    if (disturbed == timed || (load && !load->is_quiet()))
+        return what + ": do not trust these rates; measure again on a quieter machine.";
+    if (disturbed > 0) return what + ": do not trust those; measure again on a quieter machine.";
     return what + (2 * noisy > timed ? ": trust only what intervals tell." : ".");
 }
 

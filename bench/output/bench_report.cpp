@@ -73,7 +73,8 @@ const char* const rate_columns =
     "x openmp (x cuda and so on): rate over that of the same kernel with openmp, on a GPU with cuda, on the same "
     "hardware; medians, with their 95 % interval. x single: rate over that of Embree's single rays. of copy: what a "
     "step loads, times steps, over the copy bandwidth of the row's device. spread: interquartile range over median, "
-    "noisy above 5 %.";
+    "noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 times its "
+    "fastest, or others used more than a tenth of the processors.";
 
 const char* const time_columns =
     "compile (with the building of Embree's BVH, or a driver's) and upload are paid once; first: wall of the first "
@@ -105,6 +106,21 @@ std::string failure_text(const RowRun& row, Status status)
     return fmt::format("{}: {}", name_of(status), reason);
 }
 
+nlohmann::json pulses_json(const std::vector<Pulse>& pulses)
+{
+    nlohmann::json list = nlohmann::json::array();
+    for (const Pulse& pulse : pulses) {
+        nlohmann::json readings = nlohmann::json::array();
+        for (const Pulse::Reading& reading : pulse.readings)
+            readings.push_back({reading.at_s, reading.seconds});
+        list.push_back({{"of", pulse.of},
+                        {"fastest_s", pulse.fastest_s()},
+                        {"ratio", pulse.ratio()},
+                        {"readings", std::move(readings)}});
+    }
+    return list;
+}
+
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -118,6 +134,7 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     section["threads"] = result.threads;
     if (const auto& load = result.measurement.load)
         section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
+    if (const auto& pulses = result.measurement.pulses; !pulses.empty()) section["pulses"] = pulses_json(pulses);
     section["missing_scenes"] = result.missing_scenes;
     section["missing_devices"] = result.missing_devices;
     section["scenes"] = result.scenes;

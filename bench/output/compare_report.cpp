@@ -138,8 +138,14 @@ std::size_t count_of(const ResultComparison& comparison, SpeedVerdict verdict)
 {
     std::size_t count = 0;
     for (const ComparedRow& row : comparison.rows)
-        count += row.change && row.change->verdict == verdict ? 1 : 0;
+        count += row.change && !row.is_noisy() && row.change->verdict == verdict ? 1 : 0;
     return count;
+}
+
+std::size_t noisy_count(const ResultComparison& comparison)
+{
+    return static_cast<std::size_t>(
+        std::ranges::count_if(comparison.rows, [](const ComparedRow& row) { return row.is_noisy(); }));
 }
 
 std::size_t too_few_count(const ResultComparison& comparison)
@@ -159,11 +165,15 @@ std::string summary_text(const ResultComparison& comparison)
             text += fmt::format("{}{} {}", separator, count, name_of(verdict));
             separator = ", ";
         }
+    if (const std::size_t count = noisy_count(comparison); count > 0)
+        text += fmt::format("{}{} NOISY", separator, count);
     if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
         text += fmt::format("; {} DIFFERENT, not compared", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
         text += fmt::format("; {} with fewer than {} samples, so no interval", count, fewest_samples);
-    if (const auto mean = comparison.geometric_mean()) text += fmt::format("; geometric mean of B / A {:.3f}", *mean);
+    if (const auto mean = comparison.geometric_mean())
+        text += fmt::format("; geometric mean of B / A {:.3f}{}", *mean,
+                            noisy_count(comparison) > 0 ? ", with the NOISY rows in it" : "");
     return text + ".";
 }
 
@@ -204,8 +214,7 @@ std::string verdicts_text(double tolerance)
     return fmt::format(
         "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
         "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no "
-        "interval; "
-        "more would tell.",
+        "interval; more would tell. NOISY: the machine itself changed, by its pulse.",
         1 / (1 + tolerance), 1 + tolerance, fewest_samples);
 }
 
@@ -217,6 +226,10 @@ Sheet comparison_sheet(const ResultComparison& comparison, const Options& option
     sheet.gap();
     sheet.append(notes_of(comparison));
     sheet.labelled("Compared", summary_text(comparison));
+    if (const std::size_t count = noisy_count(comparison); count > 0)
+        sheet.labelled("Noisy", fmt::format("the machine itself was not the same while {} of these rows were measured: "
+                                            "they decide nothing. Measure again on a quieter machine.",
+                                            count));
     add_regressions(sheet, comparison, options.allow_missing);
     if (comparison.count(RowOutcome::compared) > 0) {
         sheet.labelled("B / A", promise_text(comparison));
@@ -283,7 +296,8 @@ Report compare_report(const ResultComparison& comparison, const Options& options
     nlohmann::json section = result_head(options);
     section["comparison"] = comparison_json(comparison, options.allow_missing);
     Report report{comparison_sheet(comparison, options), flat_rows(comparison), {{"tetrace", std::move(section)}}};
-    report.markdown = report.sheet.markdown();
+    check_columns(options, report.sheet.column_keys());
+    report.markdown = report.sheet.markdown({.columns = options.columns});
     if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
 }

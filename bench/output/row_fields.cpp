@@ -67,13 +67,15 @@ std::string_view status_name(const RowRun& row)
     return name_of(status_of(row));
 }
 
-/// With facts for which the terminal has no column: the reason of a flawed row, and that a row is noisy.
+/// With facts for which the terminal has no column: the reason of a flawed row, and that a row is noisy, which is not
+/// ok.
 std::string status_text(const RowFacts& facts)
 {
+    const bool noisy = facts.figures && facts.figures->noisy;
+    if (noisy && status_of(*facts.row) == Status::ok) return "noisy";
     std::string text(status_name(*facts.row));
     if (status_of(*facts.row) == Status::flawed) text += ": " + reason_of(*facts.row);
-    if (facts.figures && facts.figures->kernel_s.noisy()) text += ", noisy";
-    return text;
+    return noisy ? text + ", noisy" : text;
 }
 
 /// Reads an end of the ratio's interval.
@@ -259,8 +261,13 @@ std::vector<RowField> time_fields()
         {"times", "spread", in(&Figures::kernel_s, &Statistics::spread),
          recorded("not_negative", optional, "interquartile range over median"), csv("spread", "", 3),
          rates({.title = "spread", .cell = percent<1>, .rank = 2})},
-        {"times", "noisy", in(&Figures::kernel_s, &Statistics::noisy),
-         recorded(R"({ "type": "boolean" })", optional, "spread above 5 %")},
+        {"times", "noisy", &Figures::noisy,
+         recorded(R"({ "type": "boolean" })", optional, "spread above 5 %, or disturbed"), csv("noisy")},
+        {"times", "pulse", &RowRun::pulse_ratio,
+         recorded("positive", optional, "the pulse beside a sample over its fastest: the median over the samples"),
+         csv("pulse", "", 3)},
+        {"times", "disturbed", unless_empty(&RowRun::disturbance),
+         recorded("line", optional, "what else than the spread speaks against the rate")},
         {"times", "overhead_s", &Figures::overhead_s,
          recorded(R"({ "type": "number" })", optional,
                   "launching and waiting: median of wall less kernel, sample by sample"),

@@ -140,7 +140,7 @@ void withdraw_if_noisy(Claim& claim, bool noisy)
 bool is_noisy(const RowRun& row)
 {
     const auto figures = figures_of(row);
-    return figures && figures->kernel_s.noisy();
+    return figures && figures->noisy;
 }
 
 const std::vector<Method>& older_methods()

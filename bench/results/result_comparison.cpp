@@ -125,12 +125,36 @@ void require_rows(const ResultFile& before, const ResultFile& after, const std::
                                 after.rows.empty() ? "none" : after.rows.front().name + " and its like"));
 }
 
+/// The host's pulse of `after` over that of `before`; empty where the two are of different machines, of whose speeds
+/// the comparison is to tell, or of different teams of threads.
+std::optional<double> machine_change(const ResultFile& before, const ResultFile& after)
+{
+    const ResultHead &a = before.head, &b = after.head;
+    if (a.machine != b.machine || a.threads != b.threads || !a.host_pulse_s || !b.host_pulse_s) return std::nullopt;
+    return *b.host_pulse_s / *a.host_pulse_s;
+}
+
+std::string disturbance_of(const ComparedRow& row, std::optional<double> machine)
+{
+    std::string text;
+    const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+    for (const auto& [label, one] : {std::pair("A", row.before), std::pair("B", row.after)})
+        if (one->pulse_ratio && *one->pulse_ratio >= noisy_pulse)
+            add(fmt::format("in {} the pulse beside its samples took {:.2f} times its fastest", label,
+                            *one->pulse_ratio));
+    const bool on_host = row.after->device_kind && *row.after->device_kind != DeviceKind::gpu;
+    if (on_host && machine && std::max(*machine, 1 / *machine) >= noisy_pulse)
+        add(fmt::format("the same machine's pulse took {:.2f} times as long in {}", std::max(*machine, 1 / *machine),
+                        *machine > 1 ? "B as in A" : "A as in B"));
+    return text;
+}
+
 } // namespace
 
 std::string ComparedRow::verdict() const
 {
     switch (outcome) {
-    case RowOutcome::compared: return std::string(name_of(change->verdict));
+    case RowOutcome::compared: return is_noisy() ? "NOISY" : std::string(name_of(change->verdict));
     case RowOutcome::different: return "DIFFERENT";
     case RowOutcome::failed: return "FAILED";
     case RowOutcome::missing: return "MISSING";
@@ -142,6 +166,7 @@ std::string ComparedRow::verdict() const
 
 std::string ComparedRow::note() const
 {
+    if (is_noisy()) return disturbance;
     if (has_too_few_samples())
         return fmt::format("fewer than {} samples, so no interval: {} in A and {} in B", fewest_samples,
                            before->samples_s.size(), after->samples_s.size());
@@ -179,7 +204,7 @@ std::vector<const ComparedRow*> ResultComparison::regressions(bool allow_missing
     std::vector<const ComparedRow*> found;
     for (const ComparedRow& row : rows)
         if (row.outcome == RowOutcome::failed || (row.outcome == RowOutcome::missing && !allow_missing) ||
-            (row.change && row.change->is_regression(tolerance)))
+            (row.change && !row.is_noisy() && row.change->is_regression(tolerance)))
             found.push_back(&row);
     return found;
 }
@@ -194,6 +219,9 @@ ResultComparison compare_results(const ResultFile& before, const ResultFile& aft
     for (ComparedRow& row : comparison.rows)
         if (row.outcome == RowOutcome::compared)
             row.change = compare_speed(row.before->samples_s, row.after->samples_s, compared, tolerance);
+    const auto machine = machine_change(before, after);
+    for (ComparedRow& row : comparison.rows)
+        if (row.outcome == RowOutcome::compared) row.disturbance = disturbance_of(row, machine);
     return comparison;
 }
 

@@ -26,16 +26,19 @@ struct ComparedRow {
     RowOutcome outcome = RowOutcome::untimed;
     std::optional<SpeedChange> change; ///< of compared rows
     std::string difference;            ///< of rows that did different work: what differs
+    std::string disturbance = {};      ///< of compared rows: why the machine, and not the row, may have changed
 
     [[nodiscard]] const std::string& name() const { return (before != nullptr ? before : after)->name; }
-    /// "SAME", "FASTER", "SLOWER" and "UNSURE" of compared rows; else "DIFFERENT", "FAILED", "MISSING", "NEW" or "NOT
-    /// TIMED".
+    /// "SAME", "FASTER", "SLOWER", "UNSURE" and "NOISY" of compared rows; else "DIFFERENT", "FAILED", "MISSING", "NEW"
+    /// or "NOT TIMED".
     [[nodiscard]] std::string verdict() const;
     /// Compared by its medians alone: the samples allow no interval, so that its verdict is "UNSURE" however far the
     /// medians lie apart.
     [[nodiscard]] bool has_too_few_samples() const { return change && !change->interval; }
+    /// Compared, but the machine was not the same in both: the verdict is "NOISY" whatever the interval says.
+    [[nodiscard]] bool is_noisy() const { return !disturbance.empty(); }
     /// Why the row is not compared, "B: skipped: no device", with B for after and A for before, or what differs; that a
-    /// compared row has too few samples; else empty.
+    /// compared row has too few samples, or what disturbed it; else empty.
     [[nodiscard]] std::string note() const;
 };
 
@@ -52,15 +55,16 @@ struct ResultComparison {
     /// The chance, at most, that any compared row is called faster or slower where nothing changed: comparison_error,
     /// or more where rows have few samples.
     [[nodiscard]] double error() const;
-    /// The regressions of `after`: compared rows that are slower by more than the tolerance, failed rows, and missing
-    /// ones unless those are allowed.
+    /// The regressions of `after`: compared rows that are slower by more than the tolerance and not noisy, failed rows,
+    /// and missing ones unless those are allowed.
     [[nodiscard]] std::vector<const ComparedRow*> regressions(bool allow_missing) const;
 };
 
 /// Compares rows of equal names, of those whose name the regular expression matches (bench/options/name_filter.h;
 /// empty: all). A row timed in both whose scenes' hashes, views, sizes or hit hashes differ did different work, and is
-/// not compared. Throws Error{invalid_input} where all such rows did different work, with the reasons; and where there
-/// is nothing to compare: before has no timed row, or the two have no row in common.
+/// not compared. A row is noisy where its pulse moved by noisy_pulse (bench/statistics/statistics.h) in either run, or,
+/// on the host and one machine, between the two. Throws Error{invalid_input} where all such rows did different work,
+/// with the reasons; and where there is nothing to compare: before has no timed row, or the two have no row in common.
 [[nodiscard]] ResultComparison compare_results(const ResultFile& before, const ResultFile& after,
                                                const std::string& filter, double tolerance);
 

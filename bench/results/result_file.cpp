@@ -77,6 +77,12 @@ std::string line_or_nothing(const ResultValue& object, const char* key)
     return value ? value->line() : std::string();
 }
 
+double duration(const ResultValue& value)
+{
+    if (value.number() < 1e-12 || value.number() > 1e12) value.reject("is no duration: 1e-12 to 1e12 s are");
+    return value.number();
+}
+
 std::string machine_of(const ResultValue& section, const std::string& cpu)
 {
     if (const auto label = section.find("label")) return label->line();
@@ -85,6 +91,15 @@ std::string machine_of(const ResultValue& section, const std::string& cpu)
         if (const auto number = section.at("host").find(key))
             numbers += fmt::format("{}{} {}", numbers.empty() ? "" : ", ", key, number->count());
     return numbers.empty() ? cpu : fmt::format("{} ({})", cpu, numbers);
+}
+
+std::optional<double> host_pulse_of(const ResultValue& section)
+{
+    const auto pulses = section.find("pulses");
+    if (!pulses) return std::nullopt;
+    for (const ResultValue& pulse : pulses->items())
+        if (pulse.at("of").line() == "host") return duration(pulse.at("fastest_s"));
+    return std::nullopt;
 }
 
 ResultHead read_head(const ResultValue& section)
@@ -103,6 +118,8 @@ ResultHead read_head(const ResultValue& section)
     head.cpu = section.at("host").at("cpu").line();
     head.system = section.at("host").at("system").line();
     head.machine = machine_of(section, head.cpu);
+    if (const auto threads = section.find("threads")) head.threads = threads->count();
+    head.host_pulse_s = host_pulse_of(section);
     return head;
 }
 
@@ -126,10 +143,8 @@ std::vector<double> read_samples(const ResultValue& row)
     const auto times = row.find("times");
     const auto array = times ? times->find("samples_s") : std::nullopt;
     if (!array) return samples;
-    for (const ResultValue& sample : array->items()) {
-        samples.push_back(sample.number());
-        if (samples.back() < 1e-12 || samples.back() > 1e12) sample.reject("is no duration: 1e-12 to 1e12 s are");
-    }
+    for (const ResultValue& sample : array->items())
+        samples.push_back(duration(sample));
     return samples;
 }
 
@@ -172,6 +187,8 @@ ResultRow read_row(const ResultValue& value)
     }
     if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
     row.samples_s = read_samples(value);
+    if (const auto times = value.find("times"))
+        if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();
     if (const auto rates = value.find("rates"))
         if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();
     return row;

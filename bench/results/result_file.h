@@ -18,6 +18,8 @@ inline constexpr int schema_version = 2;
 struct ResultHead {
     std::uint64_t schema_version = 0;
     std::string verb, date, version, commit, cpu, system;
+    std::optional<double> host_pulse_s;   ///< the fastest of the run; empty where it was not taken
+    std::optional<std::uint64_t> threads; ///< that rows and pulse used
     std::string machine; ///< the user's label; else the processor with family, model and stepping, where they are known
 
     /// A device's name, but of the processor the machine's: several processors are called "AMD EPYC".
@@ -47,6 +49,7 @@ struct ResultRow {
     std::uint64_t device_index = 0;        ///< in its backend
     std::string hit_hash;                  ///< empty where no rays were traced
     std::optional<double> mrays_per_s;     ///< of the median sample
+    std::optional<double> pulse_ratio;     ///< of the pulse beside its samples to the run's fastest
     std::vector<double> samples_s; ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
     [[nodiscard]] std::string api() const { return api_name(backend, device_index); }

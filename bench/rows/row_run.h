@@ -95,10 +95,12 @@ struct RowRun {
     std::unique_ptr<Session> session;
     std::optional<std::size_t> view_of_rays; ///< view whose rays the session has been given; see prepare_view()
     Outcome outcome = Traced{};
-    std::string recorded_reason = {};   ///< of a row that was read from a result, in place of its outcome's
-    double warm_s = 0;                  ///< wall seconds of the warm-up pass
-    std::vector<double> samples_s;      ///< device seconds for all selected views, one value for each repetition
-    std::vector<double> wall_samples_s; ///< the same by the host's clock, from launch to the end of wait
+    std::string recorded_reason = {};       ///< of a row that was read from a result, in place of its outcome's
+    double warm_s = 0;                      ///< wall seconds of the warm-up pass
+    std::vector<double> samples_s;          ///< device seconds for all selected views, one value for each repetition
+    std::vector<double> wall_samples_s;     ///< the same by the host's clock, from launch to the end of wait
+    std::optional<double> pulse_ratio = {}; ///< of the pulse beside the samples to its fastest, their median
+    std::string disturbance = {};           ///< why the rate is not to be trusted, see disturbance_text()
 };
 
 [[nodiscard]] Status status_of(const RowRun& row);

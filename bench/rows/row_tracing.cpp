@@ -50,6 +50,14 @@ TraceJob prepare_view(RowRun& row, std::size_t view)
     return job_of(row, view);
 }
 
+std::size_t last_view_with_rays(const RowRun& row)
+{
+    std::size_t view = row.scene->views().size() - 1;
+    while (ray_count(row, view) == 0)
+        --view;
+    return view;
+}
+
 double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits)
 {
     return row.session->trace(prepare_view(row, view), hits);

@@ -25,6 +25,9 @@ namespace tetrace {
 /// Throws what Session::set_rays() throws.
 [[nodiscard]] TraceJob prepare_view(RowRun& row, std::size_t view);
 
+/// The last view of which the row has rays. Precondition: there is one.
+[[nodiscard]] std::size_t last_view_with_rays(const RowRun& row);
+
 /// Traces a view and waits; returns device seconds. hits: receives ray_count() hits.
 [[nodiscard]] double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits);
 

@@ -225,6 +225,8 @@ void read_times(RowRun& run, const ResultValue& value)
         if (const auto walls = times->find("wall_samples_s"))
             for (const ResultValue& wall : walls->items())
                 run.wall_samples_s.push_back(wall.number());
+        if (const auto pulse = times->find("pulse")) run.pulse_ratio = pulse->number();
+        if (const auto disturbed = times->find("disturbed")) run.disturbance = disturbed->line();
     }
     run.session = std::make_unique<RecordedSession>(setup, count_at(value, "bytes"));
 }

@@ -42,6 +42,23 @@ std::optional<MachineLoad> load_of(const ResultValue& section)
     return MachineLoad{load->at("others").number(), load->at("average").number(), small_count(load->at("processors"))};
 }
 
+std::vector<Pulse> pulses_of(const ResultValue& section)
+{
+    std::vector<Pulse> pulses;
+    const auto list = section.find("pulses");
+    if (!list) return pulses;
+    for (const ResultValue& value : list->items()) {
+        Pulse& pulse = pulses.emplace_back(Pulse{value.at("of").line(), {}});
+        for (const ResultValue& reading : value.at("readings").items()) {
+            const auto pair = reading.items();
+            if (pair.size() != 2 || pair[1].number() <= 0) reading.reject("is no reading: [when, seconds] is");
+            pulse.readings.push_back({pair[0].number(), pair[1].number()});
+        }
+        if (pulse.readings.empty()) value.reject("is a pulse without a reading");
+    }
+    return pulses;
+}
+
 RunAgain bench_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
@@ -56,6 +73,7 @@ RunAgain bench_again(const ResultFile& file)
     result.measurement.samples = small_count(section.at("samples_a_row"));
     result.measurement.lowered = section.at("samples_lowered").flag();
     result.measurement.load = load_of(section);
+    result.measurement.pulses = pulses_of(section);
     if (const auto timed = section.find("timed_s")) result.measurement.wall_s = timed->number();
     if (const auto asked = section.find("samples_asked")) result.samples_asked = small_count(*asked);
     if (const auto budget = section.find("budget_s")) result.budget_s = budget->number();

@@ -35,7 +35,7 @@ Cell cell_of_result(const ComparedRow* row)
     if (row == nullptr) return {};
     if (!is_compared(row)) return row->outcome == RowOutcome::untimed ? Cell() : Cell(row->verdict());
     const std::string rate = row->after->mrays_per_s ? fmt::format("{:.2f}", *row->after->mrays_per_s) : "-";
-    return fmt::format("{:>8} ({:.2f})", rate, row->change->ratio);
+    return fmt::format("{:>8} ({:.2f}){}", rate, row->change->ratio, row->is_noisy() ? " noisy" : "");
 }
 
 /// The names of all rows, those of the first result first.
@@ -81,7 +81,7 @@ void add_notes(Sheet& sheet, const std::vector<ResultComparison>& comparisons)
     for (std::size_t i = 0; i < comparisons.size(); ++i) {
         std::map<std::string, std::vector<const ComparedRow*>> notes;
         for (const ComparedRow& row : comparisons[i].rows)
-            if (row.outcome != RowOutcome::compared && row.outcome != RowOutcome::untimed)
+            if ((row.outcome != RowOutcome::compared || row.is_noisy()) && row.outcome != RowOutcome::untimed)
                 notes[fmt::format("{} in {}: {}", row.verdict(), letter(i + 1), in_letters(row.note(), i + 1))]
                     .push_back(&row);
         for (const auto& [note, rows] : notes)
@@ -132,7 +132,8 @@ Report side_by_side(const std::vector<ResultComparison>& comparisons, const Opti
     sheet.gap();
     add_notes(sheet, comparisons);
     sheet.labelled("Means", means_text(comparisons));
-    report.markdown = sheet.markdown();
+    check_columns(options, sheet.column_keys());
+    report.markdown = sheet.markdown({.columns = options.columns});
     if (options.out) sheet.labelled("Result", options.out->string());
     nlohmann::json section = result_head(options);
     section["comparisons"] = nlohmann::json::array();

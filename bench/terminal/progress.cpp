@@ -96,7 +96,10 @@ void ProgressLine::show(const std::string& stage, double fraction, double left_s
     if (stage != stage_) {
         stage_ = stage;
         in_stage_ = {};
+        first_fraction_ = std::max(fraction, 0.0);
     }
+    if (left_s < 0 && fraction > first_fraction_)
+        left_s = in_stage_.seconds() * (1 - std::min(fraction, 1.0)) / (fraction - first_fraction_);
     const double drawing_s = !has_drawn_ ? quiet_s : detail != detail_ ? rename_s : redraw_s;
     if (since_draw_.seconds() < (draws_ ? drawing_s : line_s_)) return;
     detail_ = detail;
@@ -126,8 +129,7 @@ void ProgressLine::draw(const std::string& what, double fraction, double left_s)
 Progress ProgressLine::callback()
 {
     return [this](const std::string& stage, double fraction, const std::string& detail) {
-        const double elapsed_s = stage == stage_ ? in_stage_.seconds() : 0;
-        show(stage, fraction, fraction > 0 ? elapsed_s * (1 - fraction) / fraction : -1, detail);
+        show(stage, fraction, -1, detail);
     };
 }
 

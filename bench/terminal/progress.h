@@ -18,12 +18,13 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// fraction: done so far in [0, 1]; left_s: expected remaining seconds. Negative where unknown.
+    /// fraction: done so far in [0, 1]; left_s: expected remaining seconds. Negative where unknown; then the rest of a
+    /// stage whose fraction is known is expected to go on as its beginning did.
     /// detail: what the stage is working on; the time shown is the stage's.
     void show(const std::string& stage, double fraction, double left_s = -1, const std::string& detail = {});
     /// Clears the line. Called before anything else is written, and when the work is done.
     void clear();
-    /// Shows what work tells. Expects the rest of a stage to go on as its beginning did.
+    /// Shows what work tells.
     [[nodiscard]] Progress callback();
 
 private:
@@ -35,6 +36,7 @@ private:
     std::size_t drawn_ = 0; ///< columns that the line takes up now
     bool has_drawn_ = false;
     std::string stage_, detail_;
+    double first_fraction_ = 0; ///< of the stage
     Stopwatch in_stage_, since_draw_;
 };
 

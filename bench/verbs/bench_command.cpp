@@ -46,7 +46,6 @@ int bench_command(const Options& options)
     Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
     result.run = open_and_verify(keys, options, {}, budget);
     result.measurement = measure_rows(result.run.rows, options, flags, budget);
-    progress_line().show("measuring the devices themselves", -1);
     result.devices = devices_of(result.run.rows);
     measure_devices(result.devices, session_options(options));
     result.comparisons = compare_rows(result.run.rows);

@@ -1,5 +1,6 @@
 #include "bench/output/compare_report.h"
 #include "bench/show/side_by_side.h"
+#include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 
 namespace tetrace {
@@ -10,8 +11,11 @@ namespace {
 int compare_several(const Options& options)
 {
     std::vector<ResultFile> files;
-    for (const auto& file : options.files)
+    for (const auto& file : options.files) {
+        progress_line().show("reading", static_cast<double>(files.size()) / static_cast<double>(options.files.size()),
+                             -1, file.string());
         files.push_back(read_result(file));
+    }
     std::vector<ResultComparison> comparisons;
     for (std::size_t i = 1; i < files.size(); ++i)
         comparisons.push_back(compare_results(files.front(), files[i], options.filter, options.tolerance));

@@ -44,16 +44,20 @@ std::vector<ApiDevice> find_devices()
 {
     std::vector<ApiDevice> found;
     std::vector<Device> devices;
-    for (Backend* backend : all_backends())
+    double done = 0;
+    for (Backend* backend : all_backends()) {
         for (std::size_t i = 0; i < backend->devices().size(); ++i) {
             RowKey key;
             key.backend = backend->name();
             key.device = i;
             devices.push_back(backend->devices()[i]);
             found.push_back({device_label(key), devices.back(), 0, {}, {}});
-            progress_line().show("testing " + found.back().label, -1);
+            progress_line().show("testing devices", done / static_cast<double>(all_backends().size()), -1,
+                                 found.back().label);
             run_self_test(found.back(), *backend, i);
         }
+        done += 1;
+    }
     const auto numbers = physical_devices(devices);
     for (std::size_t i = 0; i < found.size(); ++i)
         found[i].physical = numbers[i];

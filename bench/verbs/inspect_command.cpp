@@ -28,8 +28,7 @@ int inspect_command(const Options& options)
     for (const std::string& name : options.required)
         static_cast<void>(parse_target("--require", name));
     make_code_folder(options);
-    const Inspection inspection =
-        inspect(options, [](const std::string& target) { progress_line().show("compiling for " + target, -1); });
+    const Inspection inspection = inspect(options, progress_line().callback());
     progress_line().clear();
     deliver(options, inspection_report(inspection, options));
     require_asked(inspection, options.required);

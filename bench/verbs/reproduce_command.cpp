@@ -89,7 +89,6 @@ std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& optio
 /// Each device once: all scenes run on the same devices, except those that could not be loaded.
 void add_devices(Reproduction& all, const RecordedRows& run, const Options& options, Yardsticks& yardsticks)
 {
-    progress_line().show("measuring the devices themselves", -1);
     auto devices = devices_of(run.rows);
     yardsticks.measure(devices, session_options(options)); // at the first call
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);

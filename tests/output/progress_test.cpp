@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <gtest/gtest.h>
+#include <regex>
 #include <thread>
 
 using namespace tetrace;
@@ -71,6 +72,25 @@ TEST(Progress, tells_the_time_left_of_work_that_knows_its_share)
     }
     const std::string drawn = testing::internal::GetCapturedStderr();
     EXPECT_EQ(drawn.rfind("\roptimising, round 2  2.1 s  25 %  6.2 s left", 0), 0u) << drawn;
+}
+
+TEST(Progress, tells_the_time_left_of_every_stage_that_knows_its_share_from_that_stage_alone)
+{
+    testing::internal::CaptureStderr();
+    {
+        ProgressLine log(false, true, 0);
+        log.show("opening", 0.9);
+        log.show("measuring", 0.5); // the rest of a run that was resumed
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        log.show("measuring", 0.75);
+        log.show("measuring", 1);
+    }
+    const std::string told = testing::internal::GetCapturedStderr();
+    EXPECT_TRUE(std::regex_match(told, std::regex("opening  [^l]* 90 %\n"
+                                                  "measuring  [^l]* 50 %\n"
+                                                  "measuring  .* 75 %  .* left\n"
+                                                  "measuring  .* 100 %  0.0 s left\n")))
+        << told;
 }
 
 TEST(Progress, names_other_work_at_once_and_keeps_the_time_of_the_stage)

@@ -59,6 +59,17 @@ Json result_of(const std::vector<Json>& rows)
               {"rows", rows}}}};
 }
 
+/// The result with a host's pulse, whose rows ran on the host.
+Json with_pulse(Json result, double seconds)
+{
+    Json& section = result["tetrace"];
+    section["threads"] = 2;
+    section["pulses"] = {{{"of", "host"}, {"fastest_s", seconds}, {"ratio", 1}, {"readings", {{0, seconds}}}}};
+    for (Json& row : section["rows"])
+        row["device"] = {{"name", "a processor"}, {"type", "cpu"}};
+    return result;
+}
+
 class ResultComparisons : public testing::Test {
 protected:
     const ResultFile& file(const char* name, const Json& json)
@@ -131,6 +142,47 @@ TEST_F(ResultComparisons, lists_rows_that_failed_or_are_missing_and_counts_none_
     EXPECT_NEAR(comparison.geometric_mean().value(), 1, 1e-9);
     EXPECT_EQ(comparison.regressions(false).size(), 4u);
     EXPECT_EQ(comparison.regressions(true).size(), 2u);
+}
+
+// The same row, minutes apart, six times slower, and each run is steady by itself.
+TEST_F(ResultComparisons, a_machine_that_was_itself_slower_makes_no_regression)
+{
+    const Json before = with_pulse(result_of({timed_row("one", 1)}), 0.01);
+    const Json after = with_pulse(result_of({timed_row("one", 6)}), 0.06);
+    const auto comparison = compare(before, after);
+    EXPECT_EQ(comparison.rows[0].verdict(), "NOISY");
+    EXPECT_EQ(comparison.rows[0].note(), "the same machine's pulse took 6.00 times as long in B as in A");
+    EXPECT_TRUE(comparison.regressions(false).empty());
+    EXPECT_EQ(compare(after, before).rows[0].note(), "the same machine's pulse took 6.00 times as long in A as in B");
+    EXPECT_EQ(compare(before, with_pulse(result_of({timed_row("one", 6)}), 0.0124)).rows[0].verdict(), "SLOWER")
+        << "a pulse that kept its time leaves the row its verdict";
+}
+
+TEST_F(ResultComparisons, pulses_of_two_machines_or_teams_say_nothing_and_a_gpus_row_does_not_need_the_hosts)
+{
+    const Json before = with_pulse(result_of({timed_row("one", 1)}), 0.01);
+    const Json after = with_pulse(result_of({timed_row("one", 2)}), 0.02);
+    const auto verdict_with = [&](const std::function<void(Json & tetrace)>& change) {
+        Json changed = after;
+        change(changed["tetrace"]);
+        return compare(before, changed).rows[0].verdict();
+    };
+    EXPECT_EQ(verdict_with([](Json&) {}), "NOISY");
+    EXPECT_EQ(verdict_with([](Json& section) { section["label"] = "another machine"; }), "SLOWER");
+    EXPECT_EQ(verdict_with([](Json& section) { section["threads"] = 1; }), "SLOWER");
+    EXPECT_EQ(verdict_with([](Json& section) { section.erase("pulses"); }), "SLOWER");
+    EXPECT_EQ(verdict_with([](Json& section) { section["rows"][0]["device"]["type"] = "gpu"; }), "SLOWER");
+}
+
+TEST_F(ResultComparisons, a_row_whose_pulse_moved_within_its_run_is_noisy)
+{
+    const Json quiet = result_of({timed_row("one", 1)});
+    Json moved = result_of({timed_row("one", 2)});
+    moved["tetrace"]["rows"][0]["times"]["pulse"] = 1.25;
+    EXPECT_EQ(compare(quiet, moved).rows[0].note(), "in B the pulse beside its samples took 1.25 times its fastest");
+    EXPECT_EQ(compare(moved, quiet).rows[0].verdict(), "NOISY");
+    moved["tetrace"]["rows"][0]["times"]["pulse"] = 1.24;
+    EXPECT_EQ(compare(quiet, moved).rows[0].verdict(), "SLOWER");
 }
 
 TEST_F(ResultComparisons, has_no_mean_where_all_failed)

@@ -35,6 +35,12 @@ std::string row_of(const std::string& table, const std::string& backend)
     return start == std::string::npos ? "" : table.substr(start, table.find('\n', start) - start);
 }
 
+/// Whatever else this machine had to do.
+bool is_right(const std::string& row)
+{
+    return contains(row, "ok") || contains(row, "noisy");
+}
+
 const char* const small_bench =
     "bench --backend openmp,cuda --method maria --layout tet80 --scene cubes --resolution 6 "
     "--size 24 --samples 3 --threads 2";
@@ -61,8 +67,8 @@ TEST_F(CudaProgram, measures_the_stub_beside_openmp)
 {
     const Ended ended = run(small_bench);
     EXPECT_EQ(ended.code, 0) << ended.errors;
-    EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok"));
-    EXPECT_TRUE(contains(row_of(ended.out, "cuda"), "ok"));
+    EXPECT_TRUE(is_right(row_of(ended.out, "openmp")));
+    EXPECT_TRUE(is_right(row_of(ended.out, "cuda")));
 }
 
 TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
@@ -77,7 +83,7 @@ TEST_F(CudaProgram, each_failure_is_its_rows_status_and_openmps_row_goes_on)
         const Ended ended = run(small_bench, failure);
         EXPECT_TRUE(contains(row_of(ended.out, "cuda"), status)) << failure;
         EXPECT_TRUE(contains(ended.out + ended.errors, reason)) << failure;
-        EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok")) << failure;
+        EXPECT_TRUE(is_right(row_of(ended.out, "openmp"))) << failure;
     }
 }
 
@@ -88,7 +94,7 @@ TEST_F(CudaProgram, crash_at_a_launch_is_its_rows_error_and_openmps_row_goes_on)
     EXPECT_TRUE(contains(row_of(ended.out, "cuda"), "error"));
     EXPECT_TRUE(contains(ended.out + ended.errors, "the driver of cuda (")) << ended.out;
     EXPECT_TRUE(contains(ended.out + ended.errors, "SIGABRT")) << ended.out;
-    EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok"));
+    EXPECT_TRUE(is_right(row_of(ended.out, "openmp")));
 }
 
 TEST(CudaDriver, that_crashes_at_its_start_is_named_and_openmps_row_goes_on)
@@ -97,6 +103,6 @@ TEST(CudaDriver, that_crashes_at_its_start_is_named_and_openmps_row_goes_on)
     EXPECT_EQ(ended.code, 1) << ended.errors;
     EXPECT_TRUE(contains(ended.out + ended.errors,
                          "the driver of cuda was ended by signal 6 (SIGABRT, Aborted) while listing its devices"));
-    EXPECT_TRUE(contains(row_of(ended.out, "openmp"), "ok"));
+    EXPECT_TRUE(is_right(row_of(ended.out, "openmp")));
     EXPECT_TRUE(contains(run("devices", "crash").out, "openmp"));
 }

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "bench/measuring/machine_load.h"
+#include "bench/rows/row_tracing.h"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// How long a fixed short piece of work took, again and again through a run: a yardstick that only the machine moves.
+struct Pulse {
+    struct Reading {
+        double at_s;    ///< when it began, by the clock of the samples
+        double seconds; ///< what the work took
+    };
+    std::string of;                ///< "host", or a GPU's name
+    std::vector<Reading> readings; ///< in the order of time
+
+    /// Precondition of these: there is a reading.
+    [[nodiscard]] double fastest_s() const;
+    /// The slowest over the fastest.
+    [[nodiscard]] double ratio() const;
+    /// Of the last reading before an interval and the first one after it, the slower one over the fastest of all.
+    [[nodiscard]] double ratio_beside(double begin_s, double end_s) const;
+};
+
+/// Takes the pulse of the host, and of every GPU that rows are timed on: before the samples, between them at most every
+/// other second, and after them. The host's work is its own. A GPU's is the last view of the first row that is timed on
+/// it; where that row fails, its pulse ends.
+class Pulses {
+public:
+    /// Returns seconds; empty: this and all further readings are left out.
+    using Work = std::function<std::optional<double>()>;
+
+    /// rows: opened; they keep their addresses. host: its work.
+    Pulses(std::vector<RowRun>& rows, Work host, Clock clock);
+    Pulses(const Pulses&) = delete;
+    Pulses& operator=(const Pulses&) = delete;
+
+    void take();
+    /// The same, unless the last time was a moment ago.
+    void take_if_due();
+    /// Records when a sample of the row was taken.
+    void sampled(const RowRun& row, double begin_s, double end_s);
+    /// Tells each row that was sampled what its pulse and the load say about its rate.
+    void judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLoad>& load) const;
+
+    /// Those with a reading.
+    [[nodiscard]] std::vector<Pulse> found() const;
+
+private:
+    struct Taker {
+        Pulse pulse;
+        Work work;
+        bool ended = false;
+    };
+    struct Samples {
+        std::size_t taker;
+        std::vector<std::pair<double, double>> intervals;
+    };
+
+    Clock clock_;
+    std::vector<Taker> takers_;
+    std::map<const RowRun*, Samples> rows_;
+    double last_s_ = 0;
+};
+
+/// Why a row's rate is not to be trusted although its samples agree; empty where nothing speaks against it.
+/// pulse_ratio: the median over its samples of Pulse::ratio_beside(). load: null for rows that do not run on the host.
+[[nodiscard]] std::string disturbance_text(std::optional<double> pulse_ratio, const MachineLoad* load);
+
+} // namespace tetrace
