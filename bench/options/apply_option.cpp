@@ -44,6 +44,21 @@ ApplyOption append_count(const std::string& option, std::vector<unsigned> Option
     };
 }
 
+ApplyOption set_seconds(const std::string& option, double Options::*seconds)
+{
+    return [=](Options& options, const std::string& text) { options.*seconds = parse_seconds(option, text); };
+}
+
+ApplyOption set_bytes(const std::string& option, std::uint64_t Options::*bytes)
+{
+    return [=](Options& options, const std::string& text) { options.*bytes = parse_bytes(option, text); };
+}
+
+ApplyOption append_text(std::vector<std::string> Options::*list)
+{
+    return [=](Options& options, const std::string& text) { (options.*list).push_back(text); };
+}
+
 ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path)
 {
     return [=](Options& options, const std::string& text) {

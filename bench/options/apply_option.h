@@ -40,6 +40,11 @@ template <class T>
 [[nodiscard]] ApplyOption set_count(const std::string& option, unsigned Options::*count, unsigned low, unsigned high);
 [[nodiscard]] ApplyOption append_count(const std::string& option, std::vector<unsigned> Options::*list, unsigned low,
                                        unsigned high);
+/// A time of parse_seconds(), and a size of parse_bytes().
+[[nodiscard]] ApplyOption set_seconds(const std::string& option, double Options::*seconds);
+[[nodiscard]] ApplyOption set_bytes(const std::string& option, std::uint64_t Options::*bytes);
+/// Any text.
+[[nodiscard]] ApplyOption append_text(std::vector<std::string> Options::*list);
 /// A file's name, not empty.
 [[nodiscard]] ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path);
 /// A set of tetrace's by its name, or the user's own from a file.

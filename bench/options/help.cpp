@@ -143,7 +143,8 @@ const VerbHelp verb_help[] = {
      "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
      "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require sm_90\n"},
     {Verb::compare, "compare results of bench, row by row",
-     "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out': another "
+     "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out' or by "
+     "'tetrace reproduce --out', whose exit searches of table5 are rows too: another "
      "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "
      "of the rates (of the medians; above 1, B is faster) with its interval, and a verdict: 'SAME', the interval lies "
      "within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', it contains 1 and reaches "
@@ -181,8 +182,15 @@ const VerbHelp verb_help[] = {
      "told inspect, and pictures. The "
      "page loads nothing and runs no script. It follows the reader's choice of light or dark, and prints. Rows of "
      "several results share a chart if they traced the same rays through the same scene. Emulated devices and GPUs "
-     "never share one.",
+     "never share one.\n\n"
+     "Of a FOLDER, it writes the page of a campaign, from all results in it and below it (files that end in .json): an "
+     "index of machines and results; machines beside each other, with the newest rate of each, only where they did the "
+     "same work; and each machine's rates over its dates, with a verdict for the last step. A file that is no result "
+     "is "
+     "left out, and listed with the reason. Hosts are told apart by --label of their runs, or else by their "
+     "processors.",
      "  tetrace report bench.json check.json --out report.html\n"
+     "  tetrace report results/ --out campaign.html\n"
      "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
     {Verb::help, "describe the program or a verb",
      "Describes the program, or a verb. 'tetrace help options' prints a Markdown table of all options, 'tetrace help "

@@ -74,14 +74,14 @@ std::vector<OptionRow> inspect_options()
         {"Compilers", "--target", "GPU",
          "Compile for this GPU, which need not be here: one of AMD's as RADV names it (gfx1100, navi21, gfx906, ...), "
          "or one of NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
-         bit(Verb::inspect), true, [](Options& o, const std::string& v) { o.gpus.push_back(v); }},
+         bit(Verb::inspect), true, append_text(&Options::gpus)},
         {"Compilers", "--entry", "NAME",
          "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or in "
          "a tet; 'rays', given ones; 'search', exit searches of table5. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
         {"Compilers", "--require", "GPU",
          "Fail with exit code 3 unless this target's compiler is here and every program came out of it.",
-         bit(Verb::inspect), true, [](Options& o, const std::string& v) { o.required.push_back(v); }},
+         bit(Verb::inspect), true, append_text(&Options::required)},
         {"Compilers", "--code", "FOLDER",
          "Write the code of every program into this folder: assembly of AMD's; PTX of NVIDIA's, and machine code where "
          "nvdisasm is. Default: none.",
@@ -96,7 +96,7 @@ std::vector<OptionRow> scene_options()
          "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana with about N triangles), a mesh file "
          "(PLY, OBJ, OFF, STL), or a .tet file. May be repeated, or a list with commas. Default: bunny and armadillo, "
          "or the embedded scenes if those are missing.",
-         building, true, [](Options& o, const std::string& v) { o.scenes.push_back(v); }},
+         building, true, append_text(&Options::scenes)},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
          "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
@@ -121,23 +121,23 @@ std::vector<OptionRow> scene_options()
          "TetGen's switches, as in its manual. 'build' takes a list. Default: " +
              default_build(TetsKind::rays).switches + " for --tets rays, " + default_build(TetsKind::cdt).switches +
              " for --tets cdt.",
-         building, true, [](Options& o, const std::string& v) { o.switches.push_back(v); }},
+         building, true, append_text(&Options::switches)},
         {"Scenes", "--resolution", "N",
          "Cubes along each axis of the scene 'cubes', 2 to 128. Default: " + std::to_string(BuildOptions{}.resolution) +
              ".",
          building, false, set_count("--resolution", &Options::resolution, 2, 128)},
         {"Scenes", "--time-limit", "TIME",
          "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
-         false, [](Options& o, const std::string& v) { o.time_limit_s = parse_seconds("--time-limit", v); }},
+         false, set_seconds("--time-limit", &Options::time_limit_s)},
         {"Scenes", "--optimise-time", "TIME",
          "Stop the optimiser of --tets rays after this time, as above, with the tets that it has reached. They depend "
          "on "
          "the machine: the result says 'out of time', and the scene is kept in a file of its own, which --scene takes. "
          "Default: half of --time-limit.",
-         building, false, [](Options& o, const std::string& v) { o.optimise_s = parse_seconds("--optimise-time", v); }},
+         building, false, set_seconds("--optimise-time", &Options::optimise_s)},
         {"Scenes", "--memory-limit", "SIZE",
          "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
-         false, [](Options& o, const std::string& v) { o.memory_limit_bytes = parse_bytes("--memory-limit", v); }},
+         false, set_bytes("--memory-limit", &Options::memory_limit_bytes)},
         {"Scenes", "--clear", "", "Empty the cache of built scenes.", bit(Verb::scenes), false, set(&Options::clear)},
     };
 }
@@ -171,7 +171,7 @@ std::vector<OptionRow> row_options()
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
          "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT means no usable "
          "device. Default: all.",
-         reproducing, true, [](Options& o, const std::string& v) { o.devices.push_back(v); }},
+         reproducing, true, append_text(&Options::devices)},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
          "from the primary hits: 'shadow', towards a light, and 'ao', short rays round the normal (for both, any hit "
@@ -232,8 +232,7 @@ std::vector<OptionRow> ray_options()
          "Limit the buffers of every device to this size: bytes, or a number followed by K, M, G or T. The array of "
          "tets is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
          "device reports.",
-         reproducing, false,
-         [](Options& o, const std::string& v) { o.buffer_limit = parse_bytes("--buffer-limit", v); }},
+         reproducing, false, set_bytes("--buffer-limit", &Options::buffer_limit)},
     };
 }
 
@@ -251,8 +250,7 @@ std::vector<OptionRow> driver_options()
          "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, m "
          "or h. Needs --isolate device. Default: 5 minutes, and a millisecond a ray or a second for each megabyte of "
          "data.",
-         with_drivers, false,
-         [](Options& o, const std::string& v) { o.driver_limit_s = parse_seconds("--driver-limit", v); }},
+         with_drivers, false, set_seconds("--driver-limit", &Options::driver_limit_s)},
     };
 }
 
@@ -271,7 +269,7 @@ std::vector<OptionRow> judging_options()
          "(if as many are asked for), since fewer give no interval. If 5 do not fit, the slowest rows are "
          "skipped, and the result names the budget that they need. A run takes at most a quarter longer. Loading "
          "scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
-         bit(Verb::bench), false, [](Options& o, const std::string& v) { o.budget_s = parse_seconds("--budget", v); }},
+         bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
          "none is skipped or unsupported.",
@@ -328,7 +326,7 @@ std::vector<OptionRow> output_options()
          "Print these columns of the tables that have them, after the first one, named as in CSV and JSON: "
          "mrays_per_s,spread. A wrong name is answered by those that there are. Default: all, or on a terminal those "
          "that fit, the least important left out first.",
-         bit(Verb::bench) | bit(Verb::show), true, [](Options& o, const std::string& v) { o.columns.push_back(v); }},
+         bit(Verb::bench) | bit(Verb::show), true, append_text(&Options::columns)},
         {"Output", "--label", "TEXT",
          "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. "
          "Default: the processor's name, family, model and stepping.",
@@ -371,7 +369,7 @@ FileArguments file_arguments(Verb verb)
 {
     if (verb == Verb::compare) return {"A.json B.json [C.json...]", 2, 26};
     if (verb == Verb::show) return {"RESULT.json", 1, 1};
-    if (verb == Verb::report) return {"RESULT...", 1, 1000};
+    if (verb == Verb::report) return {"RESULT|FOLDER...", 1, 1000};
     return {};
 }
 

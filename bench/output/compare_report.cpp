@@ -225,6 +225,7 @@ Sheet comparison_sheet(const ResultComparison& comparison, const Options& option
     sheet.table(rows_table(comparison));
     sheet.gap();
     sheet.append(notes_of(comparison));
+    add_search_note(sheet, comparison);
     sheet.labelled("Compared", summary_text(comparison));
     if (const std::size_t count = noisy_count(comparison); count > 0)
         sheet.labelled("Noisy", fmt::format("the machine itself was not the same while {} of these rows were measured: "
@@ -253,6 +254,14 @@ std::string source_text(const ResultFile& file)
 {
     return fmt::format("{}: {} by tetrace {} ({}) on {}, {}", file.path.string(), file.head.date, file.head.version,
                        file.head.commit, file.head.machine, file.head.system);
+}
+
+void add_search_note(Sheet& sheet, const ResultComparison& comparison)
+{
+    const auto is_search = [](const ComparedRow& row) { return row.name().starts_with("search/"); };
+    if (std::ranges::any_of(comparison.rows, is_search))
+        sheet.labelled("Searches", "Rows that begin with search/ are exit searches alone (Table 5); their rates are in "
+                                   "millions of searches a second.");
 }
 
 Table flat_rows(const ResultComparison& comparison)

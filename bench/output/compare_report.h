@@ -9,6 +9,9 @@ namespace tetrace {
 /// A file, and what made it, on what, when.
 [[nodiscard]] std::string source_text(const ResultFile& file);
 
+/// A line that says what the rates of searches are, where any of these rows is one.
+void add_search_note(Sheet& sheet, const ResultComparison& comparison);
+
 /// Every row of both, flat.
 [[nodiscard]] Table flat_rows(const ResultComparison& comparison);
 

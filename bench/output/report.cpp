@@ -3,6 +3,7 @@
 #include "bench/options/anonymous.h"
 #include "bench/options/identity.h"
 #include "bench/results/result_file.h"
+#include "bench/results/result_text.h"
 #include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
@@ -31,12 +32,6 @@ Format format_of_file(const Options& options)
                             options.out->string()));
 }
 
-/// No result is lost because of a text, such as a path, that is not UTF-8.
-std::string json_text(const nlohmann::json& value)
-{
-    return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
 SheetStyle style_of(const Options& options, std::size_t width)
 {
     return {width, options.columns};
@@ -49,7 +44,7 @@ std::string in_format(const Report& report, Format format, const Options& option
     };
     switch (format) {
     case Format::table: return shown(without_colour(report.sheet.text(style_of(options, 0))));
-    case Format::json: return json_text(options.anonymous ? anonymous_json(report.json, options) : report.json);
+    case Format::json: return result_text(options.anonymous ? anonymous_json(report.json, options) : report.json);
     case Format::csv: return shown(report.table.csv());
     case Format::markdown: return shown(report.markdown.empty() ? report.table.markdown() : report.markdown);
     }

@@ -22,13 +22,6 @@ Html count_at(const ResultValue& object, const char* key)
     return value ? text(with_commas(value->count())) : Html();
 }
 
-/// "2026-11-21 17:34" of "2026-11-21T17:34:21Z".
-std::string minute_of(std::string date)
-{
-    if (date.size() >= 16 && date[10] == 'T') return date.replace(10, 1, " ").substr(0, 16);
-    return date;
-}
-
 /// How many processors other work took while rows were timed.
 Html others_of(const ResultValue& section)
 {

@@ -1,9 +1,12 @@
 #include "bench/report/page.h"
 
 #include "bench/options/identity.h"
+#include "bench/report/campaign/campaign_sections.h"
+#include "bench/report/html/svg.h"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 
 namespace tetrace {
 
@@ -17,17 +20,36 @@ std::string count_text(std::size_t count, const char* one, const char* several)
     return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
+using StatusCounts = std::map<std::string, std::size_t>;
+
 /// "20 rows: 18 ok, 2 flawed".
-std::string status_summary(const ReportInput& input)
+std::string status_summary(const StatusCounts& counts)
 {
-    std::string text = count_text(input.rows.size(), "row", "rows");
-    const char* separator = ": ";
-    for (const char* const status : {"ok", "flawed", "wrong", "unsupported", "skipped", "error"}) {
-        const auto count =
-            std::ranges::count_if(input.rows, [&](const ReportRow& row) { return row.row->status == status; });
-        if (count > 0) text += fmt::format("{}{} {}", std::exchange(separator, ", "), count, status);
-    }
-    return text;
+    std::size_t all = 0;
+    std::string statuses;
+    for (const char* const status : {"ok", "flawed", "wrong", "unsupported", "skipped", "error"})
+        if (const auto found = counts.find(status); found != counts.end()) {
+            statuses += fmt::format("{}{} {}", statuses.empty() ? ": " : ", ", found->second, status);
+            all += found->second;
+        }
+    return count_text(all, "row", "rows") + statuses;
+}
+
+StatusCounts statuses_of(const ReportInput& input)
+{
+    StatusCounts counts;
+    for (const ReportRow& row : input.rows)
+        ++counts[row.row->status];
+    return counts;
+}
+
+StatusCounts statuses_of(const Campaign& campaign)
+{
+    StatusCounts counts;
+    for (const CampaignResult& result : campaign.results)
+        for (const auto& [status, count] : result.statuses)
+            counts[status] += count;
+    return counts;
 }
 
 /// Claims by verdict over all tables and figures; empty where there are none.
@@ -50,11 +72,12 @@ std::string claim_summary(const ReportInput& input)
                                   verdicts[2].second);
 }
 
-Html page_head(const ReportInput& input)
+/// The title over facts that sum the results up.
+Html page_head(const std::vector<std::string>& facts)
 {
-    Html summary = text_element("li", "", count_text(input.files.size(), "result", "results"));
-    if (!input.rows.empty()) summary += text_element("li", "", status_summary(input));
-    if (const std::string claims = claim_summary(input); !claims.empty()) summary += text_element("li", "", claims);
+    Html summary;
+    for (const std::string& fact : facts)
+        summary += text_element("li", "", fact);
     return element("header", {},
                    text_element("h1", "", "tetrace report") +
                        text_element("p", "note",
@@ -62,6 +85,26 @@ Html page_head(const ReportInput& input)
                                     "verified; written by tetrace " +
                                         build_identity().version + ".") +
                        element("ul", {{"class", "summary"}}, summary));
+}
+
+std::vector<std::string> facts_of(const ReportInput& input)
+{
+    std::vector<std::string> facts = {count_text(input.files.size(), "result", "results")};
+    if (!input.rows.empty()) facts.push_back(status_summary(statuses_of(input)));
+    if (std::string claims = claim_summary(input); !claims.empty()) facts.push_back(std::move(claims));
+    return facts;
+}
+
+std::vector<std::string> facts_of(const Campaign& campaign)
+{
+    std::vector<std::string> facts = {count_text(campaign.results.size(), "result", "results"),
+                                      count_text(campaign.machines.size(), "machine", "machines"),
+                                      fmt::format("{} to {} UTC", minute_of(campaign.results.front().head.date),
+                                                  minute_of(campaign.results.back().head.date)),
+                                      status_summary(statuses_of(campaign))};
+    if (!campaign.left_out.empty())
+        facts.push_back(count_text(campaign.left_out.size(), "file left out", "files left out"));
+    return facts;
 }
 
 Html contents(const std::vector<Section>& sections)
@@ -77,6 +120,18 @@ Html meta(const char* key, const char* name, const char* content)
     return element("meta", {{key, name}, {"content", content}});
 }
 
+std::string page_of(const Html& header, const std::vector<Section>& sections)
+{
+    Html body;
+    for (const Section& section : sections)
+        body += element("section", {{"id", section.id}}, text_element("h2", "", section.title) + section.content);
+    const Html head =
+        element("meta", {{"charset", "utf-8"}}) + meta("http-equiv", "Content-Security-Policy", content_policy) +
+        meta("name", "viewport", "width=device-width, initial-scale=1") + meta("name", "color-scheme", "light dark") +
+        text_element("title", "", "tetrace report") + style_sheet();
+    return whole_page(head, mark_definitions(body) + header + contents(sections) + element("main", {}, body)).str();
+}
+
 } // namespace
 
 std::string report_page(const ReportInput& input)
@@ -85,14 +140,16 @@ std::string report_page(const ReportInput& input)
     for (const auto make : {machine_section, rate_section, ratio_section, roofline_section, conformance_section,
                             compiler_section, paper_section, picture_section, time_section})
         sections.push_back(make(input));
-    Html body;
-    for (const Section& section : sections)
-        body += element("section", {{"id", section.id}}, text_element("h2", "", section.title) + section.content);
-    const Html head =
-        element("meta", {{"charset", "utf-8"}}) + meta("http-equiv", "Content-Security-Policy", content_policy) +
-        meta("name", "viewport", "width=device-width, initial-scale=1") + meta("name", "color-scheme", "light dark") +
-        text_element("title", "", "tetrace report") + style_sheet();
-    return whole_page(head, page_head(input) + contents(sections) + element("main", {}, body)).str();
+    return page_of(page_head(facts_of(input)), sections);
+}
+
+std::string campaign_page(const Campaign& campaign, const std::vector<std::filesystem::path>& pictures)
+{
+    std::vector<Section> sections;
+    for (const auto make : {index_section, beside_section, trend_section})
+        sections.push_back(make(campaign));
+    if (!pictures.empty()) sections.push_back(picture_section({{}, {}, pictures}));
+    return page_of(page_head(facts_of(campaign)), sections);
 }
 
 ReportInput read_report_input(const std::vector<std::filesystem::path>& results,

@@ -155,6 +155,12 @@ std::string with_letter(const std::string& title, std::size_t file, std::size_t 
     return letter.empty() ? title : title + " · " + letter;
 }
 
+std::string minute_of(std::string date)
+{
+    if (date.size() >= 16 && date[10] == 'T') return date.replace(10, 1, " ").substr(0, 16);
+    return date;
+}
+
 const char* plural_of(DeviceKind kind)
 {
     return kind == DeviceKind::cpu ? "processors" : kind == DeviceKind::gpu ? "GPUs" : "emulated";

@@ -56,6 +56,9 @@ struct RowGroup {
 /// A title followed by that name: "bunny · A".
 [[nodiscard]] std::string with_letter(const std::string& title, std::size_t file, std::size_t files);
 
+/// "2026-11-21 17:34" of "2026-11-21T17:34:21Z".
+[[nodiscard]] std::string minute_of(std::string date);
+
 /// "processors", "GPUs", "emulated".
 [[nodiscard]] const char* plural_of(DeviceKind kind);
 

@@ -1,6 +1,7 @@
 #include "bench/results/result_comparison.h"
 
 #include "bench/options/name_filter.h"
+#include "bench/results/same_work.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
@@ -43,42 +44,13 @@ std::vector<ComparedRow> paired_rows(const ResultFile& before, const ResultFile&
     const NameFilter names("--filter", filter);
     const auto kept = [&](const ResultRow& row) { return names.keeps(row.name); };
     std::vector<ComparedRow> rows;
-    for (const ResultRow& row : before.rows)
-        if (kept(row)) rows.push_back({&row, after.find_row(row.name), {}, {}, {}});
-    for (const ResultRow& row : after.rows)
-        if (kept(row) && before.find_row(row.name) == nullptr) rows.push_back({nullptr, &row, {}, {}, {}});
+    for (const ResultRow* row : before.timed_rows())
+        if (kept(*row)) rows.push_back({row, after.find_row(row->name), {}, {}, {}});
+    for (const ResultRow* row : after.timed_rows())
+        if (kept(*row) && before.find_row(row->name) == nullptr) rows.push_back({nullptr, row, {}, {}, {}});
     for (ComparedRow& row : rows)
         row.outcome = outcome_of(row);
     return rows;
-}
-
-const ResultScene& scene_of(const ResultFile& file, const ResultRow& row)
-{
-    if (const ResultScene* scene = file.find_scene(row.scene)) return *scene;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("reading the result '{}': the row {} was timed on the scene '{}', which is not among "
-                            "tetrace.scenes",
-                            file.path.string(), row.name, row.scene));
-}
-
-std::string rays_text(const ResultScene& scene)
-{
-    return fmt::format("{} views of {} at {}x{}", scene.views.size(), scene.camera_set, scene.width, scene.height);
-}
-
-/// Why the row's samples in the two results are not of the same work; empty where they are.
-std::string different_work(const ResultFile& before, const ResultFile& after, const ComparedRow& row)
-{
-    const ResultScene& a = scene_of(before, *row.before);
-    const ResultScene& b = scene_of(after, *row.after);
-    if (a.hash != b.hash) return fmt::format("the scene {} has hash {} in A and {} in B", a.name, a.hash, b.hash);
-    if (rays_text(a) != rays_text(b)) return fmt::format("{} in A, {} in B", rays_text(a), rays_text(b));
-    if (a.views != b.views) return fmt::format("other views of {} in A than in B", a.camera_set);
-    const auto& hits_a = row.before->hit_hash;
-    const auto& hits_b = row.after->hit_hash;
-    if (hits_a.empty() || hits_b.empty()) return fmt::format("no hit hash in {}", hits_a.empty() ? "A" : "B");
-    if (hits_a != hits_b) return fmt::format("hit hash {} in A and {} in B", hits_a, hits_b);
-    return {};
 }
 
 [[noreturn]] void reject_pair(const ResultFile& before, const ResultFile& after, const std::string& why)
@@ -96,7 +68,7 @@ void find_different_work(const ResultFile& before, const ResultFile& after, std:
     bool any_compared = false;
     for (ComparedRow& row : rows) {
         if (row.outcome != RowOutcome::compared) continue;
-        row.difference = different_work(before, after, row);
+        row.difference = different_work(before, *row.before, after, *row.after);
         any_compared = any_compared || row.difference.empty();
         if (row.difference.empty()) continue;
         row.outcome = RowOutcome::different;
@@ -120,9 +92,10 @@ void require_rows(const ResultFile& before, const ResultFile& after, const std::
                     "A has no row with samples to compare with; 'tetrace bench --out FILE.json' times rows");
     const auto is_common = [](const ComparedRow& row) { return row.before != nullptr && row.after != nullptr; };
     if (std::ranges::none_of(rows, is_common))
-        reject_pair(before, after,
-                    fmt::format("they have no row in common; A has {} and its like, B {}", rows.front().name(),
-                                after.rows.empty() ? "none" : after.rows.front().name + " and its like"));
+        reject_pair(
+            before, after,
+            fmt::format("they have no row in common; A has {} and its like, B {}", rows.front().name(),
+                        after.timed_rows().empty() ? "none" : after.timed_rows().front()->name + " and its like"));
 }
 
 /// The host's pulse of `after` over that of `before`; empty where the two are of different machines, of whose speeds

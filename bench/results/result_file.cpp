@@ -53,17 +53,20 @@ std::string parse_message(const std::string& what)
     return place == std::string::npos ? what : what.substr(place + 2);
 }
 
-nlohmann::json parse(const std::filesystem::path& path)
+nlohmann::json parse(const std::filesystem::path& path, Repetitions repetitions)
 {
     using Event = nlohmann::json::parse_event_t;
     const std::string bytes = read_bytes(path);
     if (bytes.empty()) reject_file(path, ErrorKind::invalid_input, "it is empty");
     try {
-        return nlohmann::json::parse(bytes, [&, values = std::size_t{0}](int, Event event, nlohmann::json&) mutable {
+        std::size_t values = 0;
+        return nlohmann::json::parse(bytes, [&](int depth, Event event, const nlohmann::json& parsed) {
             const bool is_value = event == Event::object_start || event == Event::array_start || event == Event::value;
             if (is_value && ++values > most_values)
                 reject_file(path, ErrorKind::invalid_input, "it has more than 6,000,000 values, which no result has");
-            return true;
+            const bool is_dropped = repetitions == Repetitions::dropped && depth == 1 && event == Event::key &&
+                                    parsed.get_ref<const std::string&>() == "benchmarks";
+            return !is_dropped;
         });
     } catch (const nlohmann::json::exception& problem) {
         reject_file(path, ErrorKind::invalid_input,
@@ -169,12 +172,12 @@ std::string read_schedule(const ResultValue& row)
     return name.substr(begin, name.find('/', begin) - begin);
 }
 
-ResultRow read_row(const ResultValue& value)
+/// What rows of scenes and of searches have in common.
+ResultRow read_any_row(const ResultValue& value)
 {
     ResultRow row;
     row.name = value.at("name").line();
     if (row.name.size() > longest_name) value.at("name").reject("is longer than 1,000 bytes, which no row's name is");
-    row.scene = value.at("scene").line();
     row.backend = value.at("backend").line();
     row.schedule = read_schedule(value);
     row.status = read_status(value.at("status"));
@@ -185,12 +188,27 @@ ResultRow read_row(const ResultValue& value)
         row.driver = line_or_nothing(*device, "driver");
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
-    if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
     row.samples_s = read_samples(value);
     if (const auto times = value.find("times"))
         if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();
+    return row;
+}
+
+ResultRow read_row(const ResultValue& value)
+{
+    ResultRow row = read_any_row(value);
+    row.scene = value.at("scene").line();
+    if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
     if (const auto rates = value.find("rates"))
         if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();
+    return row;
+}
+
+ResultRow read_search(const ResultValue& value)
+{
+    ResultRow row = read_any_row(value);
+    if (const auto hash = value.find("face_hash")) row.hit_hash = hash->hash();
+    if (const auto rate = value.find("msearches_per_s")) row.mrays_per_s = rate->number();
     return row;
 }
 
@@ -231,7 +249,17 @@ const ResultScene* ResultFile::find_scene(const std::string& name) const
 
 const ResultRow* ResultFile::find_row(const std::string& name) const
 {
-    return find_named(rows, name);
+    const ResultRow* row = find_named(rows, name);
+    return row != nullptr ? row : find_named(searches, name);
+}
+
+std::vector<const ResultRow*> ResultFile::timed_rows() const
+{
+    std::vector<const ResultRow*> all;
+    for (const auto* const list : {&rows, &searches})
+        for (const ResultRow& row : *list)
+            all.push_back(&row);
+    return all;
 }
 
 DeviceKind device_kind_of(const ResultValue& device)
@@ -243,11 +271,11 @@ DeviceKind device_kind_of(const ResultValue& device)
     type.reject(fmt::format("is '{}', and a device is {}", name, fmt::join(enum_names<DeviceKind>, ", ")));
 }
 
-ResultFile read_result(const std::filesystem::path& path)
+ResultFile read_result(const std::filesystem::path& path, Repetitions repetitions)
 {
     ResultFile result;
     result.path = path;
-    result.json = parse(path);
+    result.json = parse(path, repetitions);
     const auto section = ResultValue(result.json, path.string()).find("tetrace");
     if (!section)
         reject_file(path, ErrorKind::invalid_input,
@@ -257,6 +285,10 @@ ResultFile read_result(const std::filesystem::path& path)
     if (result.head.verb == "scenes") return result;
     result.scenes = read_named<ResultScene>(*section, "scenes", read_scene);
     result.rows = read_named<ResultRow>(*section, "rows", read_row);
+    if (const auto searches = section->find("searches")) {
+        result.searches = read_named<ResultRow>(*searches, "rows", read_search);
+        result.search_size = fmt::format("{} x {}", searches->at("tets").count(), searches->at("rays_a_tet").count());
+    }
     return result;
 }
 

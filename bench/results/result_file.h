@@ -41,14 +41,15 @@ struct ResultScene {
 /// A row of a result; texts are empty where the file has none.
 struct ResultRow {
     std::string name;
-    std::string scene, backend, status;
+    std::string scene; ///< empty: exit searches alone
+    std::string backend, status;
     std::string reason;   ///< several lines perhaps; no other control characters
     std::string schedule; ///< how rays come to work items, "tiles" for example
     std::string device, driver;
     std::optional<DeviceKind> device_kind; ///< empty where the row has no device
     std::uint64_t device_index = 0;        ///< in its backend
-    std::string hit_hash;                  ///< empty where no rays were traced
-    std::optional<double> mrays_per_s;     ///< of the median sample
+    std::string hit_hash;                  ///< empty where no rays were traced; of searches, the hash of their faces
+    std::optional<double> mrays_per_s;     ///< of the median sample; of searches, millions of those
     std::optional<double> pulse_ratio;     ///< of the pulse beside its samples to the run's fastest
     std::vector<double> samples_s; ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
@@ -63,22 +64,30 @@ struct ResultFile {
     ResultHead head;
     std::vector<ResultScene> scenes; ///< names are unique
     std::vector<ResultRow> rows; ///< names are unique, in the file's order: row i is section().at("rows").items()[i]
+    std::vector<ResultRow> searches; ///< rows of Table 5, whose names begin with "search/"
+    std::string search_size;         ///< of those rows: "10000 x 16384"
 
     /// The section `tetrace`. Refers to this object, which has to outlive it.
     [[nodiscard]] ResultValue section() const { return ResultValue(json, path.string()).at("tetrace"); }
     /// Null where no scene (row) has that name.
     [[nodiscard]] const ResultScene* find_scene(const std::string& name) const;
     [[nodiscard]] const ResultRow* find_row(const std::string& name) const;
+    /// The rows of scenes, then those of searches.
+    [[nodiscard]] std::vector<const ResultRow*> timed_rows() const;
 };
 
 /// The kind of a device, from a device of a result. Throws Error{invalid_input} where its "type" names none.
 [[nodiscard]] DeviceKind device_kind_of(const ResultValue& device);
+
+/// What becomes of Google Benchmark's own repetitions, three quarters of a result of bench: their samples are in the
+/// section `tetrace` again.
+enum class Repetitions { dropped, kept };
 
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
 /// ResultFile's members hold.
 /// Throws Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
 /// read, exceeds 64 MiB or 6,000,000 values, is no JSON, no result, of another schema version, lacks a key or has one
 /// of another type.
-[[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
+[[nodiscard]] ResultFile read_result(const std::filesystem::path& path, Repetitions repetitions = Repetitions::dropped);
 
 } // namespace tetrace

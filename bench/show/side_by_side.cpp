@@ -131,6 +131,7 @@ Report side_by_side(const std::vector<ResultComparison>& comparisons, const Opti
     sheet.table(rates_table(comparisons));
     sheet.gap();
     add_notes(sheet, comparisons);
+    add_search_note(sheet, comparisons.front());
     sheet.labelled("Means", means_text(comparisons));
     check_columns(options, sheet.column_keys());
     report.markdown = sheet.markdown({.columns = options.columns});

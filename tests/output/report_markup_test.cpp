@@ -2,6 +2,7 @@
 #include "tests/output/report_fixture.h"
 
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,24 @@ TEST_F(ReportPage, tags_are_balanced)
             open.push_back(tag);
         }
     EXPECT_TRUE(open.empty());
+}
+
+TEST_F(ReportPage, every_mark_that_is_referred_to_is_defined_once)
+{
+    json reproduced = reproduce_json();
+    reproduced["tetrace"]["figures"][0]["series"] = {{{"name", "a"}, {"points", {{2, 1}, {1, 2}}}},
+                                                     {{"name", "b"}, {"points", {{3, 1}, {1, 2}}}}};
+    const std::string page = page_of({bench_json(), reproduced});
+    std::set<std::string> marks;
+    const std::regex reference("url\\(#([a-z0-9]+)\\)");
+    for (auto it = std::sregex_iterator(page.begin(), page.end(), reference); it != std::sregex_iterator(); ++it)
+        marks.insert((*it)[1]);
+    EXPECT_EQ(marks, (std::set<std::string>{"cloud0", "cloud1", "sample"}));
+    for (const std::string& mark : marks) {
+        const std::string id = "id=\"" + mark + "\"";
+        EXPECT_TRUE(contains(page, id)) << mark;
+        EXPECT_EQ(page.find(id), page.rfind(id)) << mark;
+    }
 }
 
 TEST_F(ReportPage, names_of_whatever_characters_change_no_markup)

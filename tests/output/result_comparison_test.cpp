@@ -246,3 +246,61 @@ TEST_F(ResultComparisons, of_nothing_is_refused)
     EXPECT_EQ(compare(timed, check).rows[0].verdict(), "MISSING");
     EXPECT_EQ(compare(timed, check).rows[0].note(), "B: no samples");
 }
+
+namespace {
+
+/// A row of Table 5, as searches_json() makes it.
+Json search_row(const char* name, double seconds)
+{
+    return {{"name", name},
+            {"backend", "openmp"},
+            {"status", "ok"},
+            {"face_hash", "00000000000000ff"},
+            {"msearches_per_s", 8 / seconds},
+            {"times", {{"samples_s", samples_around(seconds)}}}};
+}
+
+Json searches_of(const std::vector<Json>& rows)
+{
+    Json result = result_of({});
+    result["tetrace"]["verb"] = "reproduce";
+    result["tetrace"]["searches"] = {{"tets", 1000}, {"rays_a_tet", 8000}, {"rows", rows}};
+    return result;
+}
+
+} // namespace
+
+TEST_F(ResultComparisons, judges_exit_searches_like_rows)
+{
+    const auto comparison = compare(searches_of({search_row("search/a", 1), search_row("search/b", 1)}),
+                                    searches_of({search_row("search/a", 1.25), search_row("search/b", 1.001)}));
+    ASSERT_EQ(comparison.rows.size(), 2u);
+    EXPECT_EQ(comparison.rows[0].verdict(), "SLOWER");
+    EXPECT_EQ(comparison.rows[1].verdict(), "SAME");
+    EXPECT_DOUBLE_EQ(comparison.rows[0].after->mrays_per_s.value(), 6.4);
+}
+
+TEST_F(ResultComparisons, searches_of_other_numbers_or_with_other_faces_did_different_work)
+{
+    const Json before = searches_of({search_row("search/a", 1), search_row("search/b", 1)});
+    Json faces = before;
+    faces["tetrace"]["searches"]["rows"][1]["face_hash"] = "0000000000000011";
+    const auto comparison = compare(before, faces);
+    EXPECT_EQ(comparison.rows[0].verdict(), "SAME");
+    EXPECT_EQ(comparison.rows[1].verdict(), "DIFFERENT");
+    Json fewer = before;
+    fewer["tetrace"]["searches"]["tets"] = 500;
+    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(compare(before, fewer)); }),
+                         "1000 x 8000 searches in A, 500 x 8000 in B"));
+}
+
+TEST_F(ResultComparisons, rows_of_scenes_and_searches_of_one_result_are_compared_together)
+{
+    Json result = searches_of({search_row("search/a", 1)});
+    result["tetrace"]["rows"] = {timed_row("one", 1)};
+    const auto comparison = compare(result, result);
+    ASSERT_EQ(comparison.rows.size(), 2u);
+    EXPECT_EQ(comparison.rows[0].name(), "one");
+    EXPECT_EQ(comparison.rows[1].name(), "search/a");
+    EXPECT_EQ(comparison.count(RowOutcome::compared), 2u);
+}

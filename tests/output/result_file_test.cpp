@@ -1,4 +1,5 @@
 #include "bench/results/result_file.h"
+#include "bench/results/result_text.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -60,6 +61,18 @@ TEST_F(ResultFiles, name_the_machine_by_its_label_or_else_by_all_that_is_known_o
     EXPECT_EQ(head.shown("a GPU"), "a GPU");
     json["tetrace"]["label"] = "Zen 3";
     EXPECT_EQ(read(json.dump()).head.machine, "Zen 3");
+}
+
+TEST_F(ResultFiles, keep_the_repetitions_of_google_benchmark_only_where_asked)
+{
+    nlohmann::json json = small_result();
+    json["benchmarks"] = {{{"name", "cdt/a"}, {"real_time", 1.5}}, {{"name", "cdt/a"}, {"nested", {{"a", {1, 2}}}}}};
+    json["context"] = {{"date", "today"}};
+    const ResultFile result = read(json.dump());
+    EXPECT_FALSE(result.json.contains("benchmarks"));
+    EXPECT_EQ(read_result(folder_ / "a.json", Repetitions::kept).json, json);
+    json.erase("benchmarks");
+    EXPECT_EQ(result.json, json) << "all else is there";
 }
 
 TEST_F(ResultFiles, is_read)
@@ -196,4 +209,34 @@ TEST_F(ResultFiles, with_a_value_of_another_kind_names_its_key)
 TEST_F(ResultFiles, with_two_rows_of_one_name_is_refused)
 {
     EXPECT_TRUE(contains(error_with("/rows/1/name", "cdt/a"), "tetrace.rows[1]: has the name 'cdt/a'"));
+}
+
+TEST(ResultText, fills_lines_and_reads_back_the_same)
+{
+    nlohmann::json value = small_result();
+    for (int i = 0; i < 1000; ++i)
+        value["tetrace"]["rows"][0]["times"]["samples_s"].push_back(1.0 / (i + 3));
+    for (int i = 0; i < 100; ++i)
+        value["points"].push_back({i, 0.1 * i});
+    value["empty"] = {{"array", nlohmann::json::array()}, {"object", nlohmann::json::object()}, {"none", nullptr}};
+    value["long"] = std::string(500, 'x') + "\"\n\xc3\xa9";
+    const std::string text = result_text(value);
+    EXPECT_EQ(nlohmann::json::parse(text), value);
+    EXPECT_LT(text.size(), value.dump().size() * 11 / 10) << "little more than without any line break";
+    EXPECT_TRUE(contains(text, "[0,0.0],[1,0.1],[2,0.2],"));
+    std::size_t longest = 0, lines = 0;
+    for (std::size_t begin = 0; begin < text.size(); ++lines) {
+        const std::size_t end = text.find('\n', begin);
+        if (!contains(text.substr(begin, end - begin), "xxx")) longest = std::max(longest, end - begin);
+        begin = end + 1;
+    }
+    EXPECT_LE(longest, 120u);
+    EXPECT_GT(lines, 150u);
+}
+
+TEST(ResultText, replaces_what_is_no_utf_8)
+{
+    EXPECT_EQ(nlohmann::json::parse(result_text({{"path", "a\xff/b"}})), nlohmann::json({{"path", "a\uFFFD/b"}}));
+    EXPECT_EQ(result_text(nlohmann::json::object()), "{}\n");
+    EXPECT_EQ(result_text({{"a", 1}, {"b", {1, 2}}}), "{\n \"a\":1,\"b\":[1,2]\n}\n");
 }

@@ -175,6 +175,16 @@ TEST_F(Compare, compares_other_machines_in_what_did_the_same_work)
         }
 }
 
+TEST_F(Compare, reads_results_of_table_5)
+{
+    const std::string result = TETRACE_RESULTS "/nvidia-h100-80gb/2026-11-23-47c6ed2-reproduce.json";
+    const Ended ended = run("compare " + result + " " + result + " --filter ^search/ --tolerance 100");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "search/maria/tet80/random-tets/math:exact/api:cuda")) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "millions of searches a second")) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "geometric mean of B / A 1.000")) << ended.out;
+}
+
 TEST_F(Compare, never_replaces_what_it_compares)
 {
     ASSERT_EQ(compare_with([](Json&) {}).code, 0);

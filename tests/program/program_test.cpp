@@ -47,6 +47,26 @@ TEST_F(Program, report_writes_a_page_from_results)
     EXPECT_FALSE(file("report.html").empty()) << "the default name";
 }
 
+TEST_F(Program, report_of_a_folder_is_the_page_of_a_campaign)
+{
+    std::filesystem::create_directories(folder_ / "results/host");
+    ASSERT_EQ(bench("--label one --out results/a.json").code, 0);
+    ASSERT_EQ(bench("--label two --out results/host/b.json").code, 0);
+    write_file(folder_ / "results/notes.json", "{}");
+    write_file(folder_ / "results/notes.txt", "no JSON");
+    const Ended ended = run("report results --out page.html");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "1 of these 3 left out")) << ended.errors;
+    const std::string page = file("page.html");
+    for (const char* const part : {"id=\"index\"", "host/b.json", "results/a.json", "notes.json", "id=\"beside\""})
+        EXPECT_TRUE(contains(page, part)) << part;
+    EXPECT_EQ(run("report results --out results/a.json").code, 2) << "it would replace an input";
+    std::filesystem::create_directory(folder_ / "empty");
+    const Ended empty = run("report empty");
+    EXPECT_EQ(empty.code, 2);
+    EXPECT_TRUE(contains(empty.errors, "no file in it or below it ends in .json")) << empty.errors;
+}
+
 TEST_F(Program, report_names_what_it_cannot_use)
 {
     const Ended nothing = run("report");
@@ -54,7 +74,7 @@ TEST_F(Program, report_names_what_it_cannot_use)
     EXPECT_TRUE(contains(nothing.errors, "no file is given"));
     EXPECT_EQ(run("report none.json").code, 3);
     EXPECT_EQ(run("report stdout").code, 2) << "no JSON";
-    EXPECT_TRUE(contains(run("help report").out, "Usage: tetrace report RESULT... [OPTION]..."));
+    EXPECT_TRUE(contains(run("help report").out, "Usage: tetrace report RESULT|FOLDER... [OPTION]..."));
 }
 
 TEST_F(Program, usage_errors_go_to_standard_error_with_exit_code_2)

@@ -1,5 +1,6 @@
 #include "tests/support/program_fixture.h"
 
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -88,6 +89,15 @@ TEST_F(Show, every_result_of_this_repository)
         EXPECT_EQ(shown.code, 0) << entry.path() << shown.errors;
         EXPECT_GT(shown.out.size(), 1000u) << entry.path();
     }
+}
+
+TEST_F(Show, writes_a_result_anew_value_for_value_in_less_space)
+{
+    const std::string old = TETRACE_RESULTS "/amd-epyc-zen3-2-cores/2026-11-21-afdb7f9.json";
+    ASSERT_EQ(run("show " + old + " --out new.json").code, 0);
+    const std::string text = file("new.json");
+    EXPECT_EQ(nlohmann::json::parse(text), nlohmann::json::parse(read_text(old))) << "Google Benchmark's part included";
+    EXPECT_LE(text.size(), std::filesystem::file_size(old));
 }
 
 TEST_F(Show, several_results_stand_side_by_side)

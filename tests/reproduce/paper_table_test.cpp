@@ -49,6 +49,17 @@ TEST(PaperTable, as_csv_has_numbers_texts_points_verdicts_and_notes)
               "figure9,,,,,,time-grows,,,,,,,,holds,0.99.\n");
 }
 
+TEST(PaperTable, points_of_a_figure_have_seven_digits_in_json_and_csv)
+{
+    PaperFigure figure = figure_of_two_points();
+    figure.series[0].points = {{1.0 / 3, 1e-9 / 7}, {12, 123456.75}};
+    EXPECT_EQ(figure_json(figure)["series"][0]["points"].dump(), "[[0.3333333,1.428571e-10],[12.0,123456.8]]");
+    const auto csv_of = [](const PaperFigure& one) { return tidy_table({}, {one}).csv(); };
+    const std::string csv = csv_of(figure);
+    figure.series[0].points = {{0.3333333, 1.428571e-10}, {12, 123456.8}};
+    EXPECT_EQ(csv, csv_of(figure)) << "what 'show' makes of the JSON";
+}
+
 TEST(PaperTable, a_figure_without_its_points_says_where_they_are)
 {
     PaperFigure figure = figure_of_two_points();

@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -53,6 +54,26 @@ std::string with_decimals(double value, int decimals)
 
 constexpr double largest_plain = 1e15;
 
+/// Days between ticks, about four of them in the range: hours, days, weeks, then quarters and years.
+double step_of_dates(double range)
+{
+    constexpr double steps[] = {1 / 24.0, 3 / 24.0, 6 / 24.0, 12 / 24.0, 1, 2, 7, 14, 28, 91, 182, 365};
+    for (const double step : steps)
+        if (range <= 5 * step) return step;
+    return 365 * round_step(range / (5 * 365));
+}
+
+/// "2026-11-21"; between days "11-21 06:00".
+std::string date_label(double day, bool with_hour)
+{
+    const double whole = std::floor(day + 1e-6);
+    const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(static_cast<int>(whole)))};
+    const std::string month_and_day =
+        fmt::format("{:02}-{:02}", static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()));
+    if (!with_hour) return fmt::format("{:04}-{}", static_cast<int>(date.year()), month_and_day);
+    return fmt::format("{} {:02.0f}:00", month_and_day, std::round(24 * (day - whole)));
+}
+
 } // namespace
 
 Axis Axis::between(bool logarithmic, std::vector<double> ticks)
@@ -84,6 +105,20 @@ Axis Axis::from_zero(double high, int intervals)
     if (high > 0) axis.high_ = high;
     while (axis.ticks_.back() > axis.high_ * (1 + 1e-9))
         axis.ticks_.pop_back();
+    return axis;
+}
+
+Axis Axis::dates(double low, double high)
+{
+    check_range(low, high);
+    const double step = step_of_dates(high - low);
+    const double first = std::floor(low / step + 1e-9);
+    const double last = std::max(std::ceil(high / step - 1e-9), first + 1);
+    std::vector<double> ticks;
+    for (double i = first; i <= last; ++i)
+        ticks.push_back(i * step);
+    Axis axis = between(false, std::move(ticks));
+    axis.dates_ = true;
     return axis;
 }
 
@@ -125,6 +160,7 @@ double Axis::place(double value, double begin, double end) const
 
 std::string Axis::label(double tick) const
 {
+    if (dates_) return date_label(tick, ticks_[1] - ticks_[0] < 1);
     const double step = logarithmic_ || ticks_.size() < 2 ? std::abs(tick) : ticks_[1] - ticks_[0];
     if (std::abs(tick) >= largest_plain || (step > 0 && step < 1e-6)) return fmt::format("{:.3g}", tick);
     const int decimals = step == 0 ? 0 : std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));

@@ -25,6 +25,10 @@ public:
     /// Throws Error{internal} where a value is not positive and finite, or there are none.
     static Axis logarithmic_at(std::vector<double> values, double room);
 
+    /// Of days since 1970-01-01 UTC: ticks at whole hours, days or weeks, labelled as dates; both ends are rounded
+    /// outwards to ticks. Throws as linear() does.
+    static Axis dates(double low, double high);
+
     [[nodiscard]] double low() const { return low_; }
     [[nodiscard]] double high() const { return high_; }
     [[nodiscard]] const std::vector<double>& ticks() const { return ticks_; }
@@ -45,6 +49,7 @@ private:
     static Axis between(bool logarithmic, std::vector<double> ticks);
 
     bool logarithmic_;
+    bool dates_ = false;
     double low_, high_;
     std::vector<double> ticks_;
 };

@@ -89,9 +89,10 @@ std::string full_label(const Row& row)
 Html spread_of(const Bar& bar, const Axis& axis, const RowFrame& frame, double middle)
 {
     const auto place = [&](double value) { return axis.place(value, frame.left, frame.right); };
-    Html spread;
+    std::vector<double> places;
     for (const double sample : bar.samples)
-        spread += svg_line(place(sample), middle - 3, place(sample), middle + 3, "sample");
+        places.push_back(place(sample));
+    const Html spread = svg_samples(places, middle);
     if (!bar.low || !bar.high) return spread;
     const double low = place(*bar.low), high = place(*bar.high);
     return spread + svg_line(low, middle, high, middle, "whisker") +

@@ -18,7 +18,7 @@ constexpr double top = 24, least_bottom = 264, left = 62, axis_room = 40;
 /// Margin between the first and the last label and the plot's ends.
 constexpr double above_labels = 6, below_labels = 4;
 
-/// Lines with up to this number of points mark each point with their shape.
+/// A line marks up to this number of its points with its shape.
 constexpr std::size_t most_marked = 24;
 
 struct Range {
@@ -61,10 +61,10 @@ LineFrame frame_of(const LineChart& chart)
             x.hold(point.first);
             y.hold(point.second);
         }
-        names = std::max(names, text_width(series.name, label_size));
+        names = std::max(names, side_key_width + text_width(series.name, label_size));
     }
-    return {x.axis(4, chart.x_logarithmic), y.axis(5, chart.y_logarithmic), side_labels_left(names),
-            bottom_of(chart.series.size())};
+    return {chart.x_dates ? Axis::dates(x.low, x.high) : x.axis(4, chart.x_logarithmic), y.axis(5, chart.y_logarithmic),
+            side_labels_left(names), bottom_of(chart.series.size())};
 }
 
 Html grid(const LineChart& chart, const LineFrame& frame)
@@ -82,14 +82,19 @@ bool ascends(const Series& series)
 
 Html points_of(const Series& series, std::size_t number, const LineFrame& frame)
 {
+    std::vector<std::pair<double, double>> places;
+    for (const auto& [x, y] : series.points)
+        places.emplace_back(frame.x(x), frame.y(y));
+    if (!ascends(series)) return svg_cloud(places, number);
     std::string line;
     Html shapes;
-    const bool is_line = ascends(series), marked = !is_line || series.points.size() <= most_marked;
-    for (const auto& [x, y] : series.points) {
-        line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", frame.x(x), frame.y(y));
-        if (marked) shapes += svg_shape(frame.x(x), frame.y(y), number, is_line ? "solid" : "cloud");
+    const std::size_t stride = (places.size() + most_marked - 1) / most_marked;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto& [x, y] = places[i];
+        line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x, y);
+        if (i % stride == 0) shapes += svg_shape(x, y, number, "solid");
     }
-    return (is_line ? svg_path(line, "line") : Html()) + shapes;
+    return svg_path(line, "line") + shapes;
 }
 
 } // namespace
@@ -105,10 +110,10 @@ Html draw(const LineChart& chart)
     for (std::size_t i = 0; i < chart.series.size(); ++i) {
         const Series& series = chart.series[i];
         if (series.points.empty()) continue;
-        content +=
-            svg_mark(series_class(i), series.name, fmt::format("{}: {} points", series.name, series.points.size()),
-                     side_label(frame.x(series.points.back().first), wanted[i], frame.right, places[i], series.name) +
-                         points_of(series, i, frame));
+        content += svg_mark(
+            series_class(i), series.name, fmt::format("{}: {} points", series.name, series.points.size()),
+            side_label(frame.x(series.points.back().first), wanted[i], frame.right, places[i], series.name, i) +
+                points_of(series, i, frame));
     }
     return svg_drawing(frame.bottom + axis_room, chart.label, content);
 }

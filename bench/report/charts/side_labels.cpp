@@ -16,12 +16,13 @@ double side_labels_left(double widest_label)
     return std::max(chart_width / 2, chart_width - widest_label - leader - 1);
 }
 
-Html side_label(double point_x, double point_y, double plot_right, double label_y, const std::string& label)
+Html side_label(double point_x, double point_y, double plot_right, double label_y, const std::string& label,
+                std::optional<std::size_t> series)
 {
-    const double start = plot_right + leader;
-    return svg_path(
-               fmt::format("M{:.1f} {:.1f}H{:.1f}L{:.1f} {:.1f}", point_x, point_y, plot_right, start - 4, label_y),
-               "leader") +
+    const double end = plot_right + leader, start = end + (series ? side_key_width : 0);
+    return svg_path(fmt::format("M{:.1f} {:.1f}H{:.1f}L{:.1f} {:.1f}", point_x, point_y, plot_right, end - 4, label_y),
+                    "leader") +
+           (series ? svg_shape(end + 3, label_y, *series, "solid") : Html()) +
            svg_text(start, label_y + 4.5, "label", shortened(label, label_size, chart_width - start));
 }
 

@@ -66,6 +66,7 @@ td small { display: block; color: var(--muted); font-size: 0.8em; }
 .bad { color: var(--bad); background: var(--bad-back); }
 .fair { color: var(--fair); background: var(--fair-back); }
 .neutral { color: var(--neutral); background: var(--neutral-back); }
+.beside th { max-width: 10rem; white-space: normal; }
 td code, td .date { white-space: nowrap; }
 .type.emulated { font-style: italic; }
 .pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1.5rem 2.5rem; }
@@ -94,8 +95,12 @@ svg .solid { fill: var(--c); stroke: var(--paper); stroke-width: 0.8; }
 svg .hollow { fill: var(--paper); stroke: var(--c); stroke-width: 1.8; }
 svg .cloud { fill: var(--c); fill-opacity: 0.35; }
 svg .line { fill: none; stroke: var(--c); stroke-width: 1.8; stroke-linejoin: round; }
-.s1 .line { stroke-dasharray: 6 3; } .s2 .line { stroke-dasharray: 2 3; } .s3 .line { stroke-dasharray: 9 3 2 3; }
-.s4 .line { stroke-dasharray: 12 4; } .s5 .line { stroke-dasharray: 4 2; } .s6 .line { stroke-dasharray: 1 2; }
+.d1 .line { stroke-dasharray: 6 3; } .d2 .line { stroke-dasharray: 2 3; } .d3 .line { stroke-dasharray: 9 3 2 3; }
+.d4 .line { stroke-dasharray: 12 4; } .d5 .line { stroke-dasharray: 4 2; } .d6 .line { stroke-dasharray: 1 2; }
+.open .solid { fill: var(--paper); stroke: var(--c); stroke-width: 1.6; }
+.open .cloud { fill: none; stroke: var(--c); stroke-opacity: 0.5; }
+svg .carrier { fill: none; stroke: none; }
+svg.definitions { position: absolute; width: 0; }
 .mark:hover .bar { fill-opacity: 0.85; }
 @media (max-width: 40rem) {
   table { width: max-content; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -69,6 +70,13 @@ json axis_json(const PaperFigure::Axis& axis)
     json object = {{"title", axis.title}, {"unit", axis.unit}};
     if (axis.logarithmic) object["scale"] = "logarithmic";
     return object;
+}
+
+/// A coordinate with seven digits: points are drawn, and rows have the numbers behind them. All digits took a seventh
+/// of a result of all tables and figures.
+double drawn(double coordinate)
+{
+    return std::strtod(fmt::format("{:.7g}", coordinate).c_str(), nullptr);
 }
 
 json claims_json(const std::vector<Claim>& claims)
@@ -196,7 +204,11 @@ void add_points(Table& tidy, const PaperFigure& figure)
     for (const PaperFigure::Series& series : figure.series)
         for (const auto& [x, y] : series.points)
             add_fact(tidy, {figure.id},
-                     {.quantity = figure.y.title, .unit = figure.y.unit, .value = y, .x = x, .text = series.name});
+                     {.quantity = figure.y.title,
+                      .unit = figure.y.unit,
+                      .value = drawn(y),
+                      .x = drawn(x),
+                      .text = series.name});
 }
 
 /// Members that tables and figures share.
@@ -285,7 +297,7 @@ nlohmann::json figure_json(const PaperFigure& figure)
     for (const PaperFigure::Series& one : figure.series) {
         json points = json::array();
         for (const auto& [x, y] : one.points)
-            points.push_back({x, y});
+            points.push_back({drawn(x), drawn(y)});
         series.push_back({{"name", one.name}, {"points", std::move(points)}});
     }
     return {{"id", figure.id},

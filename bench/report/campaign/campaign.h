@@ -1,0 +1,72 @@
+#pragma once
+
+#include "bench/report/report_rows.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// A result as the page of a campaign needs it.
+struct CampaignResult {
+    std::filesystem::path path;
+    ResultHead head;
+    std::optional<double> day;                   ///< its date, in days since 1970-01-01 UTC; empty where it is none
+    std::map<std::string, std::size_t> statuses; ///< rows and searches by status
+    std::string others;                          ///< processors that other work took while rows were timed
+    std::vector<std::size_t> machines;           ///< of its rates, each once
+};
+
+/// What is compared with its like: the processor of a host with so many threads, its emulated devices, or a GPU in it.
+struct CampaignMachine {
+    DeviceKind kind = DeviceKind::cpu;
+    std::string name; ///< unique among those of its kind
+};
+
+/// The rate of a row, or of a row of searches, in one result.
+struct CampaignRate {
+    std::size_t result = 0, machine = 0; ///< indices in the campaign
+    double mrays_per_s = 0;              ///< of searches, millions of those
+    std::vector<double> samples_s;       ///< at least one
+};
+
+/// All rates of the same work: the same row with the same rays and the same answers (bench/results/same_work.h).
+struct CampaignWork {
+    std::string label;               ///< "cdt maria tet80  vulkan"
+    std::vector<CampaignRate> rates; ///< in the order of their results
+
+    /// The newest of a machine; null where it has none.
+    [[nodiscard]] const CampaignRate* newest_of(std::size_t machine) const;
+};
+
+/// Works with the same rays through the same scene, on devices of one kind.
+struct CampaignGroup {
+    std::string title; ///< "bunny: 4 views of smoke at 1024 × 1024, primary rays"
+    std::string hash;  ///< of the scene; empty of searches
+    DeviceKind kind = DeviceKind::cpu;
+    std::vector<CampaignWork> works; ///< in order of appearance
+};
+
+/// Results of any number of machines and dates, read one after the other, so that memory holds the rates alone.
+struct Campaign {
+    std::vector<CampaignResult> results; ///< by date, then in the order given
+    std::vector<CampaignMachine> machines;
+    std::vector<CampaignGroup> groups;
+    std::vector<std::pair<std::filesystem::path, std::string>> left_out; ///< files that are no results, with the reason
+
+    /// "A" for the first machine.
+    [[nodiscard]] std::string letter(std::size_t machine) const { return file_letter(machine, machines.size() + 1); }
+};
+
+/// Days since 1970-01-01 of "2026-11-21T17:34:21Z"; empty for what is no such date.
+[[nodiscard]] std::optional<double> day_of(const std::string& date);
+
+/// Reads the files. One that is no result, or not as results/README.md describes, is left out.
+/// Throws Error{missing} for a missing file, Error{invalid_input} where none is a result.
+[[nodiscard]] Campaign read_campaign(const std::vector<std::filesystem::path>& files);
+
+} // namespace tetrace

@@ -1,0 +1,70 @@
+#include "bench/results/same_work.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tetrace {
+
+namespace {
+
+std::string rays_text(const ResultScene& scene)
+{
+    return fmt::format("{} views of {} at {}x{}", scene.views.size(), scene.camera_set, scene.width, scene.height);
+}
+
+std::string other_rays(const ResultScene& a, const ResultScene& b)
+{
+    if (a.hash != b.hash) return fmt::format("the scene {} has hash {} in A and {} in B", a.name, a.hash, b.hash);
+    if (rays_text(a) != rays_text(b)) return fmt::format("{} in A, {} in B", rays_text(a), rays_text(b));
+    if (a.views != b.views) return fmt::format("other views of {} in A than in B", a.camera_set);
+    return {};
+}
+
+std::string other_searches(const ResultFile& a, const ResultFile& b)
+{
+    if (a.search_size == b.search_size) return {};
+    return fmt::format("{} searches in A, {} in B", a.search_size, b.search_size);
+}
+
+std::string other_answers(const ResultRow& a, const ResultRow& b)
+{
+    if (a.hit_hash.empty() || b.hit_hash.empty())
+        return fmt::format("no hit hash in {}", a.hit_hash.empty() ? "A" : "B");
+    return a.hit_hash == b.hit_hash ? std::string()
+                                    : fmt::format("hit hash {} in A and {} in B", a.hit_hash, b.hit_hash);
+}
+
+} // namespace
+
+const ResultScene& scene_of(const ResultFile& file, const ResultRow& row)
+{
+    if (const ResultScene* scene = file.find_scene(row.scene)) return *scene;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("reading the result '{}': the row {} was timed on the scene '{}', which is not among "
+                            "tetrace.scenes",
+                            file.path.string(), row.name, row.scene));
+}
+
+std::string different_work(const ResultFile& a, const ResultRow& row_a, const ResultFile& b, const ResultRow& row_b)
+{
+    std::string difference =
+        row_a.scene.empty() ? other_searches(a, b) : other_rays(scene_of(a, row_a), scene_of(b, row_b));
+    return difference.empty() ? other_answers(row_a, row_b) : difference;
+}
+
+std::string rays_of(const ResultFile& file, const ResultRow& row)
+{
+    if (row.scene.empty()) return file.search_size;
+    const ResultScene& scene = scene_of(file, row);
+    return fmt::format("{} {} of {}: {}", scene.hash, rays_text(scene), scene.name, fmt::join(scene.views, ","));
+}
+
+std::string work_of(const ResultFile& file, const ResultRow& row)
+{
+    if (row.hit_hash.empty()) return {};
+    return fmt::format("{} {} {}", row.name, row.hit_hash, rays_of(file, row));
+}
+
+} // namespace tetrace

@@ -1,0 +1,219 @@
+// The page of many results: an index, machines beside each other in the same work, and each machine over its dates.
+#include "bench/report/campaign/campaign_sections.h"
+#include "bench/results/result_folder.h"
+#include "tests/output/report_fixture.h"
+
+#include <algorithm>
+#include <set>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+/// A result of bench on a machine, so many days after the first of January.
+json result_of(const std::string& label, int day, double mrays_per_s = 4)
+{
+    json result = bench_json();
+    json& section = result["tetrace"];
+    section["label"] = label;
+    section["threads"] = 2;
+    section["date"] = fmt::format("2026-{:02}-{:02}T12:00:00Z", 1 + day / 28, 1 + day % 28);
+    for (json& row : section["rows"]) {
+        if (!row.contains("rates")) continue;
+        row["rates"]["mrays_per_s"] = mrays_per_s;
+        row["times"]["samples_s"] = json::array();
+        for (int i = 0; i < 12; ++i)
+            row["times"]["samples_s"].push_back((1 + 0.0001 * i) * 4 / mrays_per_s);
+    }
+    return result;
+}
+
+std::size_t occurrences(const std::string& text, const std::string& part)
+{
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size()))
+        ++count;
+    return count;
+}
+
+class CampaignPage : public testing::Test {
+protected:
+    /// Results 000.json, 001.json, ... in a folder of their own: "0", of the next campaign "1", and so on.
+    Campaign campaign_of(const std::vector<json>& results)
+    {
+        const std::filesystem::path folder = folder_ / std::to_string(campaigns_++);
+        for (std::size_t i = 0; i < results.size(); ++i)
+            write_file(folder / fmt::format("{:03}.json", i), results[i].dump());
+        return read_campaign(files_below({folder}));
+    }
+    std::string page_of(const std::vector<json>& results) { return campaign_page(campaign_of(results), {}); }
+
+    TemporaryFolder folder_;
+    int campaigns_ = 0;
+};
+
+} // namespace
+
+TEST_F(CampaignPage, has_an_index_of_a_hundred_results_of_ten_hosts)
+{
+    std::vector<json> results;
+    for (int i = 0; i < 100; ++i)
+        results.push_back(result_of(fmt::format("host {}", i % 10), i / 10));
+    const std::string page = page_of(results);
+    const std::string index = section_of(page, "index");
+    EXPECT_EQ(occurrences(index, "<tr>"), 1u + 30 + 1 + 100)
+        << "a processor, a GPU and an emulated device of each host";
+    for (int i = 0; i < 100; ++i)
+        EXPECT_TRUE(contains(index, fmt::format("/{:03}.json</code>", i))) << i;
+    EXPECT_EQ(occurrences(index, "over dates</a>"), 30u);
+    EXPECT_TRUE(contains(page, "100 results"));
+    EXPECT_TRUE(contains(page, "2026-01-01 12:00 to 2026-01-10 12:00 UTC"));
+    EXPECT_TRUE(contains(page, "400 rows: 300 ok, 100 error"));
+    for (std::size_t at = index.find("href=\"#"); at != std::string::npos; at = index.find("href=\"#", at + 1)) {
+        const std::string anchor = index.substr(at + 7, index.find('"', at + 7) - at - 7);
+        EXPECT_TRUE(contains(page, "id=\"" + anchor + "\"")) << anchor;
+    }
+}
+
+TEST_F(CampaignPage, grows_no_faster_than_its_results)
+{
+    const auto size_of = [&](int results) {
+        std::vector<json> all;
+        for (int i = 0; i < results; ++i)
+            all.push_back(result_of(fmt::format("host {}", i % 5), i / 5));
+        return page_of(all).size();
+    };
+    const std::size_t few = size_of(50);
+    EXPECT_LT(size_of(100), 2 * few);
+}
+
+TEST_F(CampaignPage, shows_the_newest_rate_of_each_machine_beside_the_first)
+{
+    const std::string beside =
+        section_of(page_of({result_of("one", 3, 8), result_of("one", 1, 5), result_of("two", 2, 12)}), "beside");
+    EXPECT_EQ(occurrences(beside, ">8.00</td>"), 3u) << beside;
+    EXPECT_EQ(occurrences(beside, ">12.0<small>× 1.50</small>"), 3u) << "processor, GPU, emulated";
+    EXPECT_FALSE(contains(beside, "5.00<"));
+    EXPECT_EQ(occurrences(beside, "<svg"), 3u);
+}
+
+TEST_F(CampaignPage, compares_rows_of_the_same_work_alone)
+{
+    json other_hits = result_of("two", 1);
+    other_hits["tetrace"]["rows"][2]["hit_hash"] = "0000000000000011";
+    json other_scene = result_of("three", 1);
+    other_scene["tetrace"]["scenes"][0]["hash"] = "fedcba9876543210";
+    const std::string beside = section_of(page_of({result_of("one", 1), other_hits, other_scene}), "beside");
+    EXPECT_TRUE(contains(beside, "one, 2 threads"));
+    EXPECT_TRUE(contains(beside, "two, 2 threads"));
+    EXPECT_FALSE(contains(beside, "three")) << "no machine traced its scene";
+    EXPECT_EQ(occurrences(beside, "<table>"), 2u) << "emulated devices gave other answers";
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "beside"), "No two machines"));
+}
+
+TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)
+{
+    json more = result_of("two", 1);
+    more["tetrace"]["rows"].push_back(more["tetrace"]["rows"][0]);
+    more["tetrace"]["rows"].back()["name"] = "row/openmp/more";
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1), more}), "beside"), "1 work is not here"));
+}
+
+TEST_F(CampaignPage, keeps_one_gpu_in_two_hosts_apart)
+{
+    const Campaign campaign = campaign_of({result_of("one", 1), result_of("two", 1)});
+    std::set<std::string> names;
+    for (const CampaignMachine& machine : campaign.machines)
+        if (machine.kind == DeviceKind::gpu) names.insert(machine.name);
+    EXPECT_EQ(names, (std::set<std::string>{"a device of cuda in one", "a device of cuda in two"}));
+}
+
+TEST_F(CampaignPage, tells_runs_with_other_numbers_of_threads_apart)
+{
+    json single = result_of("one", 1);
+    single["tetrace"]["threads"] = 1;
+    const std::string page = page_of({result_of("one", 2), single});
+    EXPECT_TRUE(contains(section_of(page, "beside"), "one, 1 thread"));
+    EXPECT_TRUE(contains(section_of(page, "beside"), "one, 2 threads"));
+}
+
+TEST_F(CampaignPage, draws_each_machine_over_its_dates_with_a_verdict_of_the_last_step)
+{
+    const std::string page = page_of({result_of("one", 3, 4.1), result_of("one", 1, 4), result_of("one", 2, 5)});
+    const std::string trends = section_of(page, "trends");
+    EXPECT_EQ(occurrences(trends, "class=\"line\""), 3u) << "a row on the processor, on the GPU, and an emulated one";
+    EXPECT_EQ(occurrences(trends, ">SLOWER<"), 3u) << "from 5 to 4.1";
+    EXPECT_EQ(occurrences(trends, ">SAME<"), 3u) << "from 4 to 4.1";
+    EXPECT_TRUE(contains(trends, "0.820"));
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "trends"), "on two dates"));
+}
+
+TEST_F(CampaignPage, compares_exit_searches_too)
+{
+    const auto searched = [](const char* label, double rate) {
+        json result = reproduce_json();
+        result["tetrace"]["label"] = label;
+        json row = row_json("search/maria/tet80/random-tets/math:exact/api:openmp", "openmp", "cpu", innocent);
+        row["face_hash"] = row["hit_hash"];
+        row["msearches_per_s"] = rate;
+        result["tetrace"]["searches"] = {{"tets", 100}, {"rays_a_tet", 80}, {"rows", {row}}};
+        return result;
+    };
+    const std::string beside = section_of(page_of({searched("one", 50), searched("two", 60)}), "beside");
+    EXPECT_TRUE(contains(beside, "exit searches alone, 100 x 80 (Table 5)")) << beside;
+    EXPECT_TRUE(contains(beside, "maria tet80 api:openmp"));
+    EXPECT_TRUE(contains(beside, "60.0<small>× 1.20</small>"));
+}
+
+TEST_F(CampaignPage, leaves_out_what_is_no_result_with_the_reason)
+{
+    write_file(folder_ / "0/schema.json", R"({"$schema": "a schema"})");
+    write_file(folder_ / "0/cut.json", R"({"tetrace": {)");
+    json bad = result_of("bad", 1);
+    bad["tetrace"]["rows"][0]["rates"]["mrays_per_s"] = 0;
+    const std::string index = section_of(page_of({result_of("one", 1), bad}), "index");
+    EXPECT_TRUE(contains(index, "schema.json&apos;: it has no section"));
+    EXPECT_TRUE(contains(index, "cut.json"));
+    EXPECT_TRUE(contains(index, "rows[0].rates.mrays_per_s"));
+    const TemporaryFolder nothing;
+    write_file(nothing / "a.json", "{}");
+    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_campaign(files_below({nothing.path()}))); }),
+                         "no file of 1 is a result"));
+    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(files_below({folder_ / "none"})); }), "no such file"));
+}
+
+TEST_F(CampaignPage, names_of_whatever_characters_change_no_markup)
+{
+    const auto tags_with = [&](const Names& names) {
+        json one = bench_json(names), two = bench_json(names);
+        two["tetrace"]["label"] = names.title;
+        two["tetrace"]["date"] = "2026-02-01T12:00:00Z";
+        json three = two;
+        three["tetrace"]["date"] = names.reason;
+        const std::string page = page_of({one, two, three});
+        return std::pair(occurrences(page, "<"), occurrences(page, ">"));
+    };
+    EXPECT_EQ(tags_with(hostile), tags_with(innocent));
+}
+
+TEST(CampaignDays, are_those_of_the_calendar)
+{
+    EXPECT_EQ(day_of("1970-01-02T12:00:00Z"), 1.5);
+    EXPECT_EQ(day_of("2026-11-21T00:00:00Z"), 20'778.0);
+    for (const char* const bad : {"", "2026-11-21", "2026-02-30T00:00:00Z", "2026-11-21T24:00:00Z", "today"})
+        EXPECT_FALSE(day_of(bad)) << bad;
+}
+
+TEST(FilesBelow, are_the_json_files_of_a_folder_by_path_each_once)
+{
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "b/c");
+    for (const char* const name : {"z.json", "a.json", "b/c/d.json", "b/e.txt"})
+        write_file(folder / name, "{}");
+    using Paths = std::vector<std::filesystem::path>;
+    EXPECT_EQ(files_below({folder.path(), folder / "a.json"}),
+              (Paths{folder / "a.json", folder / "b/c/d.json", folder / "z.json"}));
+    EXPECT_TRUE(has_folder({folder / "a.json", folder / "b"}));
+    EXPECT_FALSE(has_folder({folder / "a.json", folder / "none"}));
+}
