@@ -1,5 +1,6 @@
 #include "backends/cuda/driver_backend.h"
 
+#include "backends/cuda/files.h"
 #include "backends/cuda/session.h"
 #include "backends/cuda/yardstick.h"
 #include "core/base/error.h"
@@ -23,17 +24,18 @@ ProgramId probe_program(MathMode math)
     return {"probe", math};
 }
 
-std::vector<std::uint32_t> run_probe(OpenDevice& device, FunctionHandle probe, std::span<const Quad> operations)
+/// Runs a kernel that reads an input and writes a word an item. what: "the self-test", in messages.
+std::vector<std::uint32_t> words_of(OpenDevice& device, FunctionHandle kernel, std::span<const std::byte> input,
+                                    std::uint32_t items, unsigned block_threads, const std::string& what)
 {
-    std::vector<std::uint32_t> results(operations.size());
-    const Memory quads(device.context, std::as_bytes(operations), "the self-test's operations", device.stream.get());
-    const Memory words(device.context, results.size() * sizeof(results[0]), "the self-test's results");
-    Address from = quads.address(), to = words.address();
-    auto count = static_cast<std::uint32_t>(operations.size());
-    void* parameters[] = {&from, &to, &count};
-    device.launch(probe, (count + probe_block_threads - 1) / probe_block_threads, probe_block_threads, parameters);
-    device.context.check(device.driver().copy_to_host(results.data(), to, words.bytes(), device.stream.get()),
-                         "copying the self-test's results to the host");
+    std::vector<std::uint32_t> results(items);
+    const Memory read(device.context, input, ("the input of " + what).c_str(), device.stream.get());
+    const Memory written(device.context, results.size() * sizeof(results[0]), ("the results of " + what).c_str());
+    Address from = read.address(), to = written.address();
+    void* parameters[] = {&from, &to, &items};
+    device.launch(kernel, (items + block_threads - 1) / block_threads, block_threads, parameters);
+    device.context.check(device.driver().copy_to_host(results.data(), to, written.bytes(), device.stream.get()),
+                         ("copying the results of " + what + " to the host").c_str());
     device.synchronize();
     return results;
 }
@@ -85,7 +87,23 @@ std::vector<std::uint32_t> DriverBackend::probe(std::size_t device, MathMode mat
     OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
     const ProgramId id = probe_program(math);
     const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, id, {});
-    return run_probe(opened, program.module.function(id.name()), operations);
+    return words_of(opened, program.module.function(id.name()), std::as_bytes(operations),
+                    static_cast<std::uint32_t>(operations.size()), probe_block_threads, "the self-test");
+}
+
+std::vector<std::uint32_t> DriverBackend::run_defect(std::size_t device, std::string_view name)
+{
+    const Found& here = require(device);
+    OpenDevice opened(here.driver.driver, ordinal_of(here.driver.driver, device));
+    const LoadedProgram program = load_program(opened.context, opened.capability, here.programs, {"defects"}, {});
+    const auto words = defect_words();
+    return words_of(opened, program.module.function("run_" + std::string(name)), std::as_bytes(std::span(words)),
+                    defect_items, defect_items, std::string(name));
+}
+
+std::vector<KernelFile> DriverBackend::kernel_files(const KernelId& kernel) const
+{
+    return cuda::kernel_files(platform_.programs(), kernel);
 }
 
 std::optional<Yardstick> DriverBackend::yardstick(std::size_t device, const SessionOptions& options)

@@ -2,6 +2,8 @@
 
 #include "backends/cuda/program.h"
 #include "core/device/backend.h"
+#include "core/device/defects.h"
+#include "core/device/kernel_files.h"
 
 #include <functional>
 #include <mutex>
@@ -17,7 +19,7 @@ struct Platform {
 };
 
 /// A backend on any driver table: everything except where CUDA's functions and kernels come from.
-class DriverBackend : public Backend {
+class DriverBackend : public Backend, public DefectRunner, public KernelFileSource {
 public:
     explicit DriverBackend(Platform platform) : platform_(std::move(platform)) {}
 
@@ -31,6 +33,8 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
+    [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override;
 
 private:
     /// What was found on the machine; looked up once.
@@ -48,7 +52,7 @@ private:
     mutable Found found_;
 };
 
-/// Every kernel's text, for NVRTC: <method>_<layout> and probe.
+/// Every kernel's text, for NVRTC: <method>_<layout>, probe and defects.
 [[nodiscard]] std::span<const EmbeddedKernel> embedded_sources();
 
 /// What this build has: the texts, the code if it was made with nvcc, and NVRTC if it is installed.

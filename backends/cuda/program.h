@@ -10,10 +10,10 @@ namespace tetrace::cuda {
 
 /// Where a backend's kernels come from.
 struct Programs {
-    std::span<const EmbeddedKernel> sources = {}; ///< <method>_<layout> and probe: texts for NVRTC
-    std::span<const EmbeddedKernel> code = {}; ///< <method>_<layout>_<math> and probe_<math>: what the build compiled
-    std::string compiler = {};                 ///< of the code, "nvcc 13.0"
-    const Nvrtc& (*nvrtc)() = nullptr;         ///< loads NVRTC when called; null: NVRTC is not used
+    std::span<const EmbeddedKernel> sources = {}; ///< <method>_<layout>, probe and defects: texts for NVRTC
+    std::span<const EmbeddedKernel> code = {};    ///< the same with _<math>: what the build compiled
+    std::string compiler = {};                    ///< of the code, "nvcc 13.0"
+    const Nvrtc& (*nvrtc)() = nullptr;            ///< loads NVRTC when called; null: NVRTC is not used
 
     [[nodiscard]] bool has_nvrtc() const { return nvrtc != nullptr && nvrtc().reason().empty(); }
 };

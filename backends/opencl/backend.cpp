@@ -1,9 +1,12 @@
 #include "backends/opencl/backend.h"
 
+#include "backends/opencl/defects.h"
+#include "backends/opencl/files.h"
 #include "backends/opencl/kernels.h"
 #include "backends/opencl/probe.h"
 #include "backends/opencl/session.h"
 #include "backends/opencl/yardstick.h"
+#include "core/device/defects.h"
 #include "core/device/device_facts.h"
 #include "core/device/open_checks.h"
 
@@ -12,7 +15,7 @@
 namespace tetrace {
 namespace {
 
-class OpenclBackend : public Backend {
+class OpenclBackend : public Backend, public DefectRunner, public KernelFileSource {
 public:
     [[nodiscard]] std::string name() const override { return "opencl"; }
     [[nodiscard]] std::string clock() const override { return "OpenCL profiling events"; }
@@ -49,6 +52,16 @@ public:
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
         return opencl::measure_device(*context(device, options.threads), largest_buffer(devices().at(device), options));
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
+    {
+        return opencl::run_defect(*context(device, 0), name);
+    }
+
+    [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
+    {
+        return opencl::kernel_files(kernel);
     }
 
 private:

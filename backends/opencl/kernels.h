@@ -4,7 +4,7 @@
 
 namespace tetrace::opencl {
 
-/// The source of each program: method_layout ("maria_tet80") and "probe".
+/// The source of each program: method_layout ("maria_tet80"), "probe" and "defects".
 [[nodiscard]] std::span<const EmbeddedKernel> embedded_kernels();
 
 } // namespace tetrace::opencl

@@ -13,7 +13,8 @@ std::string options_for(const FoundDevice& device, const ProgramId& id)
     // Oclgrind 21.10 interprets its optimiser's output, but not llvm.experimental.noalias.scope.decl, which comes from
     // inlined functions that return structs.
     if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
-    if (id.math == MathMode::fast) return options + " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero";
+    options += math_options(id.math);
+    if (id.math == MathMode::fast) return options;
     // No decision has denormals (docs/spec/numbers.md, N1). Unused lanes of a processor's vectors may have them, where
     // compilers compute with all words of a quad, and some processors multiply denormals a hundred times slower.
     if (device.facts.kind != DeviceKind::gpu) options += " -cl-denorms-are-zero";
@@ -41,6 +42,11 @@ std::string build_log(const cl::BuildError& failure)
 std::string source_name(const KernelId& kernel)
 {
     return std::string(name_of(kernel.method)).append("_").append(name_of(kernel.layout));
+}
+
+std::string_view math_options(MathMode math)
+{
+    return math == MathMode::fast ? " -DMATH_FAST -cl-fast-relaxed-math -cl-denorms-are-zero" : "";
 }
 
 Program::Program(Context& context, const ProgramId& id, const ProgramCache& cache)

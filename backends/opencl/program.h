@@ -5,11 +5,15 @@
 #include "core/pack/kernel_id.h"
 
 #include <string>
+#include <string_view>
 
 namespace tetrace::opencl {
 
 /// The name of a kernel's program among embedded_kernels(), for any math mode and schedule.
 [[nodiscard]] std::string source_name(const KernelId& kernel);
+
+/// The options of a math mode on every device, each with a blank before it.
+[[nodiscard]] std::string_view math_options(MathMode math);
 
 /// What decides a program: one of embedded_kernels() and how it is compiled.
 struct ProgramId {

@@ -1,9 +1,11 @@
 #include "backends/openmp/backend.h"
 
+#include "backends/openmp/defects.h"
 #include "backends/openmp/packet_session.h"
 #include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
 #include "backends/openmp/yardstick.h"
+#include "core/device/defects.h"
 #include "core/device/host.h"
 #include "core/device/open_checks.h"
 
@@ -22,7 +24,7 @@ Device openmp_device()
     return device;
 }
 
-class OpenmpBackend : public Backend {
+class OpenmpBackend : public Backend, public DefectRunner {
 public:
     [[nodiscard]] std::string name() const override { return "openmp"; }
     [[nodiscard]] std::string clock() const override { return "host steady clock"; }
@@ -65,6 +67,11 @@ public:
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions& options) override
     {
         return openmp::measure_host(threads_of(options));
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name) override
+    {
+        return openmp::run_defect(name);
     }
 
 private:

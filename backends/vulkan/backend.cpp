@@ -1,10 +1,13 @@
 #include "backends/vulkan/backend.h"
 
 #include "backends/vulkan/code/executable.h"
+#include "backends/vulkan/code/files.h"
+#include "backends/vulkan/defects/run_defect.h"
 #include "backends/vulkan/kernels.h"
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
 #include "backends/vulkan/yardstick.h"
+#include "core/device/defects.h"
 #include "core/device/device_facts.h"
 #include "core/device/open_checks.h"
 
@@ -13,7 +16,7 @@
 namespace tetrace {
 namespace {
 
-class VulkanBackend : public Backend, public CodeSource {
+class VulkanBackend : public Backend, public CodeSource, public DefectRunner, public KernelFileSource {
 public:
     [[nodiscard]] std::string name() const override { return "vulkan"; }
     [[nodiscard]] std::string clock() const override { return "Vulkan timestamps"; }
@@ -55,6 +58,16 @@ public:
     {
         return vulkan::measure_device(vulkan::Context(found().devices.at(device)),
                                       largest_buffer(devices().at(device), options));
+    }
+
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
+    {
+        return vulkan::run_defect(vulkan::Context(found().devices.at(device)), name);
+    }
+
+    [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override
+    {
+        return vulkan::kernel_files(kernel);
     }
 
     [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,

@@ -131,7 +131,9 @@ std::vector<Camera> OwnCameras::cameras(const BoundingSphere& sphere) const
 
 OwnCameras read_cameras(const std::filesystem::path& path)
 {
-    return CameraReader(path).read();
+    OwnCameras cameras = CameraReader(path).read();
+    cameras.file = path.string();
+    return cameras;
 }
 
 } // namespace tetrace

@@ -12,6 +12,7 @@ namespace tetrace {
 struct OwnCameras {
     std::string name;
     std::vector<Aim> views;
+    std::string file = {}; ///< as it was named
 
     /// Of all numbers of all views, in their order; the name has no part in it.
     [[nodiscard]] std::uint64_t hash() const;

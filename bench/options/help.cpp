@@ -73,7 +73,9 @@ const VerbHelp verb_help[] = {
      "Another "
      "answer is a tie if a curve within rounding of the ray gives it, which is checked exactly. Otherwise the ray is "
      "wrong.\n\n"
-     "The first differing and the first wrong ray of a row are printed in full. Exits with 1 if a device is wrong or "
+     "The first differing and the first wrong ray of a row are printed in full, with the 'tetrace trace' command that "
+     "follows it. --defects runs the reduced kernels of known compiler defects instead. Exits with 1 if a device is "
+     "wrong or "
      "not exact, or if maria or project, which claim to be robust, have wrong or lost rays (--allow-flawed accepts "
      "maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06 and Embree, and of math mode fast, which "
      "is "
@@ -84,6 +86,7 @@ const VerbHelp verb_help[] = {
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
      "  tetrace check --scene bunny --backend vulkan --picture differences\n"
      "  tetrace check --scene bunny --method all\n"
+     "  tetrace check --defects --junit defects.xml\n"
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
@@ -142,6 +145,35 @@ const VerbHelp verb_help[] = {
      "  tetrace inspect\n"
      "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
      "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require sm_90\n"},
+    {Verb::trace, "follow one ray, step by step, on every device",
+     "Follows the ray of one pixel through the tets on every selected device, next to openmp: each step with its tet, "
+     "the face by which the ray leaves it, what is beyond, and three side products. The first step at which a device "
+     "differs from openmp is marked. 'check' prints the command for the first differing ray of a row.\n\n"
+     "The steps come from the device's own kernel, the one that rows time: the whole image is traced again and again, "
+     "each time with a cap of one step more, and the kernel reports the tet in which the ray was cut off. So a "
+     "compiler's defect that needs the ray's neighbours shows here too; 'traced alone' is the same ray as an image of "
+     "its own. The products are the sides of the ray at the edges of the face by which it leaves (of one sign where "
+     "the "
+     "face is right), each sum and product computed by the device, with the program of its self-test. The kernel does "
+     "not report its own.\n\n"
+     "One kernel is followed: by default maria on tet80; --method project alone means half32. Methods of the cdt have "
+     "steps, BVHs have none. Exits with 1 if a device differs from openmp, with 2 for a ray that there is not, and "
+     "with "
+     "3 if no device that was asked for could trace it.",
+     "  tetrace trace --scene cubes --pixel 128,100\n"
+     "  tetrace trace --scene bunny --view 2 --pixel 300,17 --size 512 --method project --backend vulkan\n"
+     "  tetrace trace --scene cubes --pixel 128,100 --format json --out ray.json\n"},
+    {Verb::dump, "write a kernel's source and code for a bug report",
+     "Writes the files of one kernel as a backend's driver gets them: of opencl its source with all includes resolved; "
+     "of vulkan GLSL, the SPIR-V of each program, and the machine code of the drivers that tell it; of cuda its "
+     "source, "
+     "PTX if NVRTC is here, and machine code if the build has it. README.txt, which is printed too, says what each "
+     "file is and how to compile it without tetrace. A driver is loaded for its machine code alone, in this process, "
+     "after everything else is written. Exits with 2 for a backend without such files: kernels of openmp, cuda-host "
+     "and "
+     "embree are parts of programs and libraries.",
+     "  tetrace dump --backend vulkan --method project --layout half32 --out report\n"
+     "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"},
     {Verb::compare, "compare results of bench, row by row",
      "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out' or by "
      "'tetrace reproduce --out', whose exit searches of table5 are rows too: another "
@@ -171,7 +203,8 @@ const VerbHelp verb_help[] = {
      "Prints what the run that wrote RESULT.json printed: the same tables and sentences, made by the same code from "
      "the "
      "JSON, for results of bench, check and reproduce. A line 'Not here' at the end names what the JSON does not have: "
-     "of a check, the tets that a differing ray walks through, which its 'path' lists; of older results, what they did "
+     "of a check, the tets that a differing ray walks through, which its 'path' lists, and the command that follows "
+     "it; of older results, what they did "
      "not record. --format markdown is for posting it.",
      "  tetrace show bench.json\n"
      "  tetrace show bench.json --columns mrays_per_s,spread,status\n"

@@ -9,18 +9,14 @@ namespace tetrace {
 
 namespace {
 
-constexpr unsigned bit(Verb verb)
-{
-    return 1u << static_cast<unsigned>(verb);
-}
-
 constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
-constexpr unsigned tracing = measuring | bit(Verb::render);
+constexpr unsigned tracing = measuring | bit(Verb::render) | bit(Verb::trace);
 constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
 constexpr unsigned selecting = tracing | bit(Verb::inspect);
 constexpr unsigned building = bit(Verb::build) | reproducing;
 constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) |
-                               bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::compare) | bit(Verb::show);
+                               bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::trace) | bit(Verb::compare) |
+                               bit(Verb::show);
 
 /// The distinct values that all kernels have in one part of their id: the accepted values of an option.
 template <class T>
@@ -65,27 +61,6 @@ std::vector<OptionRow> reproduce_options()
          "Sizes of growth: triangles of banana, or cubes along an axis with --scene cubes. Default: 1500, 6000, 25000, "
          "100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
          bit(Verb::reproduce), true, append_count("--sizes", &Options::sizes, 2, most_banana)},
-    };
-}
-
-std::vector<OptionRow> inspect_options()
-{
-    return {
-        {"Compilers", "--target", "GPU",
-         "Compile for this GPU, which need not be here: one of AMD's as RADV names it (gfx1100, navi21, gfx906, ...), "
-         "or one of NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
-         bit(Verb::inspect), true, append_text(&Options::gpus)},
-        {"Compilers", "--entry", "NAME",
-         "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or in "
-         "a tet; 'rays', given ones; 'search', exit searches of table5. Default: all.",
-         bit(Verb::inspect), true, append("--entry", &Options::entries)},
-        {"Compilers", "--require", "GPU",
-         "Fail with exit code 3 unless this target's compiler is here and every program came out of it.",
-         bit(Verb::inspect), true, append_text(&Options::required)},
-        {"Compilers", "--code", "FOLDER",
-         "Write the code of every program into this folder: assembly of AMD's; PTX of NVIDIA's, and machine code where "
-         "nvdisasm is. Default: none.",
-         bit(Verb::inspect), false, set_path("--code", &Options::code_folder)},
     };
 }
 
@@ -149,29 +124,31 @@ std::vector<OptionRow> row_options()
          "Keep the rows of this structure: cdt or bvh. Default: both. 'check' leaves out the rows of Embree's and a "
          "driver's own BVHs unless --structure, --method, --layout, --backend, --filter or '--require embree' is "
          "given.",
-         selecting, true, append("--structure", &Options::structures)},
+         selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
              " (the number of rays that a BVH gets at once), or 'all'. Default: maria, project on half32, and the "
              "methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria with BVHs.",
-         reproducing | selecting, true, append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
+         reproducing | selecting | bit(Verb::dump), true,
+         append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet20 or tet16 (cdt with project), bvh2 or "
          "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its ray queries). "
          "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
          "where rt is named here or in a filter.",
-         reproducing | selecting, true, append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
+         reproducing | selecting | bit(Verb::dump), true,
+         append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
          "only if it is named here or by --require; they are skipped, with the reason. Default: all that have a usable "
          "device and a kernel of the structures kept.",
-         reproducing, true, append_backend("--backend", &Options::backends)},
+         reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
          "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT means no usable "
          "device. Default: all.",
-         reproducing, true, append_text(&Options::devices)},
+         reproducing | bit(Verb::dump), true, append_text(&Options::devices)},
         {"Rows", "--rays", "KIND",
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
          "from the primary hits: 'shadow', towards a light, and 'ao', short rays round the normal (for both, any hit "
@@ -184,7 +161,7 @@ std::vector<OptionRow> row_options()
         {"Rows", "--math", "MODE",
          "'exact': no contraction, the same bits everywhere; 'fast': the compiler is free. Embree has one build, and "
          "its rows appear in both modes. Default: exact.",
-         selecting, true, append("--math", &Options::math)},
+         selecting | bit(Verb::dump), true, append("--math", &Options::math)},
         {"Rows", "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but the tets that "
          "no ray from outside reaches come last; 'input', as TetGen wrote them. For rows of structure cdt only. "
@@ -214,9 +191,11 @@ std::vector<OptionRow> ray_options()
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
          "Default: all.",
-         with_rays, true, [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
+         with_rays & ~bit(Verb::trace), true,
+         [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; of 'check' 256x256.", with_rays, false,
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; of 'check' and 'trace' 256x256.",
+         with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
          "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use. Default: 0.",
@@ -279,6 +258,10 @@ std::vector<OptionRow> judging_options()
          "Wrong and lost rays of plane, plucker, stp and ms06 never fail, since these methods do not claim to have "
          "none.",
          bit(Verb::check), false, set(&Options::allow_flawed)},
+        {"Judging", "--defects", "",
+         "Run the reduced kernels of known compiler defects in place of rows; no scene is needed. Exits with 1 if a "
+         "driver shows one (docs/debugging.md).",
+         bit(Verb::check), false, set(&Options::defects)},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
          "regression; a row whose whole interval lies within it is the SAME. Default: 3.",
@@ -356,8 +339,8 @@ std::vector<OptionRow> output_options()
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
-    for (auto part : {reproduce_options, inspect_options, scene_options, row_options, ray_options, driver_options,
-                      judging_options, report_options, output_options})
+    for (auto part : {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options,
+                      driver_options, judging_options, report_options, output_options, dump_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     return table;

@@ -131,6 +131,26 @@ void check_single(const Options& options, const char* name, std::size_t count)
                                                   name_of(options.verb)));
 }
 
+/// `trace` follows one ray.
+void check_ray(const Options& options)
+{
+    if (options.scenes.size() != 1)
+        throw Error(ErrorKind::usage,
+                    fmt::format("trace: --scene takes one scene; {} are given", options.scenes.size()));
+    if (!options.pixel) throw Error(ErrorKind::usage, "trace: --pixel X,Y is missing: which ray?");
+    if (options.pixel->x >= options.width || options.pixel->y >= options.height)
+        throw Error(ErrorKind::usage,
+                    fmt::format("--pixel: {},{} is outside the image, whose pixels go from 0,0 to "
+                                "{},{}; --size says how large it is",
+                                options.pixel->x, options.pixel->y, options.width - 1, options.height - 1));
+}
+
+void check_dump(const Options& options)
+{
+    if (options.backends.size() != 1) throw Error(ErrorKind::usage, "dump: --backend takes one backend: whose files?");
+    if (!options.out) throw Error(ErrorKind::usage, "dump: --out FOLDER is missing: where to?");
+}
+
 void check_together(const Options& options)
 {
     check_single(options, "--domain", options.domains.size());
@@ -138,6 +158,8 @@ void check_together(const Options& options)
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     static_cast<void>(selected_views(options));
+    if (options.verb == Verb::trace) check_ray(options);
+    if (options.verb == Verb::dump) check_dump(options);
 }
 
 /// A verb's defaults.
@@ -145,7 +167,9 @@ Options defaults_of(Verb verb)
 {
     Options options;
     options.verb = verb;
-    if (verb == Verb::check) options.width = options.height = 256; // seconds for the scene cubes on all devices
+    if (verb == Verb::check || verb == Verb::trace)
+        options.width = options.height = 256; // seconds for the scene cubes on all devices
+    if (verb == Verb::trace) options.views = "0";
     if (verb != Verb::reproduce) return options;
     options.camera_set = CameraSet::flight; // as many views as in the paper, over its range of steps
     options.structures = {Structure::cdt};

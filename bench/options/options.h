@@ -24,6 +24,8 @@ enum class Verb {
     render,
     reproduce,
     inspect,
+    trace,
+    dump,
     compare,
     show,
     report,
@@ -32,8 +34,8 @@ enum class Verb {
 };
 template <>
 inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
-                                                                    "render", "reproduce", "inspect", "compare", "show",
-                                                                    "report", "help", "version");
+                                                                    "render", "reproduce", "inspect", "trace", "dump",
+                                                                    "compare", "show", "report", "help", "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -73,6 +75,13 @@ struct SearchSize {
     friend bool operator==(const SearchSize&, const SearchSize&) = default;
 };
 
+/// A pixel of an image; (0, 0) is the top left.
+struct ImagePixel {
+    std::uint32_t x = 0, y = 0;
+
+    friend bool operator==(const ImagePixel&, const ImagePixel&) = default;
+};
+
 /// A checked command line. Empty lists select by default (see rows.h); all other members hold their default.
 struct Options {
     Verb verb = Verb::help;
@@ -108,6 +117,7 @@ struct Options {
     std::optional<OwnCameras> own_cameras; ///< in place of camera_set
     std::string views;                     ///< as parse_views() takes it; empty: all of the set
     std::uint32_t width = 1024, height = 1024;
+    std::optional<ImagePixel> pixel; ///< of `trace`, which needs it
 
     unsigned threads = 0;           ///< 0: all that the process may use
     unsigned tile_height = 0;       ///< 4 or 8; 0: see tile_height_of()
@@ -130,6 +140,7 @@ struct Options {
 
     std::vector<std::string> required; ///< backends that must have a usable device; of `inspect`, targets to be asked
     bool allow_flawed = false;
+    bool defects = false;       ///< of `check`: reduced kernels in place of rows
     double tolerance = 0.03;    ///< of `compare`, a fraction: a row that is slower by more is a regression
     bool allow_missing = false; ///< of `compare`
     bool clear = false;

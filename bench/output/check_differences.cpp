@@ -83,23 +83,44 @@ std::string parting_text(const Path& ours, const Path& openmps)
                        *other);
 }
 
+/// The command that follows the ray on this device and on openmp; empty for rays without steps.
+std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    if (row.scene == nullptr || row.scene->arguments().empty() || !leaves_tets(row)) return {};
+    const KernelId& kernel = row.key.kernel;
+    std::string text = fmt::format("tetrace trace {} --view {} --pixel {},{} --method {} --layout {}",
+                                   row.scene->arguments(), view, x, y, name_of(kernel.method), name_of(kernel.layout));
+    if (kernel.math != MathMode::exact) text += fmt::format(" --math {}", name_of(kernel.math));
+    if (row.key.order != TetOrder::hilbert) text += fmt::format(" --order {}", name_of(row.key.order));
+    if (kernel.schedule != Schedule::tiles) text += fmt::format(" --schedule {}", name_of(kernel.schedule));
+    text += fmt::format(" --backend {}", row.key.backend);
+    return row.key.device == 0 ? text : text + fmt::format(" --device {}:{}", row.key.backend, row.key.device);
+}
+
+/// "  Step by step: tetrace trace ...", in a line of its own, ready to paste.
+std::string command_text(const std::string& command)
+{
+    return command.empty() ? std::string() : fmt::format("  Step by step: {}\n", command);
+}
+
 std::string different_text(const RowRun& row, const DifferingRay& ray)
 {
     const Path ours = own_path(row, ray), openmps = path_of(row, ray.view, ray.x, ray.y);
     return fmt::format("{}: {} rays differ from openmp's, the first at view {}, pixel ({}, {})\n  this row: {}\n"
-                       "  openmp:   {}\n{}{}{}\n",
+                       "  openmp:   {}\n{}{}{}{}\n",
                        row_name(row.key), traced(row)->different, ray.view, ray.x, ray.y, hit_text(ray.ours),
                        hit_text(ray.openmp), path_text("tets of this row", ours), path_text("tets of openmp", openmps),
-                       parting_text(ours, openmps));
+                       parting_text(ours, openmps), command_text(trace_command(row, ray.view, ray.x, ray.y)));
 }
 
 std::string wrong_text(const RowRun& row, const WrongRay& ray)
 {
     return fmt::format("{}: first wrong ray: view {}, pixel ({}, {}): {}\n  this row:  {}\n  exact ray: "
-                       "{}, t {:.9g}\n{}\n",
+                       "{}, t {:.9g}\n{}{}\n",
                        row_name(row.key), ray.view, ray.x, ray.y, ray.reason, hit_text(ray.ours),
                        face_text(ray.reference_face), ray.reference_t,
-                       path_text("tets of openmp", path_of(row, ray.view, ray.x, ray.y)));
+                       path_text("tets of openmp", path_of(row, ray.view, ray.x, ray.y)),
+                       command_text(trace_command(row, ray.view, ray.x, ray.y)));
 }
 
 } // namespace
@@ -119,11 +140,18 @@ void add_paths(nlohmann::json& row_json, const RowRun& row)
     const Traced* result = traced(row);
     if (result == nullptr || !leaves_tets(row)) return;
     auto& verification = row_json["verification"];
-    if (const auto& ray = result->verdicts.first_wrong)
+    const auto add_command = [&](nlohmann::json& object, const auto& ray) {
+        const std::string command = trace_command(row, ray.view, ray.x, ray.y);
+        if (!command.empty()) object["command"] = command;
+    };
+    if (const auto& ray = result->verdicts.first_wrong) {
         verification["first_wrong"]["path"] = path_of(row, ray->view, ray->x, ray->y);
+        add_command(verification["first_wrong"], *ray);
+    }
     if (const auto& ray = result->first_different) {
         verification["first_different"]["path"] = path_of(row, ray->view, ray->x, ray->y);
         verification["first_different"]["own_path"] = own_path(row, *ray);
+        add_command(verification["first_different"], *ray);
     }
 }
 

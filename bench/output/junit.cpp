@@ -14,8 +14,6 @@ namespace tetrace {
 
 namespace {
 
-enum class CaseOutcome { passed, failed, error, skipped };
-
 CaseOutcome outcome_of(const RowRun& row, bool failed)
 {
     switch (conformity_of(row)) {
@@ -32,15 +30,16 @@ std::string reason_text(const RowRun& row)
     return conformity_text(row) + (reason.empty() ? "" : ": " + reason);
 }
 
-std::string outcome_xml(const RowRun& row, CaseOutcome outcome)
+/// details: of a failure.
+std::string outcome_xml(CaseOutcome outcome, const std::string& message, const std::string& details)
 {
-    const std::string reason = xml_text(reason_text(row));
+    const std::string reason = xml_text(message);
     switch (outcome) {
     case CaseOutcome::passed: return {};
     case CaseOutcome::skipped: return fmt::format("      <skipped message=\"{}\"/>\n", reason);
     case CaseOutcome::error: return fmt::format("      <error message=\"{}\"/>\n", reason);
     case CaseOutcome::failed:
-        return fmt::format("      <failure message=\"{}\">{}</failure>\n", reason, xml_text(differences_text(row)));
+        return fmt::format("      <failure message=\"{}\">{}</failure>\n", reason, xml_text(details));
     }
     return {};
 }
@@ -66,10 +65,10 @@ std::string stable_name(const std::string& device)
 }
 
 /// CI systems keep a test's history by class and name: both stay the same from one driver to the next.
-std::string class_name(const RowRun& row)
+std::string class_name(const std::string& backend, const std::string& device_name)
 {
-    const std::string device = stable_name(row.device.name);
-    return fmt::format("tetrace.{}{}{}", row.key.backend, device.empty() ? "" : ".", device);
+    const std::string device = stable_name(device_name);
+    return fmt::format("tetrace.{}{}{}", backend, device.empty() ? "" : ".", device);
 }
 
 std::string output_xml(const RowRun& row)
@@ -79,12 +78,18 @@ std::string output_xml(const RowRun& row)
     return fmt::format("      <system-out>{}</system-out>\n", xml_text(text));
 }
 
+std::string case_xml(const std::string& class_name, const std::string& name, double time_s, const std::string& parts)
+{
+    return fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\">\n{}    </testcase>\n",
+                       xml_text(class_name), xml_text(name), time_s, parts);
+}
+
 std::string case_xml(const RowRun& row, CaseOutcome outcome)
 {
     const Traced* result = traced(row);
-    return fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\">\n{}{}    </testcase>\n",
-                       xml_text(class_name(row)), xml_text(row_name(row.key)), result ? result->wall_s : 0.0,
-                       outcome_xml(row, outcome), output_xml(row));
+    const std::string details = outcome == CaseOutcome::failed ? differences_text(row) : std::string();
+    return case_xml(class_name(row.key.backend, row.device.name), row_name(row.key), result ? result->wall_s : 0.0,
+                    outcome_xml(outcome, reason_text(row), details) + output_xml(row));
 }
 
 struct Suite {
@@ -93,14 +98,21 @@ struct Suite {
     int tests = 0, failures = 0, errors = 0, skipped = 0;
     double time_s = 0;
 
+    void add(const JunitCase& test)
+    {
+        count(test.outcome);
+        cases += case_xml(class_name(test.backend, test.device), test.name, test.time_s,
+                          outcome_xml(test.outcome, test.reason, test.reason));
+        time_s += test.time_s;
+        if (!test.device.empty()) properties[test.label + ".device"] = test.device;
+        if (!test.driver.empty()) properties[test.label + ".driver"] = test.driver;
+    }
+
     void add(const RowRun& row, bool failed)
     {
         const CaseOutcome outcome = outcome_of(row, failed);
+        count(outcome);
         cases += case_xml(row, outcome);
-        ++tests;
-        failures += outcome == CaseOutcome::failed;
-        errors += outcome == CaseOutcome::error;
-        skipped += outcome == CaseOutcome::skipped;
         if (const Traced* result = traced(row)) time_s += result->wall_s;
         const std::string device = device_label(row.key);
         if (!row.device.name.empty()) properties[device + ".device"] = row.device.name;
@@ -116,6 +128,14 @@ struct Suite {
                              xml_text(problem));
         ++tests;
         ++errors;
+    }
+
+    void count(CaseOutcome outcome)
+    {
+        ++tests;
+        failures += outcome == CaseOutcome::failed;
+        errors += outcome == CaseOutcome::error;
+        skipped += outcome == CaseOutcome::skipped;
     }
 
     [[nodiscard]] std::string properties_xml() const
@@ -145,16 +165,8 @@ std::map<std::string, std::string> program_properties()
             {"host.system", host.system}};
 }
 
-} // namespace
-
-std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed, const std::string& problem)
+std::string document_xml(std::vector<Suite> suites)
 {
-    std::vector<Suite> suites;
-    if (!problem.empty()) suites.emplace_back().add_problem(problem);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.emplace_back().scene = rows[i].key.scene;
-        suites.back().add(rows[i], failed[i]);
-    }
     Suite sum;
     std::string text;
     for (Suite& suite : suites) {
@@ -167,6 +179,29 @@ std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& 
     return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"tetrace check\" tests=\"{}\" "
                        "failures=\"{}\" errors=\"{}\">\n{}</testsuites>\n",
                        sum.tests, sum.failures, sum.errors, text);
+}
+
+} // namespace
+
+std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed, const std::string& problem)
+{
+    std::vector<Suite> suites;
+    if (!problem.empty()) suites.emplace_back().add_problem(problem);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (suites.empty() || suites.back().scene != rows[i].key.scene) suites.emplace_back().scene = rows[i].key.scene;
+        suites.back().add(rows[i], failed[i]);
+    }
+    return document_xml(std::move(suites));
+}
+
+std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, const std::string& problem)
+{
+    std::vector<Suite> suites;
+    if (!problem.empty()) suites.emplace_back().add_problem(problem);
+    if (!cases.empty()) suites.emplace_back().scene = suite;
+    for (const JunitCase& test : cases)
+        suites.back().add(test);
+    return document_xml(std::move(suites));
 }
 
 } // namespace tetrace

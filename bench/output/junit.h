@@ -7,6 +7,18 @@
 
 namespace tetrace {
 
+/// How a test case ended.
+enum class CaseOutcome { passed, failed, error, skipped };
+
+/// A test case that is no row. The device's label and driver become properties of the suite.
+struct JunitCase {
+    std::string backend, label, device, driver;
+    std::string name;
+    CaseOutcome outcome = CaseOutcome::passed;
+    std::string reason; ///< where it did not pass
+    double time_s = 0;
+};
+
 /// The rows of `tetrace check` as JUnit XML, valid by the schema of Jenkins' xUnit plugin (junit-10.xsd), which GitLab
 /// and GitHub read too: one test suite per scene, one test case per row. The test case's class is API and device
 /// without any version, "tetrace.vulkan.llvmpipe"; versions and self-tests are properties of the suite, by device.
@@ -14,6 +26,10 @@ namespace tetrace {
 /// an error element, unsupported and skipped rows a skipped element, each with its reason; cell and hash are the test's
 /// output. problem: why the check itself failed; it becomes a test case of its own, in error; none where it is empty.
 [[nodiscard]] std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed,
+                                    const std::string& problem = {});
+
+/// The same of one suite of other test cases: "tetrace check <suite>".
+[[nodiscard]] std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases,
                                     const std::string& problem = {});
 
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #include "bench/rows/scene_work.h"
 
+#include "bench/rows/scene_arguments.h"
 #include "bench/terminal/progress.h"
 #include "core/base/stopwatch.h"
 #include "core/pack/pack_bvh.h"
@@ -10,9 +11,10 @@
 
 namespace tetrace {
 
-SceneWork::SceneWork(LoadedScene loaded, const Options& options)
-    : loaded_(std::move(loaded)), counts_(count_faces(loaded_.scene.tets)), width_(options.width),
-      height_(options.height), view_numbers_(selected_views(options)), threads_(resolved_threads(options))
+SceneWork::SceneWork(LoadedScene loaded, const Options& options, std::string arguments)
+    : loaded_(std::move(loaded)), arguments_(std::move(arguments)), counts_(count_faces(loaded_.scene.tets)),
+      width_(options.width), height_(options.height), view_numbers_(selected_views(options)),
+      threads_(resolved_threads(options))
 {
     const BoundingSphere sphere = bounding_sphere(loaded_.scene.mesh);
     const auto cameras =
@@ -71,7 +73,7 @@ SceneWork load_work(const SceneRequest& request, const Options& options, const s
     for (const std::string& message : loaded.messages)
         say(fmt::format("{}: {}", loaded.scene.name, message));
     progress_line().show("preparing " + loaded.scene.name, -1);
-    return {std::move(loaded), options};
+    return {std::move(loaded), options, scene_arguments(request, options)};
 }
 
 std::vector<std::string> missing_default_scenes(const Options& options)

@@ -25,10 +25,14 @@ struct Packed {
 class SceneWork {
 public:
     /// Takes the views that the options select, and finds the tets where their rays start.
-    SceneWork(LoadedScene loaded, const Options& options);
+    /// arguments: see arguments().
+    SceneWork(LoadedScene loaded, const Options& options, std::string arguments = {});
 
     [[nodiscard]] const LoadedScene& loaded() const { return loaded_; }
     [[nodiscard]] const std::string& label() const { return loaded_.scene.name; }
+    /// The part of a command line that asks for this scene and these images again; empty where no command line asked
+    /// for it.
+    [[nodiscard]] const std::string& arguments() const { return arguments_; }
     [[nodiscard]] const TetMeshCounts& counts() const { return counts_; }
     [[nodiscard]] const std::vector<std::uint32_t>& view_numbers() const { return view_numbers_; }
     [[nodiscard]] const std::vector<View>& views() const { return views_; }
@@ -63,6 +67,7 @@ public:
 
 private:
     LoadedScene loaded_;
+    std::string arguments_;
     TetMeshCounts counts_;
     std::uint32_t width_, height_;
     std::vector<std::uint32_t> view_numbers_;

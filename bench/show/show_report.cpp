@@ -94,7 +94,8 @@ RunAgain check_again(const ResultFile& file)
         return found != nullptr && (found->first_different || found->verdicts.first_wrong);
     };
     if (std::ranges::any_of(rows, differs))
-        sheet.labelled("Not here", "the tets that the differing rays walk through: 'path' and 'own_path' in the JSON.");
+        sheet.labelled("Not here", "the tets that the differing rays walk through, and the commands that follow "
+                                   "them: 'path', 'own_path' and 'command' in the JSON.");
     return {std::move(sheet), check_table(rows)};
 }
 

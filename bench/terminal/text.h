@@ -26,4 +26,7 @@ namespace tetrace {
 /// what XML cannot hold and more, see printable_text().
 [[nodiscard]] std::string xml_text(const std::string& text);
 
+/// A word of a command line: in single quotes where a shell would not take it as one word.
+[[nodiscard]] std::string shell_word(const std::string& word);
+
 } // namespace tetrace

@@ -11,6 +11,8 @@ float direction_component(float corner, float step_x, float step_y, std::uint32_
     return corner + step_x * static_cast<float>(x) + step_y * static_cast<float>(y);
 }
 
+} // namespace
+
 TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
 {
     for (int axis = 0; axis < 3; ++axis)
@@ -20,7 +22,16 @@ TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
     return job;
 }
 
-} // namespace
+std::vector<std::uint32_t> walk_path(const Hit& last, std::uint32_t most_steps,
+                                     const std::function<Hit(std::uint32_t cap)>& trace, std::uint32_t most)
+{
+    std::vector<std::uint32_t> path;
+    const std::uint32_t steps = std::min(last.steps, most_steps); // a faulty device may report any number
+    for (std::uint32_t cap = 1; cap < steps && path.size() < most; ++cap)
+        path.push_back(trace(cap).tet);
+    if (last.tet != NO_TET && path.size() < most) path.push_back(last.tet);
+    return path;
+}
 
 std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std::uint32_t x, std::uint32_t y,
                                      std::uint32_t most)
@@ -32,14 +43,7 @@ std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std:
         static_cast<void>(session.trace(pixel, {&hit, 1}));
         return hit;
     };
-    // A walk that is cut off after k steps reports the tet that it was in.
-    std::vector<std::uint32_t> path;
-    const Hit last = trace(job.max_steps);
-    const std::uint32_t steps = std::min(last.steps, job.max_steps); // a faulty device may report any number
-    for (std::uint32_t cap = 1; cap < steps && path.size() < most; ++cap)
-        path.push_back(trace(cap).tet);
-    if (last.tet != NO_TET && path.size() < most) path.push_back(last.tet);
-    return path;
+    return walk_path(trace(job.max_steps), job.max_steps, trace, most);
 }
 
 std::vector<std::uint32_t> walk_path(const PackedScene& packed, const KernelId& kernel, const TraceJob& job,

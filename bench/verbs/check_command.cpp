@@ -157,6 +157,7 @@ int check_command(const Options& asked)
 {
     const Options options = with_default_layouts(asked);
     if (options.list) return list_selected(options);
+    if (options.defects) return check_defects(options);
     check_output(options);
     if (options.junit && !on_standard_output(options.junit)) check_writable("--junit", *options.junit);
     Checked checked;

@@ -16,9 +16,14 @@ int check_command(const Options& options);
 int render_command(const Options& options);
 int reproduce_command(const Options& options);
 int inspect_command(const Options& options);
+int trace_command(const Options& options);
+int dump_command(const Options& options);
 int compare_command(const Options& options);
 int show_command(const Options& options);
 int report_command(const Options& options);
+
+/// `check --defects`. options: with the default layouts of check.
+int check_defects(const Options& options);
 
 /// Throws Error{missing} naming the first backend of the list that has no usable device, with the reason.
 void require_devices(const std::vector<std::string>& backends);

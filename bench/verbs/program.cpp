@@ -1,6 +1,7 @@
 #include "bench/inspection/null_hardware.h"
 #include "bench/options/help.h"
 #include "bench/terminal/progress.h"
+#include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 #include "core/isolation/driver_server.h"
@@ -20,17 +21,6 @@ std::vector<std::string>& command_line()
     return arguments;
 }
 
-/// In single quotes where a shell would not take it as one word.
-std::string quoted(const std::string& word)
-{
-    constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
-    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-    std::string text = "'";
-    for (const char c : word)
-        text += c == '\'' ? "'\\''" : std::string(1, c);
-    return text + "'";
-}
-
 int run_verb(const Options& options)
 {
     set_isolation(options.isolation, options.driver_limit_s);
@@ -43,6 +33,8 @@ int run_verb(const Options& options)
     case Verb::render: return render_command(options);
     case Verb::reproduce: return reproduce_command(options);
     case Verb::inspect: return inspect_command(options);
+    case Verb::trace: return trace_command(options);
+    case Verb::dump: return dump_command(options);
     case Verb::compare: return compare_command(options);
     case Verb::show: return show_command(options);
     case Verb::report: return report_command(options);
@@ -58,7 +50,7 @@ std::string command_with(const std::string& option)
 {
     std::string text = "tetrace";
     for (const std::string& argument : command_line())
-        text += " " + quoted(argument);
+        text += " " + shell_word(argument);
     const bool has = std::ranges::find(command_line(), option) != command_line().end();
     return has ? text : text + " " + option;
 }

@@ -1,5 +1,6 @@
 #include "core/isolation/driver_server.h"
 
+#include "core/device/defects.h"
 #include "core/isolation/channel.h"
 #include "core/isolation/messages.h"
 
@@ -59,6 +60,9 @@ private:
         } else if (what == Request::probe) {
             const auto math = request.get<MathMode>();
             const auto words = backend_->probe(device, math, request.get_all<Quad>());
+            answer.put_all(std::span<const std::uint32_t>(words));
+        } else if (what == Request::run_defect) {
+            const auto words = dynamic_cast<DefectRunner&>(*backend_).run_defect(device, request.get_text());
             answer.put_all(std::span<const std::uint32_t>(words));
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));

@@ -110,6 +110,17 @@ std::vector<std::uint32_t> IsolatedBackend::probe(std::size_t device, MathMode m
         .get_all<std::uint32_t>();
 }
 
+std::vector<std::uint32_t> IsolatedBackend::run_defect(std::size_t device, std::string_view name)
+{
+    ByteWriter request;
+    request.put(Request::run_defect);
+    request.put(std::uint64_t{device});
+    request.put_text(name);
+    return child_of(device)
+        ->call({"running the reduced kernel " + std::string(name), request, -1, call_limit_s(0)})
+        .get_all<std::uint32_t>();
+}
+
 std::optional<Yardstick> IsolatedBackend::yardstick(std::size_t device, const SessionOptions& options)
 {
     ByteWriter request;

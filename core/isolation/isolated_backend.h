@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/device/defects.h"
 #include "core/isolation/driver_child.h"
 
 #include <mutex>
@@ -9,7 +10,7 @@ namespace tetrace {
 /// A backend whose drivers run in processes of their own, one for each device; this process never loads them. A driver
 /// that ends its process, or gives no answer, is an Error{driver} of the call; the next call for the device starts
 /// another process. A driver that does so while it lists its devices gives one that is broken, with the reason.
-class IsolatedBackend : public Backend {
+class IsolatedBackend : public Backend, public DefectRunner {
 public:
     /// inner: answers here what no driver is needed for; the process finds it by its name.
     IsolatedBackend(const Backend& inner, DriverProcesses processes);
@@ -24,6 +25,8 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
+    [[nodiscard]] bool runs_defects() const override { return dynamic_cast<const DefectRunner*>(inner_) != nullptr; }
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
 
     /// The device's process, started where there is none. Throws Error{missing} where the device cannot be used,
     /// Error{driver} where it cannot be found again.

@@ -8,12 +8,13 @@
 
 namespace tetrace {
 
-/// The requests to a driver's process: the calls of Backend and Session.
+/// The requests to a driver's process: the calls of Backend, up to open, and of Session.
 enum class Request : std::uint32_t {
     devices,
     why_not,
     probe,
     yardstick,
+    run_defect,
     open,
     set_rays,
     launch,

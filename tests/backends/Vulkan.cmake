@@ -1,5 +1,4 @@
-# Vulkan: its devices, the code that they get, and the compiler's defects that were met.
-find_package(nlohmann_json REQUIRED)
+# Vulkan: its devices, and the code that they get.
 find_path(TETRACE_SPIRV_HEADERS spirv/unified1/spirv.hpp)
 mark_as_advanced(TETRACE_SPIRV_HEADERS)
 
@@ -8,16 +7,6 @@ tetrace_test(vulkan_rt tetrace_vulkan tetrace_bench tetrace_scenes)
 
 set(here ${CMAKE_CURRENT_BINARY_DIR}/vulkan)
 file(MAKE_DIRECTORY ${here})
-set(defects "")
-foreach(name value_after_divergent_loop loop_of_70000_iterations)
-  tetrace_spirv(${here}/${name}.spv ${CMAKE_CURRENT_SOURCE_DIR}/defects/${name}.comp)
-  list(APPEND defects ${name}=${here}/${name}.spv)
-endforeach()
-tetrace_embed(${here}/defects.cpp tetrace::defects ${defects})
-tetrace_test(defects tetrace_vulkan nlohmann_json::nlohmann_json)
-target_sources(defects_test PRIVATE ${here}/defects.cpp)
-target_compile_definitions(defects_test PRIVATE TETRACE_EXPECTED_FOLDER="${TETRACE_EXPECTED}")
-
 if(TETRACE_SPIRV_HEADERS)
   tetrace_spirv(${here}/vectors.spv ${CMAKE_CURRENT_SOURCE_DIR}/spirv/vectors.comp)
   tetrace_embed(${here}/twins.cpp tetrace::twins vectors=${here}/vectors.spv)

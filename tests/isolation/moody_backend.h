@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/device/backend.h"
+#include "core/device/defects.h"
 #include "core/isolation/messages.h"
 
 #include <csignal>
@@ -96,7 +97,7 @@ private:
 };
 
 /// Two devices whose facts are all different from the defaults.
-class MoodyBackend : public Backend {
+class MoodyBackend : public Backend, public DefectRunner {
 public:
     MoodyBackend()
     {
@@ -152,6 +153,11 @@ public:
     {
         if (device == 1) return std::nullopt;
         return Yardstick{1e12 / 3, 1e-6 / 3 * options.threads};
+    }
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
+    {
+        misbehave(std::string(name), "run_defect");
+        return {static_cast<std::uint32_t>(device), static_cast<std::uint32_t>(name.size())};
     }
 
 private:

@@ -124,6 +124,8 @@ class ResultSchema(unittest.TestCase):
         cls.all = {"bench": cls.bench, "check": cls.check, "compare": cls.compare, "several": several, "reproduce": reproduced(cls.bench),
                    "table5": fresh(["reproduce", "table5", "--searches", "20x8", "--samples", "3", "--method", "maria",
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
+                   "defects": fresh(["check", "--defects"], (0, 1)),
+                   "trace": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp,cuda-host"]),
                    "inspect": fresh(["inspect", "--target", "gfx1100", "--method", "maria", "--layout", "tet80"], (0, 3))}
 
     def accepts(self, result, name):
@@ -206,6 +208,10 @@ class ResultSchema(unittest.TestCase):
             ("inspect", "programs", 0, "status", "fine"),
             ("inspect", "programs", 0, "target", "/dev/null"),
             ("inspect", "programs", 0, "registers", -1),
+            ("defects", "defects", 0, "outcome", "perhaps"),
+            ("trace", "trace", "pixel", [1]),
+            ("trace", "trace", "devices", 0, "steps", 0, "face", 4),
+            ("trace", "trace", "devices", 0, "status", "fine"),
         ):
             self.refuses(put(*bad), str(bad))
 
@@ -215,6 +221,8 @@ class ResultSchema(unittest.TestCase):
             "check": ("rows", "matrix", "missing_devices"),
             "compare": ("comparison",),
             "inspect": ("programs", "skipped_targets"),
+            "defects": ("defects", "missing_devices"),
+            "trace": ("scenes", "trace"),
         }.items():
             for key in keys:
                 self.refuses(twin(self.all[verb], (key,), lambda parent, name: parent.pop(name)), f"{verb}: no {key}")

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "backends/opencl/context.h"
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace tetrace::opencl {
+
+/// Compiles and runs a reduced kernel (core/device/defects.h). Throws Error where the device fails.
+[[nodiscard]] std::vector<std::uint32_t> run_defect(Context& context, std::string_view name);
+
+} // namespace tetrace::opencl

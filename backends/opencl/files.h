@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/device/kernel_files.h"
+
+namespace tetrace::opencl {
+
+/// A kernel's source with its includes resolved; empty where there is none.
+[[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel);
+
+} // namespace tetrace::opencl

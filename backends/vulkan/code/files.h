@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/device/kernel_files.h"
+
+namespace tetrace::vulkan {
+
+/// A kernel's GLSL with its includes resolved, and the SPIR-V of each of its programs; empty where there is none.
+[[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel);
+
+} // namespace tetrace::vulkan

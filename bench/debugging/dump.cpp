@@ -1,0 +1,108 @@
+#include "bench/debugging/dump.h"
+
+#include "bench/debugging/one_kernel.h"
+#include "bench/options/identity.h"
+#include "bench/rows/rows.h"
+#include "bench/terminal/text.h"
+#include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/device/code_source.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+Backend& chosen(const Options& options, const std::vector<Backend*>& backends)
+{
+    return **std::ranges::find(backends, options.backends.front(), &Backend::name);
+}
+
+std::string in_file_name(std::string text)
+{
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '.' && c != '-'; }, '-');
+    return text;
+}
+
+std::string name_of_code(const KernelId& kernel, const Device& device, bool starts_outside)
+{
+    return fmt::format("{}_{}_{}_{}-{}.txt", name_of(kernel.method), name_of(kernel.layout), name_of(kernel.math),
+                       starts_outside ? "outside" : "inside", in_file_name(device.implementation));
+}
+
+bool is_kept(const Options& options, const Backend& backend, std::size_t index)
+{
+    const Device& device = backend.devices()[index];
+    if (!device.usable && !device.compile_only) return false;
+    const std::string what =
+        fmt::format("{} {} {} {}:{}", device.name, device.driver, device.id, backend.name(), index);
+    return options.devices.empty() || std::ranges::any_of(options.devices, [&](const std::string& text) {
+               return what.find(text) != std::string::npos;
+           });
+}
+
+} // namespace
+
+std::vector<KernelFile> dumped_files(const Options& options, const std::vector<Backend*>& backends)
+{
+    const KernelId kernel = one_kernel(options);
+    const Backend& backend = chosen(options, backends);
+    const auto* const source = dynamic_cast<const KernelFileSource*>(&backend);
+    std::vector<KernelFile> files;
+    if (source != nullptr) files = source->kernel_files(kernel);
+    if (files.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("dump: {} has no text or code of {}{}", backend.name(), name_of(kernel),
+                                source == nullptr || backend.name() == "cuda-host"
+                                    ? ": its kernels are parts of this program, where objdump -d shows them"
+                                    : ""));
+    return files;
+}
+
+std::vector<KernelFile> driver_code(const Options& options, const std::vector<Backend*>& backends,
+                                    std::vector<std::string>& notes)
+{
+    const KernelId kernel = one_kernel(options);
+    const Backend& backend = chosen(options, backends);
+    const auto* const source = dynamic_cast<const CodeSource*>(&backend);
+    std::vector<KernelFile> files;
+    for (std::size_t i = 0; source != nullptr && i < backend.devices().size(); ++i) {
+        if (!is_kept(options, backend, i)) continue;
+        const Device& device = backend.devices()[i];
+        try {
+            const CompiledCode code = source->compiled(i, kernel, true);
+            if (code.text.empty())
+                notes.push_back(fmt::format("{}: its driver tells figures of its code, but not the code", device.name));
+            else
+                files.push_back({name_of_code(kernel, device, true),
+                                 fmt::format("what {} made of it, for primary rays from outside", code.compiler),
+                                 {},
+                                 code.text});
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::interrupted) throw;
+            notes.push_back(printable_line(error.what()));
+        }
+    }
+    return files;
+}
+
+std::string readme_of(const std::vector<KernelFile>& files, const std::vector<std::string>& notes,
+                      const Options& options)
+{
+    const BuildIdentity build = build_identity();
+    std::string text = fmt::format("{} for {}, written by tetrace {} ({})\n\n", name_of(one_kernel(options)),
+                                   options.backends.front(), build.version, build.commit);
+    for (const KernelFile& file : files) {
+        text += fmt::format("{} ({} bytes)\n{}", file.name, file.bytes.size(), wrapped(file.what + ".", 110, 4));
+        text += file.command.empty() ? std::string("\n") : fmt::format("    $ {}\n\n", file.command);
+    }
+    for (const std::string& note : notes)
+        text += wrapped("Not here: " + note + ".", 110, 0);
+    return text;
+}
+
+} // namespace tetrace

@@ -1,0 +1,156 @@
+#include "bench/debugging/ray_steps.h"
+
+#include "bench/debugging/device_products.h"
+#include "bench/rows/row_tracing.h"
+#include "bench/terminal/progress.h"
+#include "bench/truth/walk_path.h"
+#include "core/mesh/face_corners.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+/// The scene's tet at a position of the packed scene.
+std::optional<std::uint32_t> tet_of_mesh(const PackedScene& packed, std::uint32_t position)
+{
+    const auto found = std::ranges::find(packed.packed_of_mesh, position);
+    if (found == packed.packed_of_mesh.end()) return std::nullopt;
+    return static_cast<std::uint32_t>(found - packed.packed_of_mesh.begin());
+}
+
+std::optional<std::uint32_t> face_towards(const Tet& tet, std::uint32_t next)
+{
+    for (std::uint32_t face = 0; face < 4; ++face)
+        if (tet.links[face] != NO_LINK && link_tet(tet.links[face]) == next) return face;
+    return std::nullopt;
+}
+
+/// The face of the walk's last tet, as its hit tells.
+void end_with(RayStep& step, const Tet& tet, const Hit& hit)
+{
+    if (hit.face_id == LOST) {
+        step.beyond = "the ray is lost here";
+        return;
+    }
+    const bool hits = hit.face_id != NO_HIT;
+    step.beyond = hits ? fmt::format("triangle {}", hit.face_id) : "outside";
+    std::uint32_t count = 0;
+    for (std::uint32_t face = 0; face < 4; ++face) {
+        const bool fits = hits ? tet.faces[face] == hit.face_id : tet.links[face] == NO_LINK;
+        if (!fits) continue;
+        step.face = face;
+        ++count;
+    }
+    if (count > 1) step.face.reset(); // several faces of the tet lie in the triangle or on the boundary
+}
+
+std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit& hit, bool is_cut,
+                              const PackedScene& packed, const TetMesh& mesh)
+{
+    std::vector<RayStep> steps;
+    for (const std::uint32_t position : path) {
+        RayStep& step = steps.emplace_back();
+        step.tet = tet_of_mesh(packed, position);
+        if (!step.tet) step.beyond = fmt::format("{} is no tet of the scene", position);
+    }
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+        RayStep& step = steps[i];
+        if (!step.tet) continue;
+        if (steps[i + 1].tet) step.face = face_towards(mesh.tets[*step.tet], *steps[i + 1].tet);
+        step.beyond = step.face ? fmt::format("tet {}", *steps[i + 1].tet) : "no neighbour of the next tet";
+    }
+    if (steps.empty() || !steps.back().tet) return steps;
+    if (is_cut)
+        steps.back().beyond = "not followed further";
+    else
+        end_with(steps.back(), mesh.tets[*steps.back().tet], hit);
+    return steps;
+}
+
+/// The edges of the steps' faces, three a step that has a face.
+std::vector<PassedEdge> edges_of(const std::vector<RayStep>& steps, const TetMesh& mesh)
+{
+    std::vector<PassedEdge> edges;
+    for (const RayStep& step : steps) {
+        if (!step.face) continue;
+        const auto corner = [&](std::size_t i) {
+            return mesh.vertices[mesh.tets[*step.tet].vertices[face_corners[*step.face][i % 3]]];
+        };
+        for (std::size_t i = 0; i < 3; ++i)
+            edges.push_back({corner(i), corner(i + 1)});
+    }
+    return edges;
+}
+
+void add_products(RayOnDevice& ray, const PixelRay& line, const TetMesh& mesh)
+{
+    const RowRun& row = *ray.row;
+    const auto products =
+        side_products(line.origin, line.direction, edges_of(ray.steps, mesh), [&](std::span<const Quad> operations) {
+            return row.backend->probe(row.key.device, row.key.kernel.math, operations);
+        });
+    auto next = products.begin();
+    for (RayStep& step : ray.steps)
+        if (step.face)
+            for (float& product : step.products)
+                product = *next++;
+}
+
+float without_dust(float component)
+{
+    return std::fabs(component) < 0x1p-20f ? 0.0f : component; // as in kernels/ray.h
+}
+
+} // namespace
+
+PixelRay ray_of(const View& view, const ImagePixel& pixel)
+{
+    TraceJob job;
+    job.view = view;
+    PixelRay ray{view.origin, single_pixel(job, pixel.x, pixel.y).view.corner};
+    for (int axis = 0; axis < 3; ++axis)
+        ray.direction[axis] = without_dust(ray.direction[axis]);
+    return ray;
+}
+
+RayOnDevice follow_ray(const RowRun& row, std::size_t view, const ImagePixel& pixel)
+{
+    const PackedScene& packed = row.packed->data;
+    const TetMesh& mesh = row.scene->loaded().scene.tets;
+    const TraceJob image = job_of(row, view);
+    std::vector<Hit> hits(row.scene->rays_per_view());
+    const auto trace = [&](std::uint32_t cap) {
+        TraceJob job = image;
+        job.max_steps = cap;
+        progress_line().show("following the ray on " + row.backend->name(), -1);
+        static_cast<void>(row.session->trace(job, hits));
+        return hits[std::size_t{pixel.y} * image.width + pixel.x];
+    };
+    RayOnDevice ray;
+    ray.row = &row;
+    ray.hit = trace(image.max_steps);
+    const auto path = walk_path(ray.hit, image.max_steps, trace, most_shown_steps);
+    ray.is_cut = ray.hit.steps > most_shown_steps;
+    ray.steps = steps_of(path, ray.hit, ray.is_cut, packed, mesh);
+    static_cast<void>(row.session->trace(single_pixel(image, pixel.x, pixel.y), {&ray.alone, 1}));
+    add_products(ray, ray_of(image.view, pixel), mesh);
+    for (Hit* hit : {&ray.hit, &ray.alone})
+        hit->tet = tet_of_mesh(packed, hit->tet).value_or(NO_TET);
+    progress_line().clear();
+    return ray;
+}
+
+std::optional<std::size_t> first_difference(const RayOnDevice& a, const RayOnDevice& b)
+{
+    for (std::size_t i = 0; i < std::max(a.steps.size(), b.steps.size()); ++i)
+        if (i >= a.steps.size() || i >= b.steps.size() || a.steps[i].tet != b.steps[i].tet ||
+            a.steps[i].face != b.steps[i].face)
+            return i;
+    return std::nullopt;
+}
+
+} // namespace tetrace

@@ -1,0 +1,64 @@
+#include "bench/debugging/defect_report.h"
+#include "bench/options/anonymous.h"
+#include "bench/rows/rows.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/whole_file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+bool prints_junit(const Options& options)
+{
+    return options.junit && *options.junit == "-";
+}
+
+void write_junit(const std::vector<DefectRun>& runs, const Options& options, const std::string& problem = {})
+{
+    if (!options.junit) return;
+    std::string xml = defect_junit(runs, problem);
+    if (options.anonymous) xml = anonymous_text(xml, options);
+    if (prints_junit(options))
+        print(xml);
+    else
+        write_whole(*options.junit, xml);
+}
+
+/// A required backend has not been checked where none of its devices was asked.
+void require_run(const std::vector<DefectRun>& runs, const std::vector<std::string>& backends)
+{
+    for (const std::string& name : backends)
+        if (std::ranges::none_of(
+                runs, [&](const DefectRun& run) { return run.backend == name && run.sight != DefectSight::skipped; }))
+            throw Error(ErrorKind::missing, fmt::format("--require {0}: no reduced kernel ran on {0}", name));
+}
+
+} // namespace
+
+int check_defects(const Options& options)
+{
+    check_output(options);
+    if (options.junit && !prints_junit(options)) check_writable("--junit", *options.junit);
+    std::vector<DefectRun> runs;
+    try {
+        require_devices(options.required);
+        runs = run_defects(options);
+        const Report report = defect_report(runs, missing_devices(options), options);
+        if (!prints_junit(options))
+            deliver(options, report);
+        else if (options.out)
+            deliver_to_file(options, report);
+        require_run(runs, options.required);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::interrupted) write_junit(runs, options, error.what());
+        throw;
+    }
+    write_junit(runs, options);
+    return exit_code(runs);
+}
+
+} // namespace tetrace

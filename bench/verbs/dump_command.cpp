@@ -1,0 +1,48 @@
+#include "bench/debugging/dump.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/error.h"
+#include "core/base/whole_file.h"
+#include "core/isolation/isolation.h"
+
+#include <filesystem>
+
+namespace tetrace {
+
+namespace {
+
+void write_all(const std::vector<KernelFile>& files, const std::filesystem::path& folder)
+{
+    for (const KernelFile& file : files)
+        write_whole(folder / file.name, file.bytes);
+}
+
+void make_folder(const std::filesystem::path& folder)
+{
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (!std::filesystem::is_directory(folder))
+        throw Error(ErrorKind::invalid_input, "--out: the folder '" + folder.string() + "' cannot be made: " +
+                                                  (failed ? failed.message() : "a file has that name"));
+}
+
+} // namespace
+
+int dump_command(const Options& options)
+{
+    const auto& backends = direct_backends();
+    std::vector<KernelFile> files = dumped_files(options, backends);
+    std::vector<std::string> notes;
+    make_folder(*options.out);
+    write_all(files, *options.out);
+    write_whole(*options.out / "README.txt", readme_of(files, notes, options)); // before a driver can crash
+    const std::vector<KernelFile> code = driver_code(options, backends, notes);
+    write_all(code, *options.out);
+    files.insert(files.end(), code.begin(), code.end());
+    const std::string readme = readme_of(files, notes, options);
+    write_whole(*options.out / "README.txt", readme);
+    print(readme);
+    return 0;
+}
+
+} // namespace tetrace

@@ -1,0 +1,35 @@
+#include "bench/debugging/trace_report.h"
+#include "bench/measuring/scene_rows.h"
+#include "bench/verbs/commands.h"
+
+#include <algorithm>
+
+namespace tetrace {
+
+namespace {
+
+/// The rows that were asked for: not openmp's, where others are named.
+std::vector<const RowRun*> asked_rows(const TraceRun& run)
+{
+    std::vector<const RowRun*> asked;
+    for (const RowRun& row : run.rows)
+        if (run.rows.size() == 1 || &row != &run.rows.front()) asked.push_back(&row);
+    return asked;
+}
+
+} // namespace
+
+int trace_command(const Options& options)
+{
+    check_output(options);
+    const TraceRun run = run_trace(options);
+    deliver(options, trace_report(run, options));
+    require_answers(asked_rows(run), "traced");
+    const bool has_reference = !run.rays.empty() && run.rays.front().row == &run.rows.front();
+    if (has_reference &&
+        std::ranges::any_of(run.rays, [&](const RayOnDevice& ray) { return differs(ray, run.rays.front()); }))
+        return exit_code(ErrorKind::wrong_result);
+    return exit_code(run.rows, true);
+}
+
+} // namespace tetrace

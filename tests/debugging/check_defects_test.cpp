@@ -1,0 +1,54 @@
+#include "tests/support/program_fixture.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <set>
+
+using namespace tetrace::test;
+using Json = nlohmann::json;
+
+namespace {
+
+class CheckDefects : public ProgramTest {};
+
+} // namespace
+
+TEST_F(CheckDefects, runs_every_kernel_on_every_device_and_exits_with_what_was_seen)
+{
+    const Ended ended = run("check --defects --out defects.json --junit defects.xml");
+    const Json section = Json::parse(file("defects.json"))["tetrace"];
+    std::set<std::string> backends;
+    bool is_seen = false;
+    for (const Json& run : section["defects"]) {
+        if (run["outcome"] == "skipped") continue;
+        ASSERT_NE(run["outcome"], "error") << run;
+        backends.insert(run["backend"].get<std::string>());
+        is_seen = is_seen || run["outcome"] == "seen";
+        if (run["outcome"] == "seen") {
+            EXPECT_NE(run["first_wrong"]["word"], run["first_wrong"]["expected"]);
+            EXPECT_TRUE(contains(ended.out, "SEEN: " + std::to_string(run["wrong_items"].size()) + " of 16 items"));
+        }
+    }
+    EXPECT_TRUE(backends.contains("openmp"));
+    EXPECT_TRUE(backends.contains("cuda-host"));
+    EXPECT_FALSE(backends.contains("embree"));
+    EXPECT_EQ(ended.code, is_seen ? 1 : 0) << ended.errors;
+    EXPECT_EQ(contains(file("defects.xml"), "<failure "), is_seen);
+    EXPECT_TRUE(contains(file("defects.xml"), "tests=\"" + std::to_string(section["defects"].size()) + "\""));
+}
+
+TEST_F(CheckDefects, of_a_required_backend_that_is_not_here_fails_with_its_reason_in_the_xml)
+{
+    const Ended ended = run("check --defects --require cuda --junit defects.xml");
+    if (ended.code < 3) GTEST_SKIP() << "there is a CUDA device here";
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_TRUE(contains(file("defects.xml"), "name=\"has a result\""));
+}
+
+TEST_F(CheckDefects, needs_no_scene_and_is_good_where_nothing_is_seen)
+{
+    const Ended ended = run("check --defects --backend openmp,cuda-host");
+    EXPECT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "6 reduced kernels ran: 0 of them show their defect")) << ended.out;
+    EXPECT_EQ(run("check --defects --backend embree").code, 3);
+}

@@ -1,0 +1,110 @@
+#include "bench/debugging/defect_report.h"
+#include "bench/debugging/defect_run.h"
+#include "core/device/device_facts.h"
+#include "tests/support/fake_backend.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+Device some_device()
+{
+    Device device;
+    device.name = "a device";
+    device.driver = "driver 1.2";
+    return device;
+}
+
+/// A driver that runs every reduced kernel right, but for one item of one of them, or fails at it.
+class Driver : public FakeBackend, public DefectRunner {
+public:
+    explicit Driver(std::string name, Device device = some_device()) : FakeBackend(std::move(name), std::move(device))
+    {
+    }
+
+    std::string wrong, fails;
+
+    [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name) override
+    {
+        if (name == fails) throw Error(ErrorKind::driver, "SIGSEGV");
+        for (const Defect& defect : all_defects()) {
+            if (defect.name != name) continue;
+            std::vector<std::uint32_t> words;
+            for (std::uint32_t item = 0; item < defect_items; ++item)
+                words.push_back(defect.expected(item) + (name == wrong && item == 5 ? 1 : 0));
+            return words;
+        }
+        return {};
+    }
+};
+
+constexpr const char* loop = "value_after_divergent_loop";
+
+std::vector<DefectRun> runs_of(Driver& driver)
+{
+    return run_defects({}, {&driver});
+}
+
+} // namespace
+
+TEST(DefectRuns, are_one_of_each_defect_and_good_where_none_is_seen)
+{
+    Driver driver("good");
+    const auto runs = runs_of(driver);
+    EXPECT_EQ(runs.size(), all_defects().size());
+    for (const DefectRun& run : runs)
+        EXPECT_EQ(run.sight, DefectSight::not_seen) << run.defect->name;
+    EXPECT_EQ(exit_code(runs), 0);
+}
+
+TEST(DefectRuns, fail_where_one_item_is_wrong_and_name_it)
+{
+    Driver driver("bad");
+    driver.wrong = loop;
+    const auto runs = runs_of(driver);
+    EXPECT_EQ(exit_code(runs), 1);
+    EXPECT_EQ(runs.front().sight, DefectSight::seen);
+    EXPECT_EQ(runs.front().wrong, std::vector<std::uint32_t>{5});
+    EXPECT_EQ(runs.front().first_word, 6u);
+    const Report report = defect_report(runs, {}, {});
+    EXPECT_TRUE(contains(report.sheet.text(), "SEEN: 1 of 16 items")) << report.sheet.text();
+    EXPECT_TRUE(contains(report.sheet.text(), "item 5 returns 6 instead of 5")) << report.sheet.text();
+    const std::string xml = defect_junit(runs);
+    EXPECT_TRUE(contains(xml, "failures=\"1\" errors=\"0\"")) << xml;
+    EXPECT_TRUE(contains(xml, "classname=\"tetrace.bad.a-device\" name=\"defect/value_after_divergent_loop\"")) << xml;
+}
+
+TEST(DefectRuns, of_a_driver_that_crashes_are_errors_and_the_next_ones_run)
+{
+    Driver driver("crashing");
+    driver.fails = loop;
+    const auto runs = runs_of(driver);
+    EXPECT_EQ(runs[0].sight, DefectSight::error);
+    EXPECT_EQ(runs[0].reason, "SIGSEGV");
+    EXPECT_EQ(runs[1].sight, DefectSight::not_seen);
+    EXPECT_EQ(exit_code(runs), 1);
+    EXPECT_TRUE(contains(defect_junit(runs), "<error message=\"SIGSEGV\"/>"));
+}
+
+TEST(DefectRuns, on_nothing_usable_are_skipped_and_no_success)
+{
+    Driver driver("none", unusable_device("none", "install it"));
+    Options options;
+    options.backends = {"none"};
+    const auto runs = run_defects(options, {&driver});
+    ASSERT_EQ(runs.size(), all_defects().size());
+    EXPECT_EQ(runs[0].sight, DefectSight::skipped);
+    EXPECT_EQ(exit_code(runs), 3);
+    EXPECT_EQ(exit_code(std::vector<DefectRun>()), 3);
+}
+
+TEST(DefectRuns, leave_out_backends_that_compile_nothing)
+{
+    FakeBackend embree("embree", some_device());
+    Driver driver("good");
+    EXPECT_EQ(run_defects({}, {&embree, &driver}).size(), all_defects().size());
+}

@@ -1,0 +1,110 @@
+#include "tests/support/program_fixture.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace tetrace::test;
+using Json = nlohmann::json;
+
+namespace {
+
+class Trace : public ProgramTest {
+protected:
+    const std::string cubes_ = "trace --scene cubes --resolution 6 --size 24 ";
+
+    Json traced(const std::string& arguments, int code = 0)
+    {
+        const Ended ended = run(cubes_ + arguments + " --out ray.json");
+        EXPECT_EQ(ended.code, code) << ended.errors << ended.out;
+        return Json::parse(file("ray.json"))["tetrace"]["trace"];
+    }
+
+    void expect_refused(const std::string& arguments, const std::string& reason)
+    {
+        const Ended ended = run("trace " + arguments);
+        EXPECT_EQ(ended.code, 2) << arguments;
+        EXPECT_TRUE(contains(ended.errors, reason)) << ended.errors;
+    }
+};
+
+} // namespace
+
+TEST_F(Trace, shows_the_same_steps_on_every_device_here)
+{
+    for (const std::string kernel : {"--method maria", "--method project", "--method project --layout tet16"}) {
+        const Json trace = traced("--pixel 12,11 " + kernel);
+        EXPECT_EQ(trace["devices"][0]["backend"], "openmp");
+        EXPECT_EQ(trace["pixel"], (std::vector<int>{12, 11}));
+        for (const Json& device : trace["devices"]) {
+            ASSERT_EQ(device["status"], "ok") << device["backend"];
+            EXPECT_FALSE(device["differs"].get<bool>()) << device["backend"];
+            EXPECT_EQ(device["hit"]["steps"], device["steps"].size());
+            EXPECT_EQ(device["hit"], device["alone"]);
+            for (std::size_t i = 0; i < device["steps"].size(); ++i)
+                for (const char* const key : {"tet", "face", "beyond"})
+                    EXPECT_EQ(device["steps"][i][key], trace["devices"][0]["steps"][i][key]) << device["backend"];
+        }
+    }
+}
+
+TEST_F(Trace, has_openmp_first_whatever_is_asked_for)
+{
+    const Json trace = traced("--pixel 12,11 --backend cuda-host --view 2");
+    ASSERT_EQ(trace["devices"].size(), 2u);
+    EXPECT_EQ(trace["devices"][0]["backend"], "openmp");
+    EXPECT_EQ(trace["devices"][1]["backend"], "cuda-host");
+    EXPECT_EQ(trace["view"], 2);
+    const Ended shown = run(cubes_ + "--pixel 12,11 --backend cuda-host");
+    EXPECT_TRUE(contains(shown.out, "cuda-host: takes openmp's steps, and its answer is the same, bit for bit."))
+        << shown.out;
+}
+
+TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
+{
+    const std::string scene = "--scene cubes --resolution 6 --size 24 --backend openmp ";
+    expect_refused(scene + "--pixel 24,0", "--pixel: 24,0 is outside the image, whose pixels go from 0,0 to 23,23");
+    expect_refused(scene + "--pixel 0,24", "is outside the image");
+    expect_refused(scene + "--pixel 3", "X,Y");
+    expect_refused(scene + "--pixel 3,4,5", "X,Y");
+    expect_refused(scene + "--pixel=-1,4", "--pixel");
+    expect_refused(scene, "--pixel X,Y is missing");
+    expect_refused(scene + "--pixel 1,1 --view 4", "4");
+    expect_refused(scene + "--pixel 1,1 --method single", "has no steps from tet to tet");
+    expect_refused(scene + "--pixel 1,1 --method maria,project", "takes one value");
+    expect_refused(scene + "--pixel 1,1 --method maria --layout half32",
+                   "no kernel has method maria and layout half32");
+    expect_refused("--pixel 1,1", "--scene takes one scene");
+    expect_refused("--scene cubes,banana --pixel 1,1", "--scene takes one scene");
+}
+
+TEST_F(Trace, without_the_device_that_was_asked_for_is_no_success)
+{
+    const Ended ended = run(cubes_ + "--pixel 12,11 --backend cuda");
+    if (ended.code == 0) GTEST_SKIP() << "there is a CUDA device here";
+    EXPECT_EQ(ended.code, 3) << ended.out;
+    EXPECT_TRUE(contains(ended.errors, "nothing was traced")) << ended.errors;
+}
+
+TEST_F(Trace, is_what_check_says_of_its_first_wrong_ray)
+{
+    const Ended checked = run("check --scene cubes --resolution 6 --size 64 --backend openmp --method plane,ms06,stp "
+                              "--layout tet80 --out check.json");
+    const Json result = Json::parse(file("check.json"));
+    int commands = 0;
+    for (const Json& row : result["tetrace"]["rows"]) {
+        if (!row["verification"].contains("first_wrong")) continue;
+        const Json& wrong = row["verification"]["first_wrong"];
+        const auto command = wrong["command"].get<std::string>();
+        EXPECT_TRUE(contains(checked.out, "Step by step: " + command + "\n")) << checked.out;
+        ASSERT_TRUE(command.starts_with("tetrace ")) << command;
+        ASSERT_EQ(run(command.substr(8) + " --out again.json").code, 0) << command;
+        const Json trace = Json::parse(file("again.json"))["tetrace"]["trace"];
+        EXPECT_EQ(trace["method"], row["method"]);
+        EXPECT_EQ(trace["view"], wrong["view"]);
+        EXPECT_EQ(trace["pixel"], (Json{wrong["x"], wrong["y"]}));
+        EXPECT_EQ(trace["devices"][0]["hit"]["face_id"], wrong["ours"]["face_id"]);
+        EXPECT_EQ(trace["devices"][0]["hit"]["steps"], wrong["ours"]["steps"]);
+        ++commands;
+    }
+    if (commands == 0) GTEST_SKIP() << "no ray of these methods is wrong here";
+}
