@@ -221,7 +221,7 @@ const VerbHelp verb_help[] = {
      "same work; and each machine's rates over its dates, with a verdict for the last step. A file that is no result "
      "is "
      "left out, and listed with the reason. Hosts are told apart by --label of their runs, or else by their "
-     "processors.",
+     "processors, or by the folders of results that do not tell these.",
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report results/ --out campaign.html\n"
      "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},

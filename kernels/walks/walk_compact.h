@@ -40,11 +40,22 @@ KERNEL_FN uint vertex_rank(SceneView scene, uint vertex)
     return FETCH(scene, vertices, vertex).w;
 }
 
-// The face by which the ray leaves the tet behind a gate. vertex: the apex's number.
-KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, uint vertex, Carried apex, uint replaced)
+// Among the vertices of the tet behind a gate, the ranks of the apex, and of the gate's vertex that it replaces.
+// vertex: the apex's number.
+KERNEL_FN uint apex_rank(Gate gate, uint vertex)
+{
+    return rank_among(vertex, gate.v0, gate.v1, gate.v2, vertex);
+}
+
+KERNEL_FN uint replaced_rank(Gate gate, uint vertex, uint replaced)
 {
     uint gone = replaced == 0u ? gate.v0 : replaced == 1u ? gate.v1 : gate.v2;
-    uint rank = rank_among(gone, gate.v0, gate.v1, gate.v2, vertex);
+    return rank_among(gone, gate.v0, gate.v1, gate.v2, vertex);
+}
+
+// The face by which the ray leaves the tet behind a gate. vertex: the apex's number; behind: what is behind that face.
+KERNEL_FN Gate gate_beyond(Gate gate, uint vertex, Carried apex, uint replaced, uint behind)
+{
     Gate next;
     next.p0 = replaced == 0u ? apex : gate.p0;
     next.p1 = replaced == 1u ? apex : gate.p1;
@@ -53,7 +64,7 @@ KERNEL_FN Gate gate_beyond(SceneView scene, Gate gate, CompactTet tet, uint vert
     next.v1 = replaced == 1u ? vertex : gate.v1;
     next.v2 = replaced == 2u ? vertex : gate.v2;
     next.tet = gate.behind;
-    next.behind = NEIGHBOUR(scene, tet, rank, rank_among(vertex, gate.v0, gate.v1, gate.v2, vertex), gate.before);
+    next.behind = behind;
     next.before = gate.behind;
     return next;
 }
@@ -85,7 +96,8 @@ KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
     ranks.p1 = vertex_rank(scene, gate.v1);
     ranks.p2 = vertex_rank(scene, gate.v2);
     uint replaced = replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, ranks, apex.seen, vertex_rank(scene, vertex));
-    return gate_beyond(scene, gate, tet, vertex, apex, replaced);
+    uint behind = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex), gate.before);
+    return gate_beyond(gate, vertex, apex, replaced, behind);
 }
 
 // The face with these vertices.
@@ -191,7 +203,9 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
                     Carried apex = carried_vertex(scene, ray, shear, vertex);
                     uint replaced = replaced_unless_tie(gate.p0.seen, gate.p1.seen, gate.p2.seen, apex.seen);
                     if (replaced == UNDECIDED) break;
-                    gate = gate_beyond(scene, gate, tet, vertex, apex, replaced);
+                    uint behind = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex),
+                                            gate.before);
+                    gate = gate_beyond(gate, vertex, apex, replaced, behind);
                     ++steps;
                     if (gate.behind >= OCCLUSIVE || steps >= pause) break;
                 }

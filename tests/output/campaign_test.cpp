@@ -129,6 +129,27 @@ TEST_F(CampaignPage, keeps_one_gpu_in_two_hosts_apart)
     EXPECT_EQ(names, (std::set<std::string>{"a device of cuda in one", "a device of cuda in two"}));
 }
 
+TEST_F(CampaignPage, tells_hosts_apart_by_label_or_processor_or_else_by_folder)
+{
+    json result = bench_json();
+    const auto names_of = [&](const json& one, const json& two) {
+        const std::filesystem::path folder = folder_ / std::to_string(campaigns_++);
+        write_file(folder / "zen3/a.json", one.dump());
+        write_file(folder / "zen5/b.json", two.dump());
+        std::set<std::string> names;
+        for (const CampaignMachine& machine : read_campaign(files_below({folder})).machines)
+            if (machine.kind == DeviceKind::cpu) names.insert(machine.name);
+        return names;
+    };
+    using Names = std::set<std::string>;
+    EXPECT_EQ(names_of(result, result), (Names{"a device (folder zen3)", "a device (folder zen5)"}));
+    json known = result;
+    known["tetrace"]["host"].update({{"family", 25}, {"model", 1}, {"stepping", 1}});
+    EXPECT_EQ(names_of(known, known), (Names{"a device (family 25, model 1, stepping 1)"}));
+    known["tetrace"]["label"] = "mine";
+    EXPECT_EQ(names_of(known, result), (Names{"mine", "a device (folder zen5)"}));
+}
+
 TEST_F(CampaignPage, tells_runs_with_other_numbers_of_threads_apart)
 {
     json single = result_of("one", 1);

@@ -308,43 +308,6 @@ TEST(LineChart, ascending_x_make_a_line_and_others_a_cloud)
     EXPECT_TRUE(contains(drawing, "time, ms"));
 }
 
-TEST(Series, have_marks_that_all_differ_up_to_their_number)
-{
-    std::set<std::string> marks, lines;
-    for (std::size_t i = 0; i < series_marks; ++i) {
-        marks.insert(series_class(i) + svg_shape(0, 0, i, "solid").str());
-        if (i < series_marks / 2) lines.insert(series_class(i));
-    }
-    EXPECT_EQ(marks.size(), series_marks);
-    EXPECT_EQ(lines.size(), series_marks / 2) << "colour and dash tell lines apart without a shape";
-    EXPECT_EQ(series_class(series_marks), series_class(0));
-}
-
-TEST(Series, that_share_a_colour_in_a_chart_differ_in_shape_and_dash)
-{
-    LineChart chart{"a figure", "x", "y", {}};
-    for (int i = 0; i < 20; ++i)
-        chart.series.push_back({fmt::format("method {}", i), {{10, 1}, {20, 5}}});
-    const std::string drawing = draw(chart).str();
-    std::set<std::string> classes;
-    const std::regex mark("class=\"mark ([^\"]*)\"");
-    for (auto it = std::sregex_iterator(drawing.begin(), drawing.end(), mark); it != std::sregex_iterator(); ++it)
-        classes.insert((*it)[1]);
-    EXPECT_EQ(classes.size(), 20u);
-    EXPECT_EQ(occurrences(drawing, "class=\"solid\""), 60u) << "two points, and the shape before the name";
-}
-
-TEST(MarkDefinitions, are_those_that_the_markup_refers_to_once_each)
-{
-    const Html clouds = svg_cloud({{1, 2}, {3, 4}}, 0) + svg_cloud({{1, 2}}, 9) + svg_cloud({{5, 6}}, 9);
-    const std::string marks = mark_definitions(clouds).str();
-    EXPECT_EQ(occurrences(marks, "<marker "), 2u);
-    EXPECT_EQ(occurrences(marks, "id=\"cloud0\""), 1u);
-    EXPECT_EQ(occurrences(marks, "id=\"cloud9\" class=\"s2 d3\""), 1u);
-    EXPECT_EQ(occurrences(mark_definitions(svg_samples({1, 2}, 3)).str(), "id=\"sample\""), 1u);
-    EXPECT_TRUE(mark_definitions(text("none")).empty());
-}
-
 TEST(Axis, of_dates_has_ticks_at_whole_days_or_hours)
 {
     const double day = 20'778; // 2026-11-21

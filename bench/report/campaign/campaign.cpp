@@ -26,12 +26,23 @@ struct ReadResult {
     std::vector<ReadRate> rates;
 };
 
+/// The host's name. Where neither a label nor the processor's family tells hosts apart, its folder does: results lie in
+/// one of their machine's (results/README.md).
+std::string host_name(const ResultFile& file)
+{
+    const ResultValue section = file.section();
+    const std::string folder = std::filesystem::absolute(file.path).parent_path().filename().string();
+    if (section.find("label") || section.at("host").find("family") || folder.empty()) return file.head.machine;
+    return fmt::format("{} (folder {})", file.head.machine, folder);
+}
+
 std::string machine_name(const ResultFile& file, const ResultRow& row)
 {
-    if (*row.device_kind == DeviceKind::gpu) return fmt::format("{} in {}", row.device, file.head.machine);
+    const std::string host = host_name(file);
+    if (*row.device_kind == DeviceKind::gpu) return fmt::format("{} in {}", row.device, host);
     const auto threads = file.section().find("threads");
-    if (!threads) return file.head.machine;
-    return fmt::format("{}, {} {}", file.head.machine, threads->count(), threads->count() == 1 ? "thread" : "threads");
+    if (!threads) return host;
+    return fmt::format("{}, {} {}", host, threads->count(), threads->count() == 1 ? "thread" : "threads");
 }
 
 std::string title_of(const ResultFile& file, const ResultRow& row, const std::string& rays)

@@ -10,8 +10,9 @@ namespace {
 
 const char* const how_to_read =
     "A machine is a processor with a number of threads, what its drivers emulate, or a GPU. Hosts are told apart by "
-    "--label of the run, or else by their processor's name, family, model and stepping: give equal hosts labels of "
-    "their own.";
+    "--label of the run, or else by their processor's name, family, model and stepping, or where a result does not "
+    "have "
+    "these, by its folder: give equal hosts labels of their own.";
 
 std::vector<const CampaignResult*> results_of(const Campaign& campaign, std::size_t machine)
 {
