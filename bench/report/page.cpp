@@ -61,14 +61,14 @@ Html page_head(const ReportInput& input)
                                     "Ray traversal through constrained Delaunay tetrahedralizations, measured and "
                                     "verified; written by tetrace " +
                                         build_identity().version + ".") +
-                       element("ul", {{"class", "summary"}}, summary));
+                       element("ul", {{"class", "summary"}}, summary) + headline(input));
 }
 
 Html contents(const std::vector<Section>& sections)
 {
     Html links;
     for (const Section& section : sections)
-        links += element("a", {{"href", "#" + section.id}}, text(section.title));
+        if (!section.is_empty) links += element("a", {{"href", "#" + section.id}}, text(section.title));
     return element("nav", {}, links);
 }
 
