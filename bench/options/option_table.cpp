@@ -309,7 +309,7 @@ std::vector<OptionRow> output_options()
          "Print these columns of the tables that have them, after the first one, named as in CSV and JSON: "
          "mrays_per_s,spread. A wrong name is answered by those that there are. Default: all, or on a terminal those "
          "that fit, the least important left out first.",
-         bit(Verb::bench) | bit(Verb::show), true, append_text(&Options::columns)},
+         measuring | bit(Verb::compare) | bit(Verb::show), true, append_text(&Options::columns)},
         {"Output", "--label", "TEXT",
          "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. "
          "Default: the processor's name, family, model and stepping.",

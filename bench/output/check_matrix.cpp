@@ -1,6 +1,7 @@
 #include "bench/output/check_matrix.h"
 
 #include "bench/measuring/conformity.h"
+#include "bench/terminal/sheet.h"
 #include "core/base/hash.h"
 
 #include <algorithm>
@@ -80,6 +81,18 @@ Table matrix_table(const std::string& scene, const std::vector<RowRun>& all)
         table.add(std::move(cells));
     }
     return table;
+}
+
+std::vector<std::string> check_columns_of(const std::vector<RowKey>& keys)
+{
+    Sheet sheet;
+    std::vector<Column> devices = {{"row", "row"}};
+    for (const RowKey& key : keys)
+        devices.push_back({device_label(key), device_label(key)});
+    sheet.table(Table(std::move(devices)));
+    sheet.table(answers_table({}, {}));
+    sheet.table(self_test_table({}));
+    return sheet.column_keys();
 }
 
 Table answers_table(const std::string& scene, const std::vector<RowRun>& all)

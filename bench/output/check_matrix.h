@@ -16,6 +16,9 @@ namespace tetrace {
 /// them.
 [[nodiscard]] Table matrix_table(const std::string& scene, const std::vector<RowRun>& rows);
 
+/// The keys of all columns of the three tables of a check of these rows.
+[[nodiscard]] std::vector<std::string> check_columns_of(const std::vector<RowKey>& keys);
+
 /// The distinct answers: the hash of each answer's hits, the devices that gave it, and the oracle's counts.
 [[nodiscard]] Table answers_table(const std::string& scene, const std::vector<RowRun>& rows);
 

@@ -101,6 +101,7 @@ Section compiler_section(const ReportInput& input)
     for (std::size_t file = 0; file < input.files.size(); ++file)
         if (const auto programs = input.files[file].section().find("programs"))
             tables += heading(with_letter(compilers_of(*programs), file, input.files.size())) + programs_of(*programs);
+    section.is_empty = tables.empty();
     section.content = tables.empty() ? paragraph("None of these results is of 'tetrace inspect --out FILE.json', which "
                                                  "asks GPUs' compilers about every kernel.")
                                      : note(how_to_read) + tables;

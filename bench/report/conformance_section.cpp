@@ -2,6 +2,7 @@
 #include "core/device/backend.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tetrace {
 
@@ -25,7 +26,20 @@ std::vector<std::string> devices_of(const ResultValue& scene)
     return devices;
 }
 
-Html matrix_of(const ResultValue& scene)
+/// The row of a result that a cell of its matrix is about; null where none has a reason.
+const ReportRow* find_row(const ReportInput& input, std::size_t file, const std::array<std::string, 3>& cell)
+{
+    std::string kernel = cell[1];
+    if (const std::size_t order = kernel.find(" order"); order != std::string::npos) kernel.erase(order, 6);
+    const auto found = std::ranges::find_if(input.rows, [&](const ReportRow& row) {
+        return row.file == file && !row.row->reason.empty() && row.row->scene == cell[0] &&
+               row.kernel_and_rays() == kernel && row.api == cell[2];
+    });
+    return found == input.rows.end() ? nullptr : &*found;
+}
+
+/// What is not as it should be leads to its row and the reason.
+Html matrix_of(const ReportInput& input, std::size_t file, const std::string& scene_name, const ResultValue& scene)
 {
     const auto devices = devices_of(scene);
     std::vector<HtmlColumn> columns = {{"row"}};
@@ -36,7 +50,9 @@ Html matrix_of(const ResultValue& scene)
         std::vector<Html> row = {text(kernel)};
         for (const std::string& device : devices) {
             const auto cell = cells.find(device);
-            row.push_back(cell ? badge(cell->at("cell").text()) : Html());
+            const Html shown = cell ? badge(cell->at("cell").text()) : Html();
+            const ReportRow* const told = find_row(input, file, {scene_name, kernel, device});
+            row.push_back(cell && told != nullptr ? row_link(*told, shown) : shown);
         }
         table.add(std::move(row));
     }
@@ -44,7 +60,7 @@ Html matrix_of(const ResultValue& scene)
 }
 
 /// Rows of `check` results that have more to report than their cell.
-Html reasons(const ReportInput& input)
+Html reasons_of(const ReportInput& input)
 {
     std::vector<const ReportRow*> rows;
     for (const ReportRow& row : input.rows)
@@ -61,14 +77,17 @@ Section conformance_section(const ReportInput& input)
     for (std::size_t file = 0; file < input.files.size(); ++file) {
         if (const auto matrix = input.files[file].section().find("matrix"))
             for (const auto& [scene, cells] : matrix->members())
-                matrices += heading(with_letter(scene, file, input.files.size())) + matrix_of(cells);
+                matrices +=
+                    heading(with_letter(scene, file, input.files.size())) + matrix_of(input, file, scene, cells);
     }
     section.content =
         matrices.empty()
             ? paragraph("None of these results is of 'tetrace check --out FILE.json', which compares every "
                         "device with openmp bit for bit.")
             : note(how_to_read) + matrices;
-    section.content += reasons(input);
+    const Html reasons = reasons_of(input);
+    section.is_empty = matrices.empty() && reasons.empty();
+    section.content += reasons;
     return section;
 }
 

@@ -29,6 +29,21 @@ Html others_of(const ResultValue& section)
     return load ? text(fmt::format("{:.2f}", load->at("others").number())) : Html();
 }
 
+/// The slowest pulse of the host, and of each GPU, over its fastest.
+Html pulses_of(const ResultValue& section)
+{
+    const auto pulses = section.find("pulses");
+    if (!pulses) return {};
+    std::string ratios;
+    for (const ResultValue& pulse : pulses->items())
+        ratios += fmt::format("{}{:.2f}", ratios.empty() ? "" : ", ", pulse.at("ratio").number());
+    return text(ratios);
+}
+
+const char* const about_the_machine =
+    "others: processors' worth of other work while rows were timed. pulse: a fixed piece of work, repeated all the "
+    "while, of the host and then of each GPU: the slowest over the fastest. 1.00 is a machine that nothing disturbed.";
+
 Html results_table(const ReportInput& input)
 {
     HtmlTable table({{"result"},
@@ -40,19 +55,24 @@ Html results_table(const ReportInput& input)
                      {"threads", {}, true},
                      {"samples", "a row", true},
                      {"others", "processors", true},
+                     {"pulse", "slowest", true},
                      {"commit"},
                      {"compiler"}});
     for (std::size_t i = 0; i < input.files.size(); ++i) {
         const ResultFile& file = input.files[i];
         const ResultHead& head = file.head;
         const ResultValue section = file.section();
-        table.add({text_element("b", "", file_letter(i, input.files.size())),
+        const std::string letter = file_letter(i, input.files.size());
+        table.add({letter.empty() ? Html() : text_element("b", "", letter),
                    text_element("code", "", file.path.filename().string()), text(head.verb),
                    text_element("span", "date", minute_of(head.date)), text(head.machine), text(head.system),
                    count_at(section, "threads"), count_at(section, "samples_a_row"), others_of(section),
-                   text_element("code", "", head.commit), text(section.text_at("compiler"))});
+                   pulses_of(section), text_element("code", "", head.commit), text(section.text_at("compiler"))});
     }
-    return table.html();
+    const bool tells = std::ranges::any_of(input.files, [](const ResultFile& file) {
+        return file.section().find("load").has_value() || file.section().find("pulses").has_value();
+    });
+    return table.html() + (tells ? note(about_the_machine) : Html());
 }
 
 /// A device as results record it; several results may record the same one.

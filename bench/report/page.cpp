@@ -84,7 +84,7 @@ Html page_head(const std::vector<std::string>& facts)
                                     "Ray traversal through constrained Delaunay tetrahedralizations, measured and "
                                     "verified; written by tetrace " +
                                         build_identity().version + ".") +
-                       element("ul", {{"class", "summary"}}, summary));
+                       element("ul", {{"class", "summary"}}, summary) + headline(input));
 }
 
 std::vector<std::string> facts_of(const ReportInput& input)
@@ -111,7 +111,7 @@ Html contents(const std::vector<Section>& sections)
 {
     Html links;
     for (const Section& section : sections)
-        links += element("a", {{"href", "#" + section.id}}, text(section.title));
+        if (!section.is_empty) links += element("a", {{"href", "#" + section.id}}, text(section.title));
     return element("nav", {}, links);
 }
 

@@ -9,6 +9,7 @@ Section picture_section(const ReportInput& input)
     Html pictures;
     for (const std::filesystem::path& path : input.pictures)
         pictures += picture_figure(path);
+    section.is_empty = pictures.empty();
     section.content =
         pictures.empty()
             ? paragraph("No picture was given: --picture takes PNG and PPM files, which 'tetrace render' writes (the "

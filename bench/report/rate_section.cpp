@@ -15,7 +15,8 @@ namespace {
 
 const char* const how_to_read =
     "Millions of rays a second, of the median sample, kernel time alone. The whisker spans the middle half of the "
-    "samples, a tick is a sample; a row whose whisker exceeds 5 % of its median is noisy. Only what stands in one "
+    "samples, a tick is a sample; a row is noisy where that exceeds 5 % of its median, or where the machine was "
+    "disturbed. Only what stands in one "
     "chart may be ranked: emulated devices are APIs of GPUs that run on the processor, and say nothing of a GPU.";
 
 std::string scene_title(const RowGroup& group)
@@ -24,13 +25,6 @@ std::string scene_title(const RowGroup& group)
     return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
                        scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height,
                        group.rays);
-}
-
-std::string bar_note(const ReportRow& row)
-{
-    std::string text = row.row->status == "flawed" ? row.row->reason : "";
-    if (row.rate->noisy) text += text.empty() ? "noisy" : ", noisy";
-    return text;
 }
 
 /// The devices of a group, with the results that they come from.
@@ -57,7 +51,7 @@ BarChart chart_of(const RowGroup& group, std::size_t files)
     for (const ReportRow* row : group.rows)
         chart.bars.push_back({row->name(), row->kernel + "  " + row->api, tell_device ? device_text(*row, files) : "",
                               api_series(row->row->backend), row->rate->mrays_per_s, row->rate->low, row->rate->high,
-                              row->rate->samples, bar_note(*row)});
+                              row->rate->samples, remark_of(*row)});
     return chart;
 }
 
@@ -77,11 +71,28 @@ Html rows_without_rate(const ReportInput& input)
     return rows.empty() ? Html() : heading("Rows without a rate") + reason_table(rows, input.files.size());
 }
 
+std::string anchor_of(const ReportRow& row)
+{
+    return fmt::format("row-{}-{}", row.file, row.index);
+}
+
 } // namespace
 
 std::string device_text(const ReportRow& row, std::size_t files)
 {
     return with_letter(row.device, row.file, files);
+}
+
+std::string remark_of(const ReportRow& row)
+{
+    std::string text = row.row->status == "flawed" ? row.row->reason : "";
+    if (row.rate && row.rate->noisy) text += text.empty() ? "noisy" : ", noisy";
+    return text;
+}
+
+Html row_link(const ReportRow& row, const Html& content)
+{
+    return element("a", {{"href", "#" + anchor_of(row)}}, content);
 }
 
 std::size_t api_series(const std::string& backend)
@@ -100,7 +111,7 @@ Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files)
     std::map<std::array<std::string, 3>, Html> lists;
     for (const ReportRow* row : rows)
         lists[{file_letter(row->file, files), row->row->status, row->row->reason}] +=
-            element("li", {{"class", "unrated"}, {"data-row", row->name()}},
+            element("li", {{"class", "unrated"}, {"data-row", row->name()}, {"id", anchor_of(*row)}},
                     text(fmt::format("{}: {} {}", row->row->scene, row->kernel, row->api)));
     HtmlTable table({{"result"}, {"status"}, {"reason"}, {"rows"}});
     for (const auto& [key, list] : lists)
@@ -128,7 +139,9 @@ Section rate_section(const ReportInput& input)
         section.content += heading(title) + side_by_side(charts);
         begin = end;
     }
-    section.content += rows_without_rate(input);
+    const Html unrated = rows_without_rate(input);
+    section.is_empty = groups.empty() && unrated.empty();
+    section.content += unrated;
     return section;
 }
 

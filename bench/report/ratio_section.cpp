@@ -79,6 +79,7 @@ Section ratio_section(const ReportInput& input)
             for (const ResultValue& ratio : ratios->items())
                 if (ratio.find("low")) add_ratio(groups, input, file, ratio);
     Section section{"ratios", "APIs beside each other", {}};
+    section.is_empty = groups.empty();
     if (groups.empty()) {
         section.content =
             paragraph("These results compare no APIs: 'tetrace bench' does where a kernel ran under two on "

@@ -110,6 +110,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
     for (std::size_t i = 0; i < result.rows.size(); ++i) {
         ReportRow row;
         row.file = file;
+        row.index = i;
         row.row = &result.rows[i];
         row.kernel = kernel_of(items[i], result.rows[i]);
         row.api = result.rows[i].api();

@@ -19,7 +19,8 @@ struct RowRate {
 
 /// A row on the page. Refers to its file.
 struct ReportRow {
-    std::size_t file = 0; ///< its index on the command line
+    std::size_t file = 0;  ///< its index on the command line
+    std::size_t index = 0; ///< in its file
     const ResultRow* row = nullptr;
     std::string kernel;          ///< "cdt maria tet80", and whatever differs from the defaults
     std::string api;             ///< "vulkan", "vulkan:1"

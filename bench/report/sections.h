@@ -20,8 +20,18 @@ struct ReportInput {
 /// The series style (see svg.h) of a backend, the same in all charts; all unknown backends share the last one.
 [[nodiscard]] std::size_t api_series(const std::string& backend);
 
+/// What is to be known of a row's rate: why it is flawed, and whether it is noisy; empty where neither is so.
+[[nodiscard]] std::string remark_of(const ReportRow& row);
+
+/// Leads to the row in a reason_table().
+[[nodiscard]] Html row_link(const ReportRow& row, const Html& content);
+
 /// Rows with their status and reason; rows with the same reason are grouped.
 [[nodiscard]] Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files);
+
+/// The answer, for the page's first screen: CDT and BVH beside each other, on GPUs first, and whether `check` found
+/// wrong rows. Empty where the results tell neither.
+[[nodiscard]] Html headline(const ReportInput& input);
 
 // The page's sections, in order. Where the results hold nothing for a section, it says so in a sentence, and how to get
 // the data. All throw Error{invalid_input} naming file and key where a result is not as results/README.md describes.

@@ -54,6 +54,7 @@ Section time_section(const ReportInput& input)
                 add_row(table, row, values[i], file_letter(file, input.files.size()));
     }
     Section section{"times", "Where the time goes", {}};
+    section.is_empty = table.rows().empty();
     section.content = table.rows().empty() ? paragraph("No row of these results was timed.")
                                            : note(how_to_read) + html_table(table).html();
     return section;

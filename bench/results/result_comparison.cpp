@@ -194,7 +194,7 @@ ResultComparison compare_results(const ResultFile& before, const ResultFile& aft
             row.change = compare_speed(row.before->samples_s, row.after->samples_s, compared, tolerance);
     const auto machine = machine_change(before, after);
     for (ComparedRow& row : comparison.rows)
-        if (row.outcome == RowOutcome::compared) row.disturbance = disturbance_of(row, machine);
+        if (row.change && row.change->interval) row.disturbance = disturbance_of(row, machine);
     return comparison;
 }
 

@@ -35,7 +35,8 @@ struct ComparedRow {
     /// Compared by its medians alone: the samples allow no interval, so that its verdict is "UNSURE" however far the
     /// medians lie apart.
     [[nodiscard]] bool has_too_few_samples() const { return change && !change->interval; }
-    /// Compared, but the machine was not the same in both: the verdict is "NOISY" whatever the interval says.
+    /// Compared, but the machine was not the same in both: the verdict is "NOISY" whatever the interval says. A row
+    /// without an interval is "UNSURE" in any case.
     [[nodiscard]] bool is_noisy() const { return !disturbance.empty(); }
     /// Why the row is not compared, "B: skipped: no device", with B for after and A for before, or what differs; that a
     /// compared row has too few samples, or what disturbed it; else empty.

@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const std::vector<ResultComparison>& compariso
 
 Table rates_table(const std::vector<ResultComparison>& comparisons)
 {
-    std::vector<Column> columns = {{"name", "row"}, {.key = "a", .title = "A", .unit = "Mrays/s", .rank = 0}};
+    std::vector<Column> columns = {{"name", "row"}, {.key = "A", .title = "A", .unit = "Mrays/s", .rank = 0}};
     for (std::size_t i = 0; i < comparisons.size(); ++i)
         columns.push_back({.key = letter(i + 1), .title = letter(i + 1), .unit = "Mrays/s (over A)"});
     Table table(std::move(columns));

@@ -60,7 +60,7 @@ Report check_report(const Checked& checked, const Options& options)
     const auto& rows = checked.run.rows;
     Report report{check_sheet({&rows, scene_records(checked.run, options), checked.missing}), check_table(rows),
                   check_json(checked, options)};
-    report.markdown = report.sheet.markdown();
+    report.markdown = report.sheet.markdown({.columns = options.columns});
     if (checked.pictures != nullptr)
         for (const auto& file : checked.pictures->files())
             report.sheet.labelled("Picture", file.string());
@@ -126,6 +126,7 @@ int check(const Options& options, Checked& checked)
     require_devices(options.required); // first: its reason for an empty selection is better
     const auto keys = selected_rows(options, [](const std::string&) { return true; });
     require_selected(keys, options.required);
+    check_columns(options, check_columns_of(keys));
     for (const std::string& sentence : missing_default_scenes(options))
         say(sentence);
     checked.missing = missing_devices(options);

@@ -237,6 +237,20 @@ TEST(BarChart, nothing_is_drawn_beyond_the_drawing)
     EXPECT_TRUE(contains(drawing, "WWW…</text>"));
 }
 
+TEST(BarChart, names_of_rows_stand_there_whole_in_several_lines_where_one_is_too_short)
+{
+    BarChart chart{"a chart", "Mrays/s", {bar_of(40), bar_of(10)}};
+    const auto short_names = attribute_of(draw(chart).str(), "bar", "y");
+    chart.bars[0].label = "cdt project half32 fast reached persistent shuffled  vulkan:1";
+    chart.bars[0].sublabel = "NVIDIA GeForce RTX 4090 Laptop GPU with a long name · A";
+    const std::string drawing = draw(chart).str();
+    EXPECT_EQ(drawing.find("…"), std::string::npos);
+    for (const char* const word : {"cdt project", "persistent", "vulkan:1</text>", "Laptop", "A</text>"})
+        EXPECT_TRUE(contains(drawing, word)) << word;
+    const auto long_names = attribute_of(drawing, "bar", "y");
+    EXPECT_GT(long_names[1] - long_names[0], short_names[1] - short_names[0]) << "rows keep clear of each other";
+}
+
 TEST(IntervalChart, close_ratios_fill_a_linear_axis)
 {
     IntervalChart chart{

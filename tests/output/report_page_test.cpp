@@ -32,6 +32,90 @@ TEST_F(ReportPage, every_row_has_its_mark_or_its_reason)
     EXPECT_TRUE(contains(section_of(page, "rates"), "a reason"));
 }
 
+/// bench_json() with a BVH on the GPU, of another rate.
+json with_bvh(double mrays_per_s)
+{
+    json result = bench_json();
+    json row = row_json("row/bvh", "cuda", "gpu", innocent);
+    row.update({{"structure", "bvh"}, {"method", "single"}, {"layout", "bvh2"}});
+    row["rates"]["mrays_per_s"] = mrays_per_s;
+    result["tetrace"]["rows"].push_back(row);
+    return result;
+}
+
+TEST_F(ReportPage, begins_with_the_papers_claim_on_this_machine)
+{
+    const auto answer_of = [&](const json& result) { return section_of(page_of({result}), "answer"); };
+    const std::string faster = answer_of(with_bvh(2));
+    EXPECT_TRUE(contains(faster, "cubes on a device of cuda: rays go through the CDT 2.00 times as fast as through the "
+                                 "BVH"))
+        << faster;
+    using Rows = std::multiset<std::string>;
+    EXPECT_EQ(rows_of(faster, "mark "), (Rows{"row/cuda", "row/bvh"}));
+    EXPECT_TRUE(contains(answer_of(with_bvh(8)), "through the CDT 2.00 times as slowly as through the BVH"));
+    const std::string page = page_of({with_bvh(2)});
+    EXPECT_LT(page.find("id=\"answer\""), page.find("<nav>")) << "before everything else";
+    EXPECT_TRUE(contains(answer_of(bench_json()), "no section")) << "there is no BVH to compare with";
+}
+
+TEST_F(ReportPage, every_device_and_scene_has_its_answer_and_emulated_ones_have_none)
+{
+    json result = with_bvh(2);
+    json host = result["tetrace"]["rows"].back(), emulated = host;
+    host.update({{"name", "row/host bvh"}, {"backend", "openmp"}});
+    host["device"] = {{"name", "the host"}, {"type", "cpu"}};
+    emulated.update({{"name", "row/emulated bvh"}, {"backend", "vulkan"}});
+    emulated["device"] = {{"name", "llvmpipe"}, {"type", "emulated"}};
+    json walk = host;
+    walk.update({{"name", "row/host cdt"}, {"structure", "cdt"}, {"method", "project"}, {"layout", "half32"}});
+    for (const json& row : {host, emulated, walk})
+        result["tetrace"]["rows"].push_back(row);
+    const std::string answer = section_of(page_of({result}), "answer");
+    EXPECT_LT(answer.find("on a device of cuda"), answer.find("on the host")) << "GPUs come first";
+    EXPECT_FALSE(contains(answer, "llvmpipe"));
+}
+
+TEST_F(ReportPage, links_to_no_section_that_has_nothing)
+{
+    const auto links_to = [&](const std::string& page, const char* id) {
+        return contains(page, std::string("<a href=\"#") + id + "\"");
+    };
+    const std::string measured = page_of({bench_json()}), checked = page_of({check_json()});
+    for (const char* const id : {"rates", "ratios", "roofline", "times"}) {
+        EXPECT_TRUE(links_to(measured, id)) << id;
+        EXPECT_FALSE(links_to(checked, id)) << id;
+    }
+    for (const char* const id : {"conformance", "compilers", "paper", "pictures"})
+        EXPECT_FALSE(links_to(measured, id)) << id;
+    EXPECT_TRUE(links_to(checked, "conformance"));
+}
+
+TEST_F(ReportPage, what_is_wrong_leads_to_its_row_and_the_reason)
+{
+    json checked = check_json();
+    json row = row_json("row/vulkan", "vulkan", "emulated", innocent);
+    row.update({{"status", "wrong"}, {"reason", "12 rays differ from openmp's"}});
+    row.erase("rates");
+    checked["tetrace"]["rows"] = {row};
+    const std::string page = page_of({checked}), section = section_of(page, "conformance");
+    const std::string link = "<a href=\"#row-0-0\">";
+    EXPECT_TRUE(contains(section, link + "<span class=\"badge")) << section;
+    EXPECT_TRUE(contains(section, "id=\"row-0-0\""));
+    EXPECT_TRUE(contains(section, "12 rays differ"));
+    EXPECT_TRUE(
+        contains(section_of(page, "answer"), "0 of 1 rows of check have right answers. " + link + "1 is wrong"));
+}
+
+TEST_F(ReportPage, wide_tables_scroll_by_themselves_and_say_so)
+{
+    const std::string page = page_of({bench_json(), check_json()});
+    EXPECT_TRUE(contains(section_of(page, "machines"), "<div class=\"scroll wide\" tabindex=\"0\"><table>"));
+    EXPECT_TRUE(contains(section_of(page, "conformance"), "<div class=\"scroll\" tabindex=\"0\"><table>"))
+        << "three columns fit a phone";
+    const std::string phones = page.substr(page.find("@media (max-width"));
+    EXPECT_TRUE(contains(phones, ".wide::before { content: \"wider than the screen: scroll")) << phones.substr(0, 300);
+}
+
 TEST_F(ReportPage, emulated_devices_and_gpus_share_no_chart)
 {
     const std::string rates = section_of(page_of({bench_json(), bench_json()}), "rates");
@@ -63,8 +147,13 @@ TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
 {
     json busy = bench_json();
     busy["tetrace"]["load"] = {{"others", 1.25}, {"average", 3.5}, {"processors", 2}};
-    EXPECT_TRUE(contains(section_of(page_of({busy}), "machines"), "1.25"));
-    EXPECT_FALSE(contains(section_of(page_of({bench_json()}), "machines"), "others"));
+    busy["tetrace"]["pulses"] = {{{"of", "host"}, {"fastest_s", 0.01}, {"ratio", 6.0}, {"readings", {{0, 0.01}}}}};
+    const std::string told = section_of(page_of({busy}), "machines");
+    EXPECT_TRUE(contains(told, ">1.25</td>"));
+    EXPECT_TRUE(contains(told, ">6.00</td>"));
+    const std::string silent = section_of(page_of({bench_json()}), "machines");
+    for (const char* const title : {">others ", ">pulse "})
+        EXPECT_FALSE(contains(silent, title)) << title;
 }
 
 TEST_F(ReportPage, what_compilers_told_is_a_table_of_programs)

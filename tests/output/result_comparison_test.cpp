@@ -181,6 +181,9 @@ TEST_F(ResultComparisons, a_row_whose_pulse_moved_within_its_run_is_noisy)
     moved["tetrace"]["rows"][0]["times"]["pulse"] = 1.25;
     EXPECT_EQ(compare(quiet, moved).rows[0].note(), "in B the pulse beside its samples took 1.25 times its fastest");
     EXPECT_EQ(compare(moved, quiet).rows[0].verdict(), "NOISY");
+    Json few = moved;
+    few["tetrace"]["rows"][0]["times"]["samples_s"] = {2.0, 2.0, 2.0};
+    EXPECT_EQ(compare(quiet, few).rows[0].verdict(), "UNSURE") << "that samples are too few is said first";
     moved["tetrace"]["rows"][0]["times"]["pulse"] = 1.24;
     EXPECT_EQ(compare(quiet, moved).rows[0].verdict(), "SLOWER");
 }

@@ -24,8 +24,10 @@ protected:
         const Ended ended = bench("--out measured.json");
         EXPECT_EQ(ended.code, 0) << ended.errors;
         Json json = Json::parse(file("measured.json"));
-        for (Json& row : json["tetrace"]["rows"])
+        for (Json& row : json["tetrace"]["rows"]) {
+            row["times"]["pulse"] = 1.0; // this machine may have been busy
             row["times"]["samples_s"] = {1.000, 1.001, 1.002, 1.003, 1.004, 1.005, 1.006};
+        }
         return json;
     }
 
@@ -143,6 +145,34 @@ TEST_F(Compare, says_so_where_samples_are_too_few_to_tell)
     EXPECT_EQ(ended.code, 0);
     EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: fewer than 5 samples, so no interval: 7 in A and 3 in B"));
     EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with fewer than 5 samples, so no interval;"));
+}
+
+TEST_F(Compare, a_run_of_a_disturbed_machine_is_not_judged_and_says_so)
+{
+    const Ended ended = compare_with([](Json& section) {
+        slow_down(section["rows"][0], 6);
+        section["rows"][0]["times"]["pulse"] = 6;
+    });
+    EXPECT_EQ(ended.code, 0) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "NOISY: in B the pulse beside its samples took 6.00 times its fastest"));
+    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 NOISY; geometric mean")) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "they decide nothing. Measure again on a quieter machine."));
+}
+
+TEST_F(Compare, chooses_columns_and_names_those_that_there_are)
+{
+    const Ended chosen = compare_with([](Json&) {}, "--columns verdict,after");
+    EXPECT_EQ(chosen.code, 0) << chosen.errors;
+    EXPECT_TRUE(contains(unwrapped(chosen), "row B verdict Mrays/s")) << chosen.out;
+    EXPECT_TRUE(contains(run("compare a.json b.json --columns verdict --format markdown").out, "| row | verdict |"));
+    const Ended wrong = run("compare a.json b.json --columns speed");
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_TRUE(
+        contains(wrong.errors, "no table has the column 'speed'; accepted: name, before, after, ratio, verdict"))
+        << wrong.errors;
+    const Ended several = run("compare a.json b.json a.json --columns C");
+    EXPECT_EQ(several.code, 0) << several.errors;
+    EXPECT_TRUE(contains(unwrapped(several), "row C Mrays/s (over A)")) << several.out;
 }
 
 TEST_F(Compare, has_an_interval_exactly_where_bench_has_one)

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 using namespace tetrace::test;
 
@@ -65,6 +66,21 @@ TEST_F(Show, is_ready_to_post_as_markdown_and_chooses_columns)
     EXPECT_TRUE(contains(wrong.errors, "no table has the column 'speed'; accepted: row, backend, mrays_per_s"))
         << wrong.errors;
     EXPECT_EQ(bench("--columns speed").code, 2) << "before anything is measured";
+}
+
+TEST_F(Show, check_chooses_columns_too)
+{
+    const std::string check = "check --backend openmp --scene cubes --resolution 6 --size 24 ";
+    const Ended chosen = run(check + "--columns openmp,wrong");
+    EXPECT_EQ(chosen.code, 0) << chosen.errors;
+    const std::string titles = std::regex_replace(chosen.out, std::regex(" +"), " ");
+    EXPECT_TRUE(contains(titles, "row openmp\n")) << chosen.out;
+    EXPECT_TRUE(contains(titles, "row wrong\n")) << chosen.out;
+    EXPECT_TRUE(contains(run(check + "--columns wrong --format markdown").out, "| row | wrong |"));
+    const Ended wrong = run(check + "--columns speed");
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_TRUE(contains(wrong.errors, "no table has the column 'speed'; accepted: row, openmp, hits, rays"))
+        << wrong.errors;
 }
 
 TEST_F(Show, names_the_verbs_whose_results_it_shows)

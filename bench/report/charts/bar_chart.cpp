@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <sstream>
 
 namespace tetrace {
 
@@ -23,16 +24,49 @@ struct RowFrame {
     [[nodiscard]] double middle(std::size_t row) const { return top + pitch * static_cast<double>(row) + pitch / 2; }
 };
 
+/// The label in as many lines as its room asks for: a row's name is shown whole, and only a word that is too long for a
+/// line of its own is cut.
+std::vector<std::string> lines_of(const std::string& label, double size, double width)
+{
+    if (label.empty()) return {};
+    if (text_width(label, size) <= width) return {label};
+    std::vector<std::string> lines;
+    std::istringstream words(label);
+    for (std::string word; words >> word;) {
+        const std::string longer = lines.empty() ? word : lines.back() + " " + word;
+        if (!lines.empty() && text_width(longer, size) <= width)
+            lines.back() = longer;
+        else
+            lines.push_back(shortened(word, size, width));
+    }
+    return lines;
+}
+
+constexpr double line_height = 14;
+
+/// The lines of a row's label, and then of its sublabel, each with its class.
+template <class Row>
+std::vector<std::pair<std::string, const char*>> label_lines(const Row& row, double width)
+{
+    std::vector<std::pair<std::string, const char*>> lines;
+    for (const std::string& line : lines_of(row.label, label_size, width))
+        lines.emplace_back(line, "label end");
+    for (const std::string& line : lines_of(row.sublabel, small_size, width))
+        lines.emplace_back(line, "small end");
+    return lines;
+}
+
 template <class Row>
 RowFrame frame_of(const std::vector<Row>& rows, double behind)
 {
     RowFrame frame;
     double labels = 0;
-    for (const Row& row : rows) {
+    for (const Row& row : rows)
         labels = std::max({labels, text_width(row.label, label_size), text_width(row.sublabel, small_size)});
-        if (!row.sublabel.empty()) frame.pitch = 36;
-    }
-    frame.left = std::min(labels, widest_labels) + gap;
+    labels = std::min(labels, widest_labels);
+    for (const Row& row : rows)
+        frame.pitch = std::max(frame.pitch, 8 + line_height * static_cast<double>(label_lines(row, labels).size()));
+    frame.left = labels + gap;
     frame.right = chart_width - behind - gap;
     frame.bottom = top + frame.pitch * static_cast<double>(rows.size()) + 4;
     return frame;
@@ -42,10 +76,14 @@ template <class Row>
 Html row_label(const Row& row, const RowFrame& frame, double middle)
 {
     const double width = frame.left - gap;
-    if (row.sublabel.empty())
-        return svg_text(width, middle + 4.5, "label end", shortened(row.label, label_size, width));
-    return svg_text(width, middle - 2, "label end", shortened(row.label, label_size, width)) +
-           svg_text(width, middle + 12, "small end", shortened(row.sublabel, small_size, width));
+    const auto lines = label_lines(row, width);
+    double baseline = middle + 4.5 - line_height * (static_cast<double>(lines.size()) - 1) / 2;
+    Html label;
+    for (const auto& [line, css_class] : lines) {
+        label += svg_text(width, baseline, css_class, line);
+        baseline += line_height;
+    }
+    return label;
 }
 
 Html grid(const Axis& axis, const RowFrame& frame, const std::string& title)

@@ -31,6 +31,8 @@ constexpr std::array badge_looks = {
     BadgeLook{"error", "bad", "✗"},
 };
 
+constexpr std::ptrdiff_t narrow_columns = 4; // that fit the screen of a phone
+
 const BadgeLook& look_of(std::string_view word)
 {
     const auto found = std::ranges::find_if(
@@ -74,7 +76,8 @@ Html HtmlTable::html() const
         body += row_html("td", row, used);
     const Html table =
         element("table", {}, element("thead", {}, row_html("th", titles, used)) + element("tbody", {}, body));
-    return element("div", {{"class", "scroll"}}, table);
+    const bool is_wide = std::ranges::count(used, true) > narrow_columns;
+    return element("div", {{"class", is_wide ? "scroll wide" : "scroll"}, {"tabindex", "0"}}, table);
 }
 
 HtmlTable html_table(const Table& table)

@@ -39,6 +39,7 @@ private:
 struct Section {
     std::string id, title;
     Html content;
+    bool is_empty = false; ///< its content only says that there is none
 };
 
 [[nodiscard]] Html paragraph(std::string_view plain);

@@ -13,6 +13,7 @@ const char* const style = R"css(
   --link: #0b5cad; --good: #00694c; --good-back: #e2f3ec; --bad: #a33a00; --bad-back: #fbe9df;
   --fair: #7a5600; --fair-back: #fbf1d6; --neutral: #5c646c; --neutral-back: #eceef0;
   --s0: #0072b2; --s1: #6b7278; --s2: #e69f00; --s3: #d55e00; --s4: #009e73; --s5: #56b4e9; --s6: #cc79a7;
+  --shade: #00000030;
 }
 @media (prefers-color-scheme: dark) {
   :root {
@@ -20,6 +21,7 @@ const char* const style = R"css(
     --link: #7cb8f2; --good: #6fd3b0; --good-back: #12342a; --bad: #ff9d66; --bad-back: #43210e;
     --fair: #f0c75e; --fair-back: #3a2f10; --neutral: #a7b0b8; --neutral-back: #2a3036;
     --s0: #3f9fdc; --s1: #a9b1b8; --s2: #e69f00; --s3: #ef7b29; --s4: #19b98b; --s5: #7cc8f2; --s6: #d993ba;
+    --shade: #ffffff40;
   }
 }
 @media print {
@@ -51,7 +53,14 @@ ul.plain, ul.summary { margin: 0; padding: 0; list-style: none; }
 ul.summary { display: flex; flex-wrap: wrap; gap: 0.4rem 0.6rem; margin: 0.75rem 0 1rem; }
 ul.summary li { padding: 0.2rem 0.7rem; border-radius: 1rem; background: var(--neutral-back); font-size: 0.9rem; }
 nav { display: flex; flex-wrap: wrap; gap: 0.25rem 1.1rem; font-size: 0.9rem; }
-.scroll { overflow-x: auto; margin: 0.5rem 0 0.75rem; }
+.scroll {
+  overflow-x: auto; margin: 0.5rem 0 0.75rem;
+  background: linear-gradient(to right, var(--paper) 30%, transparent) left / 2.5rem 100%,
+    linear-gradient(to left, var(--paper) 30%, transparent) right / 2.5rem 100%,
+    linear-gradient(to right, var(--shade), transparent) left / 0.9rem 100%,
+    linear-gradient(to left, var(--shade), transparent) right / 0.9rem 100%;
+  background-repeat: no-repeat; background-attachment: local, local, scroll, scroll;
+}
 table { border-collapse: collapse; font-size: 0.85rem; line-height: 1.35; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.32rem 0.7rem 0.32rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
 th { vertical-align: bottom; font-weight: 600; white-space: nowrap; }
@@ -73,6 +82,7 @@ td code, td .date { white-space: nowrap; }
 figure { margin: 0.75rem 0; min-width: 0; max-width: 33rem; }
 figure img { display: block; max-width: 100%; height: auto; border-radius: 0.25rem; }
 article { margin-bottom: 2rem; }
+#answer h4 { font-size: 1.05rem; text-wrap: pretty; }
 svg { display: block; width: 100%; height: auto; overflow: visible; font-size: 13px; font-variant-numeric: tabular-nums; }
 svg text { fill: var(--ink); white-space: pre; }
 svg .small { fill: var(--muted); font-size: 11.5px; }
@@ -104,6 +114,7 @@ svg.definitions { position: absolute; width: 0; }
 .mark:hover .bar { fill-opacity: 0.85; }
 @media (max-width: 40rem) {
   table { width: max-content; }
+  .wide::before { content: "wider than the screen: scroll →"; display: inline-block; position: sticky; left: 0; color: var(--muted); font-size: 0.8rem; }
   td { max-width: 15rem; }
   body { padding: 1.25rem 1rem 3rem; }
   h1 { font-size: 1.6rem; }
@@ -111,7 +122,7 @@ svg.definitions { position: absolute; width: 0; }
 @media print {
   body { padding: 0; max-width: none; font-size: 11pt; }
   nav { display: none; }
-  .scroll { overflow: visible; }
+  .scroll { overflow: visible; background: none; }
   table { font-size: 8pt; }
   figure, tr, h2, h3, h4 { break-inside: avoid; }
   h2, h3, h4 { break-after: avoid; }
