@@ -26,10 +26,10 @@ foreach(row IN LISTS rows)
   endif()
 endforeach()
 
-# TETRACE_DEFECTS: the reduced kernels of kernels/defects.h.
+# TETRACE_DEFECTS: the reduced kernels of kernels/defects/defects.h.
 set(TETRACE_DEFECTS "")
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/defect_list.inc)
-file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/defect_list.inc rows REGEX "^DEFECT")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc)
+file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc rows REGEX "^DEFECT")
 foreach(row IN LISTS rows)
   string(REGEX MATCH "^DEFECT.([a-z0-9_]+)" ignored ${row})
   list(APPEND TETRACE_DEFECTS ${CMAKE_MATCH_1})
@@ -104,7 +104,7 @@ endfunction()
 find_program(TETRACE_XZ xz REQUIRED DOC "Packs the kernels that the program carries, and the bundle's scenes")
 set(tetrace_kernels_scripts ${CMAKE_CURRENT_LIST_DIR})
 file(GLOB_RECURSE TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
-list(APPEND TETRACE_KERNEL_HEADERS ${PROJECT_SOURCE_DIR}/kernels/defect_list.inc)
+list(APPEND TETRACE_KERNEL_HEADERS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc)
 
 # tetrace_flatten(<output> <entry> [<kernel>]): a text in which every #include "..." of the entry file is replaced by
 # the named file (each time that it is included: no file but one has a guard), and every #include KERNEL_..._HEADER by

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "backends/cuda/program.h"
+#include "core/debugging/defects.h"
+#include "core/debugging/kernel_files.h"
 #include "core/device/backend.h"
-#include "core/device/defects.h"
-#include "core/device/kernel_files.h"
 
 #include <functional>
 #include <mutex>

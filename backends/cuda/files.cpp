@@ -6,7 +6,7 @@ namespace tetrace::cuda {
 
 namespace {
 
-constexpr const char* target = "compute_75"; // the oldest that CUDA 13 knows; any later GPU's driver takes it
+constexpr const char* ptx_target = "compute_75"; // the oldest that CUDA 13 knows; any later GPU's driver takes it
 
 std::string joined(const std::vector<std::string>& words)
 {
@@ -22,7 +22,7 @@ std::string ptx_of(const Programs& programs, const EmbeddedKernel& source, const
     if (!programs.has_nvrtc())
         throw Error(ErrorKind::missing, programs.nvrtc == nullptr ? "NVRTC is not used" : programs.nvrtc().reason());
     const auto options = compiler_options(id);
-    const auto code = programs.nvrtc().compile(source.text().data(), id.name(), target, options);
+    const auto code = programs.nvrtc().compile(source.text().data(), id.name(), ptx_target, options);
     std::string text(code.begin(), code.end());
     while (!text.empty() && text.back() == '\0')
         text.pop_back();
@@ -38,7 +38,7 @@ std::vector<KernelFile> kernel_files(const Programs& programs, const KernelId& k
     if (source == nullptr) return {};
     const std::string ptx = id.name() + ".ptx", text = id.source + ".cu";
     const std::string command =
-        "nvcc --ptx -std=c++17 -arch=" + std::string(target) + joined(compiler_options(id)) + " -o " + ptx + " " + text;
+        "nvcc --ptx -std=c++17 -arch=" + std::string(ptx_target) + joined(compiler_options(id)) + " -o " + ptx + " " + text;
     std::vector<KernelFile> files = {
         {text, "CUDA C++ with its includes resolved, as NVRTC and nvcc get it", command, std::string(source->text())}};
     try {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "backends/cuda/program.h"
-#include "core/device/kernel_files.h"
+#include "core/debugging/kernel_files.h"
 
 namespace tetrace::cuda {
 

@@ -14,6 +14,6 @@ namespace tetrace::cuda_host {
     {                                                                                                                  \
         call(run_##name, arguments);                                                                                   \
     }
-#include "kernels/defect_list.inc"
+#include "kernels/defects/defect_list.inc"
 
 } // namespace tetrace::cuda_host

@@ -6,7 +6,7 @@
 #include "backends/opencl/probe.h"
 #include "backends/opencl/session.h"
 #include "backends/opencl/yardstick.h"
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 #include "core/device/device_facts.h"
 #include "core/device/open_checks.h"
 

@@ -4,7 +4,7 @@
 #define DEFECT_WORDS __global const uint *restrict words,
 #define DEFECT_PASSED words,
 #define WORD(index) words[index]
-#include "kernels/defects.h"
+#include "kernels/defects/defects.h"
 
 #define DEFECT(name)                                                                                                   \
     __kernel void run_##name(__global const uint* restrict words, __global uint* restrict results)                     \
@@ -12,4 +12,4 @@
         uint item = (uint)get_global_id(0);                                                                            \
         results[item] = name(words, item);                                                                             \
     }
-#include "kernels/defect_list.inc"
+#include "kernels/defects/defect_list.inc"

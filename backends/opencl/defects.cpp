@@ -1,7 +1,7 @@
 #include "backends/opencl/defects.h"
 
 #include "backends/opencl/program.h"
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 
 namespace tetrace::opencl {
 

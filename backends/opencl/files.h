@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/device/kernel_files.h"
+#include "core/debugging/kernel_files.h"
 
 namespace tetrace::opencl {
 

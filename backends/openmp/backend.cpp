@@ -5,7 +5,7 @@
 #include "backends/openmp/probe.h"
 #include "backends/openmp/session.h"
 #include "backends/openmp/yardstick.h"
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 #include "core/device/host.h"
 #include "core/device/open_checks.h"
 

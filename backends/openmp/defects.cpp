@@ -1,8 +1,8 @@
 #include "backends/openmp/defects.h"
 
 #include "core/base/error.h"
+#include "core/debugging/defects.h"
 #include "core/device/backend.h"
-#include "core/device/defects.h"
 
 #include <bit>
 #include <cassert>
@@ -16,7 +16,7 @@ namespace {
 #define WORD(index) words[index]
 #include "kernels/language/dialect_cpp.h"
 
-#include "kernels/defects.h"
+#include "kernels/defects/defects.h"
 } // namespace
 
 namespace tetrace::openmp {
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> run_defect(std::string_view name)
             results[item] = kernel(words.data(), item);                                                                \
         return results;                                                                                                \
     }
-#include "kernels/defect_list.inc"
+#include "kernels/defects/defect_list.inc"
     throw Error(ErrorKind::internal, "openmp has no reduced kernel '" + std::string(name) + "'");
 }
 

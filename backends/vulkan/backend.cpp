@@ -7,7 +7,7 @@
 #include "backends/vulkan/probe.h"
 #include "backends/vulkan/session.h"
 #include "backends/vulkan/yardstick.h"
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 #include "core/device/device_facts.h"
 #include "core/device/open_checks.h"
 

@@ -135,7 +135,7 @@ std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& 
         cases.push_back({run.backend, label_of(run), run.device.name, run.device.driver,
                          "defect/" + std::string(run.defect->name), outcome_of(run.sight), detail_of(run),
                          run.seconds});
-    return junit_xml("defects", cases, problem);
+    return junit_suite("defects", cases, problem);
 }
 
 } // namespace tetrace

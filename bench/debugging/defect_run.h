@@ -2,8 +2,8 @@
 
 #include "bench/options/options.h"
 #include "core/base/error.h"
+#include "core/debugging/defects.h"
 #include "core/device/backend.h"
-#include "core/device/defects.h"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "bench/output/report.h"
+#include "core/debugging/kernel_files.h"
 #include "core/device/backend.h"
-#include "core/device/kernel_files.h"
 
 #include <vector>
 

@@ -194,7 +194,7 @@ std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& 
     return document_xml(std::move(suites));
 }
 
-std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, const std::string& problem)
+std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases, const std::string& problem)
 {
     std::vector<Suite> suites;
     if (!problem.empty()) suites.emplace_back().add_problem(problem);

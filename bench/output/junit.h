@@ -29,7 +29,7 @@ struct JunitCase {
                                     const std::string& problem = {});
 
 /// The same of one suite of other test cases: "tetrace check <suite>".
-[[nodiscard]] std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases,
-                                    const std::string& problem = {});
+[[nodiscard]] std::string junit_suite(const std::string& suite, const std::vector<JunitCase>& cases,
+                                      const std::string& problem = {});
 
 } // namespace tetrace

@@ -1,6 +1,6 @@
 #include "core/isolation/driver_server.h"
 
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 #include "core/isolation/channel.h"
 #include "core/isolation/messages.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 #include "core/isolation/driver_child.h"
 
 #include <mutex>

@@ -1,7 +1,7 @@
 // Reduced kernels of compilers' defects on every device: what comes out is what tests/expected/<implementation>.json
 // says, right or wrong. tests/expected/README.md describes each.
+#include "core/debugging/defects.h"
 #include "core/device/backend.h"
-#include "core/device/defects.h"
 
 #include <fstream>
 #include <gtest/gtest.h>

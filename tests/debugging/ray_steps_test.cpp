@@ -2,6 +2,9 @@
 
 #include "bench/debugging/device_products.h"
 #include "bench/debugging/trace_report.h"
+#include "bench/measuring/verify.h"
+#include "bench/output/check_differences.h"
+#include "bench/rows/scene_arguments.h"
 #include "core/device/self_test.h"
 #include "core/mesh/face_corners.h"
 #include "tests/support/row_runs.h"
@@ -10,6 +13,8 @@
 
 #include <functional>
 #include <gtest/gtest.h>
+#include <iterator>
+#include <sstream>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -46,6 +51,18 @@ private:
         if (hits.size() == 1) return;
         for (Hit& hit : hits)
             hit.face_id = NO_HIT;
+    }
+};
+
+/// Answers as openmp does, but for one pixel.
+class SpottedSession : public WrappedSession {
+public:
+    using WrappedSession::WrappedSession;
+
+private:
+    void change(std::span<Hit> hits) override
+    {
+        if (hits.size() > 1) hits[pixel.y * 24 + pixel.x].face_id ^= 1;
     }
 };
 
@@ -160,6 +177,45 @@ TEST_F(RaySteps, of_a_ray_that_misses_lead_outside)
     const RayOnDevice ray = follow_ray(traced, 0, {0, 0});
     EXPECT_EQ(ray.hit.face_id, NO_HIT);
     EXPECT_TRUE(ray.steps.empty() || ray.steps.back().beyond == "outside");
+}
+
+TEST_F(RaySteps, are_a_command_that_check_prints_for_its_first_differing_ray)
+{
+    options_.resolution = 6;
+    SceneRequest request;
+    request.name = "cubes";
+    scene_ = std::make_unique<SceneWork>(loaded_cubes(6), options_, scene_arguments(request, options_));
+    RowRun spotted = row();
+    spotted.key.backend = "cuda-host";
+    spotted.session = std::make_unique<SpottedSession>(std::move(spotted.session));
+    verify_rows({&spotted}, *scene_, options_);
+    const std::string command = "tetrace trace --scene cubes --resolution 6 --size 24x24 --view 0 --pixel 12,11 "
+                                "--method maria --layout tet80 --backend cuda-host";
+    EXPECT_TRUE(contains(differences_text(spotted), "\n  Step by step: " + command + "\n"))
+        << differences_text(spotted);
+    nlohmann::json json;
+    add_paths(json, spotted);
+    EXPECT_EQ(json["verification"]["first_different"]["command"], command);
+
+    std::istringstream words(command.substr(8));
+    const Options again = parse_options({std::istream_iterator<std::string>(words), {}});
+    EXPECT_EQ(again.verb, Verb::trace);
+    EXPECT_EQ(again.pixel, pixel);
+    EXPECT_EQ(selected_views(again), std::vector<std::uint32_t>{0});
+    EXPECT_EQ(scene_arguments(request, again), scene_arguments(request, options_)) << "the same scene and images";
+}
+
+TEST_F(RaySteps, of_other_scenes_and_devices_are_asked_for_in_full)
+{
+    options_.tets = {TetsKind::cdt};
+    options_.switches = {"pq5Y"};
+    options_.own_cameras = OwnCameras{"mine", {}, "my cameras.json"};
+    options_.buffer_limit = 4096;
+    SceneRequest request;
+    request.name = "it's.ply";
+    EXPECT_EQ(scene_arguments(request, options_),
+              "--scene 'it'\\''s.ply' --tets cdt --switches pq5Y --camera-set 'my cameras.json' --size 24x24 "
+              "--buffer-limit 4096");
 }
 
 TEST(DeviceProducts, are_what_float_arithmetic_gives_and_follow_a_device_that_computes_otherwise)

@@ -2,8 +2,8 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/debugging/defects.h"
 #include "core/device/backend.h"
-#include "core/device/defects.h"
 #include "core/isolation/messages.h"
 
 #include <csignal>

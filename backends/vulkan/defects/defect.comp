@@ -16,7 +16,7 @@ layout(std430, set = 0, binding = 1) writeonly buffer Results
 #define DEFECT_WORDS
 #define DEFECT_PASSED
 #define WORD(index) words[index]
-#include "kernels/defects.h"
+#include "kernels/defects/defects.h"
 
 void main()
 {

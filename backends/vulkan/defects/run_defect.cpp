@@ -1,7 +1,7 @@
 #include "backends/vulkan/defects/run_defect.h"
 
 #include "backends/vulkan/program.h"
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 
 namespace tetrace {
 

@@ -8,8 +8,8 @@
 
 namespace tetrace {
 
-/// A defect of a driver's compiler, reduced to a small kernel (kernels/defects.h, in every language). The kernel is one
-/// work group of defect_items items; each returns a word.
+/// A defect of a driver's compiler, reduced to a small kernel (kernels/defects/defects.h, in every language). The
+/// kernel is one work group of defect_items items; each returns a word.
 struct Defect {
     std::string_view name;  ///< of its kernel
     std::string_view what;  ///< what the kernel does
@@ -18,7 +18,7 @@ struct Defect {
 };
 inline constexpr std::uint32_t defect_items = 16;
 
-/// Every reduced kernel, in the order of kernels/defect_list.inc.
+/// Every reduced kernel, in the order of kernels/defects/defect_list.inc.
 [[nodiscard]] std::span<const Defect> all_defects();
 
 /// The words that every kernel reads: 0, 1, ... 63.

@@ -1,4 +1,4 @@
-#include "core/device/defects.h"
+#include "core/debugging/defects.h"
 
 #include <numeric>
 
