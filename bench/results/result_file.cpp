@@ -171,6 +171,7 @@ ResultRow read_row(const ResultValue& value)
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
     if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
+    if (const auto hash = value.find("views_hash")) row.views_hash = hash->hash();
     row.samples_s = read_samples(value);
     if (const auto rates = value.find("rates"))
         if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();

@@ -45,7 +45,8 @@ struct ResultRow {
     std::string device, driver;
     std::optional<DeviceKind> device_kind; ///< empty where the row has no device
     std::uint64_t device_index = 0;        ///< in its backend
-    std::string hit_hash;                  ///< empty where no rays were traced
+    std::string hit_hash;                  ///< empty where no rays were traced, or only by shards
+    std::string views_hash;                ///< empty in results before 2026-11-23 as well
     std::optional<double> mrays_per_s;     ///< of the median sample
     std::vector<double> samples_s; ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
