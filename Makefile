@@ -5,7 +5,7 @@ comma := ,
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench test sanitize build bundle deb format lint clean
+.PHONY: help bench test sanitize build bundle deb cluster-test format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/);"
@@ -16,6 +16,7 @@ help:
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
+	@echo "make cluster-test  share a run by mpirun, Slurm and GNU parallel, on this machine alone; VIEWS=0-1281: all views"
 	@echo "make format   format the sources"
 	@echo "make lint     check formatting, and the sources with clang-tidy"
 	@echo "make clean    remove build/"
@@ -42,6 +43,10 @@ deb: build
 	@scripts/install-packages package
 	cd build/release && cpack
 	@ls build/release/*.deb
+
+cluster-test: build
+	@scripts/install-packages cluster
+	scripts/cluster-test $(TETRACE) build/cluster
 
 test:
 	@scripts/install-packages build test

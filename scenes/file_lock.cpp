@@ -1,12 +1,12 @@
 #include "scenes/file_lock.h"
 
 #include "core/base/error.h"
+#include "core/base/try_lock.h"
 
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
@@ -15,7 +15,7 @@ namespace tetrace {
 
 namespace {
 
-/// Whether the path still leads to the open file: its last owner may have removed it between our open and our flock.
+/// Whether the path still leads to the open file: its last owner may have removed it between our open and our lock.
 bool still_there(const std::filesystem::path& path, int file)
 {
     struct stat opened {
@@ -37,11 +37,21 @@ FileLock::~FileLock()
     ::close(file_);
 }
 
+bool FileLock::is_held(const std::filesystem::path& path)
+{
+    const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool held = try_lock(file) == LockAttempt::held;
+    ::close(file);
+    return held;
+}
+
 std::optional<FileLock> FileLock::try_take(const std::filesystem::path& path)
 {
     for (;;) {
         const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) {
+        const LockAttempt attempt = file >= 0 ? try_lock(file) : LockAttempt::failed;
+        if (attempt == LockAttempt::taken) {
             FileLock lock(path, file);
             if (still_there(path, file)) return lock;
             ::close(std::exchange(lock.file_, -1));
@@ -49,7 +59,7 @@ std::optional<FileLock> FileLock::try_take(const std::filesystem::path& path)
         }
         const int reason = errno;
         if (file >= 0) ::close(file);
-        if (reason == EWOULDBLOCK && file >= 0) return std::nullopt;
+        if (attempt == LockAttempt::held) return std::nullopt;
         if (reason != EINTR)
             throw Error(ErrorKind::invalid_input, fmt::format("locking {}: {}; check that its folder may be written to",
                                                               path.string(), std::strerror(reason)));

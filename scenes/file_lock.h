@@ -13,6 +13,9 @@ public:
     /// reason.
     [[nodiscard]] static std::optional<FileLock> try_take(const std::filesystem::path& path);
 
+    /// Whether another process, or a FileLock of this one, has it now.
+    [[nodiscard]] static bool is_held(const std::filesystem::path& path);
+
     FileLock(FileLock&& other) noexcept;
     FileLock& operator=(FileLock&&) = delete;
     ~FileLock();

@@ -248,8 +248,7 @@ std::span<const Hit> Verifier::reference() const
 
 namespace {
 
-/// Returns the seconds spent tracing.
-double verify_view(Verifier& verifier, RowRun& row, std::size_t view)
+ImageVerdict verify_view(Verifier& verifier, RowRun& row, std::size_t view)
 {
     const ImageVerdict image = verifier.verify(row, view);
     Traced& result = std::get<Traced>(row.outcome);
@@ -257,7 +256,7 @@ double verify_view(Verifier& verifier, RowRun& row, std::size_t view)
     if (image.totals.rays > 0) result.last_view_hash = image.hit_hash;
     if (view == 0) result.first_view_hash = image.hit_hash;
     result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
-    return image.wall_s;
+    return image;
 }
 
 /// Catches a device that answers differently under repetition, after everything else that it was given.
@@ -298,10 +297,10 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
             done += 1;
             if (row->session == nullptr) continue;
             guarded(*row, [&] {
-                const double seconds = verify_view(verifier, *row, view);
-                traced_s += seconds;
-                budget.traced(*row, 1, seconds);
-                if (image_seen) image_seen({*row, view, verifier.hits(), verifier.reference()});
+                const ImageVerdict image = verify_view(verifier, *row, view);
+                traced_s += image.wall_s;
+                budget.traced(*row, 1, image.wall_s);
+                if (image_seen) image_seen({*row, view, verifier.hits(), verifier.reference(), image});
             });
             budget.review();
         }

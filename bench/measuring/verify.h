@@ -15,6 +15,7 @@ struct SeenImage {
     std::size_t view; ///< index in SceneWork::views()
     std::span<const Hit> hits;
     std::span<const Hit> reference; ///< openmp's; empty where there was nothing to compare
+    const ImageVerdict& verdict;
 };
 /// Called after each image.
 using ImageSeen = std::function<void(const SeenImage&)>;

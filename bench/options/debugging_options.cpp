@@ -1,5 +1,5 @@
 #include "bench/options/apply_option.h"
-#include "bench/options/option_table.h"
+#include "bench/options/option_parts.h"
 #include "bench/options/option_values.h"
 
 #include <fmt/format.h>

@@ -225,6 +225,19 @@ const VerbHelp verb_help[] = {
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report results/ --out campaign.html\n"
      "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
+    {Verb::merge, "make one result of the shards of a run",
+     "Reads the results that 'bench', 'check' or 'reproduce' wrote with --shard, each with its journal (FILE.journal) "
+     "next to it, and makes the result of the whole run: the same counts, verdicts and hashes as without shards, and "
+     "the same exit code. A missing or doubled shard, and shards of other commits, scenes, rows or options, are "
+     "refused by name, with exit code 2.\n\n"
+     "Times stay with the machine that took them: the result lists each machine with its shards and the rates of its "
+     "rows. A row's times are put together only where all its shards ran on machines of one kind, with one device and "
+     "driver; else the row has counts, and no rate. Of 'reproduce' the scenes are loaded again, from the cache or "
+     "their meshes; no device is needed. docs/cluster.md has the rest: Slurm, MPI, and how it scales.",
+     "  tetrace bench --scene bunny --shard 1/2 --out 1.json     on one machine\n"
+     "  tetrace bench --scene bunny --shard 2/2 --out 2.json     on another\n"
+     "  tetrace merge 1.json 2.json --out both.json\n"
+     "  srun -n 4 tetrace reproduce table4 --scene bunny --out all.json   shards and merges by itself\n"},
     {Verb::help, "describe the program or a verb",
      "Describes the program, or a verb. 'tetrace help options' prints a Markdown table of all options, 'tetrace help "
      "man' a manual page for man, and 'tetrace help bash' or 'zsh' what completes a command line in that shell.",

@@ -1,6 +1,7 @@
 #include "bench/options/option_table.h"
 
 #include "bench/options/apply_option.h"
+#include "bench/options/option_parts.h"
 #include "bench/options/option_values.h"
 
 #include <algorithm>
@@ -8,15 +9,6 @@
 namespace tetrace {
 
 namespace {
-
-constexpr unsigned measuring = bit(Verb::bench) | bit(Verb::check);
-constexpr unsigned tracing = measuring | bit(Verb::render) | bit(Verb::trace);
-constexpr unsigned reproducing = tracing | bit(Verb::reproduce);
-constexpr unsigned selecting = tracing | bit(Verb::inspect);
-constexpr unsigned building = bit(Verb::build) | reproducing;
-constexpr unsigned reporting = measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::scenes) |
-                               bit(Verb::reproduce) | bit(Verb::inspect) | bit(Verb::trace) | bit(Verb::compare) |
-                               bit(Verb::show);
 
 /// The distinct values that all kernels have in one part of their id: the accepted values of an option.
 template <class T>
@@ -291,56 +283,11 @@ std::vector<OptionRow> report_options()
     };
 }
 
-std::vector<OptionRow> output_options()
-{
-    return {
-        {"Output", "--format", "FORMAT",
-         "Form of the result: table, json, csv or markdown. With --out, all but table go to that file; otherwise they "
-         "replace the table on standard output. Markdown of bench, check, compare, reproduce and show is what the "
-         "terminal prints, ready to post. Default: table.",
-         reporting, false, [](Options& o, const std::string& v) { o.format = choose<Format>("--format", v); }},
-        {"Output", "--out", "FILE",
-         "Also write the result to FILE. Without --format its ending chooses the form: .json, .csv, .md, or .txt for "
-         "the table. The table still goes to standard output. '-' means no file: standard output gets the result, in "
-         "the "
-         "form of --format.",
-         reporting, false, set_result_file},
-        {"Output", "--columns", "LIST",
-         "Print these columns of the tables that have them, after the first one, named as in CSV and JSON: "
-         "mrays_per_s,spread. A wrong name is answered by those that there are. Default: all, or on a terminal those "
-         "that fit, the least important left out first.",
-         measuring | bit(Verb::compare) | bit(Verb::show), true, append_text(&Options::columns)},
-        {"Output", "--label", "TEXT",
-         "Call this machine TEXT in the result, in 'report' and in 'compare', for example 'Zen 5, 96 cores'. "
-         "Default: the processor's name, family, model and stepping.",
-         measuring | bit(Verb::build) | bit(Verb::devices) | bit(Verb::reproduce), false,
-         [](Options& o, const std::string& v) { o.label = parse_label(v); }},
-        {"Output", "--anonymous", "",
-         "Leave out of the result what identifies the machine: the host's name, and the folders of files.", reporting,
-         false, set(&Options::anonymous)},
-        {"Output", "--resume", "",
-         "Continue the run whose journal is FILE.journal, for FILE of --out: views and batches of searches that it has "
-         "are not repeated. If there is no journal, begin one.",
-         bit(Verb::reproduce), false, set(&Options::resume)},
-        {"Output", "--junit", "FILE",
-         "Also write the result to FILE as JUnit XML, one test case a row; '-' means standard output, "
-         "in place of the table. Default: none.",
-         bit(Verb::check), false, set_path("--junit", &Options::junit)},
-        {"Output", "--out", "FILE",
-         "Write the picture to FILE, which ends in .png, .exr or .ppm. With several pictures, scene, view and kind are "
-         "inserted before the ending. If FILE is a folder, the pictures in it are called SCENE-VIEW-KIND.png, or .ppm "
-         "if OpenImageIO is missing (PPM needs no library). Default: the current folder.",
-         bit(Verb::render), false, set_path("--out", &Options::out)},
-        {"Output", "--out", "FILE", "Write the page to FILE; '-' means standard output. Default: report.html.",
-         bit(Verb::report), false, set_path("--out", &Options::out)},
-    };
-}
-
 std::vector<OptionRow> make_table()
 {
     std::vector<OptionRow> table;
     for (auto part : {reproduce_options, inspect_options, trace_options, scene_options, row_options, ray_options,
-                      driver_options, judging_options, report_options, output_options, dump_options})
+                      driver_options, judging_options, report_options, sharing_options, output_options, dump_options})
         for (OptionRow& row : part())
             table.push_back(std::move(row));
     return table;
@@ -353,6 +300,7 @@ FileArguments file_arguments(Verb verb)
     if (verb == Verb::compare) return {"A.json B.json [C.json...]", 2, 26};
     if (verb == Verb::show) return {"RESULT.json", 1, 1};
     if (verb == Verb::report) return {"RESULT|FOLDER...", 1, 1000};
+    if (verb == Verb::merge) return {"RESULT...", 1, most_shards};
     return {};
 }
 

@@ -24,17 +24,6 @@ struct OptionRow {
 
 [[nodiscard]] const std::vector<OptionRow>& option_table();
 
-/// OptionRow::verbs of one verb.
-[[nodiscard]] constexpr unsigned bit(Verb verb)
-{
-    return 1u << static_cast<unsigned>(verb);
-}
-
-// The rows of verbs for those who look into a kernel (debugging_options.cpp); parts of the table.
-[[nodiscard]] std::vector<OptionRow> inspect_options();
-[[nodiscard]] std::vector<OptionRow> trace_options();
-[[nodiscard]] std::vector<OptionRow> dump_options();
-
 /// The files that a verb reads, given without an option: how help writes them, and how many are allowed.
 struct FileArguments {
     std::string_view names = "";

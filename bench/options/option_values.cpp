@@ -213,6 +213,21 @@ SearchSize parse_searches(const std::string& text)
     return size;
 }
 
+std::string text_of(const Shard& shard)
+{
+    return fmt::format("{}/{}", shard.number, shard.of);
+}
+
+Shard parse_shard(const std::string& text)
+{
+    const std::size_t slash = text.find('/');
+    if (slash == std::string::npos) reject_value("--shard", text, "K/N, the K-th of N shards: 1/4 to 4/4");
+    Shard shard;
+    shard.of = static_cast<unsigned>(parse_count("--shard", text.substr(slash + 1), 1, most_shards));
+    shard.number = static_cast<unsigned>(parse_count("--shard", text.substr(0, slash), 1, shard.of));
+    return shard;
+}
+
 std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view_count)
 {
     std::set<std::uint32_t> numbers;

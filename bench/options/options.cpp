@@ -4,7 +4,9 @@
 #include "bench/options/option_values.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fmt/format.h>
+#include <string_view>
 
 namespace tetrace {
 
@@ -157,7 +159,7 @@ void check_together(const Options& options)
     if (options.verb != Verb::render) check_single(options, "--tets", options.tets.size());
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
-    static_cast<void>(selected_views(options));
+    require_views(options);
     if (options.verb == Verb::trace) check_ray(options);
     if (options.verb == Verb::dump) check_dump(options);
 }
@@ -177,6 +179,10 @@ Options defaults_of(Verb verb)
     options.samples = 5;
     return options;
 }
+
+/// What shards of one run may differ in, and what `merge` gives anew: where output goes, and on what they run.
+constexpr std::string_view own_options[] = {"--shard", "--wait",    "--out",    "--format",  "--resume", "--label",
+                                            "--junit", "--picture", "--device", "--threads", "--columns"};
 
 Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
 {
@@ -201,6 +207,9 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
     set_files(options, files);
+    options.words = {std::string(name_of(verb))};
+    options.words.insert(options.words.end(), arguments.begin(), arguments.end());
+    options.arguments = without_options(options.words, own_options);
     check_together(options);
     return options;
 }
@@ -217,6 +226,34 @@ Options parse_help(const std::vector<std::string>& topics)
 }
 
 } // namespace
+
+std::vector<std::string> without_options(const std::vector<std::string>& words, std::span<const std::string_view> names)
+{
+    const auto is_flag = [](const std::string& name) {
+        const auto row = std::ranges::find(option_table(), name, &OptionRow::name);
+        return row != option_table().end() && row->value.empty();
+    };
+    std::vector<std::string> kept;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string name = words[i].substr(0, words[i].find('='));
+        if (std::ranges::find(names, name) == names.end())
+            kept.push_back(words[i]);
+        else if (name == words[i] && !is_flag(name))
+            ++i; // its value
+    }
+    return kept;
+}
+
+void require_views(const Options& options)
+{
+    if (!selected_views(options).empty() || options.verb == Verb::reproduce) return;
+    Options whole = options;
+    whole.shard = Shard();
+    throw Error(ErrorKind::usage,
+                fmt::format("--shard {}: no view is left for it: {} selected, and a view is the least "
+                            "that a shard can have",
+                            text_of(shard_of(options)), selected_views(whole).size()));
+}
 
 Options parse_options(const std::vector<std::string>& arguments)
 {
@@ -264,9 +301,14 @@ std::size_t camera_set_size(const Options& options)
     return options.own_cameras ? options.own_cameras->views.size() : view_count(options.camera_set);
 }
 
+Shard shard_of(const Options& options)
+{
+    return options.shard.value_or(Shard());
+}
+
 std::vector<std::uint32_t> selected_views(const Options& options)
 {
-    return parse_views(options.views, camera_set_size(options));
+    return dealt(parse_views(options.views, camera_set_size(options)), shard_of(options));
 }
 
 } // namespace tetrace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/options/camera_file.h"
+#include "bench/options/shard.h"
 #include "core/isolation/isolation.h"
 #include "core/pack/kernel_id.h"
 #include "core/rays/camera.h"
@@ -9,7 +10,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -29,13 +32,15 @@ enum class Verb {
     compare,
     show,
     report,
+    merge,
     help,
     version
 };
 template <>
 inline constexpr auto enum_names<Verb> = names_up_to<Verb::version>("devices", "scenes", "build", "bench", "check",
                                                                     "render", "reproduce", "inspect", "trace", "dump",
-                                                                    "compare", "show", "report", "help", "version");
+                                                                    "compare", "show", "report", "merge", "help",
+                                                                    "version");
 
 /// The form of a result.
 enum class Format { table, json, csv, markdown };
@@ -86,6 +91,14 @@ struct ImagePixel {
 struct Options {
     Verb verb = Verb::help;
     std::string help_topic; ///< verb that help is about; empty: the program
+
+    std::optional<Shard> shard;         ///< empty: the whole run, or the rank's share under a launcher
+    std::vector<std::string> words;     ///< the command line, the verb first
+    std::vector<std::string> arguments; ///< the command line without what shards of one run may differ in
+    std::string job;                    ///< of the launcher that started this rank, as Rank::job
+    bool is_silent = false;             ///< whether standard output gets nothing: another rank prints for all
+    std::vector<unsigned> ranks;        ///< of `merge`, to simulate
+    double wait_s = 120;                ///< of rank 0, for a rank without a sign of life
 
     std::vector<std::filesystem::path> files; ///< result files that the verb reads, as many as file_arguments() says
 
@@ -171,7 +184,17 @@ struct Options {
 [[nodiscard]] std::string camera_set_name(const Options& options);
 [[nodiscard]] std::size_t camera_set_size(const Options& options);
 
-/// The view numbers asked for, ascending. Throws Error{usage} as parse_views() does.
+/// The shard that the options name; the whole run where they name none.
+[[nodiscard]] Shard shard_of(const Options& options);
+
+/// The words of a command line without options of these names, and without their values.
+[[nodiscard]] std::vector<std::string> without_options(const std::vector<std::string>& words,
+                                                       std::span<const std::string_view> names);
+
+/// Throws Error{usage} where the shard has no view. (`reproduce` has other parts, and does not need one of each scene.)
+void require_views(const Options& options);
+
+/// The view numbers asked for, ascending, of which the shard has its share. Throws Error{usage} as parse_views() does.
 [[nodiscard]] std::vector<std::uint32_t> selected_views(const Options& options);
 
 } // namespace tetrace

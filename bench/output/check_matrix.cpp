@@ -30,6 +30,13 @@ const RowRun* row_at(const Pointers& rows, const std::string& kernel, const std:
     return nullptr;
 }
 
+/// Of all hits; of merged shards, of their views' hashes.
+std::uint64_t hash_of_answers(const RowRun& row)
+{
+    const Traced& result = *traced(row);
+    return result.hit_hash != 0 ? result.hit_hash : result.views_hash;
+}
+
 /// Rows of one kernel that gave the same hits.
 struct Answer {
     std::string kernel, devices;
@@ -43,7 +50,7 @@ std::vector<Answer> answers_of(const Pointers& rows)
     for (const RowRun* row : rows) {
         if (traced(*row) == nullptr) continue;
         const auto known = std::ranges::find_if(answers, [&](const Answer& answer) {
-            return answer.kernel == kernel_title(row->key) && traced(*answer.first)->hit_hash == traced(*row)->hit_hash;
+            return answer.kernel == kernel_title(row->key) && hash_of_answers(*answer.first) == hash_of_answers(*row);
         });
         if (known != answers.end()) {
             known->devices += ", " + device_label(row->key);
@@ -112,7 +119,8 @@ Table answers_table(const std::string& scene, const std::vector<RowRun>& all)
     for (const Answer& answer : answers_of(rows)) {
         const Traced& result = *traced(*answer.first);
         const Verdicts& verdicts = result.verdicts;
-        table.add({answer.kernel, hash_text(result.hit_hash), verdicts.rays, verdicts.agreed, verdicts.ties,
+        table.add({answer.kernel, hash_text(hash_of_answers(*answer.first)), verdicts.rays, verdicts.agreed,
+                   verdicts.ties,
                    verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
                    verdicts.settled, verdicts.offset, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
     }
@@ -142,7 +150,8 @@ nlohmann::json matrix_json(const std::vector<RowRun>& rows)
         auto& cell = matrix[row.key.scene][kernel_title(row.key)][device_label(row.key)];
         cell["cell"] = conformity_text(row);
         cell["conformity"] = name_of(conformity_of(row));
-        if (const Traced* result = traced(row)) cell["hit_hash"] = hash_text(result->hit_hash);
+        const Traced* result = traced(row);
+        if (result != nullptr && result->hit_hash != 0) cell["hit_hash"] = hash_text(result->hit_hash);
     }
     return matrix;
 }

@@ -74,7 +74,8 @@ std::string class_name(const std::string& backend, const std::string& device_nam
 std::string output_xml(const RowRun& row)
 {
     std::string text = "conformity: " + conformity_text(row);
-    if (const Traced* result = traced(row)) text += "\nhit_hash: " + hash_text(result->hit_hash);
+    const Traced* result = traced(row);
+    if (result != nullptr && result->hit_hash != 0) text += "\nhit_hash: " + hash_text(result->hit_hash);
     return fmt::format("      <system-out>{}</system-out>\n", xml_text(text));
 }
 

@@ -55,6 +55,10 @@ std::string in_format(const Report& report, Format format, const Options& option
 
 void check_output(const Options& options)
 {
+    const bool is_shard = !shard_of(options).is_whole();
+    if (is_shard && (!options.out || format_of_file(options) != Format::json))
+        throw Error(ErrorKind::usage, "--shard: a shard's result is a JSON file, from which 'merge' reads it; name it "
+                                      "with --out FILE.json");
     if (!options.out) return;
     static_cast<void>(format_of_file(options));
     check_writable("--out", *options.out);
@@ -96,6 +100,7 @@ void deliver_to_file(const Options& options, const Report& report)
 void deliver(const Options& options, const Report& report)
 {
     if (options.out) deliver_to_file(options, report);
+    if (options.is_silent) return;
     const Format format = options.format.value_or(Format::table);
     if (format == Format::table) {
         const std::string text = report.sheet.text(style_of(options, terminal_columns(STDOUT_FILENO)));
@@ -139,6 +144,10 @@ nlohmann::json result_head(const Options& options)
     for (const auto& [key, number] : numbers)
         if (number) head["host"][key] = *number;
     if (!options.label.empty()) head["label"] = options.label;
+    if (const Shard shard = shard_of(options); !shard.is_whole()) {
+        head["shard"] = {{"number", shard.number}, {"of", shard.of}, {"arguments", options.arguments}};
+        if (!options.job.empty()) head["shard"]["job"] = options.job;
+    }
     if (options.packet_lanes != 0) head["packet_lanes"] = options.packet_lanes;
     return head;
 }

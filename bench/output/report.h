@@ -17,7 +17,8 @@ struct Report {
 };
 
 /// Fails early where deliver() would fail: the file's ending does not determine the form, or the file cannot be
-/// written. Throws Error{usage} or Error{invalid_input} naming the file.
+/// written; and where a shard has no JSON file, which alone can be merged. Throws Error{usage} or Error{invalid_input}
+/// naming the file.
 void check_output(const Options& options);
 
 /// Fails before a result overwrites one of its own inputs. Throws Error{usage} naming the option and both files where

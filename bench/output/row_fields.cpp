@@ -57,6 +57,12 @@ json text_or_nothing(const std::string& text)
     return text.empty() ? json() : json(text);
 }
 
+/// 0 is no hash, but that of what is not known.
+json hash_or_nothing(std::uint64_t hash)
+{
+    return hash == 0 ? json() : json(hash_text(hash));
+}
+
 json reason_or_nothing(const RowRun& row)
 {
     return text_or_nothing(reason_of(row));
@@ -137,7 +143,7 @@ std::vector<RowField> identity_fields()
         {"", "ray_order", named(&RowKey::ray_order), recorded(R"({ "enum": ["tiles", "morton", "shuffled"] })")},
         {"", "ray_hash",
          [](const RowRun& row) {
-             const bool are_given = traced(row) != nullptr && row.key.kernel.task == Task::rays;
+             const bool are_given = row.scene != nullptr && traced(row) != nullptr && row.key.kernel.task == Task::rays;
              return are_given ? json(hash_text(hash_of_rays(row))) : json();
          },
          recorded("hash", optional,
@@ -348,9 +354,12 @@ std::vector<RowField> answer_fields()
                 return verdicts.first_wrong ? wrong_ray_json(*verdicts.first_wrong) : json();
             }),
          recorded("wrong_ray")},
-        {"", "hit_hash", [](const Traced& trace) { return hash_text(trace.hit_hash); },
+        {"", "hit_hash", [](const Traced& trace) { return hash_or_nothing(trace.hit_hash); },
          recorded("hash", optional, "of all hits, view after view: equal hashes are equal answers, bit for bit"),
          csv("hit hash"), check("hits")},
+        {"", "views_hash", [](const Traced& trace) { return hash_or_nothing(trace.views_hash); },
+         recorded("hash", optional,
+                  "of the hashes of the views' hits, view after view: as hit_hash, and known of merged shards too")},
         {"", "status", status_name, check("status")},
         {"", "reason", reason_or_nothing, check("reason")},
     };

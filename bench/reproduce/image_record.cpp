@@ -66,6 +66,7 @@ json verdict_json(const ImageVerdict& verdict)
                    {"seconds", {verdict.kernel_s, verdict.wall_s, verdict.download_s}}};
     if (verdict.visits.rays > 0)
         object["visits"] = {verdict.visits.rays, verdict.visits.nodes, verdict.visits.triangles};
+    if (verdict.lost_at_device_cap > 0) object["lost_at_device_cap"] = verdict.lost_at_device_cap;
     if (verdict.compared) object["compared"] = {verdict.different, verdict.inexact, verdict.largest_ulps};
     if (verdict.first_different) object["first_different"] = differing_ray_json(*verdict.first_different);
     return object;
@@ -85,6 +86,7 @@ ImageVerdict verdict_from(const json& object)
     verdict.kernel_s = amount_from(seconds.at(0));
     verdict.wall_s = amount_from(seconds.at(1));
     verdict.download_s = amount_from(seconds.at(2));
+    if (object.contains("lost_at_device_cap")) verdict.lost_at_device_cap = number_from(object["lost_at_device_cap"]);
     verdict.compared = object.contains("compared");
     if (verdict.compared) {
         const json& compared = object["compared"];
@@ -137,7 +139,7 @@ void require_possible(const ImageRecord& record)
     for (const std::uint64_t count :
          {totals.hits, totals.misses, totals.lost, totals.unwritten, judged.rays, judged.agreed, judged.ties,
           judged.settled, judged.wrong, judged.lost, judged.offset, verdict.different, verdict.inexact,
-          verdict.visits.rays, record.lost_at_cap, record.flawed.rays, record.any.rays})
+          verdict.visits.rays, verdict.lost_at_device_cap, record.lost_at_cap, record.flawed.rays, record.any.rays})
         if (count > totals.rays) throw std::domain_error(fmt::format("{} of {} rays", count, totals.rays));
     for (const FlatWalks& walks : {record.flawed, record.any})
         if (walks.through_flat > walks.rays)

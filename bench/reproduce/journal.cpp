@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/try_lock.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <string_view>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -68,6 +68,66 @@ std::string differences(const json& theirs, const json& ours)
     return text.empty() ? "\n  it was written by another version" : text;
 }
 
+[[noreturn]] void fail_at(const char* doing, const std::filesystem::path& path)
+{
+    throw Error(ErrorKind::invalid_input, fmt::format("{} the journal '{}': {}; name another file with --out", doing,
+                                                      path.string(), std::strerror(errno)));
+}
+
+/// The whole file.
+std::string read_text(int file, const std::filesystem::path& path)
+{
+    struct stat found {};
+    if (::fstat(file, &found) != 0) fail_at("reading", path);
+    auto size = static_cast<std::size_t>(found.st_size);
+    if (size > largest_journal)
+        throw Error(ErrorKind::invalid_input, fmt::format("the journal '{}' is larger than 1 GiB, which no journal is; "
+                                                          "remove the file to begin anew",
+                                                          path.string()));
+    std::string text(size, '\0');
+    for (std::size_t done = 0; done < size;) {
+        const ssize_t read = ::pread(file, text.data() + done, size - done, static_cast<off_t>(done));
+        if (read < 0 && errno == EINTR) continue;
+        if (read < 0) fail_at("reading", path);
+        if (read == 0) text.resize(size = done);
+        done += static_cast<std::size_t>(read);
+    }
+    return text;
+}
+
+/// Without the last line where that is incomplete.
+std::string whole_lines(std::string text)
+{
+    text.erase(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
+    return text;
+}
+
+/// The entries of whole lines. last: the last one's checksum.
+std::vector<json> parse(std::string_view text, const std::filesystem::path& path, std::uint64_t& last)
+{
+    std::vector<json> parsed;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(line.size() + 1);
+        const std::string_view entry = entry_of(line);
+        last = checksum(entry, last);
+        const bool is_sound = line == line_of(entry, last);
+        parsed.push_back(is_sound ? json::parse(entry, nullptr, false) : json());
+        if (!parsed.back().is_object())
+            throw Error(ErrorKind::invalid_input,
+                        fmt::format("line {} of the journal '{}' is damaged, or one before it is missing: its checksum "
+                                    "is another; remove the file to begin anew",
+                                    parsed.size(), path.string()));
+    }
+    return parsed;
+}
+
+/// Closes it at the end.
+struct OpenFile {
+    int number = -1;
+    ~OpenFile() { ::close(number); }
+};
+
 } // namespace
 
 Journal::Journal(std::filesystem::path path, const json& asked, bool resume) : path_(std::move(path))
@@ -85,19 +145,23 @@ Journal::Journal(std::filesystem::path path, const json& asked, bool resume) : p
     }
 }
 
+Journal::Journal(std::vector<json> merged) : finished_(true), entries_(std::move(merged)) {}
+
 Journal::~Journal()
 {
-    ::close(file_);
+    if (file_ >= 0) ::close(file_);
 }
 
 void Journal::append(const json& entry)
 {
+    if (is_merged()) return;
     finished_ = false; // a repeated run may add what a whole run lacked: a device that could not be measured
     write_line(entry);
 }
 
 void Journal::reject(const std::string& why) const
 {
+    if (is_merged()) throw Error(ErrorKind::usage, fmt::format("merging shards: {}", why));
     throw Error(ErrorKind::usage, fmt::format("--resume: {}; remove '{}' to begin anew", why, path_.string()));
 }
 
@@ -122,7 +186,9 @@ void Journal::open_and_lock()
     file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0666);
     if (file_ < 0 || ::fstat(file_, &found) != 0) fail("opening");
     require_regular();
-    if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+    const LockAttempt attempt = try_lock(file_);
+    if (attempt == LockAttempt::taken) return;
+    if (attempt == LockAttempt::failed) fail("locking");
     ::close(file_);
     throw Error(ErrorKind::usage, fmt::format("the journal '{}' is being written by another run; wait for its end, or "
                                               "name another file with --out",
@@ -132,8 +198,7 @@ void Journal::open_and_lock()
 /// Whether there are entries to continue from.
 bool Journal::read(const json& head, bool resume)
 {
-    std::string text = read_text();
-    text.erase(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1); // the last line is incomplete
+    const std::string text = whole_lines(read_text(file_, path_));
     if (text.empty()) return false;
     if (is_old(text)) {
         if (!resume && text.ends_with("\n" + finished_line.dump() + "\n")) return false;
@@ -142,7 +207,7 @@ bool Journal::read(const json& head, bool resume)
                                                   "begin anew",
                                                   path_.string()));
     }
-    const std::vector<json> parsed = parse(text);
+    const std::vector<json> parsed = parse(text, path_, checksum_);
     finished_ = parsed.back() == finished_line;
     if (!resume && finished_) {
         finished_ = false;
@@ -163,47 +228,6 @@ bool Journal::read(const json& head, bool resume)
     return true;
 }
 
-/// The whole file.
-std::string Journal::read_text() const
-{
-    struct stat found {};
-    if (::fstat(file_, &found) != 0) fail("reading");
-    auto size = static_cast<std::size_t>(found.st_size);
-    if (size > largest_journal)
-        throw Error(ErrorKind::invalid_input, fmt::format("the journal '{}' is larger than 1 GiB, which no journal is; "
-                                                          "remove the file to begin anew",
-                                                          path_.string()));
-    std::string text(size, '\0');
-    for (std::size_t done = 0; done < size;) {
-        const ssize_t read = ::pread(file_, text.data() + done, size - done, static_cast<off_t>(done));
-        if (read < 0 && errno == EINTR) continue;
-        if (read < 0) fail("reading");
-        if (read == 0) text.resize(size = done);
-        done += static_cast<std::size_t>(read);
-    }
-    return text;
-}
-
-/// The entries of whole lines; takes over the last one's checksum.
-std::vector<json> Journal::parse(std::string_view text)
-{
-    std::vector<json> parsed;
-    while (!text.empty()) {
-        const std::string_view line = text.substr(0, text.find('\n'));
-        text.remove_prefix(line.size() + 1);
-        const std::string_view entry = entry_of(line);
-        checksum_ = checksum(entry, checksum_);
-        const bool is_sound = line == line_of(entry, checksum_);
-        parsed.push_back(is_sound ? json::parse(entry, nullptr, false) : json());
-        if (!parsed.back().is_object())
-            throw Error(ErrorKind::invalid_input,
-                        fmt::format("line {} of the journal '{}' is damaged, or one before it is missing: its checksum "
-                                    "is another; remove the file to begin anew",
-                                    parsed.size(), path_.string()));
-    }
-    return parsed;
-}
-
 void Journal::write_line(const json& line)
 {
     const std::string entry = text_of(line);
@@ -220,8 +244,25 @@ void Journal::write_line(const json& line)
 
 void Journal::fail(const char* doing) const
 {
-    throw Error(ErrorKind::invalid_input, fmt::format("{} the journal '{}': {}; name another file with --out", doing,
-                                                      path_.string(), std::strerror(errno)));
+    fail_at(doing, path_);
+}
+
+JournalFile read_journal(const std::filesystem::path& path)
+{
+    const OpenFile file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (file.number < 0)
+        throw Error(ErrorKind::missing,
+                    fmt::format("the journal '{}' cannot be read: {}; it belongs to the result, and "
+                                "goes where that goes",
+                                path.string(), std::strerror(errno)));
+    std::uint64_t last = 0;
+    std::vector<json> lines = parse(whole_lines(read_text(file.number, path)), path, last);
+    if (lines.empty() || !lines.front().contains(head_key))
+        throw Error(ErrorKind::invalid_input, fmt::format("'{}' is no journal of this tetrace", path.string()));
+    JournalFile journal{lines.front()[head_key], {}, lines.back() == finished_line};
+    std::copy_if(lines.begin() + 1, lines.end(), std::back_inserter(journal.entries),
+                 [](const json& line) { return line != finished_line; });
+    return journal;
 }
 
 } // namespace tetrace

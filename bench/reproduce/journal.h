@@ -23,6 +23,9 @@ public:
     /// another process is writing it; Error{invalid_input} naming file and line where a line is damaged, missing or out
     /// of its order, where it is no regular file, exceeds 1 GiB, or cannot be read or written.
     Journal(std::filesystem::path path, const nlohmann::json& head, bool resume);
+    /// The entries of all shards of a run, in the order in which it would have written them: a journal without a file,
+    /// to which nothing is added.
+    explicit Journal(std::vector<nlohmann::json> merged);
     ~Journal();
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;
@@ -30,7 +33,10 @@ public:
     /// The entries of the run that this one continues, in the order in which they were appended.
     [[nodiscard]] const std::vector<nlohmann::json>& entries() const { return entries_; }
     void append(const nlohmann::json& entry);
-    /// Throws Error{usage} that says why the run cannot continue from the entries, and what to do.
+    /// Whether it is of merged shards.
+    [[nodiscard]] bool is_merged() const { return file_ < 0; }
+    /// Throws Error{usage} that says why the run cannot continue from the entries, and what to do, or why shards cannot
+    /// be merged.
     [[noreturn]] void reject(const std::string& why) const;
     /// Marks the run as complete: a later run starts over without asking or, with resume, repeats its result.
     void finish();
@@ -38,8 +44,6 @@ public:
 private:
     void open_and_lock();
     [[nodiscard]] bool read(const nlohmann::json& head, bool resume);
-    [[nodiscard]] std::string read_text() const;
-    [[nodiscard]] std::vector<nlohmann::json> parse(std::string_view text);
     void write_line(const nlohmann::json& line);
     [[noreturn]] void fail(const char* doing) const;
 
@@ -49,5 +53,15 @@ private:
     std::uint64_t checksum_ = 0; ///< of the last line
     std::vector<nlohmann::json> entries_;
 };
+
+/// A journal as its file has it.
+struct JournalFile {
+    nlohmann::json head;
+    std::vector<nlohmann::json> entries;
+    bool finished = false;
+};
+/// Reads a journal that no run continues. Throws Error{missing} where there is none, Error{invalid_input} as Journal
+/// does where it is damaged.
+[[nodiscard]] JournalFile read_journal(const std::filesystem::path& path);
 
 } // namespace tetrace

@@ -45,7 +45,8 @@ public:
     RowRecorder& operator=(const RowRecorder&) = delete;
 
     /// stage: for the progress line. journal: may be null.
-    /// Throws Error{usage} where the journal has other parts or other rows, or an entry is damaged.
+    /// Throws Error{usage} where the journal has other parts or other rows, or an entry is damaged. Of a merged journal
+    /// nothing is traced: it must have all parts.
     void run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress);
 
 protected:
@@ -53,6 +54,7 @@ protected:
     [[noreturn]] void reject_journal(const std::string& why) const { journal_->reject(why); }
 
 private:
+    [[nodiscard]] bool is_merged() const { return journal_ != nullptr && journal_->is_merged(); }
     /// The members of a journal entry that identify the part; the answers are added to them.
     [[nodiscard]] virtual nlohmann::json head_of(std::size_t part) const = 0;
     [[nodiscard]] virtual bool is_ours(const nlohmann::json& entry) const = 0;

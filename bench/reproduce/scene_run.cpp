@@ -23,9 +23,11 @@ public:
 private:
     [[nodiscard]] json head_of(std::size_t view) const override
     {
-        return {{"scene", run_->scene->label()},
-                {"scene_hash", hash_text(run_->scene->loaded().hash)},
-                {"view", run_->scene->view_numbers()[view]}};
+        json head = {{"scene", run_->scene->label()},
+                     {"scene_hash", hash_text(run_->scene->loaded().hash)},
+                     {"view", run_->scene->view_numbers()[view]}};
+        if (view == 0) head["open_s"] = run_->open_s;
+        return head;
     }
 
     [[nodiscard]] bool is_ours(const json& entry) const override
@@ -137,16 +139,38 @@ Sampling sampling_of(const SceneWork& scene, std::size_t population)
     return is_whole ? Sampling::whole : Sampling::even;
 }
 
+namespace {
+
+void load_scene_of(SceneRun& run, const Options& options)
+{
+    run.scene = std::make_unique<SceneWork>(load_work(run.build.request, options, run.build.label));
+    run.likeness = likeness_of(run.build.scene, run.scene->loaded().scene, run.scene->counts());
+    run.sampling = sampling_of(*run.scene, view_count(options.camera_set));
+    if (run.build.robustness) run.flat = std::make_unique<FlatTets>(*run.scene);
+}
+
+} // namespace
+
+SceneRun recorded_scene_run(const SceneBuild& build, const Options& options, std::vector<RowRun> rows)
+{
+    SceneRun run;
+    run.build = build;
+    load_scene_of(run, options);
+    run.rows = std::move(rows);
+    for (RowRun& row : run.rows)
+        row.scene = run.scene.get();
+    run.images.resize(run.rows.size());
+    return run;
+}
+
 SceneRun open_scene_run(const SceneBuild& build, const Options& options)
 {
     SceneRun run;
     run.build = build;
+    const Stopwatch watch;
     const auto keys = rows_of_build(build, options);
     try {
-        run.scene = std::make_unique<SceneWork>(load_work(build.request, options, build.label));
-        run.likeness = likeness_of(build.scene, run.scene->loaded().scene, run.scene->counts());
-        run.sampling = sampling_of(*run.scene, view_count(options.camera_set));
-        if (build.robustness) run.flat = std::make_unique<FlatTets>(*run.scene);
+        load_scene_of(run, options);
         run.verifier = std::make_unique<Verifier>(*run.scene, options);
         for (const RowKey& key : keys)
             run.rows.push_back(open_row(key, *run.scene, options));
@@ -156,6 +180,7 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
             run.rows.push_back(failed_row(key, error));
     }
     run.images.resize(run.rows.size());
+    run.open_s = watch.seconds();
     return run;
 }
 

@@ -38,6 +38,7 @@ struct SceneRun : RecordedRows {
     Likeness likeness;                ///< to the paper's
     std::unique_ptr<Verifier> verifier;
     std::unique_ptr<FlatTets> flat; ///< null where nothing needs it
+    double open_s = 0;              ///< seconds for loading the scene and opening its rows
 
     std::vector<std::optional<SetupCost>> costs; ///< row by row; empty where nothing needs it
 
@@ -70,6 +71,9 @@ using SceneRuns = std::vector<const SceneRun*>;
 
 /// Loads the scene and opens its rows; a scene that cannot be loaded ends its rows with the reason.
 [[nodiscard]] SceneRun open_scene_run(const SceneBuild& build, const Options& options);
+
+/// Loads the scene alone, for rows that were read from results, for merging. Throws what load_work() throws.
+[[nodiscard]] SceneRun recorded_scene_run(const SceneBuild& build, const Options& options, std::vector<RowRun> rows);
 
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
 /// journal. Views that are in the journal are taken from there. journal: may be null.

@@ -83,37 +83,38 @@ public:
     }
 
 private:
-    [[nodiscard]] json head_of(std::size_t batch) const override { return {{"batch", batch}}; }
+    [[nodiscard]] json head_of(std::size_t part) const override { return {{"batch", run_->shard.part(part)}}; }
 
     [[nodiscard]] bool is_ours(const json& entry) const override { return entry.contains("batch"); }
 
-    void check_entry(std::size_t batch, const json& entry) const override
+    void check_entry(std::size_t part, const json& entry) const override
     {
+        const std::size_t batch = run_->shard.part(part);
         if (batch >= batch_count(run_->size) || entry["batch"] != batch)
             reject_journal("the journal's batches of searches are not those asked for");
     }
 
-    void prepare(RowRun& row, std::size_t batch) override
+    void prepare(RowRun& row, std::size_t part) override
     {
-        load(batch);
+        load(run_->shard.part(part));
         row.session->set_rays(rays_.quads);
     }
 
-    [[nodiscard]] TraceJob job_of(const RowRun&, std::size_t batch) const override
+    [[nodiscard]] TraceJob job_of(const RowRun&, std::size_t part) const override
     {
-        return search_job(std::size_t{tets_of(batch)} * run_->size.rays);
+        return search_job(std::size_t{tets_of(run_->shard.part(part))} * run_->size.rays);
     }
 
-    [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t batch) override
+    [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t part) override
     {
         RowRun& row = run_->rows[i];
         ImageRecord record;
         ImageVerdict& verdict = record.verdict;
-        prepare(row, batch);
-        const auto [kernel_s, wall_s] = timed_launch(*row.session, job_of(row, batch));
+        prepare(row, part);
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, job_of(row, part));
         verdict.kernel_s = kernel_s;
         verdict.wall_s = wall_s;
-        verdict.hit_hash = hash_of_answers(row, batch);
+        verdict.hit_hash = hash_of_answers(row, part);
         verdict.download_s = row.session->download_s();
         record.chained_hash = hash_of(faces_, run_->images[i].empty() ? 0 : run_->images[i].back().chained_hash);
         compare(row, verdict);
@@ -201,12 +202,21 @@ std::uint32_t batch_count(const SearchSize& size)
     return (size.tets + batch_tets - 1) / batch_tets;
 }
 
-SearchRun open_search_run(const Options& options, const std::vector<Backend*>& backends)
+SearchRun recorded_search_run(const Options& options, std::vector<RowRun> rows)
 {
     SearchRun run;
     run.size = options.searches;
     run.batch_tets = tets_of_batch(run.size);
+    run.shard = shard_of(options);
     run.threads = resolved_threads(options);
+    run.rows = std::move(rows);
+    run.images.resize(run.rows.size());
+    return run;
+}
+
+SearchRun open_search_run(const Options& options, const std::vector<Backend*>& backends)
+{
+    SearchRun run = recorded_search_run(options, {});
     for (const RowKey& key : select_search_rows(options, backends)) {
         Packed& tets = run.tets[key.kernel.layout];
         if (tets.data.tet_count == 0) tets.data = search_tets(run.size.tets, key.kernel.layout);
@@ -219,7 +229,7 @@ SearchRun open_search_run(const Options& options, const std::vector<Backend*>& b
 void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress)
 {
     BatchRecorder recorder(run, options);
-    recorder.run(batch_count(run.size), "reproducing, exit searches", journal, progress);
+    recorder.run(run.shard.share(batch_count(run.size)), "reproducing, exit searches", journal, progress);
 }
 
 } // namespace tetrace

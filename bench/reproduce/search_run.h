@@ -10,6 +10,7 @@ namespace tetrace {
 struct SearchRun : RecordedRows {
     SearchSize size;
     std::uint32_t batch_tets = 0;  ///< of each batch; the last may have fewer
+    Shard shard;                   ///< the batches that are done
     unsigned threads = 1;          ///< host threads of rows whose key gives none
     std::map<Layout, Packed> tets; ///< the data that sessions work on
 };
@@ -25,6 +26,9 @@ struct SearchRun : RecordedRows {
 /// Opens the rows of task search that the options select.
 /// Throws Error{usage} where nothing is selected.
 [[nodiscard]] SearchRun open_search_run(const Options& options, const std::vector<Backend*>& backends = all_backends());
+
+/// A run of rows that were read from results, for merging: it has no tets.
+[[nodiscard]] SearchRun recorded_search_run(const Options& options, std::vector<RowRun> rows);
 
 /// Does every batch with every row. Compares each face with openmp's and judges it by exact arithmetic, outside the
 /// timing; then times the batch and appends it to the journal. Batches that are in the journal are taken from there.

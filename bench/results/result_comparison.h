@@ -63,10 +63,10 @@ struct ResultComparison {
 
 /// Compares rows of equal names, of those whose name the regular expression matches (bench/options/name_filter.h;
 /// empty: all). A row timed in both whose scenes' hashes, views, sizes or hit hashes differ did different work, and is
-/// not compared; so did exit searches of other numbers (bench/results/same_work.h). A row is noisy where its pulse moved by
-/// noisy_pulse (bench/statistics/statistics.h) in either run, or, on the host and one machine, between the two. Throws
-/// Error{invalid_input} where all such rows did different work, with the reasons; and where there is nothing to compare:
-/// before has no timed row, or the two have no row in common.
+/// not compared; so did exit searches of other numbers (bench/results/same_work.h). A row is noisy where its pulse
+/// moved by noisy_pulse (bench/statistics/statistics.h) in either run, or, on the host and one machine, between the
+/// two. Throws Error{invalid_input} where all such rows did different work, with the reasons; and where there is
+/// nothing to compare: before has no timed row, or the two have no row in common.
 [[nodiscard]] ResultComparison compare_results(const ResultFile& before, const ResultFile& after,
                                                const std::string& filter, double tolerance);
 

@@ -199,6 +199,7 @@ ResultRow read_row(const ResultValue& value)
     ResultRow row = read_any_row(value);
     row.scene = value.at("scene").line();
     if (const auto hash = value.find("hit_hash")) row.hit_hash = hash->hash();
+    if (const auto hash = value.find("views_hash")) row.views_hash = hash->hash();
     if (const auto rates = value.find("rates"))
         if (const auto rate = rates->find("mrays_per_s")) row.mrays_per_s = rate->number();
     return row;

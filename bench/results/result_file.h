@@ -48,10 +48,11 @@ struct ResultRow {
     std::string device, driver;
     std::optional<DeviceKind> device_kind; ///< empty where the row has no device
     std::uint64_t device_index = 0;        ///< in its backend
-    std::string hit_hash;                  ///< empty where no rays were traced; of searches, the hash of their faces
-    std::optional<double> mrays_per_s;     ///< of the median sample; of searches, millions of those
-    std::optional<double> pulse_ratio;     ///< of the pulse beside its samples to the run's fastest
-    std::vector<double> samples_s; ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
+    std::string hit_hash; ///< empty where no rays were traced, or only by shards; of searches, the hash of their faces
+    std::string views_hash;            ///< empty in results before 2026-11-23 as well
+    std::optional<double> mrays_per_s; ///< of the median sample; of searches, millions of those
+    std::optional<double> pulse_ratio; ///< of the pulse beside its samples to the run's fastest
+    std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
     [[nodiscard]] std::string api() const { return api_name(backend, device_index); }
 };

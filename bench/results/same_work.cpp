@@ -28,12 +28,14 @@ std::string other_searches(const ResultFile& a, const ResultFile& b)
     return fmt::format("{} searches in A, {} in B", a.search_size, b.search_size);
 }
 
+/// Merged shards have the hash of their views alone.
 std::string other_answers(const ResultRow& a, const ResultRow& b)
 {
-    if (a.hit_hash.empty() || b.hit_hash.empty())
-        return fmt::format("no hit hash in {}", a.hit_hash.empty() ? "A" : "B");
-    return a.hit_hash == b.hit_hash ? std::string()
-                                    : fmt::format("hit hash {} in A and {} in B", a.hit_hash, b.hit_hash);
+    const bool have_hits = !a.hit_hash.empty() && !b.hit_hash.empty();
+    const bool have_views = !a.views_hash.empty() && !b.views_hash.empty();
+    const auto hash = have_views && !have_hits ? &ResultRow::views_hash : &ResultRow::hit_hash;
+    if ((a.*hash).empty() || (b.*hash).empty()) return fmt::format("no hit hash in {}", (a.*hash).empty() ? "A" : "B");
+    return a.*hash == b.*hash ? std::string() : fmt::format("hit hash {} in A and {} in B", a.*hash, b.*hash);
 }
 
 } // namespace

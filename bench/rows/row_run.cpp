@@ -1,10 +1,12 @@
 #include "bench/rows/row_run.h"
 
 #include "bench/rows/device_abilities.h"
+#include "core/base/hash.h"
 #include "core/base/printable.h"
 #include "scenes/cache.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <new>
 
@@ -88,6 +90,7 @@ void Traced::add(const ImageVerdict& image)
     kernel_s += image.kernel_s;
     wall_s += image.wall_s;
     download_s += image.download_s;
+    views_hash = hash_of(std::array{image.hit_hash}, views_hash);
 }
 
 std::string device_kind_text(const RowRun& row)

@@ -64,14 +64,15 @@ struct Traced {
     std::uint64_t largest_ulps = 0; ///< of t, u and v, among those allowed
     std::optional<DifferingRay> first_different;
     std::uint64_t lost_at_device_cap = 0; ///< lost rays with Device::most_steps steps, fewer than the proof allows
-    std::uint64_t hit_hash = 0;           ///< of all hits, view after view
+    std::uint64_t hit_hash = 0;           ///< of all hits, view after view; 0 where shards had them, not known
+    std::uint64_t views_hash = 0;         ///< of the hashes of the views, one after the other; shards know it too
     std::uint64_t first_view_hash = 0;
     std::uint64_t last_view_hash = 0;
     double kernel_s = 0; ///< device seconds of this first pass
     double wall_s = 0;   ///< launch to end, by the host's clock
     double download_s = 0;
 
-    /// Adds an image, except its hash: images are added in the order of views.
+    /// Adds an image, except for hit_hash: images are added in the order of views.
     void add(const ImageVerdict& image);
 };
 struct Skipped {

@@ -193,6 +193,7 @@ Traced traced_from(const ResultValue& value, const ResultRow& row, bool with_ray
     // Whether any bit differs is not recorded by itself.
     traced.inexact = value.text_at("conformity").starts_with("within") ? 1 : 0;
     if (!row.hit_hash.empty()) traced.hit_hash = std::stoull(row.hit_hash, nullptr, 16);
+    if (!row.views_hash.empty()) traced.views_hash = std::stoull(row.views_hash, nullptr, 16);
     if (const auto times = value.find("times")) {
         traced.kernel_s = number_at(*times, "first_kernel_s");
         traced.wall_s = number_at(*times, "first_wall_s");
@@ -248,6 +249,34 @@ RowRun row_from(const ResultValue& value, const ResultRow& row, bool with_rays)
     return run;
 }
 
+/// Only the row on one thread has that in its key: "/threads:1".
+RowRun search_row_from(const ResultValue& value)
+{
+    RowRun run;
+    run.key.scene = search_scene;
+    run.key.backend = value.at("backend").line();
+    const auto is_called = [&](const char* key, std::string_view name) { return value.at(key).line() == name; };
+    const auto kernels = kernels_of(Task::search);
+    const auto kernel = std::ranges::find_if(kernels, [&](const KernelId& one) {
+        return is_called("method", name_of(one.method)) && is_called("layout", name_of(one.layout)) &&
+               is_called("math", name_of(one.math));
+    });
+    if (kernel == kernels.end()) value.at("method").reject("and its layout and math are no search of this tetrace");
+    run.key.kernel = *kernel;
+    if (value.find("device_index")) run.key.device = value.at("device_index").count();
+    if (value.at("name").line().ends_with("/threads:1")) run.key.threads = 1;
+    run.backend = &backend_of(value);
+    if (const auto device = value.find("device")) run.device = device_from(*device);
+    if (const auto test = value.find("self_test")) run.self_test = self_test_from(*test);
+    const std::string status = value.at("status").line(), reason = printable_text(value.text_at("reason"));
+    if (status == "skipped") run.outcome = Skipped{Status::skipped, reason};
+    if (status == "unsupported") run.outcome = Skipped{Status::unsupported, reason};
+    if (status == "error") run.outcome = Failed{ErrorKind::internal, reason};
+    if (status == "wrong" && !value.find("verification")) run.outcome = Failed{ErrorKind::wrong_result, reason};
+    read_times(run, value);
+    return run;
+}
+
 RowDevice row_device_from(const ResultValue& value)
 {
     RowDevice device;
@@ -272,6 +301,15 @@ std::vector<RowRun> read_rows(const ResultFile& file)
     const auto values = file.section().at("rows").items();
     for (std::size_t i = 0; i < values.size(); ++i)
         rows.push_back(row_from(values[i], file.rows.at(i), file.head.verb == "check"));
+    return rows;
+}
+
+std::vector<RowRun> read_search_rows(const ResultFile& file)
+{
+    std::vector<RowRun> rows;
+    if (const auto searches = file.section().find("searches"))
+        for (const ResultValue& value : searches->at("rows").items())
+            rows.push_back(search_row_from(value));
     return rows;
 }
 

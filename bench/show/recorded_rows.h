@@ -11,6 +11,9 @@ namespace tetrace {
 /// what its status needs.
 [[nodiscard]] std::vector<RowRun> read_rows(const ResultFile& file);
 
+/// The rows of searches of a result of `reproduce`, in the same way, but without their answers: batches have those.
+[[nodiscard]] std::vector<RowRun> read_search_rows(const ResultFile& file);
+
 /// The devices of a result, for these rows of it. Results of schema version 1 and those of `check` have none: then they
 /// are the rows' own.
 [[nodiscard]] std::vector<RowDevice> read_devices(const ResultFile& file, const std::vector<RowRun>& rows);

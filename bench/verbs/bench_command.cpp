@@ -1,3 +1,4 @@
+#include "bench/merging/view_journal.h"
 #include "bench/output/bench_tables.h"
 #include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
@@ -44,7 +45,10 @@ int bench_command(const Options& options)
     BenchResult result;
     result.missing_scenes = missing_default_scenes(options);
     Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
-    result.run = open_and_verify(keys, options, {}, budget);
+    ViewJournal journal(options);
+    result.run = open_and_verify(
+        keys, options, [&](const SeenImage& image) { journal.see(image); }, budget);
+    journal.write();
     result.measurement = measure_rows(result.run.rows, options, flags, budget);
     result.devices = devices_of(result.run.rows);
     measure_devices(result.devices, session_options(options));

@@ -1,4 +1,5 @@
 #include "bench/measuring/conformity.h"
+#include "bench/merging/view_journal.h"
 #include "bench/options/anonymous.h"
 #include "bench/output/check_differences.h"
 #include "bench/output/check_matrix.h"
@@ -21,12 +22,6 @@ namespace {
 bool on_standard_output(const std::optional<std::filesystem::path>& file)
 {
     return file && *file == "-";
-}
-
-/// Whether the row fails the check. A row without an answer does not fail by itself (see exit_code and --require).
-bool fails_check(const RowRun& row, const Options& options)
-{
-    return fails(row, options.allow_flawed) || conformity_of(row) == Conformity::not_exact;
 }
 
 /// Without pictures where none were asked for.
@@ -67,21 +62,6 @@ Report check_report(const Checked& checked, const Options& options)
     if (options.junit && !on_standard_output(options.junit)) report.sheet.labelled("JUnit", options.junit->string());
     if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
-}
-
-/// problem: why the check ended early, or fails although no row does; empty where neither is so.
-void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem = {})
-{
-    if (!options.junit) return;
-    std::vector<bool> failed;
-    for (const RowRun& row : rows)
-        failed.push_back(fails_check(row, options));
-    std::string xml = junit_xml(rows, failed, problem);
-    if (options.anonymous) xml = anonymous_text(xml, options);
-    if (on_standard_output(options.junit))
-        print(xml);
-    else
-        write_whole(*options.junit, xml);
 }
 
 /// Rows of Embree's own BVH and of drivers' are judged only where asked for: they make no claim to break.
@@ -131,9 +111,12 @@ int check(const Options& options, Checked& checked)
         say(sentence);
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
+    ViewJournal journal(options);
     checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
+        journal.see(image);
         if (checked.pictures != nullptr) checked.pictures->see(image);
     });
+    journal.write();
     const auto& rows = checked.run.rows;
     if (!on_standard_output(options.junit))
         deliver(options, check_report(checked, options));
@@ -153,6 +136,25 @@ int list_selected(const Options& options)
 }
 
 } // namespace
+
+bool fails_check(const RowRun& row, const Options& options)
+{
+    return fails(row, options.allow_flawed) || conformity_of(row) == Conformity::not_exact;
+}
+
+void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem)
+{
+    if (!options.junit) return;
+    std::vector<bool> failed;
+    for (const RowRun& row : rows)
+        failed.push_back(fails_check(row, options));
+    std::string xml = junit_xml(rows, failed, problem);
+    if (options.anonymous) xml = anonymous_text(xml, options);
+    if (on_standard_output(options.junit))
+        print(xml);
+    else
+        write_whole(*options.junit, xml);
+}
 
 int check_command(const Options& asked)
 {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/options/options.h"
+#include "bench/rows/row_run.h"
 
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@ int dump_command(const Options& options);
 int compare_command(const Options& options);
 int show_command(const Options& options);
 int report_command(const Options& options);
+int merge_command(const Options& options);
+
+/// Whether the row fails `check`. A row without an answer does not fail by itself (see exit_code and --require).
+[[nodiscard]] bool fails_check(const RowRun& row, const Options& options);
 
 /// `check --defects`. options: with the default layouts of check.
 int check_defects(const Options& options);
@@ -30,6 +35,13 @@ void require_devices(const std::vector<std::string>& backends);
 
 /// The command line that run_program() was given, with one more option unless it has that, as a shell takes it.
 [[nodiscard]] std::string command_with(const std::string& option);
+
+/// Writes the file of --junit where it was asked for. problem: why the check ended early, or fails although no row
+/// does; empty where neither is so.
+void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem = {});
+
+/// A command line of tetrace's with these arguments, as a shell takes it.
+[[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);
 
 /// Runs the program on a command line without its name; prints errors; returns the exit code.
 int run_program(const std::vector<std::string>& arguments);

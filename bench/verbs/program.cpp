@@ -3,6 +3,7 @@
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
+#include "bench/verbs/ranks.h"
 #include "core/base/error.h"
 #include "core/isolation/driver_server.h"
 #include "core/isolation/isolation.h"
@@ -38,6 +39,7 @@ int run_verb(const Options& options)
     case Verb::compare: return compare_command(options);
     case Verb::show: return show_command(options);
     case Verb::report: return report_command(options);
+    case Verb::merge: return merge_command(options);
     case Verb::help: print(help_text(options.help_topic)); return 0;
     case Verb::version: print(version_text()); return 0;
     }
@@ -46,11 +48,17 @@ int run_verb(const Options& options)
 
 } // namespace
 
-std::string command_with(const std::string& option)
+std::string command_of(const std::vector<std::string>& arguments)
 {
     std::string text = "tetrace";
-    for (const std::string& argument : command_line())
+    for (const std::string& argument : arguments)
         text += " " + shell_word(argument);
+    return text;
+}
+
+std::string command_with(const std::string& option)
+{
+    const std::string text = command_of(command_line());
     const bool has = std::ranges::find(command_line(), option) != command_line().end();
     return has ? text : text + " " + option;
 }
@@ -63,7 +71,9 @@ int run_program(const std::vector<std::string>& arguments)
             return run_null_hardware({arguments.begin() + 1, arguments.end()});
         if (!arguments.empty() && arguments.front() == driver_verb) // started by DriverChild; no verb for users
             return serve_driver({arguments.begin() + 1, arguments.end()}, direct_backends());
-        return run_verb(parse_options(arguments));
+        const Options options = parse_options(arguments);
+        const auto rank = is_shared(options) ? this_rank() : std::nullopt;
+        return rank ? run_rank(*rank, options, run_verb) : run_verb(options);
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());
         const std::string words = words_when_interrupted();

@@ -1,20 +1,12 @@
 #include "bench/options/identity.h"
-#include "bench/output/bench_report.h"
-#include "bench/output/device_json.h"
-#include "bench/output/row_json.h"
-#include "bench/reproduce/scene_run.h"
-#include "bench/reproduce/tables/paper_table.h"
 #include "bench/reproduce/tables/pictures.h"
-#include "bench/reproduce/tables/recorded_tables.h"
-#include "bench/reproduce/tables/tables.h"
 #include "bench/reproduce/yardsticks.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
-#include "bench/verbs/reproduce_builds.h"
+#include "bench/verbs/reproduction.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <iterator>
 
 namespace tetrace {
 
@@ -22,65 +14,25 @@ namespace {
 
 using nlohmann::json;
 
-/// All data of the result.
-struct Reproduction {
-    std::vector<SceneRun> runs;
-    std::optional<SearchRun> searches;
-    json search_records; ///< as results record them; null without searches
-    RunProgress progress;
-
-    /// growth: whether those of growth are meant, or those of all other tables.
-    [[nodiscard]] SceneRuns runs_of(bool growth) const
-    {
-        SceneRuns found;
-        for (const SceneRun& run : runs)
-            if (run.build.growth == growth) found.push_back(&run);
-        return found;
-    }
-
-    std::vector<RowDevice> devices;
-    std::vector<PaperTable> tables;
-    std::vector<PaperFigure> figures;
-    std::vector<std::string> missing_scenes; ///< one sentence each
-};
-
-/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
-/// methods that it needs.
-void add_methods(Options& options)
+/// The builds of which the shard has a view.
+std::vector<SceneBuild> builds_of_shard(const Options& options)
 {
-    const auto& methods = options.methods;
-    const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
-    const bool with_rivals = wants(options, PaperTarget::table6) || wants(options, PaperTarget::growth);
-    const bool names_any = std::ranges::any_of(methods, is_of_cdt);
-    if (with_rivals && names_any && std::ranges::find(methods, Method::maria) == methods.end())
-        throw Error(ErrorKind::usage, "table6 and growth compare maria with BVHs: add it to --method");
-    if (names_any || (!methods.empty() && !with_rivals)) return;
-    for (const KernelId& kernel : all_kernels())
-        if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
+    auto builds = scene_builds(options);
+    check_labels(builds);
+    std::erase_if(builds,
+                  [&](const SceneBuild& build) { return selected_views(options_of_build(build, options)).empty(); });
+    return builds;
 }
 
-/// Adds what is not named: all methods of the paper, and its scenes that are available here, else the embedded one.
-Options with_defaults(Options options, std::vector<std::string>& missing)
+bool searches_of_shard(const Options& options)
 {
-    if (options.targets.empty())
-        for (const PaperTarget target : values_of<PaperTarget>())
-            if (target != PaperTarget::growth) options.targets.push_back(target);
-    add_methods(options);
-    if (!options.scenes.empty() || !wants_scenes(options)) return options;
-    for (const char* const name : {"banana", "bunny", "armadillo"}) {
-        const std::string reason = why_not_available(name);
-        if (reason.empty())
-            options.scenes.emplace_back(name);
-        else
-            missing.push_back(fmt::format("{} is left out: {}", name, reason));
-    }
-    if (options.scenes.empty()) options.scenes = {"cubes"};
-    return options;
+    return shard_of(options).share(batch_count(options.searches)) > 0;
 }
 
 std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& options)
 {
-    std::size_t parts = wants(options, PaperTarget::table5) ? batch_count(options.searches) : 0;
+    std::size_t parts =
+        wants(options, PaperTarget::table5) ? shard_of(options).share(batch_count(options.searches)) : 0;
     for (const SceneBuild& build : builds)
         parts += selected_views(options_of_build(build, options)).size();
     return parts;
@@ -109,6 +61,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                  {"tile", options.tile_height},
                  {"buffer_limit", options.buffer_limit},
                  {"samples", options.samples},
+                 {"shard", text_of(shard_of(options))},
                  {"scenes", json::array()},
                  {"rows", json::array()},
                  {"devices", json::array()}};
@@ -140,18 +93,6 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
             if (device.usable) head["devices"].push_back({backend->name(), device.name, device.driver});
     }
     return head;
-}
-
-/// Throws Error{usage} where two scenes would have the same name.
-void check_labels(const std::vector<SceneBuild>& builds)
-{
-    for (std::size_t i = 0; i < builds.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (builds[i].label == builds[j].label)
-                throw Error(ErrorKind::usage,
-                            fmt::format("--scene: '{}' and '{}' would both be called '{}' in the "
-                                        "results; name each scene once",
-                                        builds[j].request.name, builds[i].request.name, builds[i].label));
 }
 
 std::unique_ptr<Journal> open_journal(const Options& options, const std::vector<SceneBuild>& builds)
@@ -193,111 +134,6 @@ struct Keeping {
     std::unique_ptr<ResultPictures> pictures;
 };
 
-void make_tables(Reproduction& all, const Options& options)
-{
-    const SceneRuns runs = all.runs_of(false);
-    const auto add_figures = [&](std::vector<PaperFigure> figures) {
-        std::ranges::move(figures, std::back_inserter(all.figures));
-    };
-    if (wants(options, PaperTarget::table3)) {
-        all.tables.push_back(table3(runs));
-        all.tables.push_back(table3_rates(runs));
-    }
-    if (wants(options, PaperTarget::table4)) {
-        all.tables.push_back(table4(runs, view_count(options.camera_set)));
-        all.figures.push_back(table4_views(runs));
-    }
-    if (all.searches) {
-        all.tables.push_back(table5(*all.searches, all.devices));
-        all.tables.push_back(operations_table());
-    }
-    if (wants(options, PaperTarget::table6)) {
-        all.tables.push_back(table6(runs));
-        all.tables.push_back(table6_pairs(runs));
-        add_figures(table6_figures(runs));
-    }
-    if (wants(options, PaperTarget::growth)) {
-        const SceneRuns sizes = all.runs_of(true);
-        all.tables.push_back(growth_table(sizes));
-        all.tables.push_back(growth_exponents(sizes));
-        add_figures(growth_figures(sizes));
-    }
-    if (wants(options, PaperTarget::figure6)) {
-        all.tables.push_back(figure6_table(runs));
-        add_figures(figure6(runs));
-    }
-}
-
-/// 0 where nothing was timed.
-unsigned samples_of(const Reproduction& all, const Options& options)
-{
-    const bool timed =
-        all.searches.has_value() || std::ranges::any_of(all.runs, [](const SceneRun& run) { return run.build.timing; });
-    return timed ? options.samples : 0;
-}
-
-json reproduction_json(const Reproduction& all, const Options& options)
-{
-    json section = result_head(options);
-    section["threads"] = resolved_threads(options);
-    section["samples_a_row"] = samples_of(all, options);
-    section["missing_scenes"] = all.missing_scenes;
-    section["missing_devices"] = missing_devices(options);
-    for (const char* key : {"scenes", "devices", "rows", "tables", "figures"})
-        section[key] = json::array();
-    for (const SceneRun& run : all.runs) {
-        if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
-        if (run.scene != nullptr && run.likeness.kind != LikenessKind::not_its_scene)
-            section["scenes"].back()["likeness"] = {{"kind", name_of(run.likeness.kind)},
-                                                    {"compared", run.likeness.is_compared()},
-                                                    {"reason", run.likeness.reason}};
-        section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
-    }
-    if (all.searches) section["searches"] = all.search_records;
-    for (const RowDevice& device : all.devices)
-        section["devices"].push_back(row_device_json(device));
-    for (const PaperTable& table : all.tables)
-        section["tables"].push_back(table_json(table));
-    for (const PaperFigure& figure : all.figures)
-        section["figures"].push_back(figure_json(figure));
-    return {{"tetrace", std::move(section)}};
-}
-
-Report reproduction_report(const Reproduction& all, const Options& options)
-{
-    Report report{tables_sheet({all.tables, all.figures, all.missing_scenes, missing_devices(options)}),
-                  tidy_table(all.tables, all.figures),
-                  reproduction_json(all, options),
-                  {}};
-    for (const PaperTable& table : all.tables)
-        report.markdown += table_markdown(table);
-    for (const PaperFigure& figure : all.figures)
-        report.markdown += figure_markdown(figure);
-    if (options.out) report.sheet.labelled("Result", options.out->string());
-    return report;
-}
-
-/// Throws Error{missing} as bench and check do where no row of any scene or search could run here.
-void require_any_answer(const Reproduction& all)
-{
-    std::vector<const RowRun*> rows;
-    for (const SceneRun& run : all.runs)
-        for (const RowRun& row : run.rows)
-            rows.push_back(&row);
-    if (all.searches)
-        for (const RowRun& row : all.searches->rows)
-            rows.push_back(&row);
-    require_answers(rows, "measured");
-}
-
-int rows_exit_code(const Reproduction& all)
-{
-    int code = all.searches ? exit_code(all.searches->rows, true) : 0;
-    for (const SceneRun& run : all.runs)
-        code = code == 1 ? code : std::max(code, exit_code(run.rows, true));
-    return code;
-}
-
 void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked, Keeping& keeping)
 {
     const Options options = options_of_build(build, asked);
@@ -327,8 +163,12 @@ int reproduce_command(const Options& asked)
     Reproduction all;
     const Options options = with_defaults(asked, all.missing_scenes);
     check_output(options);
-    const auto builds = scene_builds(options);
-    check_labels(builds);
+    const auto builds = builds_of_shard(options);
+    const bool searches = wants(options, PaperTarget::table5) && searches_of_shard(options);
+    if (builds.empty() && !searches)
+        throw Error(ErrorKind::usage, fmt::format("--shard {}: no view and no batch of searches is left for it",
+                                                  text_of(shard_of(options))));
+    all.missing_devices = missing_devices(options);
     Keeping keeping(options, builds);
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
@@ -338,7 +178,7 @@ int reproduce_command(const Options& asked)
                                          options.out->string(), command_with("--resume")));
     for (const SceneBuild& build : builds)
         run_scene(all, build, options, keeping);
-    if (wants(options, PaperTarget::table5)) run_all_searches(all, options, keeping);
+    if (searches) run_all_searches(all, options, keeping);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (keeping.journal != nullptr) keeping.journal->finish();

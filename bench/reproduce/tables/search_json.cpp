@@ -48,7 +48,8 @@ json search_row_json(const SearchRun& run, std::size_t i)
     object["host_threads"] = row.key.threads == 0 ? run.threads : row.key.threads;
     const Traced* result = traced(row);
     if (result == nullptr) return object;
-    object["face_hash"] = all["hit_hash"];
+    if (all.contains("hit_hash")) object["face_hash"] = all["hit_hash"];
+    object["batches_hash"] = all["views_hash"];
     object["verification"] = search_verification(*result);
     if (const auto seconds = view_seconds(run, i); !seconds.empty()) object["batch_medians_s"] = seconds;
     if (const auto figures = figures_of(row)) object["msearches_per_s"] = figures->mrays_per_s;
@@ -62,7 +63,7 @@ nlohmann::json searches_json(const SearchRun& run)
     json object = {{"tets", run.size.tets},
                    {"rays_a_tet", run.size.rays},
                    {"batch_tets", run.batch_tets},
-                   {"batches", batch_count(run.size)},
+                   {"batches", run.shard.share(batch_count(run.size))},
                    {"rows", json::array()}};
     for (std::size_t i = 0; i < run.rows.size(); ++i)
         object["rows"].push_back(search_row_json(run, i));

@@ -1,0 +1,207 @@
+#include "bench/merging/merged_rows.h"
+
+#include "bench/merging/machines.h"
+#include "bench/reproduce/image_record.h"
+#include "bench/show/recorded_rows.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <functional>
+#include <map>
+#include <set>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+std::vector<RowRun> rows_of(const ShardResult& shard, bool searches)
+{
+    return searches ? read_search_rows(shard.result) : read_rows(shard.result);
+}
+
+/// What the whole run finds out again, or has no part of.
+void forget_answers(RowRun& row)
+{
+    row.samples_s.clear();
+    row.wall_samples_s.clear();
+    if (traced(row) == nullptr) {
+        row.session.reset();
+        return;
+    }
+    row.outcome = Traced{};
+    row.recorded_reason.clear();
+}
+
+/// The place of an entry in the whole run: scenes in the order of the shards' first entries.
+struct Place {
+    std::size_t scene = 0;
+    std::uint64_t part = 0;
+
+    friend auto operator<=>(const Place&, const Place&) = default;
+};
+
+/// Rows whose times are not put together, among all that were asked about.
+class StrippedRows {
+public:
+    explicit StrippedRows(const std::vector<ShardResult>& shards) : shards_(&shards) {}
+
+    [[nodiscard]] bool has(const std::string& row)
+    {
+        const auto known = known_.find(row);
+        if (known != known_.end()) return known->second;
+        return known_.emplace(row, !is_of_one_kind(*shards_, row)).first->second;
+    }
+
+private:
+    const std::vector<ShardResult>* shards_;
+    std::map<std::string, bool> known_;
+};
+
+void strip(json& entry, StrippedRows& stripped)
+{
+    for (auto& [name, record] : entry.at("rows").items()) {
+        if (record.contains("chained_hash")) record["chained_hash"] = hash_text(0);
+        if (!record.contains("samples_s") || !stripped.has(name)) continue;
+        record["samples_s"] = record["wall_samples_s"] = json::array();
+    }
+}
+
+std::size_t number_of(std::vector<std::string>& names, const std::string& name)
+{
+    const auto known = std::ranges::find(names, name);
+    if (known != names.end()) return static_cast<std::size_t>(known - names.begin());
+    names.push_back(name);
+    return names.size() - 1;
+}
+
+/// The record of each row of a scene, view after view.
+using Views = std::map<std::uint32_t, const json*>;
+
+Views views_of(const std::vector<ShardResult>& shards, const std::string& scene)
+{
+    Views found;
+    for (const ShardResult& shard : shards)
+        for (const json& entry : shard.journal.entries) {
+            if (entry.value("scene", "") != scene) continue;
+            const auto view = entry.at("view").get<std::uint32_t>();
+            if (!found.emplace(view, &entry).second)
+                throw Error(ErrorKind::usage,
+                            fmt::format("merging shards: view {} of {} is in two journals", view, scene));
+        }
+    return found;
+}
+
+void require_views(const Views& found, const std::vector<std::uint32_t>& asked, const std::string& scene)
+{
+    std::vector<std::uint32_t> missing;
+    std::ranges::copy_if(asked, std::back_inserter(missing), [&](std::uint32_t view) { return !found.contains(view); });
+    if (!missing.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("merging shards: views {} of {} are in no journal", fmt::join(missing, ", "), scene));
+}
+
+void add_answers(RowRun& row, const Views& views)
+{
+    const std::string name = row_name(row.key);
+    for (const auto& [view, entry] : views) {
+        if (traced(row) == nullptr) return;
+        const json& rows = entry->at("rows");
+        if (!rows.contains(name))
+            throw Error(ErrorKind::usage, fmt::format("merging shards: view {} has no answers of {}", view, name));
+        ImageOutcome outcome = outcome_from_json(rows[name]);
+        if (const auto* record = std::get_if<ImageRecord>(&outcome)) std::get<Traced>(row.outcome).add(record->verdict);
+        if (auto* skipped = std::get_if<Skipped>(&outcome)) row.outcome = *skipped;
+        if (auto* failed = std::get_if<Failed>(&outcome)) row.outcome = *failed;
+    }
+}
+
+/// A sample traces all views once: sample by sample, the shards' sum.
+void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
+{
+    std::vector<const RowRun*> parts;
+    for (const auto& rows : shards)
+        for (const RowRun& part : rows)
+            if (part.key == row.key) parts.push_back(&part);
+    for (std::vector<double> RowRun::*samples : {&RowRun::samples_s, &RowRun::wall_samples_s}) {
+        std::vector<double> sum = parts.front()->*samples;
+        for (std::size_t i = 1; i < parts.size(); ++i) {
+            if ((parts[i]->*samples).size() != sum.size()) return; // a budget took fewer of one
+            std::ranges::transform(sum, parts[i]->*samples, sum.begin(), std::plus<>());
+        }
+        row.*samples = std::move(sum);
+    }
+}
+
+} // namespace
+
+std::vector<RowRun> rows_of_shards(const std::vector<ShardResult>& shards, bool searches)
+{
+    std::vector<RowRun> rows;
+    for (const ShardResult& shard : shards)
+        for (RowRun& row : rows_of(shard, searches)) {
+            const auto same = [&](const RowRun& one) { return one.key == row.key; };
+            const auto known = std::ranges::find_if(rows, same);
+            if (known == rows.end())
+                rows.push_back(std::move(row));
+            else if (traced(*known) != nullptr && traced(row) == nullptr)
+                *known = std::move(row);
+        }
+    for (RowRun& row : rows)
+        forget_answers(row);
+    return rows;
+}
+
+std::vector<nlohmann::json> merged_entries(const std::vector<ShardResult>& shards)
+{
+    std::multimap<Place, json> parts;
+    std::vector<json> others;
+    std::set<std::string> known;
+    std::vector<std::string> scenes;
+    StrippedRows stripped(shards);
+    for (const ShardResult& shard : shards)
+        for (json entry : shard.journal.entries) {
+            const bool is_view = entry.contains("view"), is_batch = entry.contains("batch");
+            if (!is_view && !is_batch) {
+                // Of a device's yardstick and a row's set-up, the first shard's.
+                const std::string what = entry.contains("setup") ? "setup" : "yardstick";
+                if (known.insert(what + entry.value(what, "")).second) others.push_back(std::move(entry));
+                continue;
+            }
+            strip(entry, stripped);
+            const std::size_t scene = is_view ? number_of(scenes, entry.at("scene")) : most_shards;
+            const Place place{scene, entry.at(is_view ? "view" : "batch").get<std::uint64_t>()};
+            parts.emplace(place, std::move(entry));
+        }
+    std::vector<json> entries;
+    for (auto& [place, entry] : parts)
+        entries.push_back(std::move(entry));
+    std::ranges::move(others, std::back_inserter(entries));
+    return entries;
+}
+
+std::vector<RowRun> merged_rows(const std::vector<ShardResult>& shards, const std::vector<std::uint32_t>& views)
+{
+    std::vector<RowRun> rows = rows_of_shards(shards);
+    std::vector<std::vector<RowRun>> timed;
+    for (const ShardResult& shard : shards)
+        timed.push_back(read_rows(shard.result));
+    std::map<std::string, Views> found;
+    for (RowRun& row : rows) {
+        if (traced(row) == nullptr) continue;
+        const std::string& scene = row.key.scene;
+        if (!found.contains(scene)) {
+            found[scene] = views_of(shards, scene);
+            require_views(found[scene], views, scene);
+        }
+        add_answers(row, found[scene]);
+        if (traced(row) != nullptr && is_of_one_kind(shards, row_name(row.key))) add_samples(row, timed);
+    }
+    return rows;
+}
+
+} // namespace tetrace

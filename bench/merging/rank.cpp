@@ -1,0 +1,82 @@
+#include "bench/merging/rank.h"
+
+#include "core/base/error.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <initializer_list>
+#include <string_view>
+
+namespace tetrace {
+
+namespace {
+
+using Names = std::initializer_list<const char*>;
+
+/// The first of these variables that is set.
+std::string text_in(const Environment& environment, Names names)
+{
+    for (const char* name : names)
+        if (const char* value = environment(name)) return value;
+    return {};
+}
+
+unsigned number_in(const Environment& environment, Names names)
+{
+    const std::string text = text_in(environment, names);
+    if (text.empty()) return 0;
+    unsigned number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, problem] = std::from_chars(text.data(), end, number);
+    if (problem != std::errc() || rest != end || number > most_shards)
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("the environment's {} is '{}', and a rank's is a number up to {}; --shard K/N says what "
+                        "this process does",
+                        *names.begin(), text, most_shards));
+    return number;
+}
+
+Rank read_rank(const Environment& environment, Names number, Names size, Names local)
+{
+    Rank rank{number_in(environment, number), number_in(environment, size), number_in(environment, local), {}};
+    if (rank.number >= rank.size)
+        throw Error(ErrorKind::usage, fmt::format("the environment says that this is process {} of {}, from 0 "
+                                                  "({}, {}); --shard K/N says what it does",
+                                                  rank.number, rank.size, *number.begin(), *size.begin()));
+    return rank;
+}
+
+std::string job_of_slurm(const Environment& environment)
+{
+    const std::string job = text_in(environment, {"SLURM_JOB_ID"}), step = text_in(environment, {"SLURM_STEP_ID"});
+    return job.empty() || step.empty() ? std::string() : fmt::format("slurm {}.{}", job, step);
+}
+
+} // namespace
+
+std::optional<Rank> rank_of(const Environment& environment)
+{
+    const auto has = [&](const char* name) { return environment(name) != nullptr; };
+    Rank rank;
+    if (has("OMPI_COMM_WORLD_RANK") && has("OMPI_COMM_WORLD_SIZE")) {
+        rank =
+            read_rank(environment, {"OMPI_COMM_WORLD_RANK"}, {"OMPI_COMM_WORLD_SIZE"}, {"OMPI_COMM_WORLD_LOCAL_RANK"});
+        rank.job = text_in(environment, {"PMIX_NAMESPACE", "OMPI_MCA_ess_base_jobid", "OMPI_MCA_orte_ess_jobid"});
+    } else if (has("PMI_RANK") && has("PMI_SIZE")) {
+        rank = read_rank(environment, {"PMI_RANK"}, {"PMI_SIZE"}, {"MPI_LOCALRANKID", "SLURM_LOCALID"});
+        rank.job = job_of_slurm(environment);
+    } else if (has("SLURM_PROCID") && has("SLURM_STEP_ID")) {
+        rank = read_rank(environment, {"SLURM_PROCID"}, {"SLURM_STEP_NUM_TASKS", "SLURM_NTASKS"}, {"SLURM_LOCALID"});
+        rank.job = job_of_slurm(environment);
+    }
+    return rank.size > 1 ? std::optional(rank) : std::nullopt;
+}
+
+std::optional<Rank> this_rank()
+{
+    return rank_of([](const char* name) { return std::getenv(name); });
+}
+
+} // namespace tetrace

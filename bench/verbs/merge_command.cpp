@@ -1,0 +1,194 @@
+#include "bench/merging/machines.h"
+#include "bench/merging/merged_rows.h"
+#include "bench/merging/scaling.h"
+#include "bench/output/bench_tables.h"
+#include "bench/output/check_matrix.h"
+#include "bench/output/row_json.h"
+#include "bench/show/check_sheet.h"
+#include "bench/show/recorded_rows.h"
+#include "bench/verbs/commands.h"
+#include "bench/verbs/reproduction.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+using Shards = std::vector<ShardResult>;
+
+/// A merged result, and the exit code of the run that it is of.
+struct Merged {
+    Report report;
+    int code = 0;
+};
+
+const json& section_of(const ShardResult& shard)
+{
+    return shard.result.json.at("tetrace");
+}
+
+/// The options of the whole run; output goes where `merge` says.
+Options options_of(const Shards& shards, const Options& asked)
+{
+    Options options = parse_options(shards.front().arguments);
+    options.shard = Shard();
+    options.threads = section_of(shards.front()).value("threads", options.threads);
+    options.out = asked.out;
+    options.format = asked.format;
+    options.columns = asked.columns;
+    options.junit = asked.junit;
+    options.anonymous = options.anonymous || asked.anonymous;
+    return options;
+}
+
+std::vector<std::string> sentences_of(const Shards& shards, const char* key)
+{
+    std::vector<std::string> all;
+    for (const ShardResult& shard : shards)
+        for (const std::string sentence : section_of(shard).value(key, json::array()))
+            if (std::ranges::find(all, sentence) == all.end()) all.push_back(sentence);
+    return all;
+}
+
+/// As the shards recorded them, with the views of the whole run.
+std::vector<json> scenes_of(const Shards& shards, const std::vector<std::uint32_t>& views)
+{
+    std::vector<json> scenes;
+    for (const json& scene : section_of(shards.front()).at("scenes"))
+        scenes.emplace_back(scene)["views"] = views;
+    return scenes;
+}
+
+Merged merged_bench(const Shards& shards, const Options& options)
+{
+    BenchResult result;
+    result.run.rows = merged_rows(shards, selected_views(options));
+    result.devices = read_devices(shards.front().result, result.run.rows);
+    result.comparisons = compare_rows(result.run.rows);
+    result.scenes = scenes_of(shards, selected_views(options));
+    result.missing_scenes = sentences_of(shards, "missing_scenes");
+    result.missing_devices = sentences_of(shards, "missing_devices");
+    result.threads = options.threads;
+    for (const RowRun& row : result.run.rows)
+        result.measurement.samples = std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size()));
+    return {bench_report(result, options), exit_code(result.run.rows, true)};
+}
+
+/// The tets of a differing ray's walk, as the shard that found it has them.
+void copy_paths(json& row, const Shards& shards)
+{
+    for (const char* key : {"first_different", "first_wrong"}) {
+        if (!row.contains("verification") || !row["verification"].contains(key)) continue;
+        json& ray = row["verification"][key];
+        for (const ShardResult& shard : shards)
+            for (const json& other : section_of(shard).at("rows")) {
+                if (other.at("name") != row["name"] || !other.contains("verification")) continue;
+                const json found = other["verification"].value(key, json::object());
+                const auto is_same = [&](const char* part) {
+                    return found.value(part, json()) == ray.value(part, json());
+                };
+                if (is_same("view") && is_same("x") && is_same("y")) ray = found;
+            }
+    }
+}
+
+Merged merged_check(const Shards& shards, const Options& options)
+{
+    const std::vector<RowRun> rows = merged_rows(shards, selected_views(options));
+    const auto scenes = scenes_of(shards, selected_views(options));
+    const auto missing = sentences_of(shards, "missing_devices");
+    json section = result_head(options);
+    section["scenes"] = scenes;
+    section["matrix"] = matrix_json(rows);
+    section["rows"] = json::array();
+    for (const RowRun& row : rows) {
+        section["rows"].push_back(row_json(check_facts(row)));
+        copy_paths(section["rows"].back(), shards);
+    }
+    section["missing_devices"] = missing;
+    Report report{check_sheet({&rows, scenes, missing}), check_table(rows), {}};
+    report.json["tetrace"] = std::move(section);
+    report.markdown = report.sheet.markdown();
+    if (options.out) report.sheet.labelled("Result", options.out->string());
+    write_junit(rows, options);
+    const bool fails = std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); });
+    return {std::move(report), fails ? 1 : exit_code(rows, options.allow_flawed)};
+}
+
+/// Throws Error{usage} where another machine than the shards' has other default scenes.
+void require_scenes(const std::vector<SceneBuild>& builds, const std::vector<RowRun>& rows)
+{
+    for (const RowRun& row : rows)
+        if (std::ranges::none_of(builds, [&](const SceneBuild& build) { return build.label == row.key.scene; }))
+            throw Error(ErrorKind::usage,
+                        fmt::format("merging shards: they have the scene {}, which is not available here; name the "
+                                    "scenes of the run with --scene, or merge where it ran",
+                                    row.key.scene));
+}
+
+void add_scene(Reproduction& all, const SceneBuild& build, const Options& options, std::vector<RowRun>& rows,
+               Journal& journal)
+{
+    std::vector<RowRun> own;
+    for (RowRun& row : rows)
+        if (row.key.scene == build.label) own.push_back(std::move(row));
+    SceneRun& run = all.runs.emplace_back(recorded_scene_run(build, options, std::move(own)));
+    if (build.rivals || build.growth) run.costs = SetupCosts(&journal).of(run.rows);
+    run_views(run, options, &journal, all.progress);
+    run.picture_problems.emplace_back("Pictures are drawn by shards, each of its own views.");
+    run.close();
+}
+
+Merged merged_reproduction(const Shards& shards, const Options& asked)
+{
+    Reproduction all;
+    const Options options = with_defaults(asked, all.missing_scenes);
+    all.missing_scenes = sentences_of(shards, "missing_scenes");
+    all.missing_devices = sentences_of(shards, "missing_devices");
+    all.devices = read_devices(shards.front().result, {});
+    const auto builds = scene_builds(options);
+    std::vector<RowRun> rows = rows_of_shards(shards);
+    require_scenes(builds, rows);
+    Journal journal(merged_entries(shards));
+    for (const SceneBuild& build : builds)
+        add_scene(all, build, options_of_build(build, options), rows, journal);
+    if (wants(options, PaperTarget::table5)) {
+        SearchRun& run = all.searches.emplace(recorded_search_run(options, rows_of_shards(shards, true)));
+        run_searches(run, options, &journal, all.progress);
+        all.search_records = searches_json(run);
+    }
+    make_tables(all, options);
+    return {reproduction_report(all, options), rows_exit_code(all)};
+}
+
+Merged merged_run(const Shards& shards, const Options& options)
+{
+    if (options.verb == Verb::bench) return merged_bench(shards, options);
+    if (options.verb == Verb::check) return merged_check(shards, options);
+    return merged_reproduction(shards, options);
+}
+
+} // namespace
+
+int merge_command(const Options& asked)
+{
+    if (asked.out) check_not_an_input(*asked.out, asked.files);
+    check_output(asked);
+    const Shards shards = read_shards(asked.files);
+    const Options options = options_of(shards, asked);
+    Merged merged = merged_run(shards, options);
+    json& section = merged.report.json["tetrace"];
+    set_origin(section, shards);
+    Sheet more = machines_sheet(section["merged"]);
+    if (!asked.ranks.empty())
+        more.append(scaling_sheet(measured_scenes(shards), asked.ranks, camera_set_size(options)));
+    merged.report.sheet.append(more);
+    if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
+    deliver(options, merged.report);
+    return merged.code;
+}
+
+} // namespace tetrace

@@ -1,0 +1,164 @@
+#include "bench/verbs/ranks.h"
+
+#include "bench/merging/shard_results.h"
+#include "bench/rows/scene_work.h"
+#include "bench/terminal/progress.h"
+#include "bench/verbs/commands.h"
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/isolation/own_gpu.h"
+#include "scenes/file_lock.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <thread>
+
+namespace tetrace {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path lock_file(const fs::path& result)
+{
+    return result.string() + ".lock";
+}
+
+void pause()
+{
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+}
+
+/// Held while a shard is worked on. Rank 0 holds it for a moment where it looks whether anybody does.
+FileLock lock_of(const fs::path& result, const Shard& shard)
+{
+    constexpr double patience_s = 3;
+    for (const Stopwatch watch; watch.seconds() < patience_s; pause())
+        if (auto lock = FileLock::try_take(lock_file(result))) return std::move(*lock);
+    throw Error(ErrorKind::usage, fmt::format("another process does shard {} into '{}'; wait for its end, or name "
+                                              "another file with --out",
+                                              text_of(shard), result.string()));
+}
+
+void require_file(const Options& options, const Rank& rank)
+{
+    if (!options.out || options.out->extension() != ".json")
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("this is rank {} of {}, which share the run: name the result with --out FILE.json, in a "
+                        "folder that all ranks see; --shard 1/1 runs all of it in each",
+                        rank.number, rank.size));
+    if (options.junit && *options.junit == "-")
+        throw Error(ErrorKind::usage, "--junit -: several ranks cannot share standard output; name a file");
+}
+
+/// Whether the shard's result is there, and of this launch: that of an earlier one is about to be replaced.
+bool is_done(const fs::path& result, const std::string& job)
+{
+    std::error_code not_there;
+    if (!fs::exists(result, not_there)) return false;
+    try {
+        return job.empty() || read_shard(result).job == job;
+    } catch (const Error&) {
+        return false; // its journal is being begun anew
+    }
+}
+
+/// Waits until every shard is done; gives back those that nobody has worked on for wait_s.
+std::vector<Shard> wait_for_all(const fs::path& all, const Rank& rank, double wait_s)
+{
+    std::vector<Shard> waiting;
+    for (unsigned number = 2; number <= rank.size; ++number)
+        waiting.push_back({number, rank.size});
+    for (Stopwatch quiet; !waiting.empty(); pause()) {
+        std::erase_if(waiting, [&](const Shard& shard) {
+            const fs::path file = shard_file(all, shard);
+            return !FileLock::is_held(lock_file(file)) && is_done(file, rank.job);
+        });
+        progress_line().show(fmt::format("waiting for {} ranks", waiting.size()), -1);
+        const auto is_alive = [&](const Shard& one) { return FileLock::is_held(lock_file(shard_file(all, one))); };
+        if (std::ranges::any_of(waiting, is_alive)) quiet = Stopwatch();
+        if (quiet.seconds() > wait_s) break;
+    }
+    progress_line().clear();
+    return waiting;
+}
+
+/// What does a shard alone as its rank did: a rank may have had fewer threads than a process alone.
+std::string command_for(const Shard& shard, const fs::path& all, const Options& options)
+{
+    constexpr std::string_view replaced[] = {"--out", "--format", "--wait", "--resume", "--threads"};
+    std::vector<std::string> words = without_options(options.words, replaced);
+    words.insert(words.end(), {"--threads", std::to_string(resolved_threads(options)), "--shard", text_of(shard),
+                               "--out", shard_file(all, shard).string()});
+    if (options.verb == Verb::reproduce) words.emplace_back("--resume");
+    return command_of(words);
+}
+
+[[noreturn]] void report_lost(const std::vector<Shard>& lost, const fs::path& all, const Options& options)
+{
+    std::string commands;
+    for (const Shard& shard : lost)
+        commands += "\n  " + command_for(shard, all, options);
+    std::vector<std::string> files;
+    for (unsigned number = 1; number <= lost.front().of; ++number)
+        files.push_back(shard_file(all, {number, lost.front().of}).string());
+    std::vector<std::string> merge = {"merge"};
+    merge.insert(merge.end(), files.begin(), files.end());
+    merge.insert(merge.end(), {"--out", all.string()});
+    throw Error(ErrorKind::missing,
+                fmt::format("{} of {} ranks ended without a result. Run them again alone, then merge:"
+                            "{}\n  {}",
+                            lost.size(), lost.front().of, commands, command_of(merge)));
+}
+
+int merge_all(const Rank& rank, const Options& asked)
+{
+    Options options;
+    options.verb = Verb::merge;
+    options.out = asked.out;
+    options.format = asked.format;
+    options.columns = asked.columns;
+    options.junit = asked.junit;
+    options.anonymous = asked.anonymous;
+    for (unsigned number = 1; number <= rank.size; ++number)
+        options.files.push_back(shard_file(*asked.out, {number, rank.size}));
+    return merge_command(options);
+}
+
+} // namespace
+
+bool is_shared(const Options& options)
+{
+    const bool takes_shards =
+        options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::reproduce;
+    return takes_shards && !options.shard && !options.list;
+}
+
+int run_rank(const Rank& rank, const Options& asked, const std::function<int(const Options&)>& run_verb)
+{
+    require_file(asked, rank);
+    Options options = asked;
+    options.shard = Shard{rank.size, rank.size};
+    require_views(options); // the last rank is the first that would have none
+    options.shard = rank.shard();
+    options.out = shard_file(*asked.out, rank.shard());
+    options.format = {};
+    if (asked.junit) options.junit = shard_file(*asked.junit, rank.shard());
+    options.job = rank.job;
+    options.is_silent = true;
+    if (options.devices.empty()) set_own_gpu(rank.local);
+    {
+        const FileLock lock = lock_of(*options.out, rank.shard());
+        fs::remove(*options.out); // an earlier launch's
+        const int code = run_verb(options);
+        if (rank.number != 0) return code == 1 ? 0 : code;
+    }
+    const auto lost = wait_for_all(*asked.out, rank, asked.wait_s);
+    if (!lost.empty()) report_lost(lost, *asked.out, asked);
+    return merge_all(rank, asked);
+}
+
+} // namespace tetrace

@@ -1,0 +1,167 @@
+#include "bench/verbs/reproduction.h"
+
+#include "bench/output/device_json.h"
+#include "bench/output/row_json.h"
+#include "bench/reproduce/tables/recorded_tables.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <iterator>
+
+namespace tetrace {
+
+namespace {
+
+using nlohmann::json;
+
+/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
+/// methods that it needs.
+void add_methods(Options& options)
+{
+    const auto& methods = options.methods;
+    const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
+    const bool with_rivals = wants(options, PaperTarget::table6) || wants(options, PaperTarget::growth);
+    const bool names_any = std::ranges::any_of(methods, is_of_cdt);
+    if (with_rivals && names_any && std::ranges::find(methods, Method::maria) == methods.end())
+        throw Error(ErrorKind::usage, "table6 and growth compare maria with BVHs: add it to --method");
+    if (names_any || (!methods.empty() && !with_rivals)) return;
+    for (const KernelId& kernel : all_kernels())
+        if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
+}
+
+/// 0 where nothing was timed.
+unsigned samples_of(const Reproduction& all, const Options& options)
+{
+    const bool timed =
+        all.searches.has_value() || std::ranges::any_of(all.runs, [](const SceneRun& run) { return run.build.timing; });
+    return timed ? options.samples : 0;
+}
+
+json reproduction_json(const Reproduction& all, const Options& options)
+{
+    json section = result_head(options);
+    section["threads"] = resolved_threads(options);
+    section["samples_a_row"] = samples_of(all, options);
+    section["missing_scenes"] = all.missing_scenes;
+    section["missing_devices"] = all.missing_devices;
+    for (const char* key : {"scenes", "devices", "rows", "tables", "figures"})
+        section[key] = json::array();
+    for (const SceneRun& run : all.runs) {
+        if (run.scene != nullptr) section["scenes"].push_back(scene_json(*run.scene, options));
+        if (run.scene != nullptr && run.likeness.kind != LikenessKind::not_its_scene)
+            section["scenes"].back()["likeness"] = {{"kind", name_of(run.likeness.kind)},
+                                                    {"compared", run.likeness.is_compared()},
+                                                    {"reason", run.likeness.reason}};
+        section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
+    }
+    if (all.searches) section["searches"] = all.search_records;
+    for (const RowDevice& device : all.devices)
+        section["devices"].push_back(row_device_json(device));
+    for (const PaperTable& table : all.tables)
+        section["tables"].push_back(table_json(table));
+    for (const PaperFigure& figure : all.figures)
+        section["figures"].push_back(figure_json(figure));
+    return {{"tetrace", std::move(section)}};
+}
+
+} // namespace
+
+Options with_defaults(Options options, std::vector<std::string>& missing)
+{
+    if (options.targets.empty())
+        for (const PaperTarget target : values_of<PaperTarget>())
+            if (target != PaperTarget::growth) options.targets.push_back(target);
+    add_methods(options);
+    if (!options.scenes.empty() || !wants_scenes(options)) return options;
+    for (const char* const name : {"banana", "bunny", "armadillo"}) {
+        const std::string reason = why_not_available(name);
+        if (reason.empty())
+            options.scenes.emplace_back(name);
+        else
+            missing.push_back(fmt::format("{} is left out: {}", name, reason));
+    }
+    if (options.scenes.empty()) options.scenes = {"cubes"};
+    return options;
+}
+
+void check_labels(const std::vector<SceneBuild>& builds)
+{
+    for (std::size_t i = 0; i < builds.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (builds[i].label == builds[j].label)
+                throw Error(ErrorKind::usage,
+                            fmt::format("--scene: '{}' and '{}' would both be called '{}' in the "
+                                        "results; name each scene once",
+                                        builds[j].request.name, builds[i].request.name, builds[i].label));
+}
+
+void make_tables(Reproduction& all, const Options& options)
+{
+    const SceneRuns runs = all.runs_of(false);
+    const auto add_figures = [&](std::vector<PaperFigure> figures) {
+        std::ranges::move(figures, std::back_inserter(all.figures));
+    };
+    if (wants(options, PaperTarget::table3)) {
+        all.tables.push_back(table3(runs));
+        all.tables.push_back(table3_rates(runs));
+    }
+    if (wants(options, PaperTarget::table4)) {
+        all.tables.push_back(table4(runs, view_count(options.camera_set)));
+        all.figures.push_back(table4_views(runs));
+    }
+    if (all.searches) {
+        all.tables.push_back(table5(*all.searches, all.devices));
+        all.tables.push_back(operations_table());
+    }
+    if (wants(options, PaperTarget::table6)) {
+        all.tables.push_back(table6(runs));
+        all.tables.push_back(table6_pairs(runs));
+        add_figures(table6_figures(runs));
+    }
+    if (wants(options, PaperTarget::growth)) {
+        const SceneRuns sizes = all.runs_of(true);
+        all.tables.push_back(growth_table(sizes));
+        all.tables.push_back(growth_exponents(sizes));
+        add_figures(growth_figures(sizes));
+    }
+    if (wants(options, PaperTarget::figure6)) {
+        all.tables.push_back(figure6_table(runs));
+        add_figures(figure6(runs));
+    }
+}
+
+Report reproduction_report(const Reproduction& all, const Options& options)
+{
+    Report report{tables_sheet({all.tables, all.figures, all.missing_scenes, all.missing_devices}),
+                  tidy_table(all.tables, all.figures),
+                  reproduction_json(all, options),
+                  {}};
+    for (const PaperTable& table : all.tables)
+        report.markdown += table_markdown(table);
+    for (const PaperFigure& figure : all.figures)
+        report.markdown += figure_markdown(figure);
+    if (options.out) report.sheet.labelled("Result", options.out->string());
+    return report;
+}
+
+void require_any_answer(const Reproduction& all)
+{
+    std::vector<const RowRun*> rows;
+    for (const SceneRun& run : all.runs)
+        for (const RowRun& row : run.rows)
+            rows.push_back(&row);
+    if (all.searches)
+        for (const RowRun& row : all.searches->rows)
+            rows.push_back(&row);
+    require_answers(rows, "measured");
+}
+
+int rows_exit_code(const Reproduction& all)
+{
+    int code = all.searches ? exit_code(all.searches->rows, true) : 0;
+    for (const SceneRun& run : all.runs)
+        code = code == 1 ? code : std::max(code, exit_code(run.rows, true));
+    return code;
+}
+
+} // namespace tetrace

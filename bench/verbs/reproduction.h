@@ -1,0 +1,53 @@
+#pragma once
+
+#include "bench/output/report.h"
+#include "bench/reproduce/scene_run.h"
+#include "bench/reproduce/search_run.h"
+#include "bench/reproduce/tables/paper_table.h"
+#include "bench/reproduce/tables/tables.h"
+#include "bench/verbs/reproduce_builds.h"
+
+namespace tetrace {
+
+/// All data of the result.
+struct Reproduction {
+    std::vector<SceneRun> runs;
+    std::optional<SearchRun> searches;
+    nlohmann::json search_records; ///< as results record them; null without searches
+    RunProgress progress;
+
+    /// growth: whether those of growth are meant, or those of all other tables.
+    [[nodiscard]] SceneRuns runs_of(bool growth) const
+    {
+        SceneRuns found;
+        for (const SceneRun& run : runs)
+            if (run.build.growth == growth) found.push_back(&run);
+        return found;
+    }
+
+    std::vector<RowDevice> devices;
+    std::vector<PaperTable> tables;
+    std::vector<PaperFigure> figures;
+    std::vector<std::string> missing_scenes, missing_devices; ///< one sentence each
+};
+
+/// The options with what is not named: all methods of the paper, and its scenes that are available here, else the
+/// embedded one. missing: gets a sentence for each of them that is not. Throws Error{usage} where table6 or growth
+/// lacks the methods that it needs.
+[[nodiscard]] Options with_defaults(Options options, std::vector<std::string>& missing);
+
+/// Throws Error{usage} where two scenes would have the same name.
+void check_labels(const std::vector<SceneBuild>& builds);
+
+/// Makes the tables and figures that were asked for of what was traced.
+void make_tables(Reproduction& all, const Options& options);
+
+[[nodiscard]] Report reproduction_report(const Reproduction& all, const Options& options);
+
+/// Throws Error{missing} as bench and check do where no row of any scene or search could run here.
+void require_any_answer(const Reproduction& all);
+
+/// The exit code for what rows came to.
+[[nodiscard]] int rows_exit_code(const Reproduction& all);
+
+} // namespace tetrace
