@@ -37,8 +37,8 @@ std::vector<KernelFile> kernel_files(const Programs& programs, const KernelId& k
     const EmbeddedKernel* const source = find_kernel(programs.sources, id.source);
     if (source == nullptr) return {};
     const std::string ptx = id.name() + ".ptx", text = id.source + ".cu";
-    const std::string command =
-        "nvcc --ptx -std=c++17 -arch=" + std::string(ptx_target) + joined(compiler_options(id)) + " -o " + ptx + " " + text;
+    const std::string command = "nvcc --ptx -std=c++17 -arch=" + std::string(ptx_target) +
+                                joined(compiler_options(id)) + " -o " + ptx + " " + text;
     std::vector<KernelFile> files = {
         {text, "CUDA C++ with its includes resolved, as NVRTC and nvcc get it", command, std::string(source->text())}};
     try {
