@@ -72,8 +72,8 @@ std::string claim_summary(const ReportInput& input)
                                   verdicts[2].second);
 }
 
-/// The title over facts that sum the results up.
-Html page_head(const std::vector<std::string>& facts)
+/// The title over facts that sum the results up, and what answers at once.
+Html page_head(const std::vector<std::string>& facts, const Html& answer)
 {
     Html summary;
     for (const std::string& fact : facts)
@@ -84,7 +84,7 @@ Html page_head(const std::vector<std::string>& facts)
                                     "Ray traversal through constrained Delaunay tetrahedralizations, measured and "
                                     "verified; written by tetrace " +
                                         build_identity().version + ".") +
-                       element("ul", {{"class", "summary"}}, summary) + headline(input));
+                       element("ul", {{"class", "summary"}}, summary) + answer);
 }
 
 std::vector<std::string> facts_of(const ReportInput& input)
@@ -140,7 +140,7 @@ std::string report_page(const ReportInput& input)
     for (const auto make : {machine_section, rate_section, ratio_section, roofline_section, conformance_section,
                             compiler_section, paper_section, picture_section, time_section})
         sections.push_back(make(input));
-    return page_of(page_head(facts_of(input)), sections);
+    return page_of(page_head(facts_of(input), headline(input)), sections);
 }
 
 std::string campaign_page(const Campaign& campaign, const std::vector<std::filesystem::path>& pictures)
@@ -149,7 +149,7 @@ std::string campaign_page(const Campaign& campaign, const std::vector<std::files
     for (const auto make : {index_section, beside_section, trend_section})
         sections.push_back(make(campaign));
     if (!pictures.empty()) sections.push_back(picture_section({{}, {}, pictures}));
-    return page_of(page_head(facts_of(campaign)), sections);
+    return page_of(page_head(facts_of(campaign), {}), sections);
 }
 
 ReportInput read_report_input(const std::vector<std::filesystem::path>& results,
