@@ -294,6 +294,7 @@ TEST_F(CudaNvrtc, every_source_is_exact_in_exact_mode_and_contracts_without_its_
 {
     for (const EmbeddedKernel& source : cuda::embedded_sources()) {
         const std::string name(source.name);
+        if (name == "defects") continue; // whole numbers alone
         auto options = cuda::compiler_options({name, MathMode::exact});
         const std::string exact = assembly_of_text(without_fused(source), name, options);
         EXPECT_TRUE(contains(exact, "div.rn.f32"));
@@ -329,6 +330,7 @@ TEST(CudaCode, is_exact_in_exact_mode_and_contracts_in_fast_mode)
     for (const EmbeddedKernel& code : cuda::embedded_programs().code) {
         const std::string assembly = assembly_of(code);
         EXPECT_TRUE(contains(assembly, ".target sm_")) << code.name << " has no assembly for later devices";
+        if (code.name.starts_with("defects_")) continue; // whole numbers alone
         const bool exact = code.name.ends_with("_exact");
         auto inexact = inexact_operations(assembly);
         if (code.name.starts_with("single_")) std::erase(inexact, "fma.rn.f32"); // of a BVH's boxes

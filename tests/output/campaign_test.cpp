@@ -215,7 +215,14 @@ TEST_F(CampaignPage, names_of_whatever_characters_change_no_markup)
         const std::string page = page_of({one, two, three});
         return std::pair(occurrences(page, "<"), occurrences(page, ">"));
     };
-    EXPECT_EQ(tags_with(hostile), tags_with(innocent));
+    // as long as the hostile ones, since charts break long names into lines
+    const auto harmless = [](std::string name) {
+        for (char& c : name)
+            if (std::string_view("<>&\"'").find(c) != std::string_view::npos) c = 'a';
+        return name;
+    };
+    EXPECT_EQ(tags_with(hostile),
+              tags_with({harmless(hostile.device), harmless(hostile.reason), harmless(hostile.title)}));
 }
 
 TEST(CampaignDays, are_those_of_the_calendar)
