@@ -28,21 +28,16 @@ std::string in_file_name(std::string text)
     return text;
 }
 
-std::string name_of_code(const KernelId& kernel, const Device& device, bool starts_outside)
+std::string name_of_code(const KernelId& kernel, const Device& device, std::size_t index, bool starts_outside)
 {
-    return fmt::format("{}_{}_{}_{}-{}.txt", name_of(kernel.method), name_of(kernel.layout), name_of(kernel.math),
-                       starts_outside ? "outside" : "inside", in_file_name(device.implementation));
+    return fmt::format("{}_{}_{}_{}-{}-{}.txt", name_of(kernel.method), name_of(kernel.layout), name_of(kernel.math),
+                       starts_outside ? "outside" : "inside", index, in_file_name(device.implementation));
 }
 
 bool is_kept(const Options& options, const Backend& backend, std::size_t index)
 {
     const Device& device = backend.devices()[index];
-    if (!device.usable && !device.compile_only) return false;
-    const std::string what =
-        fmt::format("{} {} {} {}:{}", device.name, device.driver, device.id, backend.name(), index);
-    return options.devices.empty() || std::ranges::any_of(options.devices, [&](const std::string& text) {
-               return what.find(text) != std::string::npos;
-           });
+    return (device.usable || device.compile_only) && wanted_device(options, backend, index);
 }
 
 } // namespace
@@ -70,15 +65,17 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
     const Backend& backend = chosen(options, backends);
     const auto* const source = dynamic_cast<const CodeSource*>(&backend);
     std::vector<KernelFile> files;
+    bool has_device = false;
     for (std::size_t i = 0; source != nullptr && i < backend.devices().size(); ++i) {
         if (!is_kept(options, backend, i)) continue;
+        has_device = true;
         const Device& device = backend.devices()[i];
         try {
             const CompiledCode code = source->compiled(i, kernel, true);
             if (code.text.empty())
                 notes.push_back(fmt::format("{}: its driver tells figures of its code, but not the code", device.name));
             else
-                files.push_back({name_of_code(kernel, device, true),
+                files.push_back({name_of_code(kernel, device, i, true),
                                  fmt::format("what {} made of it, for primary rays from outside", code.compiler),
                                  {},
                                  code.text});
@@ -87,6 +84,9 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
             notes.push_back(printable_line(error.what()));
         }
     }
+    if (source != nullptr && !has_device)
+        notes.push_back(fmt::format("what a driver makes of it: no device of {}{}", backend.name(),
+                                    options.devices.empty() ? " is usable" : "'s is one that --device names"));
     return files;
 }
 

@@ -44,7 +44,8 @@ double running_children_seconds()
 {
     double ticks = 0;
     std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator("/proc", none)) {
+    for (std::filesystem::directory_iterator at("/proc", none), end; !none && at != end; at.increment(none)) {
+        const auto& entry = *at;
         if (entry.path().filename().string().find_first_not_of("0123456789") != std::string::npos) continue;
         const auto process = process_times(text_of(entry.path() / "stat"));
         if (process && process->parent == ::getpid()) ticks += process->ticks;

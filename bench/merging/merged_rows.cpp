@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <functional>
 #include <map>
 #include <set>
 
@@ -29,6 +28,8 @@ void forget_answers(RowRun& row)
 {
     row.samples_s.clear();
     row.wall_samples_s.clear();
+    row.pulse_ratio.reset();
+    row.disturbance.clear();
     if (traced(row) == nullptr) {
         row.session.reset();
         return;
@@ -120,7 +121,15 @@ void add_answers(RowRun& row, const Views& views)
     }
 }
 
-/// A sample traces all views once: sample by sample, the shards' sum.
+/// What speaks against the rate of one shard speaks against that of all.
+void add_disturbance(RowRun& row, const RowRun& part)
+{
+    if (part.pulse_ratio) row.pulse_ratio = std::max(row.pulse_ratio.value_or(0), *part.pulse_ratio);
+    if (part.disturbance.empty() || row.disturbance.find(part.disturbance) != std::string::npos) return;
+    row.disturbance += (row.disturbance.empty() ? "" : "; ") + part.disturbance;
+}
+
+/// A sample traces all views once: sample by sample, the shards' sum. Where a budget took fewer of one shard, as few.
 void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
 {
     std::vector<const RowRun*> parts;
@@ -130,11 +139,14 @@ void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
     for (std::vector<double> RowRun::*samples : {&RowRun::samples_s, &RowRun::wall_samples_s}) {
         std::vector<double> sum = parts.front()->*samples;
         for (std::size_t i = 1; i < parts.size(); ++i) {
-            if ((parts[i]->*samples).size() != sum.size()) return; // a budget took fewer of one
-            std::ranges::transform(sum, parts[i]->*samples, sum.begin(), std::plus<>());
+            sum.resize(std::min(sum.size(), (parts[i]->*samples).size()));
+            for (std::size_t sample = 0; sample < sum.size(); ++sample)
+                sum[sample] += (parts[i]->*samples)[sample];
         }
         row.*samples = std::move(sum);
     }
+    for (const RowRun* part : parts)
+        add_disturbance(row, *part);
 }
 
 } // namespace

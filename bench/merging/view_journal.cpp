@@ -5,6 +5,7 @@
 #include "bench/reproduce/image_record.h"
 #include "core/base/hash.h"
 
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -25,6 +26,7 @@ void ViewJournal::see(const SeenImage& image)
 void ViewJournal::write() const
 {
     if (shard_of(*options_).is_whole()) return;
+    std::filesystem::remove(journal_file(*options_->out)); // of a run that was ended here: all views are known anew
     Journal journal(journal_file(*options_->out),
                     {{"commit", build_identity().commit}, {"shard", text_of(shard_of(*options_))}}, false);
     for (const auto& [place, entry] : entries_)

@@ -160,6 +160,8 @@ void check_together(const Options& options)
     check_single(options, "--divisions", options.divisions.size());
     check_single(options, "--switches", options.switches.size());
     require_views(options);
+    if (options.defects && !shard_of(options).is_whole())
+        throw Error(ErrorKind::usage, "--defects has no shards: it takes seconds; leave out --shard");
     if (options.verb == Verb::trace) check_ray(options);
     if (options.verb == Verb::dump) check_dump(options);
 }

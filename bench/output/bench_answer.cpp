@@ -111,7 +111,7 @@ std::string apis_text(const BenchResult& result)
 
 std::string load_text(const std::optional<MachineLoad>& load)
 {
-    if (!load) return "this system does not tell its load";
+    if (!load) return "nothing is known of the load while measuring";
     return fmt::format("others used {:.2f} of {} processors while measuring, load average {:.1f}", load->others,
                        load->processors, load->average);
 }

@@ -134,7 +134,8 @@ void withdraw_if_noisy(Claim& claim, bool noisy)
     if (!noisy) return;
     claim.verdict = ClaimVerdict::not_testable;
     claim.evidence +=
-        fmt::format(" Rows are noisy (spread above {:.0f} %): measure again on a quieter machine.", 100 * noisy_spread);
+        fmt::format(" Rows are noisy (spread above {:.0f} %, or disturbed): measure again on a quieter machine.",
+                    100 * noisy_spread);
 }
 
 bool is_noisy(const RowRun& row)

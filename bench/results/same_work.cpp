@@ -65,8 +65,9 @@ std::string rays_of(const ResultFile& file, const ResultRow& row)
 
 std::string work_of(const ResultFile& file, const ResultRow& row)
 {
-    if (row.hit_hash.empty()) return {};
-    return fmt::format("{} {} {}", row.name, row.hit_hash, rays_of(file, row));
+    const std::string& hash =
+        row.hit_hash.empty() ? row.views_hash : row.hit_hash; // merged shards have the latter alone
+    return hash.empty() ? std::string() : fmt::format("{} {} {}", row.name, hash, rays_of(file, row));
 }
 
 } // namespace tetrace

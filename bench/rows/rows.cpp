@@ -77,15 +77,6 @@ std::string in_lower_case(std::string text)
     return text;
 }
 
-bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
-{
-    const Device& device = backend.devices()[index];
-    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
-                                                       name_of(device.kind), device.id, backend.name(), index));
-    const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
-    return options.devices.empty() || std::ranges::any_of(options.devices, holds);
-}
-
 /// Whether the backend's driver failed before any device was known: a run must not pass over that, unless it is on
 /// certain devices.
 bool fails_whole(const Options& options, const Backend& backend)
@@ -247,6 +238,15 @@ std::string numbered_backend(const RowKey& key)
 }
 
 } // namespace
+
+bool wanted_device(const Options& options, const Backend& backend, std::size_t index)
+{
+    const Device& device = backend.devices()[index];
+    const std::string what = in_lower_case(fmt::format("{}\n{}\n{}\n{}\n{}:{}", device.name, device.driver,
+                                                       name_of(device.kind), device.id, backend.name(), index));
+    const auto holds = [&](const std::string& text) { return what.find(in_lower_case(text)) != std::string::npos; };
+    return options.devices.empty() || std::ranges::any_of(options.devices, holds);
+}
 
 // Compares copies of whole keys, so that a field added later counts as a difference.
 RowKey reference_row(RowKey key)

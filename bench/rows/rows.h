@@ -75,6 +75,9 @@ inline constexpr const char* search_scene = "random-tets";
 [[nodiscard]] std::vector<std::string> missing_devices(const Options& options,
                                                        const std::vector<Backend*>& backends = all_backends());
 
+/// Whether --device keeps the backend's device of this index.
+[[nodiscard]] bool wanted_device(const Options& options, const Backend& backend, std::size_t index);
+
 /// Whether a kernel of the structure has the method.
 [[nodiscard]] bool is_method_of(Structure structure, Method method);
 

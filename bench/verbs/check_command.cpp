@@ -88,18 +88,6 @@ void require_selected(const std::vector<RowKey>& keys, const std::vector<std::st
                                     name));
 }
 
-/// A required backend has not been checked where all its rows were selected but none was judged.
-void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
-{
-    for (const RowRun& row : rows) {
-        const bool required = std::ranges::find(backends, row.key.backend) != backends.end();
-        const Status status = status_of(row);
-        if (required && (status == Status::skipped || status == Status::unsupported))
-            throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
-                                                        row_name(row.key), name_of(status), reason_of(row)));
-    }
-}
-
 /// checked: also what there is of it where the check ends early.
 int check(const Options& options, Checked& checked)
 {
@@ -136,6 +124,17 @@ int list_selected(const Options& options)
 }
 
 } // namespace
+
+void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
+{
+    for (const RowRun& row : rows) {
+        const bool required = std::ranges::find(backends, row.key.backend) != backends.end();
+        const Status status = status_of(row);
+        if (required && (status == Status::skipped || status == Status::unsupported))
+            throw Error(ErrorKind::missing, fmt::format("--require {}: {} is {}: {}", row.key.backend,
+                                                        row_name(row.key), name_of(status), reason_of(row)));
+    }
+}
 
 bool fails_check(const RowRun& row, const Options& options)
 {

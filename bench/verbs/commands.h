@@ -27,6 +27,10 @@ int merge_command(const Options& options);
 /// Whether the row fails `check`. A row without an answer does not fail by itself (see exit_code and --require).
 [[nodiscard]] bool fails_check(const RowRun& row, const Options& options);
 
+/// Throws Error{missing} naming the first row of a required backend that has not been judged: all its rows were
+/// selected, but none ran.
+void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends);
+
 /// `check --defects`. options: with the default layouts of check.
 int check_defects(const Options& options);
 

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <functional>
+#include <optional>
 
 namespace tetrace {
 
@@ -19,11 +21,23 @@ namespace {
 using nlohmann::json;
 using Shards = std::vector<ShardResult>;
 
-/// A merged result, and the exit code of the run that it is of.
+/// A merged result, and how the run that it is of ends: with an exit code, or an error after the report.
 struct Merged {
     Report report;
     int code = 0;
+    std::optional<Error> error;
 };
+
+/// What work() throws.
+std::optional<Error> error_of(const std::function<void()>& work)
+{
+    try {
+        work();
+    } catch (const Error& error) {
+        return error;
+    }
+    return std::nullopt;
+}
 
 const json& section_of(const ShardResult& shard)
 {
@@ -74,7 +88,8 @@ Merged merged_bench(const Shards& shards, const Options& options)
     result.threads = options.threads;
     for (const RowRun& row : result.run.rows)
         result.measurement.samples = std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size()));
-    return {bench_report(result, options), exit_code(result.run.rows, true)};
+    return {bench_report(result, options), exit_code(result.run.rows, true),
+            error_of([&] { require_answers(result.run.rows, "measured"); })};
 }
 
 /// The tets of a differing ray's walk, as the shard that found it has them.
@@ -115,7 +130,10 @@ Merged merged_check(const Shards& shards, const Options& options)
     if (options.out) report.sheet.labelled("Result", options.out->string());
     write_junit(rows, options);
     const bool fails = std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); });
-    return {std::move(report), fails ? 1 : exit_code(rows, options.allow_flawed)};
+    return {std::move(report), fails ? 1 : exit_code(rows, options.allow_flawed), error_of([&] {
+                require_judged(rows, options.required);
+                require_answers(rows, "checked");
+            })};
 }
 
 /// Throws Error{usage} where another machine than the shards' has other default scenes.
@@ -161,7 +179,7 @@ Merged merged_reproduction(const Shards& shards, const Options& asked)
         all.search_records = searches_json(run);
     }
     make_tables(all, options);
-    return {reproduction_report(all, options), rows_exit_code(all)};
+    return {reproduction_report(all, options), rows_exit_code(all), error_of([&] { require_any_answer(all); })};
 }
 
 Merged merged_run(const Shards& shards, const Options& options)
@@ -188,6 +206,7 @@ int merge_command(const Options& asked)
     merged.report.sheet.append(more);
     if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
     deliver(options, merged.report);
+    if (merged.error) throw *merged.error;
     return merged.code;
 }
 

@@ -43,6 +43,54 @@ TEST_F(Merge, one_kind_of_machine_has_the_rates_of_its_summed_samples)
     EXPECT_EQ(all["merged"]["machines"][0]["shards"], Json({1, 2}));
 }
 
+TEST_F(Merge, a_row_is_as_noisy_as_the_noisiest_of_its_shards_and_has_the_fewest_samples)
+{
+    const std::string files = shards(bench_job, 2);
+    const auto set = [](double pulse, const char* disturbed, std::size_t samples) {
+        return [=](Json& section) {
+            for (Json& row : section["rows"]) {
+                Json& times = row["times"];
+                times["pulse"] = pulse;
+                times.erase("disturbed");
+                if (disturbed != nullptr) times["disturbed"] = disturbed;
+                for (const char* key : {"samples_s", "wall_samples_s"}) {
+                    Json fewer = Json::array();
+                    for (std::size_t i = 0; i < samples; ++i)
+                        fewer.push_back(times[key][i]);
+                    times[key] = fewer;
+                }
+            }
+        };
+    };
+    change("1.json", set(1, nullptr, 5));
+    change("2.json", set(6, "the machine was elsewhere", 3));
+    ASSERT_EQ(run("merge " + files + "--out all.json").code, 0);
+    for (const Json& row : section("all.json")["rows"]) {
+        EXPECT_EQ(row["times"]["pulse"], 6);
+        EXPECT_EQ(row["times"]["disturbed"], "the machine was elsewhere");
+        EXPECT_EQ(row["times"]["noisy"], true);
+        EXPECT_EQ(row["times"]["samples_s"].size(), 3u);
+    }
+}
+
+TEST_F(Merge, a_run_of_which_no_row_could_run_exits_as_the_whole_run_would)
+{
+    const std::string files = shards(bench_job, 2);
+    for (const char* name : {"1.json", "2.json"})
+        change(name, [](Json& section) {
+            for (Json& row : section["rows"]) {
+                for (const char* key : {"counts", "visits", "verification", "hit_hash", "views_hash", "times", "rates"})
+                    row.erase(key);
+                row["status"] = "skipped";
+                row["reason"] = "its device is elsewhere";
+            }
+        });
+    const Ended ended = run("merge " + files + "--out all.json");
+    EXPECT_EQ(ended.code, 3);
+    EXPECT_TRUE(contains(ended.errors, "its device is elsewhere")) << ended.errors;
+    EXPECT_EQ(section("all.json")["rows"][0]["status"], "skipped");
+}
+
 TEST_F(Merge, compare_takes_a_merged_result_for_the_same_work)
 {
     ASSERT_EQ(run(bench_job + " --out whole.json").code, 0);
