@@ -147,10 +147,10 @@ benchmark::ConsoleReporter::OutputOptions console_options(const BenchmarkFlags& 
     return static_cast<Console::OutputOptions>(colour | (flags.tabular ? Console::OO_Tabular : Console::OO_None));
 }
 
-std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& json)
+std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& recorded)
 {
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
-    receivers.push_back(make_reporter("json", json));
+    receivers.push_back(make_reporter("json", recorded));
     if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout, console_options(flags)));
     return std::make_unique<RowReporter>(std::move(receivers));
 }

@@ -32,16 +32,11 @@ json host_kind(const json& section)
     return kind;
 }
 
-const json& section_of(const ShardResult& shard)
-{
-    return shard.result.json.at("tetrace");
-}
-
 /// The rows of scenes, and those of searches.
 std::vector<const json*> rows_of(const ShardResult& shard)
 {
     std::vector<const json*> rows;
-    const json& section = section_of(shard);
+    const json& section = shard.section();
     const auto add = [&](const json& list) {
         for (const json& row : list)
             rows.push_back(&row);
@@ -53,7 +48,7 @@ std::vector<const json*> rows_of(const ShardResult& shard)
 
 json machine_kind(const ShardResult& shard)
 {
-    const json& section = section_of(shard);
+    const json& section = shard.section();
     json kind = host_kind(section);
     kind["devices"] = json::array();
     if (section.contains("devices"))
@@ -100,7 +95,7 @@ bool is_of_one_kind(const std::vector<ShardResult>& shards, const std::string& n
     for (const ShardResult& shard : shards)
         for (const json* row : rows_of(shard))
             if (row->at("name") == name) {
-                json kind = host_kind(section_of(shard));
+                json kind = host_kind(shard.section());
                 if (row->contains("device")) kind["device"] = device_kind((*row)["device"]);
                 kinds.push_back(std::move(kind));
             }
@@ -119,7 +114,7 @@ nlohmann::json machines_json(const std::vector<ShardResult>& shards)
     json machines = json::array();
     for (const json& kind : order) {
         json machine = {{"shards", json::array()},
-                        {"host", section_of(*kinds[kind].front()).at("host")},
+                        {"host", kinds[kind].front()->section().at("host")},
                         {"devices", kind["devices"]}};
         if (kind.contains("label")) machine["label"] = kind["label"];
         std::vector<std::pair<std::string, Work>> work;
@@ -161,7 +156,7 @@ Sheet machines_sheet(const nlohmann::json& merged)
 
 void set_origin(nlohmann::json& section, const std::vector<ShardResult>& shards)
 {
-    const json& first = section_of(shards.front());
+    const json& first = shards.front().section();
     for (const char* key : {"host", "label"}) {
         section.erase(key);
         if (first.contains(key)) section[key] = first[key];

@@ -39,11 +39,11 @@ void forget_answers(RowRun& row)
 }
 
 /// The place of an entry in the whole run: scenes in the order of the shards' first entries.
-struct Place {
+struct EntryPlace {
     std::size_t scene = 0;
     std::uint64_t part = 0;
 
-    friend auto operator<=>(const Place&, const Place&) = default;
+    friend auto operator<=>(const EntryPlace&, const EntryPlace&) = default;
 };
 
 /// Rows whose times are not put together, among all that were asked about.
@@ -170,7 +170,7 @@ std::vector<RowRun> rows_of_shards(const std::vector<ShardResult>& shards, bool 
 
 std::vector<nlohmann::json> merged_entries(const std::vector<ShardResult>& shards)
 {
-    std::multimap<Place, json> parts;
+    std::multimap<EntryPlace, json> parts;
     std::vector<json> others;
     std::set<std::string> known;
     std::vector<std::string> scenes;
@@ -186,7 +186,7 @@ std::vector<nlohmann::json> merged_entries(const std::vector<ShardResult>& shard
             }
             strip(entry, stripped);
             const std::size_t scene = is_view ? number_of(scenes, entry.at("scene")) : most_shards;
-            const Place place{scene, entry.at(is_view ? "view" : "batch").get<std::uint64_t>()};
+            const EntryPlace place{scene, entry.at(is_view ? "view" : "batch").get<std::uint64_t>()};
             parts.emplace(place, std::move(entry));
         }
     std::vector<json> entries;

@@ -5,6 +5,7 @@
 #include "bench/results/result_file.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct ShardResult {
 
     /// "shard 2/4 ('b.json')".
     [[nodiscard]] std::string name() const;
+    /// What tetrace recorded.
+    [[nodiscard]] const nlohmann::json& section() const { return result.json.at("tetrace"); }
 };
 
 /// The file of a shard of the result `out`, under a launcher: "all.shard-2-of-4.json" of "all.json".

@@ -313,7 +313,7 @@ std::string verbs_of(const OptionRow& row)
     return text;
 }
 
-std::string in_markdown(const std::string& text)
+std::string with_bars_escaped(const std::string& text)
 {
     std::string result;
     for (const char c : text) {
@@ -327,8 +327,8 @@ std::string options_markdown()
 {
     std::string text = "| option | verbs | meaning |\n|---|---|---|\n";
     for (const OptionRow& row : option_table())
-        text += fmt::format("| `{}{}{}` | {} | {} |\n", row.name, row.value.empty() ? "" : " ", in_markdown(row.value),
-                            verbs_of(row), in_markdown(row.help));
+        text += fmt::format("| `{}{}{}` | {} | {} |\n", row.name, row.value.empty() ? "" : " ",
+                            with_bars_escaped(row.value), verbs_of(row), with_bars_escaped(row.help));
     return text;
 }
 

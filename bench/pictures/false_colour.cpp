@@ -24,7 +24,7 @@ Colour from_oklab(double lightness, double a, double b)
 
 constexpr std::uint32_t margin = 10; ///< of title and scale bar, at lettering scale 1
 constexpr std::uint32_t footer_height = 58;
-constexpr std::uint32_t gap = 4; // between pictures side by side
+constexpr std::uint32_t gap_between = 4; // between pictures side by side
 
 /// Where the scale bar of a picture lies, and what it means.
 struct ScaleBar {
@@ -150,7 +150,7 @@ Pixmap draw_steps(std::span<const StepsImage> images, std::uint32_t width, std::
         column = std::max(column, text_width(titles.back(), scale) + 2 * margin * scale);
         end = std::max(end, summary.top);
     }
-    if (images.size() > 1) column += gap * scale;
+    if (images.size() > 1) column += gap_between * scale;
     Pixmap pixmap(column * static_cast<std::uint32_t>(images.size()), height + footer_height * scale, paper);
     for (std::uint32_t i = 0; i < images.size(); ++i) {
         const std::uint32_t left = i * column;

@@ -10,10 +10,10 @@ namespace tetrace {
 namespace {
 
 /// The directions that a picture needs at every pixel, wide.
-struct Frame {
+struct ViewFrame {
     Double3 corner, step_x, step_y, right, up;
 
-    explicit Frame(const View& view)
+    explicit ViewFrame(const View& view)
         : corner(to_double(view.corner)), step_x(to_double(view.step_x)), step_y(to_double(view.step_y)),
           right(normalized(step_x)), up(normalized(step_y * -1.0))
     {
@@ -57,7 +57,7 @@ Colour shade(Double3 normal, Double3 to_viewer, Double3 right, Double3 up)
 Pixmap shade_hits(std::span<const Hit> hits, const View& view, std::uint32_t width, std::uint32_t height,
                   const TriangleMesh& mesh)
 {
-    const Frame frame(view);
+    const ViewFrame frame(view);
     Pixmap pixmap(width, height);
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {

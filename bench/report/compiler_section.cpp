@@ -8,14 +8,14 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_programs =
     "Each entry point of a kernel, compiled for a GPU that need not be there; nothing was run. Occupancy: the "
     "subgroups "
     "that a processor of the GPU holds at once, compared with an empty kernel (AMD) or with the most (NVIDIA). Fused: "
     "floating-point operations that multiply and add with one rounding. In exact mode none may decide a sign; those in "
     "box tests of BVHs decide nothing.";
 
-std::string number_at(const ResultValue& program, const char* key)
+std::string count_text(const ResultValue& program, const char* key)
 {
     const auto value = program.find(key);
     return value ? with_commas(value->count()) : std::string();
@@ -31,9 +31,10 @@ std::string occupancy_of(const ResultValue& program)
 /// Registers on AMD; bytes stored and loaded on NVIDIA.
 std::string spills_of(const ResultValue& program)
 {
-    if (program.find("spilled_registers")) return number_at(program, "spilled_registers");
+    if (program.find("spilled_registers")) return count_text(program, "spilled_registers");
     if (!program.find("spill_store_bytes")) return {};
-    const std::string stores = number_at(program, "spill_store_bytes"), loads = number_at(program, "spill_load_bytes");
+    const std::string stores = count_text(program, "spill_store_bytes"),
+                      loads = count_text(program, "spill_load_bytes");
     return stores == "0" && loads == "0" ? "0" : fmt::format("{} + {} bytes", stores, loads);
 }
 
@@ -42,7 +43,7 @@ std::string fused_of(const ResultValue& program)
     const auto in = program.find("fused_in");
     if (!in) return {};
     const std::string where = in->line();
-    return where == "nothing" ? "none" : fmt::format("{} in {}", number_at(program, "fused"), where);
+    return where == "nothing" ? "none" : fmt::format("{} in {}", count_text(program, "fused"), where);
 }
 
 std::string entry_of(const ResultValue& program)
@@ -70,10 +71,10 @@ Html programs_of(const ResultValue& programs)
         const std::string kernel = program.at("method").line() + " " + program.at("layout").line() +
                                    (program.at("math").line() == "fast" ? " fast" : "");
         table.add({text(program.at("target").line()), text(kernel), text(entry_of(program)),
-                   text(number_at(program, "registers")), text(spills_of(program)),
-                   text(number_at(program, "scratch_bytes")), text(occupancy_of(program)),
-                   text(number_at(program, "instructions")), text(number_at(program, "branches")),
-                   text(number_at(program, "loads_in_loops")), text(fused_of(program)),
+                   text(count_text(program, "registers")), text(spills_of(program)),
+                   text(count_text(program, "scratch_bytes")), text(occupancy_of(program)),
+                   text(count_text(program, "instructions")), text(count_text(program, "branches")),
+                   text(count_text(program, "loads_in_loops")), text(fused_of(program)),
                    badge(status) + text(reason.empty() ? reason : ": " + reason)});
     }
     return table.html();
@@ -104,7 +105,7 @@ Section compiler_section(const ReportInput& input)
     section.is_empty = tables.empty();
     section.content = tables.empty() ? paragraph("None of these results is of 'tetrace inspect --out FILE.json', which "
                                                  "asks GPUs' compilers about every kernel.")
-                                     : note(how_to_read) + tables;
+                                     : note(how_to_read_programs) + tables;
     return section;
 }
 

@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_matrices =
     "Exact mode: all bits of all hits, compared with openmp's for the same method and layout. Within N ulp: only t, u "
     "and v "
     "differ, by no more than the device's own self-test allows. Not exact: the hits are openmp's, but the device "
@@ -84,7 +84,7 @@ Section conformance_section(const ReportInput& input)
         matrices.empty()
             ? paragraph("None of these results is of 'tetrace check --out FILE.json', which compares every "
                         "device with openmp bit for bit.")
-            : note(how_to_read) + matrices;
+            : note(how_to_read_matrices) + matrices;
     const Html reasons = reasons_of(input);
     section.is_empty = matrices.empty() && reasons.empty();
     section.content += reasons;

@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_rates =
     "Millions of rays a second, of the median sample, kernel time alone. The whisker spans the middle half of the "
     "samples, a tick is a sample; a row is noisy where that exceeds 5 % of its median, or where the machine was "
     "disturbed. Only what stands in one "
@@ -126,7 +126,7 @@ Section rate_section(const ReportInput& input)
     if (groups.empty())
         section.content += paragraph("No row of these results has a rate; 'tetrace bench --out FILE.json' measures.");
     else
-        section.content += note(how_to_read);
+        section.content += note(how_to_read_rates);
     for (std::size_t begin = 0; begin < groups.size();) {
         const std::string title = scene_title(groups[begin]);
         Html charts;

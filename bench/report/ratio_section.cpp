@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_ratios =
     "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
     "with the 95 % interval of the ratio. A hollow dot's interval holds 1: no difference can be told. Rows with fewer "
     "than 5 samples have no interval, and are not shown.";
@@ -89,7 +89,7 @@ Section ratio_section(const ReportInput& input)
     Html charts;
     for (const RatioGroup& group : groups)
         charts += chart_of(group, input);
-    section.content = note(how_to_read) + side_by_side(charts);
+    section.content = note(how_to_read_ratios) + side_by_side(charts);
     return section;
 }
 

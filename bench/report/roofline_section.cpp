@@ -10,7 +10,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_roofs =
     "Msteps/s against the ceiling that memory sets: the copy bandwidth that the device reached in the same run (bytes "
     "read and written), over the bytes that a step loads of its tet's record. Both are estimates, not limits: "
     "memory moves whole lines, which lowers what can be reached, and caches keep some of them, which lifts a row above "
@@ -106,7 +106,7 @@ Section roofline_section(const ReportInput& input)
             paragraph("No device of these results has both a measured copy bandwidth and a row with a step "
                       "rate; 'tetrace bench' measures both in one run.");
     else
-        section.content = note(how_to_read) + charts_of(roofs, DeviceKind::cpu, "Processors") +
+        section.content = note(how_to_read_roofs) + charts_of(roofs, DeviceKind::cpu, "Processors") +
                           charts_of(roofs, DeviceKind::gpu, "GPUs") +
                           charts_of(roofs, DeviceKind::emulated, "Emulated by the processor");
     return section;

@@ -5,7 +5,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_times =
     "Milliseconds for all views. Compiling and uploading are paid once; first: the first pass, in which devices "
     "compile what they left until then; kernel: device time; launch: launching and waiting, what wall holds beyond the "
     "kernel; "
@@ -56,7 +56,7 @@ Section time_section(const ReportInput& input)
     Section section{"times", "Where the time goes", {}};
     section.is_empty = table.rows().empty();
     section.content = table.rows().empty() ? paragraph("No row of these results was timed.")
-                                           : note(how_to_read) + html_table(table).html();
+                                           : note(how_to_read_times) + html_table(table).html();
     return section;
 }
 

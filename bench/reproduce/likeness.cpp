@@ -14,10 +14,10 @@ namespace {
 /// bunny has 9 % more than Stanford's, and the counts of its tets are within 3 % of the paper's.
 constexpr double mesh_tolerance = 0.1;
 
-bool are_within(const TetMeshCounts& counts, const paper::SceneFigures& papers, double tolerance)
+bool are_within(const TetMeshCounts& counts, const paper::SceneFigures& papers, double share)
 {
     const auto is_near = [&](std::uint64_t ours, std::uint64_t theirs) {
-        return is_within(static_cast<double>(ours), static_cast<double>(theirs), tolerance);
+        return is_within(static_cast<double>(ours), static_cast<double>(theirs), share);
     };
     return is_near(counts.tets, papers.tets) && is_near(counts.occlusive_faces, papers.occlusive_faces) &&
            is_near(counts.free_faces, papers.free_faces);
@@ -39,9 +39,9 @@ std::string other_mesh_text(std::size_t triangles, const paper::NearestBuild& ne
 
 } // namespace
 
-bool is_within(double ours, double papers, double tolerance)
+bool is_within(double ours, double papers, double share)
 {
-    return std::abs(ours - papers) <= tolerance * papers;
+    return std::abs(ours - papers) <= share * papers;
 }
 
 Likeness likeness_of(std::string_view scene, const Scene& loaded, const TetMeshCounts& counts)

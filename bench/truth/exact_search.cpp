@@ -15,7 +15,7 @@ namespace {
 // 2^-53, and no sum here has more than 12 roundings.
 constexpr double lost_share = 4e-15;
 constexpr double box_slack = 1e-9; // of coordinates below 2^7, whose slab distances are right to 2^-44
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double nowhere = std::numeric_limits<double>::infinity();
 
 double sum_of(Double3 a)
 {
@@ -130,7 +130,7 @@ struct ExactSearch::Builder {
         }
         joined = {};
         counted = 0;
-        double least = never;
+        double least = nowhere;
         int best = bins / 2;
         for (std::size_t bin = 1; bin < bins; ++bin) {
             joined.add(box[bin - 1]);
@@ -159,7 +159,7 @@ struct ExactSearch::Tube {
             inverse[axis] = 1 / (ray.direction[axis] == 0 ? 1e-300 : static_cast<double>(ray.direction[axis]));
     }
 
-    // Where the tube's line enters a box that is grown by its radius; `never` where it does not.
+    // Where the tube's line enters a box that is grown by its radius; `nowhere` where it does not.
     [[nodiscard]] double entry(const Node& node) const
     {
         const double from[3] = {origin.x, origin.y, origin.z};
@@ -170,7 +170,7 @@ struct ExactSearch::Tube {
             near = std::max(near, a < b ? a : b);
             far = std::min(far, a < b ? b : a);
         }
-        return near <= far * (1 + 1e-12) ? near : never;
+        return near <= far * (1 + 1e-12) ? near : nowhere;
     }
 
     // Where a triangle lies, as the tube's line sees it.
@@ -184,7 +184,7 @@ struct ExactSearch::Tube {
         const auto& [i, j, k] = mesh.triangles[triangle];
         Seen seen{to_double(mesh.vertices[i]) - origin, to_double(mesh.vertices[j]) - origin,
                   to_double(mesh.vertices[k]) - origin, false, false};
-        double low = never, high = -never, inside = never, inside_other = never;
+        double low = nowhere, high = -nowhere, inside = nowhere, inside_other = nowhere;
         for (const auto& [p, q] : {std::pair{seen.a, seen.b}, {seen.b, seen.c}, {seen.c, seen.a}}) {
             const double side = dot(direction, cross(p, q));
             const double margin =
@@ -216,7 +216,7 @@ void ExactSearch::visit(Tube& tube, const Visit& visit) const
     };
     std::array<Waiting, 128> waiting;
     std::size_t count = 0;
-    if (!order_.empty() && tube.entry(nodes_[0]) < never) waiting[count++] = {0, 0};
+    if (!order_.empty() && tube.entry(nodes_[0]) < nowhere) waiting[count++] = {0, 0};
     while (count > 0) {
         const auto [number, entry] = waiting[--count];
         if (entry > tube.end * (1 + 1e-12)) continue;
@@ -228,8 +228,8 @@ void ExactSearch::visit(Tube& tube, const Visit& visit) const
         }
         const double left = tube.entry(nodes_[node.first]), right = tube.entry(nodes_[node.first + 1]);
         const std::uint32_t nearer = left <= right ? 0 : 1;
-        if (std::max(left, right) < never) waiting[count++] = {node.first + 1 - nearer, std::max(left, right)};
-        if (std::min(left, right) < never) waiting[count++] = {node.first + nearer, std::min(left, right)};
+        if (std::max(left, right) < nowhere) waiting[count++] = {node.first + 1 - nearer, std::max(left, right)};
+        if (std::min(left, right) < nowhere) waiting[count++] = {node.first + nearer, std::min(left, right)};
     }
 }
 
@@ -269,7 +269,7 @@ public:
         }
     }
 
-    [[nodiscard]] FirstHit result() const { return {best_, nearest_other_ > tube_.end || nearest_other_ == never}; }
+    [[nodiscard]] FirstHit result() const { return {best_, nearest_other_ > tube_.end || nearest_other_ == nowhere}; }
 
 private:
     // The end is compared with a rounded t.
@@ -300,8 +300,8 @@ private:
     const RayPart& part_;
     Tube& tube_;
     std::uint32_t best_ = NO_HIT;
-    double t_ = never, error_ = 0;
-    double nearest_other_ = never; // the least depth of the others
+    double t_ = nowhere, error_ = 0;
+    double nearest_other_ = nowhere; // the least depth of the others
 };
 
 ExactSearch::ExactSearch(const TriangleMesh& mesh) : mesh_(mesh)
@@ -314,7 +314,7 @@ namespace {
 double last_of(const RayPart& part)
 {
     // Beyond the end by far more than t can be off: a triangle there may be within its error of the end.
-    return part.has_end() ? static_cast<double>(part.end) * 1.0625 + 0.0625 : never;
+    return part.has_end() ? static_cast<double>(part.end) * 1.0625 + 0.0625 : nowhere;
 }
 
 } // namespace

@@ -39,17 +39,12 @@ std::optional<Error> error_of(const std::function<void()>& work)
     return std::nullopt;
 }
 
-const json& section_of(const ShardResult& shard)
-{
-    return shard.result.json.at("tetrace");
-}
-
 /// The options of the whole run; output goes where `merge` says.
 Options options_of(const Shards& shards, const Options& asked)
 {
     Options options = parse_options(shards.front().arguments);
     options.shard = Shard();
-    options.threads = section_of(shards.front()).value("threads", options.threads);
+    options.threads = shards.front().section().value("threads", options.threads);
     options.out = asked.out;
     options.format = asked.format;
     options.columns = asked.columns;
@@ -62,7 +57,7 @@ std::vector<std::string> sentences_of(const Shards& shards, const char* key)
 {
     std::vector<std::string> all;
     for (const ShardResult& shard : shards)
-        for (const std::string sentence : section_of(shard).value(key, json::array()))
+        for (const std::string sentence : shard.section().value(key, json::array()))
             if (std::ranges::find(all, sentence) == all.end()) all.push_back(sentence);
     return all;
 }
@@ -71,7 +66,7 @@ std::vector<std::string> sentences_of(const Shards& shards, const char* key)
 std::vector<json> scenes_of(const Shards& shards, const std::vector<std::uint32_t>& views)
 {
     std::vector<json> scenes;
-    for (const json& scene : section_of(shards.front()).at("scenes"))
+    for (const json& scene : shards.front().section().at("scenes"))
         scenes.emplace_back(scene)["views"] = views;
     return scenes;
 }
@@ -99,7 +94,7 @@ void copy_paths(json& row, const Shards& shards)
         if (!row.contains("verification") || !row["verification"].contains(key)) continue;
         json& ray = row["verification"][key];
         for (const ShardResult& shard : shards)
-            for (const json& other : section_of(shard).at("rows")) {
+            for (const json& other : shard.section().at("rows")) {
                 if (other.at("name") != row["name"] || !other.contains("verification")) continue;
                 const json found = other["verification"].value(key, json::object());
                 const auto is_same = [&](const char* part) {

@@ -64,17 +64,17 @@ Quad quad_of(Float3 a)
     return {std::bit_cast<std::uint32_t>(a.x), std::bit_cast<std::uint32_t>(a.y), std::bit_cast<std::uint32_t>(a.z), 0};
 }
 
-Float3 difference(Float3 a, Float3 b)
+Float3 edge(Float3 a, Float3 b)
 {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
+    return {b.x - a.x, b.y - a.y, b.z - a.z};
 }
 
 void pack_triangles(PackedScene& packed, const TriangleMesh& mesh)
 {
     for (const auto& [a, b, c] : mesh.triangles) {
         packed.triangles.push_back(quad_of(mesh.vertices[a]));
-        packed.triangles.push_back(quad_of(difference(mesh.vertices[b], mesh.vertices[a])));
-        packed.triangles.push_back(quad_of(difference(mesh.vertices[c], mesh.vertices[a])));
+        packed.triangles.push_back(quad_of(edge(mesh.vertices[a], mesh.vertices[b])));
+        packed.triangles.push_back(quad_of(edge(mesh.vertices[a], mesh.vertices[c])));
     }
 }
 

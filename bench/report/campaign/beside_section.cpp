@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_beside =
     "Millions of rays a second (of searches, millions of those), of the median sample of each machine's newest result. "
     "Below each: its ratio to the rate of the first machine of the table. A line is the same work on all its machines: "
     "the same kernel, scene, views and size, and the same answers, bit for bit. Work that one machine alone has done "
@@ -153,7 +153,7 @@ Section beside_section(const Campaign& campaign)
             paragraph("No two machines of these results did the same work: measure the same scenes, views "
                       "and size on each.");
     else
-        section.content = note(how_to_read) + section.content;
+        section.content = note(how_to_read_beside) + section.content;
     return section;
 }
 

@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_machines =
     "A machine is a processor with a number of threads, what its drivers emulate, or a GPU. Hosts are told apart by "
     "--label of the run, or else by their processor's name, family, model and stepping, or where a result does not "
     "have "
@@ -113,7 +113,7 @@ Html left_out_list(const Campaign& campaign)
 Section index_section(const Campaign& campaign)
 {
     return {"index", "Index",
-            heading("Machines") + machine_table(campaign) + note(how_to_read) + heading("Results, by date") +
+            heading("Machines") + machine_table(campaign) + note(how_to_read_machines) + heading("Results, by date") +
                 result_table(campaign) + left_out_list(campaign)};
 }
 

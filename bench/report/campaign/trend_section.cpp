@@ -11,7 +11,7 @@ namespace tetrace {
 
 namespace {
 
-const char* const how_to_read =
+const char* const how_to_read_trends =
     "Each machine's rates over its dates, of the same work only; a chart shows them as parts of the first. 'Last step' "
     "compares the samples of the last date with those of the one before, 'in all' with those of the first: the ratio "
     "of "
@@ -154,7 +154,7 @@ Section trend_section(const Campaign& campaign)
     if (section.content.empty())
         section.content = paragraph("No machine of these results did the same work on two dates.");
     else
-        section.content = note(how_to_read) + section.content;
+        section.content = note(how_to_read_trends) + section.content;
     return section;
 }
 

@@ -20,7 +20,7 @@ void for_rated(const SceneRun& run, const Visit& visit)
         if (is_cdt(run.rows[i]) && !view_seconds(run, i).empty()) visit(i);
 }
 
-std::string source()
+std::string figure6_source()
 {
     return fmt::format("{}, Figure 6", paper::citation);
 }
@@ -42,7 +42,7 @@ bool has_papers_times(const RowRun& row)
     return row.key.kernel.method == Method::maria && paper_place(row) == paper::Place::cpu;
 }
 
-std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
+std::vector<PaperCell> figure6_cells(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
     const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
@@ -152,7 +152,7 @@ PaperFigure figure_of(const SceneRun& run, std::optional<DeviceKind> kind)
         fmt::format("figure6-{}{}{}", run.build.label, kind ? "-" : "", kind_text),
         fmt::format("Time and tets traversed, a point a view: {}, {} build{}{}", run.build.scene, run.build.build,
                     kind ? ", " : "", kind_text),
-        source(),
+        figure6_source(),
         {"tets traversed", "a ray"},
         {"time of an image of 1024 x 1024", "ms"},
         {"Times are medians of a view's samples, device seconds of the kernel alone, for as many rays as the paper's "
@@ -196,7 +196,7 @@ PaperTable figure6_table(const SceneRuns& runs)
     PaperTable table{
         "figure6",
         "Time and tets traversed over the views",
-        source(),
+        figure6_source(),
         with_labels({{"views", "views", "", 0},
                      {"fewest_tets", "fewest tets", "a ray", 1},
                      {"most_tets", "most tets", "a ray", 1},
@@ -222,7 +222,7 @@ PaperTable figure6_table(const SceneRuns& runs)
     for (std::string& note : likeness_notes(runs))
         table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs) {
-        for_rated(*run, [&](std::size_t i) { table.rows.push_back(cells_of(*run, i)); });
+        for_rated(*run, [&](std::size_t i) { table.rows.push_back(figure6_cells(*run, i)); });
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (const RowRun& row = run->rows[i]; is_cdt(row) && view_seconds(*run, i).empty())
                 table.notes.push_back(

@@ -94,7 +94,7 @@ Cell number_cell(double value, const Column& column)
     return value;
 }
 
-Cell plain_cell(const PaperCell& cell, const Column& column)
+Cell value_cell(const PaperCell& cell, const Column& column)
 {
     if (const auto* text = std::get_if<std::string>(&cell)) return *text;
     if (const auto* number = quantity(cell)) return number_cell(number->ours.value, column);
@@ -110,7 +110,7 @@ bool has_interval(const PaperCell& cell)
 /// "1.25 [1.10, 1.40]"; the value alone where there is no interval.
 Cell interval_cell(const PaperCell& cell, const Column& column)
 {
-    if (!has_interval(cell)) return plain_cell(cell, column);
+    if (!has_interval(cell)) return value_cell(cell, column);
     const Estimate& ours = quantity(cell)->ours;
     return fmt::format("{0:.{3}f} [{1:.{3}f}, {2:.{3}f}]", ours.value, *ours.low, *ours.high, column.decimals);
 }
@@ -175,7 +175,7 @@ std::vector<Cell> labels_of(const PaperTable& table, const std::vector<PaperCell
     for (const char* key : label_keys) {
         const auto column = std::ranges::find_if(table.columns, [&](const Column& one) { return one.key == key; });
         const bool has = column != table.columns.end();
-        labels.push_back(has ? plain_cell(row[static_cast<std::size_t>(column - table.columns.begin())], *column)
+        labels.push_back(has ? value_cell(row[static_cast<std::size_t>(column - table.columns.begin())], *column)
                              : Cell());
     }
     return labels;
@@ -332,7 +332,7 @@ Table with_paper_columns(const PaperTable& table)
         };
         const bool intervals =
             std::ranges::any_of(table.rows, [&](const auto& row) { return has_interval(row.at(c)); });
-        add(column, intervals ? cells(interval_cell) : cells(plain_cell), true);
+        add(column, intervals ? cells(interval_cell) : cells(value_cell), true);
         add({column.key + "_paper", "paper", {}, column.decimals}, cells(paper_cell), false);
         add({column.key + "_ratio", "ratio", {}, 3}, cells(ratio_cell), false);
     }

@@ -14,7 +14,7 @@ std::string shown_at(const ResultValue& object, const char* key)
 }
 
 /// The numbers of a table have so few decimals that no format fails.
-int decimals_of(const ResultValue& column)
+int shown_decimals(const ResultValue& column)
 {
     const auto decimals = column.find("decimals");
     return decimals ? static_cast<int>(std::min<std::uint64_t>(decimals->count(), 15)) : Column{}.decimals;
@@ -25,7 +25,7 @@ std::vector<Column> read_columns(const ResultValue& table)
     std::vector<Column> columns;
     for (const ResultValue& column : table.at("columns").items())
         columns.push_back(
-            {column.at("key").line(), shown_at(column, "title"), shown_at(column, "unit"), decimals_of(column)});
+            {column.at("key").line(), shown_at(column, "title"), shown_at(column, "unit"), shown_decimals(column)});
     return columns;
 }
 

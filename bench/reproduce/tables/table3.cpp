@@ -121,7 +121,7 @@ std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRun& row)
     return cells;
 }
 
-std::string source()
+std::string table3_source()
 {
     return fmt::format("{}, Table 3", paper::citation);
 }
@@ -133,7 +133,7 @@ PaperTable table3(const SceneRuns& runs)
     PaperTable table{
         "table3",
         "Scenes and their tetrahedralizations",
-        source(),
+        table3_source(),
         {{"scene", "scene"},
          {"build", "build"},
          {"tets_kind", "kind"},
@@ -177,7 +177,7 @@ PaperTable table3_rates(const SceneRuns& runs)
 {
     PaperTable table{"table3-rates",
                      "Rates on these tetrahedralizations",
-                     source(),
+                     table3_source(),
                      with_labels({{"tets_a_ray", "tets", "a ray", 1},
                                   {"mrays_per_s", "Mrays/s"},
                                   {"msteps_per_s", "Msteps/s", "", 1},

@@ -77,7 +77,7 @@ const std::vector<Column>& columns()
     return list;
 }
 
-std::vector<PaperCell> cells_of(const SceneRun& run, std::size_t i)
+std::vector<PaperCell> table4_cells(const SceneRun& run, std::size_t i)
 {
     const RowRun& row = run.rows[i];
     const std::string status(name_of(status_of(row)));
@@ -284,7 +284,7 @@ PaperTable table4(const SceneRuns& runs, std::size_t population)
                      fmt::format("{}, Table 4", paper::citation), columns(), notes_of(runs, population)};
     for (const SceneRun* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (is_cdt(run->rows[i])) table.rows.push_back(cells_of(*run, i));
+            if (is_cdt(run->rows[i])) table.rows.push_back(table4_cells(*run, i));
     const auto rows = method_rows(runs_of_cdt(runs));
     table.claims.push_back(count_claim(rows, Method::maria, population, false));
     table.claims.push_back(count_claim(rows, Method::project, population, false)); // our method, which has a proof

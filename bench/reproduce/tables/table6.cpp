@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-std::string source()
+std::string table6_source()
 {
     return fmt::format("{}, Table 6", paper::citation);
 }
@@ -206,7 +206,7 @@ PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector
         fmt::format("table6-{}-{}", run.build.label, name_of(kind)),
         fmt::format("Time of a BVH over that of the {}, view by view: {}, {} build, {}", tets_name(run),
                     run.build.scene, run.build.build, name_of(kind)),
-        source(),
+        table6_source(),
         {"views that have at most this ratio", "%"},
         {"time of the BVH over that of the tets", "", true},
         {"Above 1 the tets are faster. A curve has all views of a pair, ascending: where it crosses 1 is "
@@ -281,7 +281,7 @@ PaperTable table6(const SceneRuns& runs)
     PaperTable table{
         "table6",
         "Tets and BVHs: frames a second, build time and memory",
-        source(),
+        table6_source(),
         frame_columns(),
         {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
          "alone: the median over the views with its interval (order statistics), the least and the most.",
@@ -305,7 +305,7 @@ PaperTable table6_pairs(const SceneRuns& runs)
     PaperTable table{
         "table6-pairs",
         "Tets against BVHs, paired view by view",
-        source(),
+        table6_source(),
         pair_columns(),
         {"A ratio is of the same view on the same device, above 1 the tets are faster; the interval is that "
          "of the median over the views (order statistics). Embree stands beside openmp.",
