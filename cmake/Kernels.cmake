@@ -1,8 +1,19 @@
 # Kernels that devices get as text or code: the list of them, each flattened into one text, and embedded into the
 # program.
 
+set(TETRACE_COMPILES all CACHE STRING "The kernels that are compiled: 'all', or 'by_default', those that tetrace bench \
+runs where no option names others; tetrace says of the rest that a backend has no such kernel")
+set_property(CACHE TETRACE_COMPILES PROPERTY STRINGS all by_default)
+if(NOT TETRACE_COMPILES MATCHES "^(all|by_default)$")
+  message(FATAL_ERROR "TETRACE_COMPILES is '${TETRACE_COMPILES}'; accepted are all and by_default")
+endif()
+set(TETRACE_MATH_MODES exact fast)
+if(TETRACE_COMPILES STREQUAL "by_default")
+  set(TETRACE_MATH_MODES exact)
+endif()
+
 # TETRACE_LAYOUTS and TETRACE_KERNELS, as structure/method/layout, are those of ours in kernels/kernel_list.inc, in its
-# order; every backend compiles them in both math modes. Also set: TETRACE_FAMILY_<layout> and
+# order; every backend compiles them in each of TETRACE_MATH_MODES. Also set: TETRACE_FAMILY_<layout> and
 # TETRACE_TASKS_<method>_<layout>.
 set(tetrace_kernel_list ${PROJECT_SOURCE_DIR}/kernels/kernel_list.inc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tetrace_kernel_list})
@@ -19,7 +30,7 @@ foreach(row IN LISTS rows)
   string(REGEX MATCH "^KERNEL.([a-z0-9]+), ([a-z0-9]+), ([a-z |]+)," ignored ${row})
   set(method ${CMAKE_MATCH_1})
   set(layout ${CMAKE_MATCH_2})
-  if(layout IN_LIST TETRACE_LAYOUTS)
+  if(layout IN_LIST TETRACE_LAYOUTS AND (TETRACE_COMPILES STREQUAL "all" OR row MATCHES "by_default"))
     string(REPLACE " | " ";" TETRACE_TASKS_${method}_${layout} "${CMAKE_MATCH_3}")
     string(REPLACE compact cdt structure ${TETRACE_FAMILY_${layout}}) # compact layouts are the CDT's too
     list(APPEND TETRACE_KERNELS ${structure}/${method}/${layout})

@@ -3,6 +3,7 @@
 #include "bench/options/options.h"
 #include "bench/rows/row_run.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,16 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options, const 
 /// A command line of tetrace's with these arguments, as a shell takes it.
 [[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);
 
-/// Runs the program on a command line without its name; prints errors; returns the exit code.
+/// What a program does besides help and version.
+struct Verbs {
+    int (*run)(const Options& options);
+    /// What the program is started for by itself, with a first word that is no verb for users; empty for other words.
+    std::optional<int> (*run_unlisted)(const std::vector<std::string>& arguments) = nullptr;
+};
+
+/// Runs a program on a command line without its name; prints errors; returns the exit code.
+int run_program(const std::vector<std::string>& arguments, const Verbs& verbs);
+/// The same with all verbs.
 int run_program(const std::vector<std::string>& arguments);
 
 } // namespace tetrace

@@ -1,9 +1,7 @@
-#include "bench/inspection/null_hardware.h"
 #include "bench/options/help.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
 #include "bench/verbs/commands.h"
-#include "bench/verbs/ranks.h"
 #include "core/base/error.h"
 #include "core/isolation/driver_server.h"
 #include "core/isolation/isolation.h"
@@ -20,30 +18,6 @@ std::vector<std::string>& command_line()
 {
     static std::vector<std::string> arguments;
     return arguments;
-}
-
-int run_verb(const Options& options)
-{
-    set_isolation(options.isolation, options.driver_limit_s);
-    switch (options.verb) {
-    case Verb::devices: return devices_command(options);
-    case Verb::scenes: return scenes_command(options);
-    case Verb::build: return build_command(options);
-    case Verb::bench: return bench_command(options);
-    case Verb::check: return check_command(options);
-    case Verb::render: return render_command(options);
-    case Verb::reproduce: return reproduce_command(options);
-    case Verb::inspect: return inspect_command(options);
-    case Verb::trace: return trace_command(options);
-    case Verb::dump: return dump_command(options);
-    case Verb::compare: return compare_command(options);
-    case Verb::show: return show_command(options);
-    case Verb::report: return report_command(options);
-    case Verb::merge: return merge_command(options);
-    case Verb::help: print(help_text(options.help_topic)); return 0;
-    case Verb::version: print(version_text()); return 0;
-    }
-    throw Error(ErrorKind::internal, "run_verb: no such verb");
 }
 
 } // namespace
@@ -63,17 +37,20 @@ std::string command_with(const std::string& option)
     return has ? text : text + " " + option;
 }
 
-int run_program(const std::vector<std::string>& arguments)
+int run_program(const std::vector<std::string>& arguments, const Verbs& verbs)
 {
     command_line() = arguments;
     try {
-        if (!arguments.empty() && arguments.front() == null_hardware_word)
-            return run_null_hardware({arguments.begin() + 1, arguments.end()});
         if (!arguments.empty() && arguments.front() == driver_verb) // started by DriverChild; no verb for users
             return serve_driver({arguments.begin() + 1, arguments.end()}, direct_backends());
+        if (const auto code = verbs.run_unlisted ? verbs.run_unlisted(arguments) : std::nullopt) return *code;
         const Options options = parse_options(arguments);
-        const auto rank = is_shared(options) ? this_rank() : std::nullopt;
-        return rank ? run_rank(*rank, options, run_verb) : run_verb(options);
+        set_isolation(options.isolation, options.driver_limit_s);
+        switch (options.verb) {
+        case Verb::help: print(help_text(options.help_topic)); return 0;
+        case Verb::version: print(version_text()); return 0;
+        default: return verbs.run(options);
+        }
     } catch (const Error& error) {
         say(std::string("tetrace: ") + error.what());
         const std::string words = words_when_interrupted();
