@@ -5,11 +5,12 @@ comma := ,
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench test sanitize build bundle deb cluster-test format lint clean
+.PHONY: help bench first test sanitize build bundle deb cluster-test format lint clean
 
 help:
-	@echo "make bench    install what is missing, build, run the main job; table, JSON and pictures (build/bench/);"
+	@echo "make bench    install what is missing, build, run the main job; table, JSON, page, pictures (build/bench/);"
 	@echo "              QUICK=1: bunny alone, in small images"
+	@echo "make first    the part of make bench that comes first on a new machine: a small table within minutes"
 	@echo "make test     install what is missing, build, run all tests"
 	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer;"
 	@echo "              ROOMS=core,scenes: those of these folders of tests/ alone"
@@ -27,22 +28,23 @@ build:
 	cmake --preset release -G Ninja -DBUILD_TESTING=OFF -DTETRACE_COMPILES=all
 	cmake --build --preset release -j $(JOBS)
 
-# The table comes before what it does not need is compiled: the other verbs and kernels.
+# On a new machine there is a first table before that is compiled which it does not need: other verbs and kernels.
 bench:
-	@mkdir -p build/bench
-	@if [ -e $(TETRACE) ]; then $(MAKE) build; else $(MAKE) build/release/bin/tetrace-first; fi
-	$$(ls $(TETRACE) build/release/bin/tetrace-first 2>/dev/null | head -n 1) \
-	    bench $(scenes) $(if $(QUICK),--size 384 --budget 40s) --out build/bench/result.json
+	@[ -e $(TETRACE) ] || $(MAKE) first
 	@$(MAKE) build
+	@mkdir -p build/bench
+	$(TETRACE) bench $(scenes) $(if $(QUICK),--size 384 --budget 40s) --out build/bench/result.json
 	$(TETRACE) render $(scenes) --views 0 --picture normals,steps --out build/bench
 	pictures=$$(ls build/bench/*.png 2>/dev/null | paste -sd,); \
 	    $(TETRACE) report build/bench/result.json $${pictures:+--picture "$$pictures"} --out build/bench/report.html
 	@echo "Page: build/bench/report.html; result: build/bench/result.json (its schema: results/README.md)"
 
-build/release/bin/tetrace-first:
+first:
 	@scripts/install-packages build
 	cmake --preset release -G Ninja -DBUILD_TESTING=OFF -DTETRACE_COMPILES=by_default
 	cmake --build --preset release -j $(JOBS) --target tetrace-first tetrace-builder
+	@echo "A first table, of one scene in small images. Then the rest is built, and all of it measured."
+	build/release/bin/tetrace-first bench --scene bunny --size 256 --budget 20s
 
 bundle: build
 	cmake --preset release -DTETRACE_CUDA_CODE=all

@@ -1,4 +1,4 @@
-// tetrace-first: `tetrace bench`, built before everything else, so that `make bench` soon has its table.
+// tetrace-first: `tetrace bench` alone, so that a new machine has a table before the rest is compiled (make first).
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 

@@ -18,12 +18,12 @@ struct Ended {
 /// The program TETRACE_PROGRAM in a folder of its own, with a cache of its own.
 class ProgramTest : public testing::Test {
 protected:
-    Ended run(const std::string& arguments)
+    Ended run(const std::string& arguments, const char* program = TETRACE_PROGRAM)
     {
         const auto out = folder_.path() / "stdout", errors = folder_.path() / "stderr";
         const std::string command =
             fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' '{1}' {2} > '{3}' 2> '{4}'", folder_.path().string(),
-                        TETRACE_PROGRAM, arguments, out.string(), errors.string());
+                        program, arguments, out.string(), errors.string());
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(errors)};
     }
