@@ -9,7 +9,9 @@
 #include "core/isolation/isolation.h"
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
+#include <fmt/format.h>
 #include <new>
 
 namespace tetrace {
@@ -22,8 +24,25 @@ std::vector<std::string>& command_line()
     return arguments;
 }
 
+/// What a verb that keeps nothing of an interrupted run says then; `reproduce`, which does, says more.
+std::string words_when_begun(const Options& options)
+{
+    const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||
+                         options.verb == Verb::build || options.verb == Verb::inspect || options.verb == Verb::trace ||
+                         (options.verb == Verb::reproduce && !options.out);
+    if (!is_long) return {};
+    const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
+                       : options.verb == Verb::render ? "pictures that were written before are whole"
+                                                      : "an earlier result is as it was";
+    const char* hint = options.verb == Verb::bench       ? "; --budget, --views or --size make it shorter"
+                       : options.verb == Verb::reproduce ? "; with --out FILE.json, --resume can go on"
+                                                         : "";
+    return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
+}
+
 int run_verb(const Options& options)
 {
+    say_when_interrupted(words_when_begun(options));
     set_isolation(options.isolation, options.driver_limit_s);
     switch (options.verb) {
     case Verb::devices: return devices_command(options);
@@ -66,6 +85,7 @@ std::string command_with(const std::string& option)
 int run_program(const std::vector<std::string>& arguments)
 {
     command_line() = arguments;
+    std::signal(SIGXFSZ, SIG_IGN); // a file over `ulimit -f` is then an error of its write, as on a full disk
     try {
         if (!arguments.empty() && arguments.front() == null_hardware_word)
             return run_null_hardware({arguments.begin() + 1, arguments.end()});
