@@ -177,15 +177,17 @@ RayOnDevice follow_ray(RowRun& row, std::size_t view, const ImagePixel& pixel)
     const PixelRay line = ray_of(*row.scene, row.key, view, pixel);
     const TraceJob image = prepare_view(row, view);
     std::vector<Hit> hits(ray_count(row, view));
+    RayOnDevice ray;
+    ray.row = &row;
     const auto trace = [&](std::uint32_t cap) {
         TraceJob job = image;
         job.max_steps = cap;
-        progress_line().show("following the ray on " + row.backend->name(), -1);
+        const std::uint32_t shown = std::min(ray.hit.steps, most_shown_steps); // 0 at first: not known
+        progress_line().show("following the ray on " + row.backend->name(),
+                             shown == 0 ? -1 : static_cast<double>(cap) / shown);
         static_cast<void>(row.session->trace(job, hits));
         return hits[number];
     };
-    RayOnDevice ray;
-    ray.row = &row;
     ray.hit = trace(image.max_steps);
     if (row.key.kernel.structure == Structure::cdt) {
         const bool has_end = line.given && line.given->end < NO_END;

@@ -9,12 +9,10 @@ namespace tetrace {
 
 namespace {
 
-using nlohmann::json;
-
 /// The system counts work in hundredths of a second: a load of less than this is not told from none.
 constexpr double shortest_stretch_s = 2;
 
-double positive_from(const json& number)
+double positive_from(const nlohmann::json& number)
 {
     const double value = amount_from(number);
     if (value <= 0) throw std::domain_error("a pulse takes more than 0 s");
@@ -28,29 +26,29 @@ double end_of(const Pulse& pulse)
 
 } // namespace
 
-MachineWatch::MachineWatch(Pulses::Work host, const std::vector<json>& before, Clock clock)
+MachineWatch::MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before, Clock clock)
     : clock_([this, clock = std::move(clock)] { return before_s_ + clock(); }),
       pulses_(std::move(host), [this] { return now(); })
 {
-    for (const json& readings : before)
+    for (const nlohmann::json& readings : before)
         restore(readings);
     for (const Pulse& pulse : pulses_.found())
         before_s_ = std::max(before_s_, end_of(pulse));
     metered_from_s_ = now();
 }
 
-void MachineWatch::restore(const json& readings)
+void MachineWatch::restore(const nlohmann::json& readings)
 {
     if (readings.contains("pulses"))
-        for (const json& one : readings["pulses"]) {
+        for (const nlohmann::json& one : readings["pulses"]) {
             Pulse pulse{one.at("of"), {}};
-            for (const json& reading : one.at("readings"))
+            for (const nlohmann::json& reading : one.at("readings"))
                 pulse.readings.push_back({amount_from(reading.at(0)), positive_from(reading.at(1))});
             written_[pulse.of] += pulse.readings.size();
             pulses_.restore(pulse);
         }
     if (!readings.contains("load")) return;
-    const json& load = readings["load"];
+    const nlohmann::json& load = readings["load"];
     const MachineLoad read{amount_from(load.at("others")), amount_from(load.at("average")),
                            count_from<unsigned>(load.at("processors"))};
     stretches_.push_back({read, positive_from(load.at("seconds"))});
@@ -58,10 +56,10 @@ void MachineWatch::restore(const json& readings)
 
 nlohmann::json MachineWatch::new_readings(bool with_load)
 {
-    json found;
+    nlohmann::json found;
     for (const Pulse& pulse : pulses_.found()) {
         std::size_t& written = written_[pulse.of];
-        json readings = json::array();
+        nlohmann::json readings = nlohmann::json::array();
         for (; written < pulse.readings.size(); ++written)
             readings.push_back({pulse.readings[written].at_s, pulse.readings[written].seconds});
         if (!readings.empty()) found["pulses"].push_back({{"of", pulse.of}, {"readings", std::move(readings)}});

@@ -24,12 +24,15 @@ std::vector<std::string>& command_line()
     return arguments;
 }
 
-/// What a verb that keeps nothing of an interrupted run says then; `reproduce`, which does, says more.
+/// What a long run says where it is interrupted: how to go on, or that it begins again.
 std::string words_when_begun(const Options& options)
 {
+    if (options.verb == Verb::reproduce && options.out)
+        return fmt::format("tetrace: what is finished is in '{}.journal'; to go on: {}", options.out->string(),
+                           command_with("--resume"));
     const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||
                          options.verb == Verb::build || options.verb == Verb::inspect || options.verb == Verb::trace ||
-                         (options.verb == Verb::reproduce && !options.out);
+                         options.verb == Verb::reproduce;
     if (!is_long) return {};
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"

@@ -175,9 +175,6 @@ int reproduce_command(const Options& asked)
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
     all.progress.all = parts_of(builds, options);
-    if (keeping.journal != nullptr)
-        say_when_interrupted(fmt::format("tetrace: what is finished is in '{}.journal'; to go on: {}",
-                                         options.out->string(), command_with("--resume")));
     for (const SceneBuild& build : builds)
         run_scene(all, build, options, keeping);
     if (searches) run_all_searches(all, options, keeping);
