@@ -303,8 +303,9 @@ std::string verb_text(const VerbHelp& entry)
 std::string program_text()
 {
     std::string text =
-        "tetrace: ray traversal through constrained Delaunay tetrahedralizations, measured and verified\n\n"
-        "Usage: tetrace VERB [OPTION]...\n\n";
+        wrapped("tetrace: ray traversal through constrained Delaunay tetrahedralizations, measured and verified",
+                page_width(), 0) +
+        "\nUsage: tetrace VERB [OPTION]...\n\n";
     for (const VerbHelp& entry : verb_help)
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
     text += "\n" + wrapped("'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options. "
