@@ -32,21 +32,21 @@ private:
     double compile_s_;
 };
 
-/// Keeps the rays that it was given first.
+/// Keeps the fewest rays that it was given.
 class RaysKeptSession : public WrappedSession {
 public:
-    RaysKeptSession(std::unique_ptr<Session> inner, std::vector<Quad>& first)
-        : WrappedSession(std::move(inner)), first_(&first)
+    RaysKeptSession(std::unique_ptr<Session> inner, std::vector<Quad>& fewest)
+        : WrappedSession(std::move(inner)), fewest_(&fewest)
     {
     }
     void set_rays(std::span<const Quad> quads) override
     {
-        if (first_->empty()) first_->assign(quads.begin(), quads.end());
+        if (fewest_->empty() || quads.size() < fewest_->size()) fewest_->assign(quads.begin(), quads.end());
         WrappedSession::set_rays(quads);
     }
 
 private:
-    std::vector<Quad>* first_;
+    std::vector<Quad>* fewest_;
 };
 
 /// A row needs 2 views * (verified, warmed up, 5 samples) and 1 view again: 15 views. A view is 16 x 16 rays. The first
