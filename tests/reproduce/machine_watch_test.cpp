@@ -90,6 +90,44 @@ TEST_F(Watched, searches_are_watched_too)
         EXPECT_EQ(row.pulse_ratio, 2.0);
 }
 
+// Its pulse is the first view once more: the answers to the current one must be read before or after it.
+TEST_F(Watched, a_gpu_has_a_pulse_of_its_own_in_each_scene_and_keeps_its_answers)
+{
+    MachineWatch watch(host(), {}, clock());
+    std::vector<SceneRun> scenes;
+    for (int i = 0; i < 2; ++i) {
+        SceneRun& scene = scenes.emplace_back(open());
+        for (RowRun& row : scene.rows)
+            row.device.kind = DeviceKind::gpu;
+        scene.rows[0].device.name = "a GPU";
+        run(scene, nullptr, watch);
+        ASSERT_TRUE(is_whole(scene.rows[0])) << reason_of(scene.rows[0]);
+    }
+    const auto found = watch.pulses().found();
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(found[1].of, "a GPU, cubes") << "of the same name, so of the same work";
+    watch.pulses().judge_rows(scenes[0].rows, MachineLoad{2, 2, 2});
+    EXPECT_GE(scenes[0].rows[0].pulse_ratio, 1.0);
+    EXPECT_EQ(scenes[0].rows[0].disturbance.find("others used"), std::string::npos) << "the host's load is not its own";
+}
+
+TEST_F(Watched, searches_on_a_gpu_have_one_too)
+{
+    const Options options = parse_options({"reproduce", "table5", "--searches", "50x8", "--backend", "openmp",
+                                           "--method", "maria", "--layout", "tet80", "--samples", "3"});
+    MachineWatch watch(host(), {}, clock());
+    SearchRun searches = open_search_run(options);
+    for (RowRun& row : searches.rows)
+        row.device.kind = DeviceKind::gpu;
+    searches.rows[0].device.name = "a GPU";
+    RunProgress progress;
+    run_searches(searches, options, nullptr, progress, &watch);
+    for (const RowRun& row : searches.rows)
+        EXPECT_TRUE(is_whole(row)) << reason_of(row);
+    ASSERT_GE(watch.pulses().found().size(), 2u);
+    EXPECT_EQ(watch.pulses().found()[1].of, "a GPU, exit searches");
+}
+
 TEST_F(Watched, a_resumed_run_knows_the_readings_of_its_first_process)
 {
     const auto path = folder_ / "r.json.journal";
