@@ -61,7 +61,7 @@ void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray)
     const GivenRay& given = *ray.given;
     trace["rays"] = name_of(key.rays);
     if (given.end < NO_END) trace["end"] = given.end;
-    if (given.link == NO_LINK) return;
+    if (given.link == NO_LINK || key.kernel.structure != Structure::cdt) return; // a BVH starts at a point
     trace["start"] = {{"tet", link_tet(given.link)}, {"face", link_face(given.link)}};
     if (given.triangle != FREE_FACE) trace["start"]["triangle"] = given.triangle;
 }
