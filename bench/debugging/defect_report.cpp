@@ -2,6 +2,7 @@
 
 #include "bench/output/junit.h"
 #include "bench/rows/rows.h"
+#include "core/base/printable.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -10,43 +11,88 @@ namespace tetrace {
 
 namespace {
 
-std::string label_of(const DefectRun& run)
+std::string label_of(const std::string& backend, std::size_t index)
 {
-    return device_label({{}, run.backend, {}, RayKind::primary, TetOrder::hilbert, run.device_index});
+    return device_label({{}, backend, {}, RayKind::primary, TetOrder::hilbert, index});
 }
 
-std::string cell_text(const DefectRun& run)
+/// A reduced kernel on a device, as a result has it.
+struct ShownRun {
+    std::string defect, what, known, backend;
+    std::uint64_t index = 0, items = 0, wrong = 0;
+    std::string device, type, driver, implementation, outcome;
+    std::string detail; ///< the first wrong word, or the reason; empty where all is well
+
+    [[nodiscard]] std::string label() const { return label_of(backend, index); }
+    [[nodiscard]] bool is_seen() const { return outcome == name_of(DefectSight::seen); }
+};
+
+std::string line_or_nothing(const ResultValue& object, const char* key)
 {
-    if (run.sight != DefectSight::seen) return std::string(name_of(run.sight));
-    return fmt::format("SEEN: {} of {} items", run.wrong.size(), defect_items);
+    const auto value = object.find(key);
+    return value ? value->line() : std::string();
 }
 
-/// The first wrong word, or the reason; empty where all is well.
-std::string detail_of(const DefectRun& run)
+ShownRun read_run(const ResultValue& value)
 {
-    if (run.sight != DefectSight::seen) return run.reason;
-    const std::uint32_t item = run.wrong.front();
-    return fmt::format("item {} returns {} instead of {}", item, run.first_word, run.defect->expected(item));
+    ShownRun run;
+    run.defect = value.at("defect").line();
+    run.what = value.at("what").line();
+    run.known = value.at("known").line();
+    run.backend = value.at("backend").line();
+    run.index = value.at("device_index").count();
+    run.items = value.at("items").count();
+    run.device = value.at("device").line();
+    run.type = value.at("type").line();
+    run.driver = line_or_nothing(value, "driver");
+    run.implementation = line_or_nothing(value, "implementation");
+    run.outcome = value.at("outcome").line();
+    run.detail = printable_text(value.text_at("reason"));
+    if (!run.is_seen()) return run;
+    run.wrong = value.at("wrong_items").items().size();
+    const ResultValue first = value.at("first_wrong");
+    run.detail = fmt::format("item {} returns {} instead of {}", first.at("item").count(), first.at("word").count(),
+                             first.at("expected").count());
+    return run;
 }
 
-Table matrix(const std::vector<DefectRun>& runs)
+std::string cell_text(const ShownRun& run)
+{
+    return run.is_seen() ? fmt::format("SEEN: {} of {} items", run.wrong, run.items) : run.outcome;
+}
+
+/// The runs of the first device: one of each defect.
+std::vector<ShownRun> each_defect(const std::vector<ShownRun>& runs)
+{
+    std::vector<ShownRun> found;
+    for (const ShownRun& run : runs)
+        if (std::ranges::find(found, run.defect, &ShownRun::defect) == found.end()) found.push_back(run);
+    return found;
+}
+
+Table matrix(const std::vector<ShownRun>& runs)
 {
     std::vector<Column> columns = {{"device", "device"}, {.key = "driver", .title = "driver", .rank = 2}};
-    for (const Defect& defect : all_defects())
-        columns.push_back(
-            {.key = std::string(defect.name), .title = std::string(defect.name), .coloured = true, .rank = 0});
+    const auto defects = each_defect(runs);
+    for (const ShownRun& defect : defects)
+        columns.push_back({.key = defect.defect, .title = defect.defect, .coloured = true, .rank = 0});
     Table table(columns);
-    const std::size_t a_device = all_defects().size();
-    for (std::size_t first = 0; first + a_device <= runs.size(); first += a_device) {
-        std::vector<Cell> cells = {label_of(runs[first]), text_cell(runs[first].device.driver)};
-        for (std::size_t i = first; i < first + a_device; ++i)
-            cells.emplace_back(cell_text(runs[i]));
+    std::vector<std::string> shown;
+    for (const ShownRun& first : runs) {
+        if (std::ranges::find(shown, first.label()) != shown.end()) continue;
+        shown.push_back(first.label());
+        std::vector<Cell> cells = {first.label(), text_cell(first.driver)};
+        for (const ShownRun& defect : defects) {
+            const auto run = std::ranges::find_if(
+                runs, [&](const ShownRun& one) { return one.label() == first.label() && one.defect == defect.defect; });
+            cells.push_back(run == runs.end() ? Cell() : Cell(cell_text(*run)));
+        }
         table.add(std::move(cells));
     }
     return table;
 }
 
-Table all_runs_table(const std::vector<DefectRun>& runs)
+Table all_runs_table(const std::vector<ShownRun>& runs)
 {
     Table table({{"backend", "backend"},
                  {"device_index", "index"},
@@ -58,10 +104,9 @@ Table all_runs_table(const std::vector<DefectRun>& runs)
                  {"outcome", "outcome"},
                  {"wrong_items", "wrong items"},
                  {"detail", "detail"}});
-    for (const DefectRun& run : runs)
-        table.add({run.backend, std::uint64_t{run.device_index}, run.device.name, std::string(name_of(run.device.kind)),
-                   text_cell(run.device.driver), text_cell(run.device.implementation), std::string(run.defect->name),
-                   std::string(name_of(run.sight)), std::uint64_t{run.wrong.size()}, text_cell(detail_of(run))});
+    for (const ShownRun& run : runs)
+        table.add({run.backend, run.index, run.device, run.type, text_cell(run.driver), text_cell(run.implementation),
+                   run.defect, run.outcome, run.wrong, text_cell(run.detail)});
     return table;
 }
 
@@ -81,12 +126,22 @@ nlohmann::json run_json(const DefectRun& run)
     return object;
 }
 
-std::string summary(const std::vector<DefectRun>& runs)
+std::string summary(const std::vector<ShownRun>& runs)
 {
-    const auto count = [&](DefectSight sight) { return std::ranges::count(runs, sight, &DefectRun::sight); };
+    const auto count = [&](DefectSight sight) {
+        return std::ranges::count(runs, std::string(name_of(sight)), &ShownRun::outcome);
+    };
     return fmt::format("{} reduced kernels ran: {} of them show their defect; {} skipped, {} errors",
                        count(DefectSight::seen) + count(DefectSight::not_seen), count(DefectSight::seen),
                        count(DefectSight::skipped), count(DefectSight::error));
+}
+
+/// The first wrong word, or the reason; empty where all is well.
+std::string detail_of(const DefectRun& run)
+{
+    if (run.sight != DefectSight::seen) return run.reason;
+    const std::uint32_t item = run.wrong.front();
+    return fmt::format("item {} returns {} instead of {}", item, run.first_word, run.defect->expected(item));
 }
 
 CaseOutcome outcome_of(DefectSight sight)
@@ -102,6 +157,25 @@ CaseOutcome outcome_of(DefectSight sight)
 
 } // namespace
 
+ShownDefects shown_defects(const ResultValue& section)
+{
+    std::vector<ShownRun> runs;
+    for (const ResultValue& run : section.at("defects").items())
+        runs.push_back(read_run(run));
+    ShownDefects shown{{}, all_runs_table(runs)};
+    shown.sheet.table(matrix(runs), 0);
+    shown.sheet.gap();
+    for (const ShownRun& defect : each_defect(runs))
+        shown.sheet.prose(fmt::format("{}: {}. Known of: {}.", defect.defect, defect.what, defect.known));
+    shown.sheet.gap();
+    for (const ShownRun& run : runs)
+        if (!run.detail.empty()) shown.sheet.line(fmt::format("{} on {}: {}", run.defect, run.label(), run.detail));
+    shown.sheet.labelled("Verified", summary(runs));
+    for (const ResultValue& sentence : section.at("missing_devices").items())
+        shown.sheet.labelled("Missing", printable_text(sentence.text()));
+    return shown;
+}
+
 Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::string>& missing,
                      const Options& options)
 {
@@ -110,18 +184,9 @@ Report defect_report(const std::vector<DefectRun>& runs, const std::vector<std::
     for (const DefectRun& run : runs)
         section["defects"].push_back(run_json(run));
     section["missing_devices"] = missing;
-    Report report{{}, all_runs_table(runs), {{"tetrace", std::move(section)}}};
-    report.sheet.table(matrix(runs), 0);
-    report.sheet.gap();
-    for (const Defect& defect : all_defects())
-        report.sheet.prose(fmt::format("{}: {}. Known of: {}.", defect.name, defect.what, defect.known));
-    report.sheet.gap();
-    for (const DefectRun& run : runs)
-        if (const std::string detail = detail_of(run); !detail.empty())
-            report.sheet.line(fmt::format("{} on {}: {}", run.defect->name, label_of(run), detail));
-    report.sheet.labelled("Verified", summary(runs));
-    for (const std::string& sentence : missing)
-        report.sheet.labelled("Missing", sentence);
+    const nlohmann::json json = {{"tetrace", std::move(section)}};
+    ShownDefects shown = shown_defects(ResultValue(json, "the defects").at("tetrace"));
+    Report report{std::move(shown.sheet), std::move(shown.table), json};
     report.markdown = report.sheet.markdown();
     if (options.junit && *options.junit != "-") report.sheet.labelled("JUnit", options.junit->string());
     if (options.out) report.sheet.labelled("Result", options.out->string());
@@ -132,7 +197,7 @@ std::string defect_junit(const std::vector<DefectRun>& runs, const std::string& 
 {
     std::vector<JunitCase> cases;
     for (const DefectRun& run : runs)
-        cases.push_back({run.backend, label_of(run), run.device.name, run.device.driver,
+        cases.push_back({run.backend, label_of(run.backend, run.device_index), run.device.name, run.device.driver,
                          "defect/" + std::string(run.defect->name), outcome_of(run.sight), detail_of(run),
                          run.seconds});
     return junit_suite("defects", cases, problem);

@@ -91,17 +91,17 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
 }
 
 std::string readme_of(const std::vector<KernelFile>& files, const std::vector<std::string>& notes,
-                      const Options& options)
+                      const Options& options, std::size_t width)
 {
     const BuildIdentity build = build_identity();
     std::string text = fmt::format("{} for {}, written by tetrace {} ({})\n\n", name_of(one_kernel(options)),
                                    options.backends.front(), build.version, build.commit);
     for (const KernelFile& file : files) {
-        text += fmt::format("{} ({} bytes)\n{}", file.name, file.bytes.size(), wrapped(file.what + ".", 110, 4));
+        text += fmt::format("{} ({} bytes)\n{}", file.name, file.bytes.size(), wrapped(file.what + ".", width, 4));
         text += file.command.empty() ? std::string("\n") : fmt::format("    $ {}\n\n", file.command);
     }
     for (const std::string& note : notes)
-        text += wrapped("Not here: " + note + ".", 110, 0);
+        text += wrapped("Not here: " + note + ".", width, 0);
     return text;
 }
 

@@ -17,8 +17,8 @@ namespace tetrace {
 [[nodiscard]] std::vector<KernelFile> driver_code(const Options& options, const std::vector<Backend*>& backends,
                                                   std::vector<std::string>& notes);
 
-/// The text of README.txt for these files.
+/// The text of README.txt for these files, its sentences in lines of so many columns.
 [[nodiscard]] std::string readme_of(const std::vector<KernelFile>& files, const std::vector<std::string>& notes,
-                                    const Options& options);
+                                    const Options& options, std::size_t width = 110);
 
 } // namespace tetrace

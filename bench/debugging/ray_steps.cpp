@@ -1,10 +1,14 @@
 #include "bench/debugging/ray_steps.h"
 
 #include "bench/debugging/device_products.h"
+#include "bench/measuring/visits.h"
+#include "bench/rows/ray_store.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/progress.h"
 #include "bench/truth/walk_path.h"
+#include "core/device/given_quads.h"
 #include "core/mesh/face_corners.h"
+#include "core/rays/ray_offset.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +33,8 @@ std::optional<std::uint32_t> face_towards(const Tet& tet, std::uint32_t next)
     return std::nullopt;
 }
 
-/// The face of the walk's last tet, as its hit tells.
-void end_with(RayStep& step, const Tet& tet, const Hit& hit)
+/// The face of the walk's last tet, as its hit tells. has_end: the ray may end inside the tet.
+void end_with(RayStep& step, const Tet& tet, const Hit& hit, bool has_end)
 {
     if (hit.face_id == LOST) {
         step.beyond = "the ray is lost here";
@@ -45,10 +49,13 @@ void end_with(RayStep& step, const Tet& tet, const Hit& hit)
         step.face = face;
         ++count;
     }
-    if (count > 1) step.face.reset(); // several faces of the tet lie in the triangle or on the boundary
+    const bool may_end_here = has_end && !hits;
+    if (may_end_here) step.beyond = count > 0 ? "outside, or the ray ends here" : "the ray ends here";
+    // Several faces of the tet lie in the triangle or on the boundary.
+    if (count > 1 || may_end_here) step.face.reset();
 }
 
-std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit& hit, bool is_cut,
+std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit& hit, bool is_cut, bool has_end,
                               const PackedScene& packed, const TetMesh& mesh)
 {
     std::vector<RayStep> steps;
@@ -67,7 +74,7 @@ std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit&
     if (is_cut)
         steps.back().beyond = "not followed further";
     else
-        end_with(steps.back(), mesh.tets[*steps.back().tet], hit);
+        end_with(steps.back(), mesh.tets[*steps.back().tet], hit, has_end);
     return steps;
 }
 
@@ -105,6 +112,45 @@ float without_dust(float component)
     return std::fabs(component) < 0x1p-20f ? 0.0f : component; // as in kernels/ray.h
 }
 
+const RaySet& rays_of(SceneWork& scene, const RowKey& key, std::size_t view)
+{
+    return scene.given_rays().set(scene, key.rays, key.ray_order, view);
+}
+
+/// The ray's place among those that the row traces.
+std::size_t number_of_ray(SceneWork& scene, const RowKey& key, std::size_t view, const ImagePixel& pixel)
+{
+    const std::uint32_t number = pixel.y * scene.width() + pixel.x;
+    if (key.kernel.task == Task::trace) return number;
+    const auto& rays = rays_of(scene, key, view).rays;
+    const auto found = std::ranges::find(rays, number, &GivenRay::pixel);
+    if (found == rays.end())
+        throw Error(ErrorKind::usage,
+                    fmt::format("--pixel: {},{} makes no {} ray: its primary ray hits nothing, or meets the surface so "
+                                "flat that none starts there (docs/spec/given-rays.md)",
+                                pixel.x, pixel.y, name_of(key.rays)));
+    return static_cast<std::size_t>(found - rays.begin());
+}
+
+/// A single pixel, or as few rays as a session takes, all of them this one. The session has other rays afterwards.
+Hit trace_alone(RowRun& row, const TraceJob& image, std::size_t view, std::size_t number, const ImagePixel& pixel)
+{
+    if (row.key.kernel.task == Task::trace) {
+        Hit hit{};
+        static_cast<void>(row.session->trace(single_pixel(image, pixel.x, pixel.y), {&hit, 1}));
+        return hit;
+    }
+    RaySet set = rays_of(*row.scene, row.key, view);
+    set.rays.assign(TILE_WIDTH, GivenRay(set.rays[number]));
+    row.view_of_rays.reset();
+    row.session->set_rays(row.key.kernel.structure == Structure::cdt
+                              ? given_quads(set, row.packed->data)
+                              : given_quads_offset(set, row.scene->loaded().scene.mesh));
+    std::vector<Hit> hits(TILE_WIDTH);
+    static_cast<void>(row.session->trace(given_job(hits.size(), image.max_steps, set.any_hit), hits));
+    return hits.front();
+}
+
 } // namespace
 
 PixelRay ray_of(const View& view, const ImagePixel& pixel)
@@ -117,29 +163,43 @@ PixelRay ray_of(const View& view, const ImagePixel& pixel)
     return ray;
 }
 
-RayOnDevice follow_ray(const RowRun& row, std::size_t view, const ImagePixel& pixel)
+PixelRay ray_of(SceneWork& scene, const RowKey& key, std::size_t view, const ImagePixel& pixel)
 {
-    const PackedScene& packed = row.packed->data;
-    const TetMesh& mesh = row.scene->loaded().scene.tets;
-    const TraceJob image = job_of(row, view);
-    std::vector<Hit> hits(row.scene->rays_per_view());
+    if (key.kernel.task == Task::trace) return ray_of(scene.views()[view], pixel);
+    const GivenRay& ray = rays_of(scene, key, view).rays[number_of_ray(scene, key, view, pixel)];
+    const bool is_offset = key.kernel.structure != Structure::cdt;
+    return {is_offset ? offset_origin(ray, scene.loaded().scene.mesh) : ray.origin, ray.direction, ray};
+}
+
+RayOnDevice follow_ray(RowRun& row, std::size_t view, const ImagePixel& pixel)
+{
+    const std::size_t number = number_of_ray(*row.scene, row.key, view, pixel);
+    const PixelRay line = ray_of(*row.scene, row.key, view, pixel);
+    const TraceJob image = prepare_view(row, view);
+    std::vector<Hit> hits(ray_count(row, view));
+    RayOnDevice ray;
+    ray.row = &row;
     const auto trace = [&](std::uint32_t cap) {
         TraceJob job = image;
         job.max_steps = cap;
-        progress_line().show("following the ray on " + row.backend->name(), -1);
+        const std::uint32_t shown = std::min(ray.hit.steps, most_shown_steps); // 0 at first: not known
+        progress_line().show("following the ray on " + row.backend->name(),
+                             shown == 0 ? -1 : static_cast<double>(cap) / shown);
         static_cast<void>(row.session->trace(job, hits));
-        return hits[std::size_t{pixel.y} * image.width + pixel.x];
+        return hits[number];
     };
-    RayOnDevice ray;
-    ray.row = &row;
     ray.hit = trace(image.max_steps);
-    const auto path = walk_path(ray.hit, image.max_steps, trace, most_shown_steps);
-    ray.is_cut = ray.hit.steps > most_shown_steps;
-    ray.steps = steps_of(path, ray.hit, ray.is_cut, packed, mesh);
-    static_cast<void>(row.session->trace(single_pixel(image, pixel.x, pixel.y), {&ray.alone, 1}));
-    add_products(ray, ray_of(image.view, pixel), mesh);
+    if (row.key.kernel.structure == Structure::cdt) {
+        const bool has_end = line.given && line.given->end < NO_END;
+        const auto path = walk_path(ray.hit, image.max_steps, trace, most_shown_steps);
+        ray.is_cut = ray.hit.steps > most_shown_steps;
+        ray.steps = steps_of(path, ray.hit, ray.is_cut, has_end, row.packed->data, row.scene->loaded().scene.tets);
+        add_products(ray, line, row.scene->loaded().scene.tets);
+    } else
+        ray.visits = count_visits_of_ray(row, view, hits, number, row.scene->threads());
+    ray.alone = trace_alone(row, image, view, number, pixel);
     for (Hit* hit : {&ray.hit, &ray.alone})
-        hit->tet = tet_of_mesh(packed, hit->tet).value_or(NO_TET);
+        hit->tet = tet_of_mesh(row.packed->data, hit->tet).value_or(NO_TET);
     progress_line().clear();
     return ray;
 }

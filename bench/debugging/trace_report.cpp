@@ -1,5 +1,6 @@
 #include "bench/debugging/trace_report.h"
 
+#include "bench/debugging/trace_sheet.h"
 #include "bench/output/row_json.h"
 #include "bench/rows/ray_json.h"
 
@@ -10,179 +11,6 @@
 namespace tetrace {
 
 namespace {
-
-std::string place_of(const RowRun& row)
-{
-    const Schedule schedule = row.key.kernel.schedule;
-    return device_label(row.key) + (schedule == Schedule::tiles ? std::string() : " " + std::string(name_of(schedule)));
-}
-
-std::string number_text(float number)
-{
-    return fmt::format("{:.9g}", number);
-}
-
-std::string vector_text(const Float3& vector)
-{
-    return fmt::format("({:.9g}, {:.9g}, {:.9g})", vector.x, vector.y, vector.z);
-}
-
-std::string answer_text(const Hit& hit)
-{
-    if (hit.face_id == NO_HIT) return "no hit";
-    return hit.face_id == LOST ? "lost" : fmt::format("triangle {}", hit.face_id);
-}
-
-bool same_bits(const Hit& a, const Hit& b)
-{
-    return is_same_hit(a, b, {});
-}
-
-Table answer_table(const TraceRun& run)
-{
-    Table table({{"device", "device"},
-                 {"answer", "answer"},
-                 {"t", "t"},
-                 {"u", "u"},
-                 {"v", "v"},
-                 {"tet", "tet"},
-                 {"steps", "steps"},
-                 {.key = "alone", .title = "traced alone", .rank = 0},
-                 {.key = "name", .title = "name", .rank = 2}});
-    for (const RayOnDevice& ray : run.rays) {
-        const Hit& hit = ray.hit;
-        table.add({place_of(*ray.row), answer_text(hit), number_text(hit.t), number_text(hit.u), number_text(hit.v),
-                   hit.tet == NO_TET ? Cell() : Cell(std::uint64_t{hit.tet}), std::uint64_t{hit.steps},
-                   same_bits(hit, ray.alone) ? Cell("the same") : Cell("OTHER: " + answer_text(ray.alone)),
-                   ray.row->device.name});
-    }
-    return table;
-}
-
-Cell tet_cell(const RayStep& step)
-{
-    return step.tet ? Cell(std::uint64_t{*step.tet}) : Cell();
-}
-
-Cell face_cell(const RayStep& step)
-{
-    return step.face ? Cell(std::uint64_t{*step.face}) : Cell();
-}
-
-Cell product_cell(const RayStep& step, std::size_t edge)
-{
-    return step.face ? Cell(number_text(step.products[edge])) : Cell();
-}
-
-std::size_t most_steps(const TraceRun& run)
-{
-    std::size_t most = 0;
-    for (const RayOnDevice& ray : run.rays)
-        most = std::max(most, ray.steps.size());
-    return most;
-}
-
-/// The first step at which any device differs from openmp's.
-std::optional<std::size_t> first_of_all(const TraceRun& run)
-{
-    std::optional<std::size_t> first;
-    for (const RayOnDevice& ray : run.rays)
-        if (const auto at = first_difference(ray, run.rays.front()); at && (!first || *at < *first)) first = at;
-    return first;
-}
-
-/// A way in which some devices take a step.
-struct Way {
-    const RayStep* step;
-    std::vector<std::string> devices;
-};
-
-std::vector<Way> ways_of(const TraceRun& run, std::size_t index)
-{
-    std::vector<Way> ways;
-    for (const RayOnDevice& ray : run.rays) {
-        if (index >= ray.steps.size()) continue;
-        const RayStep& step = ray.steps[index];
-        const auto known = std::ranges::find_if(ways, [&](const Way& way) { return *way.step == step; });
-        if (known != ways.end())
-            known->devices.push_back(place_of(*ray.row));
-        else
-            ways.push_back({&step, {place_of(*ray.row)}});
-    }
-    return ways;
-}
-
-std::string devices_text(const Way& way, const TraceRun& run)
-{
-    if (way.devices.size() == run.rays.size() && run.rays.size() > 1) return fmt::format("all {}", run.rays.size());
-    return fmt::format("{}", fmt::join(way.devices, ", "));
-}
-
-Table step_table(const TraceRun& run)
-{
-    Table table({{"step", "step"},
-                 {.key = "tet", .title = "tet", .rank = 0},
-                 {.key = "face", .title = "face", .rank = 0},
-                 {.key = "beyond", .title = "to", .rank = 0},
-                 {.key = "p0", .title = "product 0"},
-                 {.key = "p1", .title = "product 1"},
-                 {.key = "p2", .title = "product 2"},
-                 {.key = "from", .title = "on", .rank = 0},
-                 {.key = "mark", .title = " ", .rank = 0}});
-    const auto first = first_of_all(run);
-    for (std::size_t i = 0; i < most_steps(run); ++i) {
-        const auto ways = ways_of(run, i);
-        for (const Way& way : ways) {
-            const bool is_first = first == i && &way == &ways.back();
-            table.add({std::uint64_t{i + 1}, tet_cell(*way.step), face_cell(*way.step), text_cell(way.step->beyond),
-                       product_cell(*way.step, 0), product_cell(*way.step, 1), product_cell(*way.step, 2),
-                       devices_text(way, run), is_first ? Cell("<- first difference") : Cell()});
-        }
-    }
-    return table;
-}
-
-Table all_steps_table(const TraceRun& run)
-{
-    Table table({{"device", "device"},
-                 {"step", "step"},
-                 {"tet", "tet"},
-                 {"face", "face"},
-                 {"beyond", "to"},
-                 {"p0", "product 0"},
-                 {"p1", "product 1"},
-                 {"p2", "product 2"}});
-    for (const RayOnDevice& ray : run.rays)
-        for (std::size_t i = 0; i < ray.steps.size(); ++i) {
-            const RayStep& step = ray.steps[i];
-            table.add({place_of(*ray.row), std::uint64_t{i + 1}, tet_cell(step), face_cell(step),
-                       text_cell(step.beyond), product_cell(step, 0), product_cell(step, 1), product_cell(step, 2)});
-        }
-    return table;
-}
-
-std::string step_text(const RayOnDevice& ray, std::size_t index)
-{
-    if (index >= ray.steps.size()) return fmt::format("{} has ended", place_of(*ray.row));
-    const RayStep& step = ray.steps[index];
-    const std::string tet = step.tet ? fmt::format("tet {}", *step.tet) : std::string("no tet");
-    if (!step.face) return fmt::format("{} is in {} ({})", place_of(*ray.row), tet, step.beyond);
-    return fmt::format("{} leaves {} by face {} to {}", place_of(*ray.row), tet, *step.face, step.beyond);
-}
-
-/// One sentence for each device but openmp's.
-std::string verdict_text(const RayOnDevice& ray, const RayOnDevice& reference)
-{
-    const std::string place = place_of(*ray.row);
-    if (const auto at = first_difference(ray, reference))
-        return fmt::format("{}: differs first at step {}: {}; {}.", place, *at + 1, step_text(ray, *at),
-                           step_text(reference, *at));
-    const bool allowed = is_same_hit(ray.hit, reference.hit, allowance_of(*ray.row));
-    return fmt::format("{}: takes openmp's steps, and its answer is {}.", place,
-                       same_bits(ray.hit, reference.hit) ? "the same, bit for bit"
-                       : allowed                         ? "the same within what its self-test allows"
-                                                         : "ANOTHER");
-}
 
 nlohmann::json step_json(const RayStep& step)
 {
@@ -216,9 +44,26 @@ nlohmann::json device_json(const RowRun& row, const TraceRun& run)
     for (const RayStep& step : ray->steps)
         object["steps"].push_back(step_json(step));
     object["steps_cut"] = ray->is_cut;
-    if (const auto at = first_difference(*ray, run.rays.front())) object["first_difference"] = *at + 1;
-    object["differs"] = differs(*ray, run.rays.front());
+    if (ray->visits.rays > 0) object["visits"] = {{"nodes", ray->visits.nodes}, {"triangles", ray->visits.triangles}};
+    const RayOnDevice* const reference = run.reference();
+    if (reference == nullptr) return object;
+    if (const auto at = first_difference(*ray, *reference)) object["first_difference"] = *at + 1;
+    object["differs"] = differs(*ray, *reference);
     return object;
+}
+
+/// What is not as it is of primary rays, and of tets in Hilbert order.
+void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray)
+{
+    if (key.order != TetOrder::hilbert) trace["order"] = name_of(key.order);
+    if (key.ray_order != RayOrder::tiles) trace["ray_order"] = name_of(key.ray_order);
+    if (!ray.given) return;
+    const GivenRay& given = *ray.given;
+    trace["rays"] = name_of(key.rays);
+    if (given.end < NO_END) trace["end"] = given.end;
+    if (given.link == NO_LINK || key.kernel.structure != Structure::cdt) return; // a BVH starts at a point
+    trace["start"] = {{"tet", link_tet(given.link)}, {"face", link_face(given.link)}};
+    if (given.triangle != FREE_FACE) trace["start"]["triangle"] = given.triangle;
 }
 
 nlohmann::json trace_json(const TraceRun& run, const Options& options)
@@ -233,6 +78,7 @@ nlohmann::json trace_json(const TraceRun& run, const Options& options)
                             {"origin", numbers(run.ray.origin)},
                             {"direction", numbers(run.ray.direction)},
                             {"devices", nlohmann::json::array()}};
+    add_given(trace, run.rows.front().key, run.ray);
     for (const RowRun& row : run.rows)
         trace["devices"].push_back(device_json(row, run));
     nlohmann::json section = result_head(options);
@@ -242,44 +88,17 @@ nlohmann::json trace_json(const TraceRun& run, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
-void add_verdicts(Sheet& sheet, const TraceRun& run)
-{
-    for (const RayOnDevice& ray : run.rays) {
-        if (&ray != &run.rays.front()) sheet.prose(verdict_text(ray, run.rays.front()));
-        if (!same_bits(ray.hit, ray.alone))
-            sheet.prose(fmt::format("{}: as an image of its own, the same ray gives {} after {} steps: what the other "
-                                    "rays of the image do matters here.",
-                                    place_of(*ray.row), answer_text(ray.alone), ray.alone.steps));
-        if (ray.is_cut)
-            sheet.prose(fmt::format("{}: the walk has {} steps, of which {} are followed.", place_of(*ray.row),
-                                    ray.hit.steps, ray.steps.size()));
-    }
-    for (const RowRun& row : run.rows)
-        if (const std::string reason = reason_of(row); !reason.empty())
-            sheet.prose(fmt::format("{}: {}: {}", place_of(row), name_of(status_of(row)), reason));
-}
-
 } // namespace
 
 Report trace_report(const TraceRun& run, const Options& options)
 {
-    const RowRun& first = run.rows.front();
-    Report report{{}, all_steps_table(run), trace_json(run, options)};
-    Sheet& sheet = report.sheet;
-    sheet.heading(fmt::format("{}, {}: view {} of {}, pixel {},{} of {} x {}", first.key.scene, kernel_title(first.key),
-                              run.scene->view_numbers().front(), camera_set_name(options), options.pixel->x,
-                              options.pixel->y, run.scene->width(), run.scene->height()));
-    sheet.line(fmt::format("ray from {} along {}", vector_text(run.ray.origin), vector_text(run.ray.direction)));
-    sheet.gap();
-    if (!run.rays.empty()) {
-        sheet.table(answer_table(run));
-        sheet.gap();
-        sheet.table(step_table(run));
-        sheet.gap();
-    }
-    add_verdicts(sheet, run);
-    report.markdown = sheet.markdown();
-    if (options.out) sheet.labelled("Result", options.out->string());
+    // As a file has it: what is not finite is null there.
+    const nlohmann::json json =
+        nlohmann::json::parse(trace_json(run, options).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    ShownTrace shown = shown_trace(ResultValue(json, "the trace").at("tetrace"));
+    Report report{std::move(shown.sheet), std::move(shown.table), json};
+    report.markdown = report.sheet.markdown();
+    if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
 }
 

@@ -5,8 +5,7 @@
 
 namespace tetrace {
 
-/// The ray, its answers, and its steps: a line for each step that all devices take alike, else one for each way in
-/// which they take it.
+/// What shown_trace() makes of the ray, and the result that `show` makes the same of.
 [[nodiscard]] Report trace_report(const TraceRun& run, const Options& options);
 
 } // namespace tetrace

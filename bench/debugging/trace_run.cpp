@@ -10,20 +10,25 @@ namespace tetrace {
 
 namespace {
 
-KernelId kernel_with_steps(const Options& options)
+KernelId our_kernel(const Options& options)
 {
-    if (options.orders.size() > 1) throw Error(ErrorKind::usage, "trace: --order takes one value here");
+    for (const auto& [option, count] :
+         {std::pair("--order", options.orders.size()), std::pair("--rays", options.rays.size()),
+          std::pair("--ray-order", options.ray_orders.size())})
+        if (count > 1) throw Error(ErrorKind::usage, fmt::format("trace: {} takes one value here", option));
     const KernelId kernel = one_kernel(options);
-    if (kernel.structure != Structure::cdt || !is_portable(kernel))
+    if (!is_portable(kernel))
         throw Error(ErrorKind::usage,
-                    fmt::format("trace: {} has no steps from tet to tet; take a method of the cdt", name_of(kernel)));
+                    fmt::format("trace: {} is no kernel of ours: its library or driver tells nothing but the answer; "
+                                "take a method of the cdt, or layout bvh2 or cwbvh",
+                                name_of(kernel)));
     return kernel;
 }
 
 /// The rows of the kernel, and openmp's first.
 std::vector<RowKey> keys_of(const Options& options)
 {
-    const KernelId kernel = kernel_with_steps(options);
+    const KernelId kernel = our_kernel(options);
     Options one = options;
     one.structures = {kernel.structure};
     one.methods = {kernel.method};
@@ -44,7 +49,7 @@ TraceRun run_trace(const Options& options)
     const std::vector<RowKey> keys = keys_of(options);
     TraceRun run;
     run.scene = std::make_unique<SceneWork>(load_work(scene_requests(options).front(), options));
-    run.ray = ray_of(run.scene->views().front(), *options.pixel);
+    run.ray = ray_of(*run.scene, keys.front(), 0, *options.pixel);
     run.rows.reserve(keys.size()); // rays refer to rows
     for (const RowKey& key : keys) {
         RowRun& row = run.rows.emplace_back(open_row(key, *run.scene, options));
@@ -52,6 +57,11 @@ TraceRun run_trace(const Options& options)
         guarded(row, [&] { run.rays.push_back(follow_ray(row, 0, *options.pixel)); });
     }
     return run;
+}
+
+const RayOnDevice* TraceRun::reference() const
+{
+    return !rays.empty() && rays.front().row == &rows.front() ? &rays.front() : nullptr;
 }
 
 bool differs(const RayOnDevice& ray, const RayOnDevice& reference)

@@ -13,11 +13,15 @@ struct TraceRun {
     std::vector<RowRun> rows;      ///< openmp's in schedule tiles first, with which the others are compared
     std::vector<RayOnDevice> rays; ///< of the rows that could trace it, in their order
     PixelRay ray;
+
+    /// openmp's ray; null where openmp could not trace it, and nothing can be compared.
+    [[nodiscard]] const RayOnDevice* reference() const;
 };
 
 /// Loads the scene, opens the rows that the options select of one_kernel(), and openmp's, and follows the ray on
 /// each. A device that fails is an error of its row.
-/// Throws Error{usage} where the kernel has no steps; what one_kernel(), select_rows() and loading the scene throw.
+/// Throws Error{usage} where the kernel is not ours, or the pixel makes no such ray; what one_kernel(), select_rows()
+/// and loading the scene throw.
 [[nodiscard]] TraceRun run_trace(const Options& options);
 
 /// Whether a row's ray is other than openmp's where it must be the same: in its steps, or its hit by more than its

@@ -47,8 +47,12 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
     const std::size_t rays = std::max<std::size_t>(all / (std::size_t{step} * step) / TILE_WIDTH, 1) * TILE_WIDTH;
     const auto& quads =
         row.scene->given_rays().rows(*row.scene, row.key, row.packed != nullptr ? &row.packed->data : nullptr, view);
+    // All directions come first, then all origins (kernels/layouts/layout.h).
+    std::vector<Quad> first;
+    for (std::size_t list = 0; list < quads.size(); list += all)
+        first.insert(first.end(), &quads[list], &quads[list] + rays);
     row.view_of_rays.reset();
-    row.session->set_rays(std::span(quads).first(quads.size() / all * rays));
+    row.session->set_rays(first);
     return given_job(rays, job.max_steps, job.any_hit);
 }
 

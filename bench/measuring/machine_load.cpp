@@ -103,6 +103,9 @@ std::optional<ProcessTimes> process_times(std::string_view text)
         words >> ticks;
         process.ticks += ticks;
     }
+    for (int i = 0; i < 4; ++i)
+        words >> skipped;
+    words >> process.started;
     return words ? std::optional(process) : std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -22,8 +23,9 @@ struct MachineLoad {
 
 /// A process as a text such as /proc/1/stat shows it.
 struct ProcessTimes {
-    long parent = 0;  ///< its number
-    double ticks = 0; ///< of work of its own, and of those of its children that have ended
+    long parent = 0;           ///< its number
+    double ticks = 0;          ///< of work of its own, and of those of its children that have ended
+    std::uint64_t started = 0; ///< ticks after the system did
 };
 /// Empty where the text shows none.
 [[nodiscard]] std::optional<ProcessTimes> process_times(std::string_view text);

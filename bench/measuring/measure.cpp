@@ -1,6 +1,5 @@
 #include "bench/measuring/measure.h"
 
-#include "backends/openmp/yardstick.h"
 #include "bench/measuring/reporters.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
@@ -206,11 +205,6 @@ void check_rows_after(std::vector<RowRun>& rows)
             });
 }
 
-Pulses::Work pulse_of_host(const Options& options)
-{
-    return [threads = resolved_threads(options)] { return std::optional(openmp::pulse_s(threads)); };
-}
-
 } // namespace
 
 unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
@@ -221,7 +215,7 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 }
 
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget,
-                         const Pulses::Work& host_pulse)
+                         const Pulses::Work& host)
 {
     Measurement result;
     const LoadMeter meter;
@@ -231,7 +225,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
     const Stopwatch watch;
-    Pulses pulses(rows, host_pulse ? host_pulse : pulse_of_host(options), budget.clock());
+    Pulses pulses(rows, host ? host : host_pulse(resolved_threads(options)), budget.clock());
     Sweep sweep{&budget, &pulses, 0, static_cast<double>(timed) * result.samples};
     register_rows(rows, result.samples, sweep);
     std::ostringstream json;

@@ -30,9 +30,9 @@ struct Measurement {
 /// of each. One sample traces all selected views once; its seconds are the sum of the device's. Afterwards the hits of
 /// the last view must still equal the verified ones. Rows that fail end with their reason, and so do rows for which the
 /// budget has no time. Meanwhile the pulse is taken, and rows learn what it says of their rates. Writes the file of
-/// --benchmark_out. host_pulse: the host's; openmp::pulse_s() where it is empty. Throws Error{invalid_input} where that
+/// --benchmark_out. host: its pulse; openmp::pulse_s() where it is empty. Throws Error{invalid_input} where that
 /// file, or what Google Benchmark prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
-                                       Budget& budget = no_budget(), const Pulses::Work& host_pulse = {});
+                                       Budget& budget = no_budget(), const Pulses::Work& host = {});
 
 } // namespace tetrace

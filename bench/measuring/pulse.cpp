@@ -1,5 +1,6 @@
 #include "bench/measuring/pulse.h"
 
+#include "backends/openmp/yardstick.h"
 #include "bench/rows/physical_device.h"
 #include "bench/statistics/statistics.h"
 
@@ -12,23 +13,6 @@ namespace tetrace {
 namespace {
 
 constexpr double every_s = 2; // a pulse takes some milliseconds
-
-/// Seconds of the row's last view on the device's clock, the median of three times; its hits stay those that a sample
-/// leaves behind.
-std::optional<double> last_view_s(RowRun& row, const Clock& clock)
-{
-    std::optional<double> median;
-    if (!is_timed(row)) return median;
-    guarded(row, [&] {
-        const TraceJob job = prepare_view(row, last_view_with_rays(row));
-        std::array<double, 3> times{};
-        for (double& seconds : times)
-            seconds = timed_launch(*row.session, job, clock).kernel_s;
-        std::ranges::sort(times);
-        median = times[1];
-    });
-    return median;
-}
 
 } // namespace
 
@@ -52,9 +36,25 @@ double Pulse::ratio_beside(double begin_s, double end_s) const
     return slower / fastest_s();
 }
 
-Pulses::Pulses(std::vector<RowRun>& rows, Work host, Clock clock) : clock_(std::move(clock))
+Pulses::Pulses(Work host, Clock clock) : clock_(std::move(clock))
 {
     takers_.push_back({{"host", {}}, std::move(host)});
+}
+
+Pulses::Pulses(std::vector<RowRun>& rows, Work host, Clock clock) : Pulses(std::move(host), std::move(clock))
+{
+    // The hits stay those that a sample leaves behind.
+    watch(rows, [this](RowRun& row) {
+        return median_launch_s(
+            row, [&] { return prepare_view(row, last_view_with_rays(row)); }, clock_);
+    });
+}
+
+void Pulses::watch(std::vector<RowRun>& rows, const RowWork& gpu, const std::string& of)
+{
+    for (std::size_t i = 1; i < takers_.size(); ++i)
+        takers_[i].ended = true;
+    last_s_.reset();
     std::vector<Device> devices;
     for (const RowRun& row : rows)
         devices.push_back(row.device);
@@ -65,12 +65,35 @@ Pulses::Pulses(std::vector<RowRun>& rows, Work host, Clock clock) : clock_(std::
         if (!is_timed(row)) continue;
         std::size_t taker = 0;
         if (!runs_on_host(row.device)) {
-            const auto [piece, is_new] = known.emplace(hardware[i], takers_.size());
-            if (is_new) takers_.push_back({{row.device.name, {}}, [this, &row] { return last_view_s(row, clock_); }});
+            const auto [piece, is_new] = known.emplace(hardware[i], 0);
+            if (is_new) {
+                piece->second = taker_of(row.device.name + of);
+                Taker& taken = takers_[piece->second];
+                taken.work = [gpu, &row] { return gpu(row); };
+                taken.ended = false;
+            }
             taker = piece->second;
         }
         rows_[&row] = {taker, {}};
     }
+}
+
+/// The taker of that name that no other piece of hardware has now: its pulse so far, or a new one.
+std::size_t Pulses::taker_of(const std::string& of)
+{
+    const auto known =
+        std::ranges::find_if(takers_, [&](const Taker& taker) { return taker.ended && taker.pulse.of == of; });
+    if (known != takers_.end()) return static_cast<std::size_t>(known - takers_.begin());
+    takers_.push_back({{of, {}}, {}});
+    return takers_.size() - 1;
+}
+
+void Pulses::restore(const Pulse& pulse)
+{
+    auto known = std::ranges::find_if(takers_, [&](const Taker& taker) { return taker.pulse.of == pulse.of; });
+    if (known == takers_.end()) known = takers_.insert(known, {{pulse.of, {}}, {}, true});
+    auto& readings = known->pulse.readings;
+    readings.insert(readings.end(), pulse.readings.begin(), pulse.readings.end());
 }
 
 void Pulses::take()
@@ -87,12 +110,13 @@ void Pulses::take()
 
 void Pulses::take_if_due()
 {
-    if (clock_() - last_s_ >= every_s) take();
+    if (!last_s_ || clock_() - *last_s_ >= every_s) take();
 }
 
 void Pulses::sampled(const RowRun& row, double begin_s, double end_s)
 {
-    rows_.at(&row).intervals.emplace_back(begin_s, end_s);
+    const auto watched = rows_.find(&row);
+    if (watched != rows_.end()) watched->second.intervals.emplace_back(begin_s, end_s);
 }
 
 void Pulses::judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLoad>& load) const
@@ -117,6 +141,26 @@ std::vector<Pulse> Pulses::found() const
     for (const Taker& taker : takers_)
         if (!taker.pulse.readings.empty()) pulses.push_back(taker.pulse);
     return pulses;
+}
+
+Pulses::Work host_pulse(unsigned threads)
+{
+    return [threads] { return std::optional(openmp::pulse_s(threads)); };
+}
+
+std::optional<double> median_launch_s(RowRun& row, const std::function<TraceJob()>& job, const Clock& clock)
+{
+    std::optional<double> median;
+    if (!is_timed(row)) return median;
+    guarded(row, [&] {
+        const TraceJob prepared = job();
+        std::array<double, 3> times{};
+        for (double& seconds : times)
+            seconds = timed_launch(*row.session, prepared, clock).kernel_s;
+        std::ranges::sort(times);
+        median = times[1];
+    });
+    return median;
 }
 
 std::string disturbance_text(std::optional<double> pulse_ratio, const MachineLoad* load)

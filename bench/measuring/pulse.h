@@ -29,22 +29,34 @@ struct Pulse {
 };
 
 /// Takes the pulse of the host, and of every GPU that rows are timed on: before the samples, between them at most every
-/// other second, and after them. The host's work is its own. A GPU's is the last view of the first row that is timed on
-/// it; where that row fails, its pulse ends.
+/// other second, and after them. The host's work is its own. A GPU's is that of the first row that is timed on it;
+/// where that row fails, its pulse ends.
 class Pulses {
 public:
     /// Returns seconds; empty: this and all further readings are left out.
     using Work = std::function<std::optional<double>()>;
+    /// The same of a row, on its device.
+    using RowWork = std::function<std::optional<double>(RowRun&)>;
 
-    /// rows: opened; they keep their addresses. host: its work.
+    /// host: its work.
+    Pulses(Work host, Clock clock);
+    /// rows: watched, each GPU by the last view of its first row.
     Pulses(std::vector<RowRun>& rows, Work host, Clock clock);
     Pulses(const Pulses&) = delete;
     Pulses& operator=(const Pulses&) = delete;
 
+    /// From here on these rows are sampled, and the pulses of GPUs are theirs: those of rows that were watched before
+    /// end. The next reading is due.
+    /// rows: opened; they keep their addresses. gpu: what the first row that is timed on each GPU does. of: a GPU's
+    /// pulse is that of its name with this appended, continued where one is known.
+    void watch(std::vector<RowRun>& rows, const RowWork& gpu, const std::string& of = {});
+    /// Readings of an earlier process of the same run, older than all of this one.
+    void restore(const Pulse& pulse);
+
     void take();
     /// The same, unless the last time was a moment ago.
     void take_if_due();
-    /// Records when a sample of the row was taken.
+    /// Records when a sample of the row was taken; of rows that are not watched, nothing.
     void sampled(const RowRun& row, double begin_s, double end_s);
     /// Tells each row that was sampled what its pulse and the load say about its rate.
     void judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLoad>& load) const;
@@ -58,6 +70,8 @@ private:
         Work work;
         bool ended = false;
     };
+    [[nodiscard]] std::size_t taker_of(const std::string& of);
+
     struct Samples {
         std::size_t taker;
         std::vector<std::pair<double, double>> intervals;
@@ -66,8 +80,16 @@ private:
     Clock clock_;
     std::vector<Taker> takers_;
     std::map<const RowRun*, Samples> rows_;
-    double last_s_ = 0;
+    std::optional<double> last_s_; ///< of the last reading; empty: one is due
 };
+
+/// What the pulse of the host does: openmp::pulse_s() by so many threads.
+[[nodiscard]] Pulses::Work host_pulse(unsigned threads);
+
+/// The median of three times that a row's session takes for a job, for its GPU's pulse. Empty where the row is not
+/// timed or fails, which is then its outcome.
+[[nodiscard]] std::optional<double> median_launch_s(RowRun& row, const std::function<TraceJob()>& job,
+                                                    const Clock& clock);
 
 /// Why a row's rate is not to be trusted although its samples agree; empty where nothing speaks against it.
 /// pulse_ratio: the median over its samples of Pulse::ratio_beside(). load: null for rows that do not run on the host.

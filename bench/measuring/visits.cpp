@@ -24,9 +24,9 @@ openmp::RunFunction* counting_function(const RowKey& key)
     return on_reference(key) ? openmp::find_function(openmp::counting_kernels(), key.kernel) : nullptr;
 }
 
-} // namespace
-
-Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hits, unsigned threads)
+/// Visits in place of tet and steps; empty where nothing counts them.
+std::vector<std::uint32_t> counted_output(const RowRun& row, std::size_t view, std::span<const Hit> hits,
+                                          unsigned threads)
 {
     openmp::RunFunction* const count = counting_function(row.key);
     if (count == nullptr) return {};
@@ -37,17 +37,36 @@ Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hi
                           ? std::span<const Quad>(scene.given_rays().rows(scene, row.key, &packed, view))
                           : std::span<const Quad>();
     count(packed, rays, job_of(row, view), output, threads, tile_height);
-    Visits visits;
     const std::span<const Hit> counted = as_hits(output);
-    for (std::size_t ray = 0; ray < hits.size(); ++ray) {
+    for (std::size_t ray = 0; ray < hits.size(); ++ray)
         if (!is_answer_of(counted[ray], hits[ray]))
             throw Error(ErrorKind::internal,
                         fmt::format("ray {} has a different answer when its visits are counted", ray));
-        visits.nodes += counted[ray].tet;
-        visits.triangles += counted[ray].steps;
+    return output;
+}
+
+} // namespace
+
+Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hits, unsigned threads)
+{
+    auto output = counted_output(row, view, hits, threads);
+    if (output.empty()) return {};
+    Visits visits;
+    for (const Hit& counted : as_hits(output)) {
+        visits.nodes += counted.tet;
+        visits.triangles += counted.steps;
     }
     visits.rays = hits.size();
     return visits;
+}
+
+Visits count_visits_of_ray(const RowRun& row, std::size_t view, std::span<const Hit> hits, std::size_t ray,
+                           unsigned threads)
+{
+    auto output = counted_output(row, view, hits, threads);
+    if (output.empty()) return {};
+    const Hit& counted = as_hits(output)[ray];
+    return {1, counted.tet, counted.steps};
 }
 
 } // namespace tetrace

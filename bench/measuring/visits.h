@@ -12,4 +12,8 @@ namespace tetrace {
 /// the row's own. Throws Error{internal} where the counting build's answers differ.
 [[nodiscard]] Visits count_visits(const RowRun& row, std::size_t view, std::span<const Hit> hits, unsigned threads);
 
+/// The same of one of these rays.
+[[nodiscard]] Visits count_visits_of_ray(const RowRun& row, std::size_t view, std::span<const Hit> hits,
+                                         std::size_t ray, unsigned threads);
+
 } // namespace tetrace

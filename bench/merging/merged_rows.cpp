@@ -28,8 +28,6 @@ void forget_answers(RowRun& row)
 {
     row.samples_s.clear();
     row.wall_samples_s.clear();
-    row.pulse_ratio.reset();
-    row.disturbance.clear();
     if (traced(row) == nullptr) {
         row.session.reset();
         return;
@@ -121,14 +119,6 @@ void add_answers(RowRun& row, const Views& views)
     }
 }
 
-/// What speaks against the rate of one shard speaks against that of all.
-void add_disturbance(RowRun& row, const RowRun& part)
-{
-    if (part.pulse_ratio) row.pulse_ratio = std::max(row.pulse_ratio.value_or(0), *part.pulse_ratio);
-    if (part.disturbance.empty() || row.disturbance.find(part.disturbance) != std::string::npos) return;
-    row.disturbance += (row.disturbance.empty() ? "" : "; ") + part.disturbance;
-}
-
 /// A sample traces all views once: sample by sample, the shards' sum. Where a budget took fewer of one shard, as few.
 void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
 {
@@ -145,8 +135,14 @@ void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
         }
         row.*samples = std::move(sum);
     }
-    for (const RowRun* part : parts)
-        add_disturbance(row, *part);
+}
+
+/// What speaks against the rate of one shard speaks against that of all.
+void add_disturbance(RowRun& row, const RowRun& part)
+{
+    if (part.pulse_ratio) row.pulse_ratio = std::max(row.pulse_ratio.value_or(0), *part.pulse_ratio);
+    if (part.disturbance.empty() || row.disturbance.find(part.disturbance) != std::string::npos) return;
+    row.disturbance += (row.disturbance.empty() ? "" : "; ") + part.disturbance;
 }
 
 } // namespace
@@ -158,10 +154,12 @@ std::vector<RowRun> rows_of_shards(const std::vector<ShardResult>& shards, bool 
         for (RowRun& row : rows_of(shard, searches)) {
             const auto same = [&](const RowRun& one) { return one.key == row.key; };
             const auto known = std::ranges::find_if(rows, same);
-            if (known == rows.end())
+            if (known == rows.end()) {
                 rows.push_back(std::move(row));
-            else if (traced(*known) != nullptr && traced(row) == nullptr)
-                *known = std::move(row);
+                continue;
+            }
+            add_disturbance(*known, row);
+            if (traced(*known) != nullptr && traced(row) == nullptr) *known = std::move(row);
         }
     for (RowRun& row : rows)
         forget_answers(row);

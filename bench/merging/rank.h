@@ -20,12 +20,21 @@ struct Rank {
 /// The value of a variable of the environment; null where it is not set.
 using Environment = std::function<const char*(const char*)>;
 
+/// A name of the process that started this one and the other ranks of its machine; empty where it is not known.
+using LauncherName = std::function<std::string()>;
+
 /// What Open MPI (OMPI_COMM_WORLD_*), launchers with PMI (PMI_*) and Slurm's srun (SLURM_*) say; empty where none of
 /// them started more than this one process. A batch script of Slurm is no rank: only srun's steps have a step's number.
-/// Throws Error{usage} where a variable has no such number.
-[[nodiscard]] std::optional<Rank> rank_of(const Environment& environment);
+/// A launcher with PMI outside Slurm names no launch: TETRACE_LAUNCH does, or `launcher` where all ranks are on this
+/// machine (MPI_LOCALNRANKS). Throws Error{usage} where a variable has no such number, or nothing names the launch:
+/// then the results of an earlier one could be taken for those of this one.
+[[nodiscard]] std::optional<Rank> rank_of(const Environment& environment, const LauncherName& launcher);
 
-/// The same of this process's environment.
+/// The nearest ancestor of this process whose environment has no PMI_RANK, by its number, when it started, and the
+/// system's start: a wrapper between the launcher and a rank makes no difference.
+[[nodiscard]] std::string launcher_name();
+
+/// The rank of this process.
 [[nodiscard]] std::optional<Rank> this_rank();
 
 } // namespace tetrace

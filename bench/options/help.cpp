@@ -3,10 +3,13 @@
 #include "bench/options/identity.h"
 #include "bench/options/manual.h"
 #include "bench/options/option_table.h"
+#include "bench/terminal/colour.h"
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace tetrace {
 
@@ -119,6 +122,8 @@ const VerbHelp verb_help[] = {
      "unless --views is given.\n\n"
      "figure6: time over tets traversed, one point a view, their correlation, and pictures of the two extreme "
      "views.\n\n"
+     "The machine's pulse and load are taken as by 'bench', all the while and over --resume; a claim that rests on a "
+     "noisy row is not testable.\n\n"
      "The views are those of the camera set 'flight'; --views selects a sample of them, and numbers then have 95 % "
      "intervals. Default scenes: banana, bunny and armadillo, as far as they are available. With --out FILE, each "
      "finished view or batch of searches is kept in FILE.journal, so that --resume can continue a run that was "
@@ -156,10 +161,13 @@ const VerbHelp verb_help[] = {
      "the "
      "face is right), each sum and product computed by the device, with the program of its self-test. The kernel does "
      "not report its own.\n\n"
-     "One kernel is followed: by default maria on tet80; --method project alone means half32. Methods of the cdt have "
-     "steps, BVHs have none. Exits with 1 if a device differs from openmp, with 2 for a ray that there is not, and "
-     "with "
-     "3 if no device that was asked for could trace it.",
+     "One kernel is followed: by default maria on tet80; --method project alone means half32. --rays follows the ray "
+     "of "
+     "that kind that was made for the pixel, from the face on which it starts. Our BVHs (--layout bvh2, cwbvh) have no "
+     "steps, since their kernels do not tell which nodes they visit: of them the answers are shown, and how many nodes "
+     "and triangles openmp visits. Embree's kernels and a driver's (rt) tell nothing but the answer, and are refused. "
+     "Exits with 1 if a device differs from openmp, with 2 for a ray that there is not, and with 3 if no device that "
+     "was asked for could trace it.",
      "  tetrace trace --scene cubes --pixel 128,100\n"
      "  tetrace trace --scene bunny --view 2 --pixel 300,17 --size 512 --method project --backend vulkan\n"
      "  tetrace trace --scene cubes --pixel 128,100 --format json --out ray.json\n"},
@@ -201,8 +209,8 @@ const VerbHelp verb_help[] = {
      "  tetrace compare zen3.json zen5.json xeon.json\n"},
     {Verb::show, "print a result again",
      "Prints what the run that wrote RESULT.json printed: the same tables and sentences, made by the same code from "
-     "the "
-     "JSON, for results of bench, check and reproduce. A line 'Not here' at the end names what the JSON does not have: "
+     "the JSON, for results of bench, check (with --defects too), reproduce and trace. A line 'Not here' at the end "
+     "names what the JSON does not have: "
      "of a check, the tets that a differing ray walks through, which its 'path' lists, and the command that follows "
      "it; of older results, what they did "
      "not record. --format markdown is for posting it.",
@@ -253,12 +261,18 @@ std::string exit_codes()
     return text;
 }
 
-constexpr std::size_t page_width = 100;
+/// As wide as the terminal, where there is one; longer lines are harder to read.
+std::size_t page_width()
+{
+    constexpr std::size_t widest = 100, least = 40;
+    const std::size_t columns = terminal_columns(STDOUT_FILENO);
+    return columns == 0 ? widest : std::clamp(columns, least, widest);
+}
 
 std::string option_entry(const OptionRow& row)
 {
     const std::string head = row.value.empty() ? row.name : row.name + " " + row.value;
-    return fmt::format("  {}\n{}", head, wrapped_without_orphans(row.help, page_width, 6));
+    return fmt::format("  {}\n{}", head, wrapped_without_orphans(row.help, page_width(), 6));
 }
 
 std::string option_entries(Verb verb)
@@ -280,7 +294,7 @@ std::string verb_text(const VerbHelp& entry)
     std::string text =
         fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}{}{}\n\n{}\n", name, entry.summary, name, files.names,
                     files.most > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
-                    wrapped_without_orphans(entry.description, page_width, 0));
+                    wrapped_without_orphans(entry.description, page_width(), 0));
     if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
     text += fmt::format("Examples\n{}\n", entry.examples);
     return text + exit_codes();
@@ -289,16 +303,18 @@ std::string verb_text(const VerbHelp& entry)
 std::string program_text()
 {
     std::string text =
-        "tetrace: ray traversal through constrained Delaunay tetrahedralizations, measured and verified\n\n"
-        "Usage: tetrace VERB [OPTION]...\n\n";
+        wrapped("tetrace: ray traversal through constrained Delaunay tetrahedralizations, measured and verified",
+                page_width(), 0) +
+        "\nUsage: tetrace VERB [OPTION]...\n\n";
     for (const VerbHelp& entry : verb_help)
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
-    text += "\n'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options.\n"
-            "Results go to standard output, or to --out FILE. A file appears whole, or not at all with exit code 2.\n"
-            "Messages and progress go to standard error: progress is a line that is redrawn, or without a terminal a\n"
-            "line each 30 seconds. Terminals get colours unless NO_COLOR is set, and tables and sentences that fit "
-            "them.\n\n"
-            "Examples\n"
+    text += "\n" + wrapped("'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options. "
+                           "Results go to standard output, or to --out FILE. A file appears whole, or not at all with "
+                           "exit code 2. Messages and progress go to standard error: progress is a line that is "
+                           "redrawn, or without a terminal a line each 30 seconds. Terminals get colours unless "
+                           "NO_COLOR is set, and tables and sentences that fit them.",
+                           page_width(), 0);
+    text += "\nExamples\n"
             "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"
             "  tetrace build --scene dragon.ply          your own mesh\n\n";

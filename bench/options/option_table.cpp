@@ -145,11 +145,11 @@ std::vector<OptionRow> row_options()
          "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
          "from the primary hits: 'shadow', towards a light, and 'ao', short rays round the normal (for both, any hit "
          "is an answer); 'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
-         measuring, true, append("--rays", &Options::rays)},
+         measuring | bit(Verb::trace), true, append("--rays", &Options::rays)},
         {"Rows", "--ray-order", "ORDER",
          "Order of the rays of all kinds but primary: 'tiles', as their pixels lie; 'morton', sorted by origin and "
          "direction; 'shuffled'. Each is a row of its own. Default: tiles.",
-         measuring, true, append("--ray-order", &Options::ray_orders)},
+         measuring | bit(Verb::trace), true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
          "'exact': no contraction, the same bits everywhere; 'fast': the compiler is free. Embree has one build, and "
          "its rows appear in both modes. Default: exact.",

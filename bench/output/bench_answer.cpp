@@ -125,24 +125,6 @@ std::string pulses_text(const std::vector<Pulse>& pulses)
     return text;
 }
 
-std::string trust_text(const BenchResult& result)
-{
-    std::size_t timed = 0, noisy = 0, disturbed = 0;
-    for (const RowRun& row : result.run.rows)
-        if (const auto figures = figures_of(row)) {
-            ++timed;
-            noisy += figures->noisy ? 1 : 0;
-            disturbed += row.disturbance.empty() ? 0 : 1;
-        }
-    const auto& load = result.measurement.load;
-    const std::string what =
-        fmt::format("{}{}; {} of {} rows noisy", load_text(load), pulses_text(result.measurement.pulses), noisy, timed);
-    if (disturbed == timed || (load && !load->is_quiet()))
-        return what + ": do not trust these rates; measure again on a quieter machine.";
-    if (disturbed > 0) return what + ": do not trust those; measure again on a quieter machine.";
-    return what + (2 * noisy > timed ? ": trust only what intervals tell." : ".");
-}
-
 } // namespace
 
 Sheet answer_of(const BenchResult& result)
@@ -157,8 +139,32 @@ Sheet answer_of(const BenchResult& result)
     std::string compared = structures_text(contests);
     if (const std::string apis = apis_text(result); !apis.empty()) compared += (compared.empty() ? "" : ". ") + apis;
     if (!compared.empty()) sheet.labelled("Compared", compared + ".");
-    if (is_timed(result)) sheet.labelled("Trust", trust_text(result));
+    if (is_timed(result)) {
+        Steadiness steadiness{result.measurement.load, result.measurement.pulses};
+        for (const RowRun& row : result.run.rows)
+            steadiness.count(row);
+        sheet.labelled("Trust", trust_text(steadiness));
+    }
     return sheet;
+}
+
+void Steadiness::count(const RowRun& row)
+{
+    const auto figures = figures_of(row);
+    if (!figures) return;
+    ++timed;
+    noisy += figures->noisy ? 1 : 0;
+    disturbed += row.disturbance.empty() ? 0 : 1;
+}
+
+std::string trust_text(const Steadiness& all)
+{
+    const std::string what =
+        fmt::format("{}{}; {} of {} rows noisy", load_text(all.load), pulses_text(all.pulses), all.noisy, all.timed);
+    if (all.disturbed == all.timed || (all.load && !all.load->is_quiet()))
+        return what + ": do not trust these rates; measure again on a quieter machine.";
+    if (all.disturbed > 0) return what + ": do not trust those; measure again on a quieter machine.";
+    return what + (2 * all.noisy > all.timed ? ": trust only what intervals tell." : ".");
 }
 
 } // namespace tetrace

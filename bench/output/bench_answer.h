@@ -8,4 +8,16 @@ namespace tetrace {
 /// to trust the rates. Empty where nothing was timed.
 [[nodiscard]] Sheet answer_of(const BenchResult& result);
 
+/// What says whether a run's rates are to be trusted.
+struct Steadiness {
+    std::optional<MachineLoad> load = {}; ///< empty where the system does not tell
+    std::vector<Pulse> pulses = {};
+    std::size_t timed = 0, noisy = 0, disturbed = 0; ///< rows
+
+    void count(const RowRun& row);
+};
+
+/// Whether to trust them, as a sentence. Precondition: a row was timed.
+[[nodiscard]] std::string trust_text(const Steadiness& all);
+
 } // namespace tetrace

@@ -106,21 +106,6 @@ std::string failure_text(const RowRun& row, Status status)
     return fmt::format("{}: {}", name_of(status), reason);
 }
 
-nlohmann::json pulses_json(const std::vector<Pulse>& pulses)
-{
-    nlohmann::json list = nlohmann::json::array();
-    for (const Pulse& pulse : pulses) {
-        nlohmann::json readings = nlohmann::json::array();
-        for (const Pulse::Reading& reading : pulse.readings)
-            readings.push_back({reading.at_s, reading.seconds});
-        list.push_back({{"of", pulse.of},
-                        {"fastest_s", pulse.fastest_s()},
-                        {"ratio", pulse.ratio()},
-                        {"readings", std::move(readings)}});
-    }
-    return list;
-}
-
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
 {
     nlohmann::json section = result_head(options);
@@ -132,9 +117,7 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
     }
     if (result.measurement.wall_s > 0) section["timed_s"] = result.measurement.wall_s;
     section["threads"] = result.threads;
-    if (const auto& load = result.measurement.load)
-        section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
-    if (const auto& pulses = result.measurement.pulses; !pulses.empty()) section["pulses"] = pulses_json(pulses);
+    set_steadiness(section, result.measurement.load, result.measurement.pulses);
     section["missing_scenes"] = result.missing_scenes;
     section["missing_devices"] = result.missing_devices;
     section["scenes"] = result.scenes;

@@ -35,8 +35,7 @@ TraceJob job_of(const RowRun& row, std::uint32_t view)
     return row.scene->job(index, &row.packed->data, row.device);
 }
 
-/// Whether a ray of the row can be walked again by its pixel. BVHs leave no tets, and a given ray cannot be identified
-/// by its pixel alone.
+/// Whether the tets of a ray's walk are listed. BVHs leave none; of given rays 'tetrace trace' lists them.
 bool leaves_tets(const RowRun& row)
 {
     return row.key.kernel.structure == Structure::cdt && row.key.kernel.task == Task::trace;
@@ -83,14 +82,16 @@ std::string parting_text(const Path& ours, const Path& openmps)
                        *other);
 }
 
-/// The command that follows the ray on this device and on openmp; empty for rays without steps.
+/// The command that follows the ray on this device and on openmp; empty for kernels that are not ours.
 std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
 {
-    if (row.scene == nullptr || row.scene->arguments().empty() || !leaves_tets(row)) return {};
+    if (row.scene == nullptr || row.scene->arguments().empty() || !is_portable(row.key.kernel)) return {};
     const KernelId& kernel = row.key.kernel;
     std::string text = fmt::format("tetrace trace {} --view {} --pixel {},{} --method {} --layout {}",
                                    row.scene->arguments(), view, x, y, name_of(kernel.method), name_of(kernel.layout));
     if (kernel.math != MathMode::exact) text += fmt::format(" --math {}", name_of(kernel.math));
+    if (row.key.rays != RayKind::primary) text += fmt::format(" --rays {}", name_of(row.key.rays));
+    if (row.key.ray_order != RayOrder::tiles) text += fmt::format(" --ray-order {}", name_of(row.key.ray_order));
     if (row.key.order != TetOrder::hilbert) text += fmt::format(" --order {}", name_of(row.key.order));
     if (kernel.schedule != Schedule::tiles) text += fmt::format(" --schedule {}", name_of(kernel.schedule));
     text += fmt::format(" --backend {}", row.key.backend);
@@ -138,20 +139,17 @@ std::string differences_text(const RowRun& row)
 void add_paths(nlohmann::json& row_json, const RowRun& row)
 {
     const Traced* result = traced(row);
-    if (result == nullptr || !leaves_tets(row)) return;
+    if (result == nullptr) return;
     auto& verification = row_json["verification"];
-    const auto add_command = [&](nlohmann::json& object, const auto& ray) {
+    const auto add = [&](const char* key, const auto& ray) {
+        if (leaves_tets(row)) verification[key]["path"] = path_of(row, ray.view, ray.x, ray.y);
         const std::string command = trace_command(row, ray.view, ray.x, ray.y);
-        if (!command.empty()) object["command"] = command;
+        if (!command.empty()) verification[key]["command"] = command;
     };
-    if (const auto& ray = result->verdicts.first_wrong) {
-        verification["first_wrong"]["path"] = path_of(row, ray->view, ray->x, ray->y);
-        add_command(verification["first_wrong"], *ray);
-    }
+    if (const auto& ray = result->verdicts.first_wrong) add("first_wrong", *ray);
     if (const auto& ray = result->first_different) {
-        verification["first_different"]["path"] = path_of(row, ray->view, ray->x, ray->y);
-        verification["first_different"]["own_path"] = own_path(row, *ray);
-        add_command(verification["first_different"], *ray);
+        add("first_different", *ray);
+        if (leaves_tets(row)) verification["first_different"]["own_path"] = own_path(row, *ray);
     }
 }
 

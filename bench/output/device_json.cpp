@@ -65,4 +65,19 @@ json row_device_json(const RowDevice& device)
     return object;
 }
 
+void set_steadiness(json& section, const std::optional<MachineLoad>& load, const std::vector<Pulse>& pulses)
+{
+    if (load)
+        section["load"] = {{"others", load->others}, {"average", load->average}, {"processors", load->processors}};
+    for (const Pulse& pulse : pulses) {
+        json readings = json::array();
+        for (const Pulse::Reading& reading : pulse.readings)
+            readings.push_back({reading.at_s, reading.seconds});
+        section["pulses"].push_back({{"of", pulse.of},
+                                     {"fastest_s", pulse.fastest_s()},
+                                     {"ratio", pulse.ratio()},
+                                     {"readings", std::move(readings)}});
+    }
+}
+
 } // namespace tetrace

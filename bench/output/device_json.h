@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/measuring/pulse.h"
 #include "bench/measuring/row_devices.h"
 
 #include <nlohmann/json.hpp>
@@ -14,5 +15,8 @@ namespace tetrace {
 
 /// A device that rows ran on, with its yardstick and self-tests.
 [[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
+
+/// Sets a result's `load` and `pulses`, where they are known.
+void set_steadiness(nlohmann::json& section, const std::optional<MachineLoad>& load, const std::vector<Pulse>& pulses);
 
 } // namespace tetrace

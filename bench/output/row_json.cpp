@@ -86,6 +86,17 @@ nlohmann::json row_json(const RowFacts& facts)
     return object;
 }
 
+void set_disturbance(nlohmann::json& record, const RowRun& row)
+{
+    if (!figures_of(row)) return;
+    const RowFacts facts(row);
+    for (const RowField& field : row_fields())
+        for (const std::string_view key : {"noisy", "pulse", "disturbed"})
+            if (field.schema != nullptr && field.group == std::string_view("times") && field.key == key)
+                if (nlohmann::json value = field.value(facts); !value.is_null())
+                    record[field.group][field.key] = std::move(value);
+}
+
 nlohmann::json ratio_json(const RowFacts& facts)
 {
     nlohmann::json object;

@@ -17,4 +17,8 @@ namespace tetrace {
 /// A row's speed compared with its reference's. Precondition: facts.comparison.
 [[nodiscard]] nlohmann::json ratio_json(const RowFacts& facts);
 
+/// Writes into a row's record what is known only when all rows have been timed: its times' "noisy", "pulse" and
+/// "disturbed".
+void set_disturbance(nlohmann::json& record, const RowRun& row);
+
 } // namespace tetrace

@@ -105,7 +105,8 @@ json record_json(const ImageRecord& record)
             {"lost_at_cap", record.lost_at_cap},
             {"flat", {record.flawed.rays, record.flawed.through_flat, record.any.rays, record.any.through_flat}},
             {"samples_s", record.samples_s},
-            {"wall_samples_s", record.wall_samples_s}};
+            {"wall_samples_s", record.wall_samples_s},
+            {"sampled_s", record.sampled_s}};
 }
 
 ImageRecord record_from(const json& object)
@@ -117,7 +118,8 @@ ImageRecord record_from(const json& object)
             {number_from(flat.at(0)), number_from(flat.at(1))},
             {number_from(flat.at(2)), number_from(flat.at(3))},
             object.at("samples_s"),
-            object.at("wall_samples_s")};
+            object.at("wall_samples_s"),
+            object.at("sampled_s")};
 }
 
 /// A value of an enumeration, from the first allowed one to the last.

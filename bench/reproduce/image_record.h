@@ -22,6 +22,8 @@ struct ImageRecord {
     FlatWalks flawed, any;              ///< of wrong and lost rays; of rays over the whole image
     std::vector<double> samples_s;      ///< device seconds, one value per launch; empty where nothing was timed
     std::vector<double> wall_samples_s; ///< launch to end, by the host's clock
+    /// When each sample began and ended, by the clock of MachineWatch; empty without one.
+    std::vector<std::pair<double, double>> sampled_s = {};
 };
 
 /// A row's result for a view: the image, or the failure that ended the row.

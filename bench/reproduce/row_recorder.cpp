@@ -55,15 +55,34 @@ void RunProgress::show(const std::string& stage) const
     progress_line().show(stage, fraction, left_s);
 }
 
-void RowRecorder::run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress)
+MachineWatch watch_of(Pulses::Work host, const Journal* journal, Clock clock)
+{
+    std::vector<json> readings;
+    if (journal != nullptr)
+        for (const json& entry : journal->entries())
+            if (entry.contains(MachineWatch::entry_key)) readings.push_back(entry[MachineWatch::entry_key]);
+    try {
+        return MachineWatch(std::move(host), readings, std::move(clock));
+    } catch (const json::exception& error) {
+        journal->reject(fmt::format("a reading of the machine in the journal is damaged: {}", error.what()));
+    } catch (const std::logic_error& error) {
+        journal->reject(fmt::format("a reading of the machine in the journal is damaged: {}", error.what()));
+    }
+}
+
+void RowRecorder::run(std::size_t parts, const std::string& name, Journal* journal, RunProgress& progress,
+                      MachineWatch* watch)
 {
     journal_ = journal;
+    watch_ = samples_ > 0 && !is_merged() ? watch : nullptr;
+    if (watch_ != nullptr) watch_rows(name);
+    const std::string stage = "reproducing, " + name;
     std::size_t part = journal == nullptr ? 0 : restore_parts();
     progress.done += part;
     if (is_merged() && part < parts) reject_journal(fmt::format("{}: {} parts of {}", stage, part, parts));
     for (; part < parts; ++part) {
         progress.show(stage);
-        const json entry = run_part(part);
+        const json entry = run_part(part, part + 1 == parts);
         if (journal != nullptr) journal->append(entry);
         progress.done += 1;
         progress.here += 1;
@@ -74,8 +93,24 @@ void RowRecorder::run(std::size_t parts, const std::string& stage, Journal* jour
     progress_line().clear();
 }
 
+void RowRecorder::watch_rows(const std::string& name)
+{
+    const auto first_job_s = [this](RowRun& row) {
+        if (!can_repeat_first_job()) return std::optional<double>();
+        return median_launch_s(
+            row, [&] { return job_of(row, 0); }, host_clock());
+    };
+    watch_->pulses().watch(run_->rows, first_job_s, ", " + name);
+}
+
+/// Only where every row is launched before its answers are read again: a GPU's pulse leaves those of the first part.
+void RowRecorder::take_pulse_if_due()
+{
+    if (watch_ != nullptr) watch_->pulses().take_if_due();
+}
+
 /// The journal's entry of the part.
-json RowRecorder::run_part(std::size_t part)
+json RowRecorder::run_part(std::size_t part, bool is_last)
 {
     const Stopwatch watch;
     records_.assign(run_->rows.size(), {});
@@ -97,15 +132,20 @@ json RowRecorder::run_part(std::size_t part)
         if (traced(run_->rows[i]) != nullptr) run_->images[i].push_back(std::move(records_[i]));
     }
     entry["wall_s"] = watch.seconds();
+    if (watch_ != nullptr)
+        if (json readings = watch_->new_readings(is_last); !readings.is_null())
+            entry[MachineWatch::entry_key] = std::move(readings);
     return entry;
 }
 
 /// Interleaved, so that drift affects all rows alike. The first launch after another row's warms the caches.
 void RowRecorder::time_rows(std::size_t part)
 {
-    for (unsigned sample = 0; sample <= samples_; ++sample)
+    for (unsigned sample = 0; sample <= samples_; ++sample) {
+        take_pulse_if_due();
         for (const std::size_t i : begun_)
             if (is_timed(run_->rows[i])) guarded(run_->rows[i], [&] { time_row(i, part, sample > 0); });
+    }
     // A device that answers differently under repetition must lose its rate.
     for (const std::size_t i : begun_)
         if (is_timed(run_->rows[i]))
@@ -113,15 +153,21 @@ void RowRecorder::time_rows(std::size_t part)
                 if (hash_of_answers(run_->rows[i], part) != records_[i].verdict.hit_hash)
                     throw Error(ErrorKind::wrong_result, "the answers changed while they were timed");
             });
+    take_pulse_if_due();
 }
 
 void RowRecorder::time_row(std::size_t i, std::size_t part, bool counts)
 {
     RowRun& row = run_->rows[i];
-    const auto [kernel_s, wall_s] = timed_launch(*row.session, job_of(row, part));
+    const TraceJob job = job_of(row, part);
+    const double begin_s = watch_ != nullptr ? watch_->now() : 0;
+    const auto [kernel_s, wall_s] = timed_launch(*row.session, job);
     if (!counts) return;
     records_[i].samples_s.push_back(kernel_s);
     records_[i].wall_samples_s.push_back(wall_s);
+    if (watch_ == nullptr) return;
+    records_[i].sampled_s.emplace_back(begin_s, watch_->now());
+    watch_->pulses().sampled(row, begin_s, watch_->now());
 }
 
 ImageOutcome RowRecorder::outcome(std::size_t i) const
@@ -170,6 +216,9 @@ void RowRecorder::restore(std::size_t i, std::size_t part, ImageOutcome outcome)
     if (auto* record = std::get_if<ImageRecord>(&outcome)) {
         std::get<Traced>(row.outcome).add(record->verdict);
         check_record(i, part, *record);
+        if (watch_ != nullptr)
+            for (const auto& [begin_s, end_s] : record->sampled_s)
+                watch_->pulses().sampled(row, begin_s, end_s);
         run_->images[i].push_back(std::move(*record));
         return;
     }
@@ -194,6 +243,12 @@ void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecor
     for (const auto& times : {record.samples_s, record.wall_samples_s})
         if (times.size() != samples || !std::ranges::all_of(times, is_time))
             throw std::domain_error(fmt::format("{} wants {} samples, all above 0 s", row_name(row.key), samples));
+    const auto is_interval = [](const auto& interval) {
+        return std::isfinite(interval.second) && 0 <= interval.first && interval.first <= interval.second;
+    };
+    if (watch_ == nullptr) return; // of a merged journal, or nothing is timed
+    if (record.sampled_s.size() != samples || !std::ranges::all_of(record.sampled_s, is_interval))
+        throw std::domain_error(fmt::format("{} wants the times of {} samples", row_name(row.key), samples));
 }
 
 /// Repeats the first part after everything else that the device was given; after a resume, it is the journal's.

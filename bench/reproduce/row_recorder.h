@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/measuring/machine_watch.h"
 #include "bench/reproduce/image_record.h"
 #include "bench/reproduce/journal.h"
 #include "bench/statistics/interval.h"
@@ -34,6 +35,10 @@ struct RunProgress {
     void show(const std::string& stage) const;
 };
 
+/// Watches the machine through a run, and goes on with the readings of its journal, which may be null. Throws
+/// Error{usage} where one of them is damaged.
+[[nodiscard]] MachineWatch watch_of(Pulses::Work host, const Journal* journal, Clock clock = host_clock());
+
 /// Takes rows through their parts: verifies each part with every row, times it, and appends it to the journal. Parts
 /// that are in the journal are taken from there.
 class RowRecorder {
@@ -44,10 +49,11 @@ public:
     RowRecorder(const RowRecorder&) = delete;
     RowRecorder& operator=(const RowRecorder&) = delete;
 
-    /// stage: for the progress line. journal: may be null.
-    /// Throws Error{usage} where the journal has other parts or other rows, or an entry is damaged. Of a merged journal
-    /// nothing is traced: it must have all parts.
-    void run(std::size_t parts, const std::string& stage, Journal* journal, RunProgress& progress);
+    /// name: of the scene, or what it is, for the progress line. journal: may be null. watch: takes the pulse between
+    /// samples; may be null. Throws Error{usage} where the journal has other parts or other rows, or an entry is
+    /// damaged. Of a merged journal nothing is traced: it must have all parts.
+    void run(std::size_t parts, const std::string& name, Journal* journal, RunProgress& progress,
+             MachineWatch* watch = nullptr);
 
 protected:
     /// Precondition: there is a journal.
@@ -63,12 +69,16 @@ private:
     /// Gives the row's session everything that its launches of the part need.
     virtual void prepare(RowRun& row, std::size_t part) = 0;
     [[nodiscard]] virtual TraceJob job_of(const RowRun& row, std::size_t part) const = 0;
+    /// Whether the sessions, as the current part has left them, can do job_of() the first part: a GPU's pulse.
+    [[nodiscard]] virtual bool can_repeat_first_job() const = 0;
     /// Does the part once and judges every answer; leaves samples empty.
     [[nodiscard]] virtual ImageRecord examine(std::size_t row, std::size_t part) = 0;
     /// Hash of the answers to the last launch, as ImageVerdict::hit_hash.
     [[nodiscard]] virtual std::uint64_t hash_of_answers(RowRun& row, std::size_t part) = 0;
 
-    [[nodiscard]] nlohmann::json run_part(std::size_t part);
+    void watch_rows(const std::string& name);
+    void take_pulse_if_due();
+    [[nodiscard]] nlohmann::json run_part(std::size_t part, bool is_last);
     void time_rows(std::size_t part);
     void time_row(std::size_t i, std::size_t part, bool counts);
     [[nodiscard]] ImageOutcome outcome(std::size_t i) const;
@@ -81,6 +91,7 @@ private:
     RecordedRows* run_;
     unsigned samples_;
     Journal* journal_ = nullptr;
+    MachineWatch* watch_ = nullptr;    ///< null where nothing is timed
     std::vector<ImageRecord> records_; ///< of the current part, row by row
     std::vector<std::size_t> begun_;   ///< rows that the part began with
 };

@@ -52,6 +52,8 @@ private:
         return run_->scene->job(view, row.packed != nullptr ? &row.packed->data : nullptr, row.device);
     }
 
+    [[nodiscard]] bool can_repeat_first_job() const override { return true; } // primary rays need no others
+
     [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t view) override
     {
         RowRun& row = run_->rows[i];
@@ -184,11 +186,11 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
     return run;
 }
 
-void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress)
+void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch)
 {
     if (run.scene == nullptr) return;
     ViewRecorder recorder(run, run.build.timing ? options.samples : 0);
-    recorder.run(run.scene->views().size(), "reproducing, " + run.scene->label(), journal, progress);
+    recorder.run(run.scene->views().size(), run.scene->label(), journal, progress, watch);
 }
 
 } // namespace tetrace

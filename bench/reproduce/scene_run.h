@@ -76,8 +76,9 @@ using SceneRuns = std::vector<const SceneRun*>;
 [[nodiscard]] SceneRun recorded_scene_run(const SceneBuild& build, const Options& options, std::vector<RowRun> rows);
 
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
-/// journal. Views that are in the journal are taken from there. journal: may be null.
+/// journal. Views that are in the journal are taken from there. journal, watch: may be null.
 /// Throws Error{usage} where the journal belongs to another scene or to other rows.
-void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress);
+void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress,
+               MachineWatch* watch = nullptr);
 
 } // namespace tetrace

@@ -105,6 +105,12 @@ private:
         return search_job(std::size_t{tets_of(run_->shard.part(part))} * run_->size.rays);
     }
 
+    /// With other rays of as many as the first batch has.
+    [[nodiscard]] bool can_repeat_first_job() const override
+    {
+        return loaded_ && tets_of(*loaded_) == tets_of(run_->shard.part(0));
+    }
+
     [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t part) override
     {
         RowRun& row = run_->rows[i];
@@ -226,10 +232,10 @@ SearchRun open_search_run(const Options& options, const std::vector<Backend*>& b
     return run;
 }
 
-void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress)
+void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch)
 {
     BatchRecorder recorder(run, options);
-    recorder.run(run.shard.share(batch_count(run.size)), "reproducing, exit searches", journal, progress);
+    recorder.run(run.shard.share(batch_count(run.size)), "exit searches", journal, progress, watch);
 }
 
 } // namespace tetrace

@@ -35,8 +35,9 @@ struct SearchRun : RecordedRows {
 /// In the images, a ray is a search, and what agrees is right. The first wrong or different search gives its tet as the
 /// view, its number among the tet's rays as x, and local faces; reference_face: the least of the faces through which it
 /// exactly leaves.
-/// journal: may be null.
+/// journal, watch: may be null.
 /// Throws Error{usage} where the journal belongs to other searches or rows.
-void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress);
+void run_searches(SearchRun& run, const Options& options, Journal* journal, RunProgress& progress,
+                  MachineWatch* watch = nullptr);
 
 } // namespace tetrace

@@ -157,6 +157,14 @@ const std::vector<Method>& older_methods()
     return methods;
 }
 
+std::string status_with_reason(const RowRun& row)
+{
+    std::string status(name_of(status_of(row)));
+    if (is_noisy(row)) status = status_of(row) == Status::ok ? "noisy" : status + ", noisy";
+    const std::string reason = reason_of(row);
+    return reason.empty() ? status : status + ": " + reason;
+}
+
 std::vector<double> view_seconds(const RecordedRows& run, std::size_t row)
 {
     std::vector<double> seconds;

@@ -27,6 +27,9 @@ namespace tetrace {
 
 /// The runs that a claim is about; rows of different runs are never compared.
 using RecordedRuns = std::vector<const RecordedRows*>;
+/// For tables of rates: the row's status, "noisy" where that is all that speaks against it, with its reason.
+[[nodiscard]] std::string status_with_reason(const RowRun& row);
+
 /// Whether the claim is about this row of maria.
 using IsMeant = std::function<bool(const RowRun&)>;
 

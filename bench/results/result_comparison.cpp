@@ -1,6 +1,7 @@
 #include "bench/results/result_comparison.h"
 
 #include "bench/options/name_filter.h"
+#include "bench/results/rate_pulse.h"
 #include "bench/results/same_work.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
@@ -98,30 +99,6 @@ void require_rows(const ResultFile& before, const ResultFile& after, const std::
                         after.timed_rows().empty() ? "none" : after.timed_rows().front()->name + " and its like"));
 }
 
-/// The host's pulse of `after` over that of `before`; empty where the two are of different machines, of whose speeds
-/// the comparison is to tell, or of different teams of threads.
-std::optional<double> machine_change(const ResultFile& before, const ResultFile& after)
-{
-    const ResultHead &a = before.head, &b = after.head;
-    if (a.machine != b.machine || a.threads != b.threads || !a.host_pulse_s || !b.host_pulse_s) return std::nullopt;
-    return *b.host_pulse_s / *a.host_pulse_s;
-}
-
-std::string disturbance_of(const ComparedRow& row, std::optional<double> machine)
-{
-    std::string text;
-    const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
-    for (const auto& [label, one] : {std::pair("A", row.before), std::pair("B", row.after)})
-        if (one->pulse_ratio && *one->pulse_ratio >= noisy_pulse)
-            add(fmt::format("in {} the pulse beside its samples took {:.2f} times its fastest", label,
-                            *one->pulse_ratio));
-    const bool on_host = row.after->device_kind && *row.after->device_kind != DeviceKind::gpu;
-    if (on_host && machine && std::max(*machine, 1 / *machine) >= noisy_pulse)
-        add(fmt::format("the same machine's pulse took {:.2f} times as long in {}", std::max(*machine, 1 / *machine),
-                        *machine > 1 ? "B as in A" : "A as in B"));
-    return text;
-}
-
 } // namespace
 
 std::string ComparedRow::verdict() const
@@ -192,9 +169,11 @@ ResultComparison compare_results(const ResultFile& before, const ResultFile& aft
     for (ComparedRow& row : comparison.rows)
         if (row.outcome == RowOutcome::compared)
             row.change = compare_speed(row.before->samples_s, row.after->samples_s, compared, tolerance);
-    const auto machine = machine_change(before, after);
+    const ResultHead &a = before.head, &b = after.head;
+    const bool same_machine = a.machine == b.machine && a.threads == b.threads;
     for (ComparedRow& row : comparison.rows)
-        if (row.change && row.change->interval) row.disturbance = disturbance_of(row, machine);
+        if (row.change && row.change->interval)
+            row.disturbance = disturbance_between(pulse_of(a, *row.before), pulse_of(b, *row.after), same_machine);
     return comparison;
 }
 

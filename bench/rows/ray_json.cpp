@@ -13,12 +13,6 @@ std::uint32_t word_from(const json& value)
     return count_from<std::uint32_t>(value);
 }
 
-Hit hit_from(const json& object)
-{
-    return {word_from(object.at("face_id")), word_from(object.at("tet")), float_from(object.at("t")),
-            float_from(object.at("u")),      float_from(object.at("v")),  word_from(object.at("steps"))};
-}
-
 } // namespace
 
 json hit_json(const Hit& hit)
@@ -40,6 +34,12 @@ json differing_ray_json(const DifferingRay& ray)
 {
     return {
         {"view", ray.view}, {"x", ray.x}, {"y", ray.y}, {"ours", hit_json(ray.ours)}, {"openmp", hit_json(ray.openmp)}};
+}
+
+Hit hit_from(const json& object)
+{
+    return {word_from(object.at("face_id")), word_from(object.at("tet")), float_from(object.at("t")),
+            float_from(object.at("u")),      float_from(object.at("v")),  word_from(object.at("steps"))};
 }
 
 WrongRay wrong_ray_from(const json& object)

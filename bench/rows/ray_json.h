@@ -12,9 +12,10 @@ namespace tetrace {
 [[nodiscard]] nlohmann::json wrong_ray_json(const WrongRay& ray);
 [[nodiscard]] nlohmann::json differing_ray_json(const DifferingRay& ray);
 
-// The reverse. These throw nlohmann::json's exceptions or std::domain_error for input that the three above did not
+// The reverse. These throw nlohmann::json's exceptions or std::domain_error for input that the functions above did not
 // write.
 
+[[nodiscard]] Hit hit_from(const nlohmann::json& object);
 [[nodiscard]] WrongRay wrong_ray_from(const nlohmann::json& object);
 [[nodiscard]] DifferingRay differing_ray_from(const nlohmann::json& object);
 

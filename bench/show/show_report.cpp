@@ -59,6 +59,20 @@ std::vector<Pulse> pulses_of(const ResultValue& section)
     return pulses;
 }
 
+void count_rows(Steadiness& steadiness, const ResultValue& part)
+{
+    const auto rows = part.find("rows");
+    if (!rows) return;
+    for (const ResultValue& row : rows->items()) {
+        const auto times = row.find("times");
+        if (!times || !times->find("median_s")) continue;
+        ++steadiness.timed;
+        const auto noisy = times->find("noisy");
+        steadiness.noisy += noisy && noisy->flag() ? 1 : 0;
+        steadiness.disturbed += times->find("disturbed") ? 1 : 0;
+    }
+}
+
 RunAgain bench_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
@@ -72,8 +86,9 @@ RunAgain bench_again(const ResultFile& file)
     result.threads = small_count(section.at("threads"));
     result.measurement.samples = small_count(section.at("samples_a_row"));
     result.measurement.lowered = section.at("samples_lowered").flag();
-    result.measurement.load = load_of(section);
-    result.measurement.pulses = pulses_of(section);
+    const Steadiness steadiness = read_steadiness(section);
+    result.measurement.load = steadiness.load;
+    result.measurement.pulses = steadiness.pulses;
     if (const auto timed = section.find("timed_s")) result.measurement.wall_s = timed->number();
     if (const auto asked = section.find("samples_asked")) result.samples_asked = small_count(*asked);
     if (const auto budget = section.find("budget_s")) result.budget_s = budget->number();
@@ -101,13 +116,22 @@ RunAgain check_again(const ResultFile& file)
 
 } // namespace
 
+Steadiness read_steadiness(const ResultValue& section)
+{
+    Steadiness steadiness{load_of(section), pulses_of(section)};
+    count_rows(steadiness, section);
+    if (const auto searches = section.find("searches")) count_rows(steadiness, *searches);
+    return steadiness;
+}
+
 RunAgain run_again(const ResultFile& file)
 {
     if (file.head.verb == "bench") return bench_again(file);
     if (file.head.verb == "check") return check_again(file);
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("showing '{}', of 'tetrace {}': results of bench, check and reproduce can be shown again",
-                            file.path.string(), file.head.verb));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("showing '{}', of 'tetrace {}': results of bench, check, reproduce and trace can be shown again",
+                    file.path.string(), file.head.verb));
 }
 
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/output/bench_answer.h"
 #include "bench/results/result_file.h"
 #include "bench/terminal/sheet.h"
 
@@ -14,5 +15,8 @@ struct RunAgain {
 /// What a run of `bench` or `check` printed, made from its result by what made it then. A line at the end names what
 /// the result does not have. Throws Error{invalid_input} for results of other verbs, and as read_rows() does.
 [[nodiscard]] RunAgain run_again(const ResultFile& file);
+
+/// A result's `load` and `pulses`, and how many of its rows and searches were timed, noisy and disturbed.
+[[nodiscard]] Steadiness read_steadiness(const ResultValue& section);
 
 } // namespace tetrace

@@ -63,6 +63,90 @@ std::string in_markdown(const std::string& text)
     return result;
 }
 
+using Lines = std::vector<std::string>;
+
+/// The text in lines of at most `width` columns, broken after '_', '/', ',' and blanks; a longer piece without any of
+/// them is a line all the same.
+Lines folded(const std::string& text, std::size_t width)
+{
+    Lines lines = {""};
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find_first_of("_/, ", begin), text.size() - 1) + 1;
+        const std::string piece = text.substr(begin, end - begin);
+        if (!lines.back().empty() && display_width(lines.back() + piece) > width) lines.emplace_back();
+        lines.back() += piece;
+        begin = end;
+    }
+    return lines;
+}
+
+/// A column as it is printed: each cell in one line or more.
+struct Shown {
+    Lines title;
+    std::string unit;
+    std::vector<Lines> cells;
+    bool right = false, coloured = false;
+
+    [[nodiscard]] std::size_t cell_width() const
+    {
+        std::size_t widest = display_width(unit);
+        for (const Lines& cell : cells)
+            for (const std::string& line : cell)
+                widest = std::max(widest, display_width(line));
+        return widest;
+    }
+    [[nodiscard]] std::size_t width() const
+    {
+        std::size_t widest = cell_width();
+        for (const std::string& line : title)
+            widest = std::max(widest, display_width(line));
+        return widest;
+    }
+};
+
+std::size_t width_of_all(const std::vector<Shown>& columns)
+{
+    std::size_t width = columns.empty() ? 0 : gap.size() * (columns.size() - 1);
+    for (const Shown& column : columns)
+        width += column.width();
+    return width;
+}
+
+/// Makes columns that always stay narrower where they do not fit: first their titles, then the first column's cells.
+void fold_into(std::vector<Shown>& columns, std::size_t width)
+{
+    constexpr std::size_t least = 16;
+    if (columns.empty() || width_of_all(columns) <= width) return;
+    for (Shown& column : columns)
+        column.title = folded(column.title.front(), std::max(column.cell_width(), least));
+    const std::size_t all = width_of_all(columns), first = columns.front().width();
+    if (all <= width) return;
+    const std::size_t left = first - std::min(first, all - width);
+    for (Lines& cell : columns.front().cells)
+        cell = folded(cell.front(), std::max(left, least));
+}
+
+/// A line of the table, or the lines of its highest cell.
+template <class Cells>
+std::string lines_of(const std::vector<Shown>& columns, const std::string& margin, const Cells& cells_of,
+                     bool coloured = false)
+{
+    std::size_t height = 1;
+    for (const Shown& column : columns)
+        height = std::max(height, cells_of(column).size());
+    std::string result;
+    for (std::size_t i = 0; i < height; ++i) {
+        std::string line = margin;
+        for (const Shown& column : columns) {
+            const Lines cell = cells_of(column);
+            if (&column != &columns.front()) line.append(gap);
+            line += padded(i < cell.size() ? cell[i] : "", column.width(), column.right, coloured && column.coloured);
+        }
+        result += without_trailing_blanks(std::move(line));
+    }
+    return result;
+}
+
 } // namespace
 
 std::string cell_text(const Cell& cell, const Column& column)
@@ -167,29 +251,24 @@ Table Table::without_empty_columns() const
 
 std::string Table::text(std::size_t indent, std::size_t width) const
 {
-    const std::string margin(indent, ' ');
-    std::string titles = margin, units = margin;
-    std::vector<std::string> lines(rows_.size(), margin);
-    bool any_unit = false, is_first = true;
+    std::vector<Shown> columns;
     for (const std::size_t c : fitting(indent, width)) {
-        const Column& column = columns_[c];
-        const std::size_t columns = width_of(c);
-        const bool right = is_number(c);
-        const std::string_view before = is_first ? std::string_view() : gap;
-        is_first = false;
-        titles.append(before) += padded(column.title, columns, right);
-        units.append(before) += padded(column.unit, columns, right);
-        any_unit = any_unit || !column.unit.empty();
-        for (std::size_t r = 0; r < rows_.size(); ++r)
-            lines[r].append(before) += padded(cell_text(rows_[r][c], column), columns, right, column.coloured);
+        Shown& shown = columns.emplace_back(Shown{{columns_[c].title}, columns_[c].unit, {}, is_number(c)});
+        shown.coloured = columns_[c].coloured;
+        for (const auto& row : rows_)
+            shown.cells.push_back({cell_text(row[c], columns_[c])});
     }
-    std::string result = without_trailing_blanks(titles);
-    if (any_unit) result += without_trailing_blanks(units);
-    for (std::size_t r = 0; r < lines.size(); ++r) {
+    if (width > 0) fold_into(columns, width - std::min(width, indent));
+    const std::string margin(indent, ' ');
+    const bool any_unit = std::ranges::any_of(columns, [](const Shown& shown) { return !shown.unit.empty(); });
+    std::string result = lines_of(columns, margin, [](const Shown& shown) { return shown.title; });
+    if (any_unit) result += lines_of(columns, margin, [](const Shown& shown) { return Lines{shown.unit}; });
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
         const auto [first, last] = headings_.equal_range(r);
         for (auto heading = first; heading != last; ++heading)
             result += without_trailing_blanks(margin + heading->second);
-        result += without_trailing_blanks(lines[r]);
+        result += lines_of(
+            columns, margin, [r](const Shown& shown) { return shown.cells[r]; }, true);
     }
     return result;
 }

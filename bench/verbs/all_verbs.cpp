@@ -1,4 +1,5 @@
 #include "bench/inspection/null_hardware.h"
+#include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/ranks.h"
 #include "core/base/error.h"
@@ -9,6 +10,7 @@ namespace {
 
 int run_verb(const Options& options)
 {
+    say_when_interrupted(words_when_begun(options));
     switch (options.verb) {
     case Verb::devices: return devices_command(options);
     case Verb::scenes: return scenes_command(options);

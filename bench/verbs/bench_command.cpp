@@ -1,3 +1,4 @@
+#include "bench/merging/shard_results.h"
 #include "bench/merging/view_journal.h"
 #include "bench/output/bench_tables.h"
 #include "bench/output/row_json.h"
@@ -34,7 +35,10 @@ void check_anonymous(const Options& options, const BenchmarkFlags& flags)
 
 int bench_command(const Options& options)
 {
-    const BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
+    BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
+    // Shards have one command line, and ranks one folder.
+    if (!flags.out.empty() && !shard_of(options).is_whole())
+        flags.out = shard_file(flags.out, shard_of(options)).string();
     check_anonymous(options, flags);
     const auto keys =
         selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });

@@ -1,11 +1,14 @@
 #include "bench/debugging/dump.h"
+#include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
 #include "core/isolation/isolation.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <unistd.h>
 
 namespace tetrace {
 
@@ -39,9 +42,10 @@ int dump_command(const Options& options)
     const std::vector<KernelFile> code = driver_code(options, backends, notes);
     write_all(code, *options.out);
     files.insert(files.end(), code.begin(), code.end());
-    const std::string readme = readme_of(files, notes, options);
-    write_whole(*options.out / "README.txt", readme);
-    print(readme);
+    write_whole(*options.out / "README.txt", readme_of(files, notes, options));
+    const std::size_t columns = terminal_columns(STDOUT_FILENO);
+    print(columns == 0 ? readme_of(files, notes, options)
+                       : readme_of(files, notes, options, std::min<std::size_t>(columns, 110)));
     return 0;
 }
 

@@ -7,7 +7,9 @@
 #include "core/isolation/isolation.h"
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
+#include <fmt/format.h>
 #include <new>
 
 namespace tetrace {
@@ -37,9 +39,28 @@ std::string command_with(const std::string& option)
     return has ? text : text + " " + option;
 }
 
+std::string words_when_begun(const Options& options)
+{
+    if (options.verb == Verb::reproduce && options.out)
+        return fmt::format("tetrace: what is finished is in '{}.journal'; to go on: {}", options.out->string(),
+                           command_with("--resume"));
+    const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||
+                         options.verb == Verb::build || options.verb == Verb::inspect || options.verb == Verb::trace ||
+                         options.verb == Verb::reproduce;
+    if (!is_long) return {};
+    const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
+                       : options.verb == Verb::render ? "pictures that were written before are whole"
+                                                      : "an earlier result is as it was";
+    const char* hint = options.verb == Verb::bench       ? "; --budget, --views or --size make it shorter"
+                       : options.verb == Verb::reproduce ? "; with --out FILE.json, --resume can go on"
+                                                         : "";
+    return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
+}
+
 int run_program(const std::vector<std::string>& arguments, const Verbs& verbs)
 {
     command_line() = arguments;
+    std::signal(SIGXFSZ, SIG_IGN); // a file over `ulimit -f` is then an error of its write, as on a full disk
     try {
         if (!arguments.empty() && arguments.front() == driver_verb) // started by DriverChild; no verb for users
             return serve_driver({arguments.begin() + 1, arguments.end()}, direct_backends());

@@ -123,6 +123,7 @@ void check_entries(const Journal& journal, const std::vector<SceneBuild>& builds
 struct Keeping {
     Keeping(const Options& options, const std::vector<SceneBuild>& builds)
         : journal(open_journal(options, builds)), yardsticks(journal.get()), costs(journal.get()),
+          watch(watch_of(host_pulse(resolved_threads(options)), journal.get())),
           pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
     {
         if (journal != nullptr) check_entries(*journal, builds);
@@ -131,6 +132,7 @@ struct Keeping {
     std::unique_ptr<Journal> journal;
     Yardsticks yardsticks;
     SetupCosts costs;
+    MachineWatch watch;
     std::unique_ptr<ResultPictures> pictures;
 };
 
@@ -139,7 +141,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked,
     const Options options = options_of_build(build, asked);
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals || build.growth) run.costs = keeping.costs.of(run.rows);
-    run_views(run, options, keeping.journal.get(), all.progress);
+    run_views(run, options, keeping.journal.get(), all.progress, &keeping.watch);
     if (keeping.pictures != nullptr && !build.growth)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
@@ -149,7 +151,7 @@ void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked,
 void run_all_searches(Reproduction& all, const Options& options, Keeping& keeping)
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
-    run_searches(run, options, keeping.journal.get(), all.progress);
+    run_searches(run, options, keeping.journal.get(), all.progress, &keeping.watch);
     all.search_records = searches_json(run);
     for (RowRun& row : run.rows)
         row.session.reset();
@@ -173,12 +175,10 @@ int reproduce_command(const Options& asked)
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
     all.progress.all = parts_of(builds, options);
-    if (keeping.journal != nullptr)
-        say_when_interrupted(fmt::format("tetrace: what is finished is in '{}.journal'; to go on: {}",
-                                         options.out->string(), command_with("--resume")));
     for (const SceneBuild& build : builds)
         run_scene(all, build, options, keeping);
     if (searches) run_all_searches(all, options, keeping);
+    judge_steadiness(all, keeping.watch);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
     if (keeping.journal != nullptr) keeping.journal->finish();

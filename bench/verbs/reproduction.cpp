@@ -42,6 +42,7 @@ json reproduction_json(const Reproduction& all, const Options& options)
     json section = result_head(options);
     section["threads"] = resolved_threads(options);
     section["samples_a_row"] = samples_of(all, options);
+    set_steadiness(section, all.steadiness.load, all.steadiness.pulses);
     section["missing_scenes"] = all.missing_scenes;
     section["missing_devices"] = all.missing_devices;
     for (const char* key : {"scenes", "devices", "rows", "tables", "figures"})
@@ -62,6 +63,27 @@ json reproduction_json(const Reproduction& all, const Options& options)
     for (const PaperFigure& figure : all.figures)
         section["figures"].push_back(figure_json(figure));
     return {{"tetrace", std::move(section)}};
+}
+
+/// Empty where nothing was timed.
+std::string trust_of(const Reproduction& all)
+{
+    Steadiness steadiness = all.steadiness;
+    for (const SceneRun& run : all.runs)
+        for (const RowRun& row : run.rows)
+            steadiness.count(row);
+    if (all.searches)
+        for (const RowRun& row : all.searches->rows)
+            steadiness.count(row);
+    return steadiness.timed == 0 ? std::string() : trust_text(steadiness);
+}
+
+/// records: of these rows.
+void judge_rows(std::vector<RowRun>& rows, json& records, const Pulses& pulses, const std::optional<MachineLoad>& load)
+{
+    pulses.judge_rows(rows, load);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        set_disturbance(records.at(i), rows[i]);
 }
 
 } // namespace
@@ -132,7 +154,7 @@ void make_tables(Reproduction& all, const Options& options)
 
 Report reproduction_report(const Reproduction& all, const Options& options)
 {
-    Report report{tables_sheet({all.tables, all.figures, all.missing_scenes, all.missing_devices}),
+    Report report{tables_sheet({all.tables, all.figures, all.missing_scenes, all.missing_devices, trust_of(all)}),
                   tidy_table(all.tables, all.figures),
                   reproduction_json(all, options),
                   {}};
@@ -142,6 +164,15 @@ Report reproduction_report(const Reproduction& all, const Options& options)
         report.markdown += figure_markdown(figure);
     if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
+}
+
+void judge_steadiness(Reproduction& all, MachineWatch& watch)
+{
+    all.steadiness = {watch.load(), watch.pulses().found()};
+    for (SceneRun& run : all.runs)
+        judge_rows(run.rows, run.row_records, watch.pulses(), all.steadiness.load);
+    if (all.searches)
+        judge_rows(all.searches->rows, all.search_records.at("rows"), watch.pulses(), all.steadiness.load);
 }
 
 void require_any_answer(const Reproduction& all)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/output/bench_answer.h"
 #include "bench/output/report.h"
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/search_run.h"
@@ -29,6 +30,7 @@ struct Reproduction {
     std::vector<PaperTable> tables;
     std::vector<PaperFigure> figures;
     std::vector<std::string> missing_scenes, missing_devices; ///< one sentence each
+    Steadiness steadiness;
 };
 
 /// The options with what is not named: all methods of the paper, and its scenes that are available here, else the
@@ -43,6 +45,10 @@ void check_labels(const std::vector<SceneBuild>& builds);
 void make_tables(Reproduction& all, const Options& options);
 
 [[nodiscard]] Report reproduction_report(const Reproduction& all, const Options& options);
+
+/// Tells all timed rows what the pulse and the load of the whole run say about their rates. They must have been
+/// watched.
+void judge_steadiness(Reproduction& all, MachineWatch& watch);
 
 /// Throws Error{missing} as bench and check do where no row of any scene or search could run here.
 void require_any_answer(const Reproduction& all);

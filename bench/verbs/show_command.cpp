@@ -1,3 +1,5 @@
+#include "bench/debugging/defect_report.h"
+#include "bench/debugging/trace_sheet.h"
 #include "bench/output/report.h"
 #include "bench/reproduce/tables/recorded_tables.h"
 #include "bench/results/result_file.h"
@@ -16,15 +18,31 @@ std::string made_by(const ResultFile& file)
                        file.head.commit, file.head.machine, file.head.system);
 }
 
+/// Of a result of `reproduce`: empty where nothing was timed, or where its version took no pulse.
+std::string trust_of(const ResultFile& file)
+{
+    const Steadiness steadiness = read_steadiness(file.section());
+    return steadiness.pulses.empty() || steadiness.timed == 0 ? std::string() : trust_text(steadiness);
+}
+
 Report shown(const ResultFile& file, const Options& options)
 {
     Report report{{}, Table({}), file.json};
     report.sheet.line(made_by(file));
     report.sheet.gap();
     if (file.head.verb == "reproduce") {
-        const PaperTables all = read_tables(file.section());
+        PaperTables all = read_tables(file.section());
+        all.trust = trust_of(file);
         report.sheet.append(tables_sheet(all));
         report.table = tidy_table(all.tables, all.figures);
+    } else if (file.head.verb == "trace") {
+        ShownTrace trace = shown_trace(file.section());
+        report.sheet.append(trace.sheet);
+        report.table = std::move(trace.table);
+    } else if (file.section().find("defects")) {
+        ShownDefects defects = shown_defects(file.section());
+        report.sheet.append(defects.sheet);
+        report.table = std::move(defects.table);
     } else {
         RunAgain again = run_again(file);
         report.sheet.append(again.sheet);

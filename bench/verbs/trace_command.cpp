@@ -25,9 +25,9 @@ int trace_command(const Options& options)
     const TraceRun run = run_trace(options);
     deliver(options, trace_report(run, options));
     require_answers(asked_rows(run), "traced");
-    const bool has_reference = !run.rays.empty() && run.rays.front().row == &run.rows.front();
-    if (has_reference &&
-        std::ranges::any_of(run.rays, [&](const RayOnDevice& ray) { return differs(ray, run.rays.front()); }))
+    const RayOnDevice* const reference = run.reference();
+    if (reference != nullptr &&
+        std::ranges::any_of(run.rays, [&](const RayOnDevice& ray) { return differs(ray, *reference); }))
         return exit_code(ErrorKind::wrong_result);
     return exit_code(run.rows, true);
 }

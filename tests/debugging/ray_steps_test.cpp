@@ -11,6 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
 
+#include <fmt/format.h>
 #include <functional>
 #include <gtest/gtest.h>
 #include <iterator>
@@ -66,6 +67,15 @@ private:
     }
 };
 
+/// Answers as openmp does, but for the first of its rays.
+class FirstGivenSession : public WrappedSession {
+public:
+    using WrappedSession::WrappedSession;
+
+private:
+    void change(std::span<Hit> hits) override { hits.front().face_id ^= 1; }
+};
+
 class RaySteps : public testing::Test {
 protected:
     RaySteps()
@@ -96,7 +106,7 @@ TEST_F(RaySteps, lead_from_neighbour_to_neighbour_to_the_triangle_that_is_hit)
          {std::pair(Method::maria, Layout::tet80), std::pair(Method::maria, Layout::tet96),
           std::pair(Method::project, Layout::half32), std::pair(Method::project, Layout::tet20),
           std::pair(Method::plucker, Layout::tet80)}) {
-        const RowRun traced = row(method, layout);
+        RowRun traced = row(method, layout);
         const RayOnDevice ray = follow_ray(traced, 0, pixel);
         ASSERT_LT(ray.hit.face_id, scene_->loaded().scene.mesh.triangles.size()) << "the pixel hits";
         ASSERT_EQ(ray.steps.size(), ray.hit.steps);
@@ -119,7 +129,7 @@ TEST_F(RaySteps, lead_from_neighbour_to_neighbour_to_the_triangle_that_is_hit)
 
 TEST_F(RaySteps, are_the_same_in_all_layouts_of_a_method)
 {
-    const RowRun a = row(Method::project, Layout::tet80), b = row(Method::project, Layout::half32);
+    RowRun a = row(Method::project, Layout::tet80), b = row(Method::project, Layout::half32);
     const RayOnDevice first = follow_ray(a, 0, pixel), second = follow_ray(b, 0, pixel);
     EXPECT_EQ(first.steps, second.steps);
     EXPECT_EQ(first_difference(first, second), std::nullopt);
@@ -173,7 +183,7 @@ TEST_F(RaySteps, end_where_a_device_names_a_tet_that_there_is_not)
 
 TEST_F(RaySteps, of_a_ray_that_misses_lead_outside)
 {
-    const RowRun traced = row();
+    RowRun traced = row();
     const RayOnDevice ray = follow_ray(traced, 0, {0, 0});
     EXPECT_EQ(ray.hit.face_id, NO_HIT);
     EXPECT_TRUE(ray.steps.empty() || ray.steps.back().beyond == "outside");
@@ -203,6 +213,57 @@ TEST_F(RaySteps, are_a_command_that_check_prints_for_its_first_differing_ray)
     EXPECT_EQ(again.pixel, pixel);
     EXPECT_EQ(selected_views(again), std::vector<std::uint32_t>{0});
     EXPECT_EQ(scene_arguments(request, again), scene_arguments(request, options_)) << "the same scene and images";
+}
+
+TEST_F(RaySteps, of_given_rays_and_bvhs_are_commands_too)
+{
+    options_.resolution = 6;
+    SceneRequest request;
+    request.name = "cubes";
+    scene_ = std::make_unique<SceneWork>(loaded_cubes(6), options_, scene_arguments(request, options_));
+    for (const Layout layout : {Layout::half32, Layout::bvh2}) {
+        RowKey key{"cubes", "openmp", {}, RayKind::diffuse};
+        key.ray_order = RayOrder::morton;
+        for (const KernelId& kernel : kernels_of(Task::rays))
+            if (kernel.layout == layout && is_default(kernel) && kernel.schedule == Schedule::tiles &&
+                kernel.math == MathMode::exact)
+                key.kernel = kernel;
+        RowRun given = open_row(key, *scene_, options_);
+        given.key.backend = "cuda-host";
+        given.session = std::make_unique<FirstGivenSession>(std::move(given.session));
+        verify_rows({&given}, *scene_, options_);
+        const auto& ray = traced(given)->first_different;
+        ASSERT_TRUE(ray) << reason_of(given);
+        const std::string command =
+            fmt::format("tetrace trace --scene cubes --resolution 6 --size 24x24 --view 0 --pixel {},{} --method {} "
+                        "--layout {} --rays diffuse --ray-order morton --backend cuda-host",
+                        ray->x, ray->y, name_of(key.kernel.method), name_of(layout));
+        EXPECT_TRUE(contains(differences_text(given), "\n  Step by step: " + command + "\n"))
+            << differences_text(given);
+        std::istringstream words(command.substr(8));
+        const Options again = parse_options({std::istream_iterator<std::string>(words), {}});
+        RowRun followed = open_row(key, *scene_, options_);
+        EXPECT_EQ(follow_ray(followed, 0, *again.pixel).hit.face_id, ray->openmp.face_id) << "the same ray";
+    }
+}
+
+TEST_F(RaySteps, of_a_run_without_openmp_are_compared_with_nothing)
+{
+    TraceRun run;
+    run.rows.push_back(row());
+    run.rows.push_back(row());
+    run.rows[1].key.backend = "other";
+    run.rows[0].outcome = Failed{ErrorKind::driver, "it is not well"};
+    run.rays.push_back(follow_ray(run.rows[1], 0, pixel));
+    EXPECT_EQ(run.reference(), nullptr);
+    run.scene = std::move(scene_);
+    run.ray = ray_of(run.scene->views().front(), pixel);
+    const Report report = trace_report(run, options_);
+    const std::string text = report.sheet.text();
+    EXPECT_TRUE(contains(text, "openmp: error: it is not well")) << text;
+    EXPECT_TRUE(contains(text, "openmp has no answer, so that no device is compared with it.")) << text;
+    EXPECT_FALSE(contains(text, "takes openmp's steps")) << text;
+    EXPECT_FALSE(report.json["tetrace"]["trace"]["devices"][1].contains("differs"));
 }
 
 TEST_F(RaySteps, of_other_scenes_and_devices_are_asked_for_in_full)

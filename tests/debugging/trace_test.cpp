@@ -59,6 +59,46 @@ TEST_F(Trace, has_openmp_first_whatever_is_asked_for)
         << shown.out;
 }
 
+TEST_F(Trace, follows_given_rays_from_the_face_on_which_they_start)
+{
+    for (const std::string rays : {"shadow", "ao", "diffuse", "random"})
+        for (const std::string kernel : {"--method maria", "--method project"}) {
+            SCOPED_TRACE(rays + " " + kernel);
+            const Json trace = traced("--pixel 12,11 --backend openmp,cuda-host --rays " + rays + " " + kernel);
+            EXPECT_EQ(trace["rays"], rays);
+            EXPECT_EQ(trace.contains("start"), rays != "random") << "lines come from outside";
+            EXPECT_EQ(trace.contains("end"), rays == "shadow" || rays == "ao");
+            for (const Json& device : trace["devices"]) {
+                EXPECT_FALSE(device["differs"].get<bool>());
+                EXPECT_EQ(device["hit"], device["alone"]);
+                EXPECT_EQ(device["hit"]["steps"], device["steps"].size());
+                if (trace.contains("start")) {
+                    EXPECT_EQ(device["steps"][0]["tet"], trace["start"]["tet"]);
+                }
+            }
+        }
+    EXPECT_EQ(traced("--pixel 12,11 --backend openmp --rays diffuse --ray-order shuffled")["devices"],
+              traced("--pixel 12,11 --backend openmp --rays diffuse")["devices"])
+        << "the same ray, wherever it is in the order";
+}
+
+TEST_F(Trace, shows_of_a_bvh_the_answers_and_what_openmp_visits)
+{
+    for (const std::string rays : {"", "--rays diffuse"}) {
+        const Json trace = traced("--pixel 12,11 --layout bvh2 --backend openmp,cuda-host " + rays);
+        EXPECT_GT(trace["devices"][0]["visits"]["nodes"], 0);
+        EXPECT_FALSE(trace["devices"][1].contains("visits"));
+        for (const Json& device : trace["devices"]) {
+            EXPECT_TRUE(device["steps"].empty());
+            EXPECT_FALSE(device["differs"].get<bool>());
+            EXPECT_EQ(device["hit"], device["alone"]);
+        }
+    }
+    const std::string text = run(cubes_ + "--pixel 12,11 --layout bvh2 --backend openmp,cuda-host").out;
+    EXPECT_TRUE(contains(text, "cuda-host: its answer is the same, bit for bit.")) << text;
+    EXPECT_TRUE(contains(text, "so there are no steps to show")) << text;
+}
+
 TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
 {
     const std::string scene = "--scene cubes --resolution 6 --size 24 --backend openmp ";
@@ -69,10 +109,12 @@ TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
     expect_refused(scene + "--pixel=-1,4", "--pixel");
     expect_refused(scene, "--pixel X,Y is missing");
     expect_refused(scene + "--pixel 1,1 --view 4", "4");
-    expect_refused(scene + "--pixel 1,1 --method single", "has no steps from tet to tet");
+    expect_refused(scene + "--pixel 1,1 --layout embree", "is no kernel of ours");
     expect_refused(scene + "--pixel 1,1 --method maria,project", "takes one value");
     expect_refused(scene + "--pixel 1,1 --method maria --layout half32",
                    "no kernel has method maria and layout half32");
+    expect_refused(scene + "--pixel 0,0 --rays shadow", "--pixel: 0,0 makes no shadow ray");
+    expect_refused(scene + "--pixel 1,1 --rays shadow,ao", "--rays takes one value");
     expect_refused("--pixel 1,1", "--scene takes one scene");
     expect_refused("--scene cubes,banana --pixel 1,1", "--scene takes one scene");
 }

@@ -14,10 +14,12 @@ using Variables = std::map<std::string, std::string>;
 
 std::optional<Rank> rank_in(const Variables& variables)
 {
-    return rank_of([&](const char* name) -> const char* {
-        const auto found = variables.find(name);
-        return found == variables.end() ? nullptr : found->second.c_str();
-    });
+    return rank_of(
+        [&](const char* name) -> const char* {
+            const auto found = variables.find(name);
+            return found == variables.end() ? nullptr : found->second.c_str();
+        },
+        [] { return std::string("the launcher"); });
 }
 
 const Variables srun = {{"SLURM_JOB_ID", "12"},        {"SLURM_STEP_ID", "3"}, {"SLURM_PROCID", "5"},
@@ -52,10 +54,32 @@ TEST(Rank, mpirun_of_open_mpi_comes_before_the_slurm_that_started_it)
 
 TEST(Rank, other_launchers_are_told_by_pmi)
 {
-    const auto rank = rank_in({{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}, {"MPI_LOCALRANKID", "1"}});
+    Variables mpich = {{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}, {"MPI_LOCALRANKID", "1"}, {"MPI_LOCALNRANKS", "2"}};
+    const auto rank = rank_in(mpich);
     ASSERT_TRUE(rank);
     EXPECT_EQ(text_of(rank->shard()), "2/2");
     EXPECT_EQ(rank->local, 1u);
+    EXPECT_EQ(rank->job, "the launcher") << "all ranks are its children";
+    mpich["TETRACE_LAUNCH"] = "monday";
+    EXPECT_EQ(rank_in(mpich)->job, "named monday");
+    mpich.insert({{"SLURM_JOB_ID", "12"}, {"SLURM_STEP_ID", "3"}});
+    mpich.erase("TETRACE_LAUNCH");
+    EXPECT_EQ(rank_in(mpich)->job, "slurm 12.3");
+}
+
+TEST(Rank, a_launch_on_several_machines_that_nothing_names_is_refused)
+{
+    Variables mpich = {{"PMI_RANK", "1"}, {"PMI_SIZE", "4"}, {"MPI_LOCALRANKID", "1"}, {"MPI_LOCALNRANKS", "2"}};
+    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(rank_in(mpich)); }), "set TETRACE_LAUNCH to a text"));
+    mpich["TETRACE_LAUNCH"] = "monday";
+    EXPECT_EQ(rank_in(mpich)->job, "named monday");
+    EXPECT_FALSE(rank_in({{"PMI_RANK", "0"}, {"PMI_SIZE", "1"}})) << "a process alone needs no name";
+}
+
+TEST(Rank, the_launcher_is_the_ancestor_that_is_no_rank_itself)
+{
+    EXPECT_TRUE(launcher_name().starts_with("launcher ")) << launcher_name();
+    EXPECT_EQ(launcher_name(), launcher_name());
 }
 
 TEST(Rank, a_process_alone_is_no_rank)

@@ -1,6 +1,5 @@
 #include "tests/merging/merge_fixture.h"
 
-#include <csignal>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -19,7 +18,9 @@ const std::string command = "reproduce table4 --method maria,ms06 --layout tet80
 /// The program as mpirun starts it: as several ranks, in one folder.
 class Ranks : public MergeTest {
 protected:
-    [[nodiscard]] pid_t start(unsigned rank, unsigned size, const std::string& arguments, const char* job = "1")
+    /// job: null: of a launcher that names none, as MPICH. killed_at: the line of its journal after which it is killed.
+    [[nodiscard]] pid_t start(unsigned rank, unsigned size, const std::string& arguments, const char* job = "1",
+                              const char* killed_at = nullptr)
     {
         std::istringstream words("tetrace " + arguments);
         std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
@@ -29,10 +30,22 @@ protected:
         pointers.push_back(nullptr);
         const pid_t child = ::fork();
         if (child != 0) return child;
-        ::setenv("OMPI_COMM_WORLD_RANK", std::to_string(rank).c_str(), 1);
-        ::setenv("OMPI_COMM_WORLD_SIZE", std::to_string(size).c_str(), 1);
-        ::setenv("OMPI_COMM_WORLD_LOCAL_RANK", std::to_string(rank).c_str(), 1);
-        ::setenv("PMIX_NAMESPACE", job, 1);
+        const std::string number = std::to_string(rank), of = std::to_string(size);
+        if (job != nullptr) {
+            ::setenv("OMPI_COMM_WORLD_RANK", number.c_str(), 1);
+            ::setenv("OMPI_COMM_WORLD_SIZE", of.c_str(), 1);
+            ::setenv("OMPI_COMM_WORLD_LOCAL_RANK", number.c_str(), 1);
+            ::setenv("PMIX_NAMESPACE", job, 1);
+        } else {
+            ::setenv("PMI_RANK", number.c_str(), 1);
+            ::setenv("PMI_SIZE", of.c_str(), 1);
+            ::setenv("MPI_LOCALRANKID", number.c_str(), 1);
+            ::setenv("MPI_LOCALNRANKS", of.c_str(), 1);
+        }
+        if (killed_at != nullptr) {
+            ::setenv("LD_PRELOAD", TETRACE_KILLING_SYNC, 1);
+            ::setenv("TETRACE_KILLED_AT_SYNC", killed_at, 1);
+        }
         ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
         if (::chdir(folder_.path().c_str()) != 0) ::_exit(126);
         const std::string name = "rank" + std::to_string(rank);
@@ -83,19 +96,45 @@ TEST_F(Ranks, results_of_an_earlier_launch_are_not_taken_for_this_one_s)
     EXPECT_TRUE(contains(file("rank0.err"), "1 of 2 ranks ended without a result"));
 }
 
+// MPICH's launcher names no launch. Here each launch is a process of its own, as it is there.
+TEST_F(Ranks, launches_without_a_name_are_told_apart_by_the_process_that_started_their_ranks)
+{
+    const auto launch = [&](unsigned ranks, const std::string& more) {
+        const pid_t launcher = ::fork();
+        if (launcher == 0) {
+            int worst = 0;
+            for (const int code : run_all(ranks, command + more + " --out all.json", nullptr))
+                worst = std::max(worst, code);
+            ::_exit(worst);
+        }
+        return end(launcher);
+    };
+    EXPECT_EQ(launch(2, ""), 0) << file("rank0.err");
+    const std::string job = section("all.shard-2-of-2.json")["shard"]["job"];
+    EXPECT_TRUE(job.starts_with("launcher ")) << job;
+    EXPECT_EQ(section("all.shard-1-of-2.json")["shard"]["job"], job);
+    const pid_t launcher = ::fork();
+    if (launcher == 0) ::_exit(end(start(0, 2, command + " --wait 1s --out all.json", nullptr)));
+    EXPECT_EQ(end(launcher), 3) << "rank 1 of this launch never came";
+    EXPECT_TRUE(contains(file("rank0.err"), "1 of 2 ranks ended without a result")) << file("rank0.err");
+}
+
+TEST_F(Ranks, write_google_benchmark_s_own_form_each_to_a_file_of_its_own)
+{
+    const std::string bench =
+        "bench --backend openmp --layout tet80 --scene cubes --resolution 6 --size 16 --samples 3 "
+        "--benchmark_out=gb.json --out all.json";
+    EXPECT_EQ(run_all(2, bench), (std::vector<int>{0, 0})) << file("rank0.err");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "gb.json"));
+    for (const char* const name : {"gb.shard-1-of-2.json", "gb.shard-2-of-2.json"})
+        EXPECT_TRUE(Json::parse(file(name)).contains("benchmarks")) << name;
+}
+
 TEST_F(Ranks, a_dead_rank_is_named_and_run_again_alone)
 {
     ASSERT_EQ(run(command + " --out whole.json").code, 0);
     const pid_t first = start(0, 2, command + " --wait 2s --out all.json");
-    const pid_t second = start(1, 2, command + " --out all.json");
-    const auto views = [&] {
-        const std::string text = file("all.shard-2-of-2.json.journal");
-        return std::count(text.begin(), text.end(), '\n');
-    };
-    while (views() < 3 && ::waitpid(second, nullptr, WNOHANG) == 0)
-        ::usleep(1000);
-    ::kill(second, SIGKILL);
-    EXPECT_EQ(end(second), -1);
+    EXPECT_EQ(end(start(1, 2, command + " --out all.json", "1", "3")), -1);
     EXPECT_EQ(end(first), 3);
     const std::string told = file("rank0.err");
     const std::string tail = " --threads 1 --shard 2/2 --out all.shard-2-of-2.json --resume";

@@ -170,6 +170,42 @@ TEST_F(CampaignPage, draws_each_machine_over_its_dates_with_a_verdict_of_the_las
     EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1)}), "trends"), "on two dates"));
 }
 
+/// The pulse beside the samples of each of its rows, over its fastest.
+static json with_pulse(json result, double ratio)
+{
+    for (json& row : result["tetrace"]["rows"])
+        if (row.contains("times")) row["times"]["pulse"] = ratio;
+    return result;
+}
+
+TEST_F(CampaignPage, calls_rates_of_a_machine_that_changed_noisy_as_compare_does)
+{
+    const std::string trends =
+        section_of(page_of({result_of("one", 1, 4), with_pulse(result_of("one", 2, 2), 1.6)}), "trends");
+    EXPECT_EQ(occurrences(trends, ">NOISY<"), 6u) << "three rows, the last step and in all";
+    EXPECT_EQ(occurrences(trends, ">SLOWER<"), 0u);
+    EXPECT_TRUE(contains(trends, "in the second the pulse beside its samples took 1.60 times its fastest")) << trends;
+    json before = result_of("one", 1, 4), after = result_of("one", 2, 2);
+    const auto host = [](double seconds) {
+        return json{{{"of", "host"}, {"fastest_s", seconds}, {"ratio", 1}, {"readings", {{0, seconds}}}}};
+    };
+    before["tetrace"]["pulses"] = host(0.01);
+    after["tetrace"]["pulses"] = host(0.02);
+    const std::string slower_host = section_of(page_of({before, after}), "trends");
+    EXPECT_EQ(occurrences(slower_host, ">NOISY<"), 4u) << "on the host alone";
+    EXPECT_EQ(occurrences(slower_host, ">SLOWER<"), 2u) << "the GPU has a pulse of its own";
+}
+
+TEST_F(CampaignPage, leaves_noisy_rates_out_of_the_means_of_machines)
+{
+    const std::string noisy =
+        section_of(page_of({result_of("one", 1, 4), with_pulse(result_of("two", 2, 2), 1.6)}), "beside");
+    EXPECT_EQ(occurrences(noisy, ">NOISY<"), 3u);
+    EXPECT_FALSE(contains(noisy, "Means of the rates")) << noisy;
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1, 4), result_of("two", 2, 2)}), "beside"),
+                         "Means of the rates"));
+}
+
 TEST_F(CampaignPage, compares_exit_searches_too)
 {
     const auto searched = [](const char* label, double rate) {

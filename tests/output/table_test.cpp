@@ -57,6 +57,22 @@ TEST(Table, on_a_narrow_terminal_goes_without_the_least_important_columns)
     EXPECT_EQ(table.with_columns({"e"}).text(), table.text());
 }
 
+TEST(Table, folds_titles_and_then_names_that_are_wider_than_the_terminal)
+{
+    Table table({{"row", "row"}, {.key = "outcome", .title = "outcome_of_this_one", .rank = 0}});
+    table.add({std::string("cdt/maria/tet80/cubes/primary"), std::string("SAME")});
+    EXPECT_EQ(table.text(2, 51), "  row                            outcome_of_this_\n"
+                                 "                                 one\n"
+                                 "  cdt/maria/tet80/cubes/primary  SAME\n");
+    EXPECT_EQ(table.text(0, 40), "row                     outcome_of_this_\n"
+                                 "                        one\n"
+                                 "cdt/maria/tet80/cubes/  SAME\n"
+                                 "primary\n");
+    EXPECT_EQ(table.text(0, 0), "row                            outcome_of_this_one\n"
+                                "cdt/maria/tet80/cubes/primary  SAME\n")
+        << "files and pipes get whole lines";
+}
+
 TEST(Sheet, is_wrapped_to_a_terminal_and_says_what_it_leaves_out)
 {
     Table table({{"a", "a"}, {"b", "a title that is long"}, {"c", "another title that is long"}});

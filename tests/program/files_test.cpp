@@ -18,7 +18,7 @@ protected:
     /// Runs the program after a command of the shell, its standard output in a file.
     Ended run_script(const std::string& first, const std::string& arguments, const std::string& out)
     {
-        write_file(folder_ / "script", "trap '' XFSZ\n" + first + "\nexec '" TETRACE_PROGRAM "' \"$@\"\n");
+        write_file(folder_ / "script", first + "\nexec '" TETRACE_PROGRAM "' \"$@\"\n");
         const std::string errors = (folder_ / "stderr").string();
         const int status =
             std::system(fmt::format("cd '{0}' && XDG_CACHE_HOME='{0}/cache' sh ./script {1} > {2} 2> {3}",

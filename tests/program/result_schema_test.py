@@ -126,6 +126,10 @@ class ResultSchema(unittest.TestCase):
                                     "--layout", "tet80", "--backend", "openmp", "--threads", "1"]),
                    "defects": fresh(["check", "--defects"], (0, 1)),
                    "trace": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp,cuda-host"]),
+                   "ray": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp",
+                                 "--rays", "ao", "--ray-order", "morton"]),
+                   "visits": fresh(["trace", "--scene", "cubes", "--resolution", "3", "--size", "8", "--pixel", "4,4", "--backend", "openmp",
+                                    "--layout", "bvh2"]),
                    "inspect": fresh(["inspect", "--target", "gfx1100", "--method", "maria", "--layout", "tet80"], (0, 3))}
 
     def accepts(self, result, name):
@@ -212,6 +216,9 @@ class ResultSchema(unittest.TestCase):
             ("trace", "trace", "pixel", [1]),
             ("trace", "trace", "devices", 0, "steps", 0, "face", 4),
             ("trace", "trace", "devices", 0, "status", "fine"),
+            ("ray", "trace", "rays", "primary"),
+            ("ray", "trace", "start", "face", 4),
+            ("visits", "trace", "devices", 0, "visits", "nodes", -1),
         ):
             self.refuses(put(*bad), str(bad))
 

@@ -52,6 +52,30 @@ TEST_F(Show, prints_what_reproduce_printed)
     expect_the_same("reproduce table3,table4,figure6 --backend openmp --views 0-1281:400" + tiny_);
 }
 
+TEST_F(Show, prints_whether_to_trust_what_reproduce_timed)
+{
+    const Ended first =
+        run("reproduce table3 --backend openmp --views 0-1281:400 --samples 3 --out result.json" + tiny_);
+    ASSERT_EQ(first.code, 0) << first.errors;
+    EXPECT_TRUE(contains(first.out, "Trust")) << first.out;
+    EXPECT_TRUE(contains(first.out, "the pulse of the host, taken")) << first.out;
+    EXPECT_EQ(without_head(run("show result.json").out), without_result(first.out));
+}
+
+TEST_F(Show, prints_what_trace_printed)
+{
+    const std::string ray = "trace --backend openmp,cuda-host --pixel 12,11 ";
+    expect_the_same(ray + tiny_);
+    expect_the_same(ray + "--rays ao --method project --view 2 " + tiny_);
+    expect_the_same(ray + "--rays random --ray-order morton --layout tet96 " + tiny_);
+    expect_the_same(ray + "--layout cwbvh " + tiny_);
+}
+
+TEST_F(Show, prints_what_check_printed_of_defects)
+{
+    expect_the_same("check --defects --backend openmp,cuda-host");
+}
+
 TEST_F(Show, is_ready_to_post_as_markdown_and_chooses_columns)
 {
     ASSERT_EQ(bench("--out result.json").code, 0);
@@ -88,7 +112,7 @@ TEST_F(Show, names_the_verbs_whose_results_it_shows)
     ASSERT_EQ(run("scenes --out scenes.json").code, 0);
     const Ended scenes = run("show scenes.json");
     EXPECT_EQ(scenes.code, 2);
-    EXPECT_TRUE(contains(scenes.errors, "results of bench, check and reproduce")) << scenes.errors;
+    EXPECT_TRUE(contains(scenes.errors, "results of bench, check, reproduce and trace")) << scenes.errors;
     EXPECT_EQ(run("show missing.json").code, 3);
 }
 
@@ -99,7 +123,7 @@ TEST_F(Show, every_result_of_this_repository)
         const Ended shown = run("show '" + entry.path().string() + "'");
         if (entry.path().parent_path().filename() == "compilers") { // of inspect
             EXPECT_EQ(shown.code, 2);
-            EXPECT_TRUE(contains(shown.errors, "results of bench, check and reproduce can be shown again"));
+            EXPECT_TRUE(contains(shown.errors, "results of bench, check, reproduce and trace can be shown again"));
             continue;
         }
         EXPECT_EQ(shown.code, 0) << entry.path() << shown.errors;

@@ -2,15 +2,12 @@
 
 #include "tests/support/program_fixture.h"
 
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 
 namespace tetrace::test {
@@ -18,8 +15,8 @@ namespace tetrace::test {
 /// The program's reproduce in a folder of its own, on a scene that it makes itself unless another is named.
 class ReproduceTest : public testing::Test {
 protected:
-    /// Starts it; its process.
-    [[nodiscard]] pid_t start(const std::string& arguments) const
+    /// Starts it; its process. killed_at: the line of its journal after which it is killed; 0: none.
+    [[nodiscard]] pid_t start(const std::string& arguments, std::size_t killed_at = 0) const
     {
         const bool names_backends = arguments.find("--backend") != std::string::npos;
         const bool names_scenes = arguments.find("--scene") != std::string::npos;
@@ -33,6 +30,10 @@ protected:
         const pid_t child = ::fork();
         if (child != 0) return child;
         ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+        if (killed_at > 0) {
+            ::setenv("LD_PRELOAD", TETRACE_KILLING_SYNC, 1);
+            ::setenv("TETRACE_KILLED_AT_SYNC", std::to_string(killed_at).c_str(), 1);
+        }
         if (::chdir(folder_.path().c_str()) != 0) ::_exit(126);
         ::dup2(::open("stdout", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
         ::dup2(::open("stderr", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
@@ -61,15 +62,10 @@ protected:
         return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
     }
 
-    /// Kills the run when its journal has a few views, and gives back how many.
+    /// Lets the run be killed, by kill -9, when its journal has a few views, and gives back how many.
     std::size_t kill_in_the_middle(const std::string& arguments, const std::string& journal) const
     {
-        const pid_t child = start(arguments);
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
-        while (lines(journal) < 4 && std::chrono::steady_clock::now() < deadline)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        ::kill(child, SIGKILL);
-        EXPECT_EQ(end(child).code, -1) << "it ended before it was killed";
+        EXPECT_EQ(end(start(arguments, 4)).code, -1) << "it was not killed";
         return lines(journal) - 1;
     }
 

@@ -1,6 +1,7 @@
 #include "tests/reproduce/journal_lines.h"
 #include "tests/reproduce/reproduce_fixture.h"
 
+#include <csignal>
 #include <functional>
 
 using namespace tetrace;
@@ -9,7 +10,27 @@ using nlohmann::json;
 
 namespace {
 
-class Resume : public ReproduceTest {};
+class Resume : public ReproduceTest {
+protected:
+    /// What a run says that Ctrl-C ends, once it has anything to say: it handles the signal then.
+    std::string interrupted(const std::string& arguments) const
+    {
+        const pid_t child = start(arguments);
+        const auto handles = [&] {
+            const std::string status = read_text("/proc/" + std::to_string(child) + "/status");
+            if (contains(status, "State:\tZ")) return true; // it has ended, which the test will see
+            const std::size_t at = status.find("SigCgt:");
+            return at != std::string::npos &&
+                   (std::stoull(status.substr(at + 7), nullptr, 16) >> (SIGINT - 1)) % 2 == 1;
+        };
+        while (!handles())
+            ::usleep(1000);
+        ::kill(child, SIGINT);
+        const Ended ended = end(child);
+        EXPECT_EQ(ended.code, -1) << "the signal ends it";
+        return ended.errors;
+    }
+};
 
 } // namespace
 
@@ -50,6 +71,16 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "of no view of these scenes"));
     EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "of no view of these scenes"));
     refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });
+}
+
+TEST_F(Resume, ctrl_c_says_how_to_go_on_or_to_begin_again)
+{
+    const std::string long_run = "table4 --size 4096 --views 0-1281";
+    EXPECT_TRUE(contains(interrupted(long_run), "interrupted; an earlier result is as it was. To begin again: tetrace "
+                                                "reproduce table4"));
+    const std::string resumed = interrupted(long_run + " --out r.json");
+    EXPECT_TRUE(contains(resumed, "what is finished is in 'r.json.journal'; to go on: tetrace reproduce")) << resumed;
+    EXPECT_TRUE(contains(resumed, " --threads 1 --resume")) << resumed;
 }
 
 TEST_F(Resume, a_damaged_yardstick_in_the_journal_is_refused)

@@ -32,6 +32,23 @@ private:
     double compile_s_;
 };
 
+/// Keeps the fewest rays that it was given.
+class RaysKeptSession : public WrappedSession {
+public:
+    RaysKeptSession(std::unique_ptr<Session> inner, std::vector<Quad>& fewest)
+        : WrappedSession(std::move(inner)), fewest_(&fewest)
+    {
+    }
+    void set_rays(std::span<const Quad> quads) override
+    {
+        if (fewest_->empty() || quads.size() < fewest_->size()) fewest_->assign(quads.begin(), quads.end());
+        WrappedSession::set_rays(quads);
+    }
+
+private:
+    std::vector<Quad>* fewest_;
+};
+
 /// A row needs 2 views * (verified, warmed up, 5 samples) and 1 view again: 15 views. A view is 16 x 16 rays. The first
 /// estimate takes at most four launches of 64 rays.
 constexpr double view_rays = 256, views_needed = 15, views_estimated = 1;
@@ -238,4 +255,27 @@ TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_a_part_of_them)
     Budget limit = budget_of((views_needed + views_estimated) * view_rays);
     static_cast<void>(run(limit));
     expect_measured(0);
+}
+
+TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_the_first_of_them_as_they_are)
+{
+    rows_.reserve(1);
+    RowKey key{"cubes", "openmp", {}, RayKind::random, TetOrder::hilbert};
+    key.kernel.task = Task::rays;
+    rows_.push_back(open_row(key, scene_, options_));
+    std::vector<Quad> some;
+    rows_[0].session = std::make_unique<RaysKeptSession>(std::move(rows_[0].session), some);
+    Budget limit = budget_of(1e9);
+    limit.plan(rows_, 5);
+    const auto& all = scene_.given_rays().rows(scene_, rows_[0].key, &rows_[0].packed->data, 0);
+    const std::size_t rays = some.size() / GIVEN_RAY_QUADS;
+    ASSERT_GT(rays, 0u);
+    ASSERT_LT(some.size(), all.size());
+    const auto is_same = [](const Quad& a, const Quad& b) {
+        return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
+    };
+    EXPECT_TRUE(std::equal(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(rays), all.begin(), is_same));
+    EXPECT_TRUE(std::equal(some.begin() + static_cast<std::ptrdiff_t>(rays), some.end(),
+                           all.begin() + static_cast<std::ptrdiff_t>(all.size() / GIVEN_RAY_QUADS), is_same))
+        << "the origins, after all directions";
 }

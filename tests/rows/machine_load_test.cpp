@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <sstream>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
@@ -56,6 +58,7 @@ TEST(MachineLoad, of_a_process_is_its_own_work_and_that_of_its_ended_children)
     ASSERT_TRUE(process.has_value());
     EXPECT_EQ(process->parent, 42);
     EXPECT_EQ(process->ticks, 127);
+    EXPECT_EQ(process->started, 123u);
     EXPECT_FALSE(process_times("").has_value());
     EXPECT_FALSE(process_times("4711 (cut) S 42 4711").has_value());
 }
@@ -69,14 +72,20 @@ TEST(MachineLoad, counts_the_work_of_a_child_as_its_own_while_it_runs_and_once_i
         for (;;) // works until it is ended
             continue;
     ASSERT_GT(child, 0);
-    double running = before;
-    while (running <= before) { // a tick of the system's clock
+    const auto ticks = [child] {
+        const std::ifstream file("/proc/" + std::to_string(child) + "/stat");
+        std::ostringstream text;
+        text << file.rdbuf();
+        return process_times(text.str()).value_or(ProcessTimes{}).ticks;
+    };
+    while (ticks() < 3)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        running = seconds_of_children();
-    }
+    // This process's own work between two readings is far less than half a tick.
+    const double least = before + 2.5 / static_cast<double>(::sysconf(_SC_CLK_TCK));
+    EXPECT_GT(seconds_of_children(), least) << "while it runs";
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
-    EXPECT_GT(seconds_of_children(), before);
+    EXPECT_GT(seconds_of_children(), least) << "once it has ended";
 }
 
 TEST(MachineLoad, of_others_is_not_negative)

@@ -17,7 +17,9 @@ const char* const how_to_read_beside =
     "Below each: its ratio to the rate of the first machine of the table. A line is the same work on all its machines: "
     "the same kernel, scene, views and size, and the same answers, bit for bit. Work that one machine alone has done "
     "is "
-    "not here. Emulated devices are APIs of GPUs that run on the processor, and say nothing of a GPU.";
+    "not here. NOISY, as 'tetrace compare' says it: the machine's pulse beside the row's samples took 1.25 times its "
+    "fastest, so that the ratio may be the machine's; such a row has no part in the means. Emulated devices are APIs "
+    "of GPUs that run on the processor, and say nothing of a GPU.";
 
 std::size_t machines_with(const CampaignWork& work, const std::vector<std::size_t>& machines)
 {
@@ -48,12 +50,13 @@ std::vector<std::size_t> sharing_machines(const std::vector<const CampaignWork*>
 Html rate_cell(const CampaignRate* rate, const CampaignRate* first)
 {
     if (rate == nullptr) return {};
-    const Html value = text(short_number(rate->mrays_per_s));
+    Html value = text(short_number(rate->mrays_per_s));
+    if (rate->pulse.is_noisy()) value += text_element("small", "", "NOISY");
     if (first == nullptr || first == rate) return value;
     return value + text_element("small", "", fmt::format("× {:.2f}", rate->mrays_per_s / first->mrays_per_s));
 }
 
-/// The geometric mean of a machine's ratios to the first, over the works that both have.
+/// The geometric mean of a machine's ratios to the first, over the works that both have, noisy ones left out.
 struct Mean {
     double ratio = 1;
     std::size_t works = 0;
@@ -65,7 +68,7 @@ std::optional<Mean> mean_over(const std::vector<const CampaignWork*>& works, std
     std::size_t count = 0;
     for (const CampaignWork* work : works) {
         const CampaignRate *a = work->newest_of(first), *b = work->newest_of(machine);
-        if (a == nullptr || b == nullptr) continue;
+        if (a == nullptr || b == nullptr || a->pulse.is_noisy() || b->pulse.is_noisy()) continue;
         sum += std::log(b->mrays_per_s / a->mrays_per_s);
         ++count;
     }

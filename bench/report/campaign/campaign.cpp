@@ -73,6 +73,7 @@ void add_rate(ReadResult& read, const ResultFile& file, const ResultRow& row, co
     rate.label = label;
     rate.rate.mrays_per_s = *row.mrays_per_s;
     rate.rate.samples_s = row.samples_s;
+    rate.rate.pulse = pulse_of(file.head, row);
     read.rates.push_back(std::move(rate));
 }
 

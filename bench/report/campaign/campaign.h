@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/report/report_rows.h"
+#include "bench/results/rate_pulse.h"
 
 #include <filesystem>
 #include <map>
@@ -32,6 +33,7 @@ struct CampaignRate {
     std::size_t result = 0, machine = 0; ///< indices in the campaign
     double mrays_per_s = 0;              ///< of searches, millions of those
     std::vector<double> samples_s;       ///< at least one
+    RatePulse pulse = {};
 };
 
 /// All rates of the same work: the same row with the same rays and the same answers (bench/results/same_work.h).

@@ -15,8 +15,9 @@ const char* const how_to_read_trends =
     "Each machine's rates over its dates, of the same work only; a chart shows them as parts of the first. 'Last step' "
     "compares the samples of the last date with those of the one before, 'in all' with those of the first: the ratio "
     "of "
-    "medians with its interval, above 1 the row has become faster. SAME, FASTER, SLOWER and UNSURE are those of "
-    "'tetrace compare' with a tolerance of 3 %. What changed between two dates, commit, driver or system, the index "
+    "medians with its interval, above 1 the row has become faster. SAME, FASTER, SLOWER, UNSURE and NOISY are those of "
+    "'tetrace compare' with a tolerance of 3 %; NOISY: the machine itself changed, by its pulse. What changed between "
+    "two dates, commit, driver or system, the index "
     "says.";
 
 constexpr double tolerance = 0.03;
@@ -75,8 +76,12 @@ Html ratio_html(const SpeedChange& change)
            text_element("small", "", fmt::format("{:.3f} to {:.3f}", change.interval->low, change.interval->high));
 }
 
-Html verdict_html(const SpeedChange& change)
+Html verdict_html(const SpeedChange& change, const CampaignRate& before, const CampaignRate& after)
 {
+    // A trend's rates are of one machine with as many threads.
+    const std::string disturbance = disturbance_between(before.pulse, after.pulse, true, "the first", "the second");
+    if (change.interval && !disturbance.empty())
+        return element("span", {{"class", "badge neutral"}, {"title", disturbance}}, text("NOISY"));
     const char* const look = change.verdict == SpeedVerdict::slower   ? "badge bad"
                              : change.verdict == SpeedVerdict::faster ? "badge good"
                                                                       : "badge neutral";
@@ -91,10 +96,11 @@ Html trend_table(const std::vector<Trend>& trends)
         const auto change_from = [&](const CampaignRate* before) {
             return compare_speed(before->samples_s, rates.back()->samples_s, trends.size(), tolerance);
         };
-        const SpeedChange step = change_from(rates[rates.size() - 2]), all = change_from(rates.front());
-        table.add({text(trend.work->label), text(std::to_string(rates.size())),
-                   text(short_number(rates.front()->mrays_per_s)), text(short_number(rates.back()->mrays_per_s)),
-                   ratio_html(step), verdict_html(step), ratio_html(all), verdict_html(all)});
+        const CampaignRate &first = *rates.front(), &last = *rates.back(), &previous = *rates[rates.size() - 2];
+        const SpeedChange step = change_from(&previous), all = change_from(&first);
+        table.add({text(trend.work->label), text(std::to_string(rates.size())), text(short_number(first.mrays_per_s)),
+                   text(short_number(last.mrays_per_s)), ratio_html(step), verdict_html(step, previous, last),
+                   ratio_html(all), verdict_html(all, first, last)});
     }
     return table.html();
 }

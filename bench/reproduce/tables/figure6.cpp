@@ -223,6 +223,9 @@ PaperTable figure6_table(const SceneRuns& runs)
         table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs) {
         for_rated(*run, [&](std::size_t i) { table.rows.push_back(figure6_cells(*run, i)); });
+        for (const RowRun& row : run->rows)
+            if (is_cdt(row) && is_noisy(row))
+                table.notes.push_back(fmt::format("{} is noisy: its times decide nothing.", series_name(row)));
         for (std::size_t i = 0; i < run->rows.size(); ++i)
             if (const RowRun& row = run->rows[i]; is_cdt(row) && view_seconds(*run, i).empty())
                 table.notes.push_back(

@@ -370,8 +370,11 @@ PaperTable growth_exponents(const SceneRuns& runs)
          "it tells how well a power fits these sizes, whose deviations it takes as independent. A cost "
          "that grows as a logarithm has a small x, which falls with the sizes."}};
     const auto lines = lines_of(runs);
-    for (const GrowthLine& line : lines)
+    for (const GrowthLine& line : lines) {
         table.rows.push_back(exponent_cells(line));
+        if (line.noisy)
+            table.notes.push_back(fmt::format("{} is noisy: its time decides nothing.", series_name(*line.row)));
+    }
     for (const DeviceKind kind : {DeviceKind::gpu, DeviceKind::cpu})
         table.claims.push_back(size_claim(lines, kind));
     for (const std::string& family : families_of(lines))

@@ -267,12 +267,6 @@ std::vector<Column> with_labels(const std::vector<Column>& others)
     return columns;
 }
 
-std::string status_with_reason(const RowRun& row)
-{
-    const std::string status(name_of(status_of(row))), reason = reason_of(row);
-    return reason.empty() ? status : status + ": " + reason;
-}
-
 PaperCell known_text(std::string text)
 {
     return text.empty() ? PaperCell() : PaperCell(std::move(text));

@@ -34,8 +34,6 @@ using PaperCell = std::variant<std::monostate, std::string, Quantity>;
 [[nodiscard]] std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRun& row);
 /// The columns of label_cells() for a row's scene and build, then the others.
 [[nodiscard]] std::vector<Column> with_labels(const std::vector<Column>& others);
-/// The row's status, followed by its reason where it has one.
-[[nodiscard]] std::string status_with_reason(const RowRun& row);
 
 /// A table of the paper, measured again.
 struct PaperTable {

@@ -116,6 +116,7 @@ Sheet tables_sheet(const PaperTables& all)
     for (const auto& sentences : {all.missing_scenes, all.missing_devices})
         for (const std::string& sentence : sentences)
             sheet.labelled("Missing", sentence);
+    if (!all.trust.empty()) sheet.labelled("Trust", all.trust);
     return sheet;
 }
 

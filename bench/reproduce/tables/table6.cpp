@@ -149,10 +149,11 @@ std::string ahead_text(const RowPair& pair)
 {
     const auto even = break_even(pair);
     if (!even) return "not to be told";
+    const bool noisy = is_noisy(pair.run->rows[pair.cdt]) || is_noisy(pair.run->rows[pair.bvh]);
     const std::string who = even->ahead == BreakEven::Ahead::first    ? "the " + tets_name(*pair.run)
                             : even->ahead == BreakEven::Ahead::second ? "the BVH"
                                                                       : "neither";
-    return fmt::format("{}, {}", who, even->rays ? "from there on" : "always");
+    return fmt::format("{}, {}{}", who, even->rays ? "from there on" : "always", noisy ? " (noisy)" : "");
 }
 
 PaperCell break_even_cell(const RowPair& pair)
