@@ -2,7 +2,6 @@
 // free faces; and each operation on it lowers the cost by what it says.
 #include "scenes/optimise/collapse.h"
 #include "scenes/optimise/edge_removal.h"
-#include "scenes/optimise/face_removal.h"
 #include "scenes/optimise/insertion.h"
 #include "scenes/optimise/vertex_move.h"
 #include "scenes/procedural.h"
