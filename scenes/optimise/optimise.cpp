@@ -23,9 +23,9 @@ struct Effort {
     bool inserts;
 };
 constexpr std::array<Effort, most_effort + 1> efforts = {
-    {{0, 1, false}, {2, 0.05, false}, {16, 0.004, false}, {40, 0.001, true}}};
+    {{0, 1, false}, {2, 0.05, false}, {16, 0.003, false}, {40, 0.001, true}}};
 constexpr double negligible = 1e-12; // a gain, as a part of the boundary's area
-constexpr std::size_t tets_per_region = 8192;
+constexpr std::size_t tets_per_region = 12288;
 constexpr std::size_t no_regions = std::numeric_limits<std::size_t>::max();
 constexpr double share_of_regions = 0.7; // of a round's time; the rest is for what walls kept from being done
 
@@ -89,7 +89,7 @@ bool Optimiser::go_on(double share_of_region)
     if (limits_.time_limit_s > 0 && watch_.seconds() > limits_.time_limit_s) report_.end = OptimiserEnd::out_of_time;
     if (limits_.stop != nullptr && limits_.stop->load()) report_.end = OptimiserEnd::interrupted;
     const double share = (static_cast<double>(regions_done_) + share_of_region) / static_cast<double>(tallies_.size());
-    const bool is_first = since_ < mark_;
+    const bool is_first = mark_ == round_began_;
     tell(is_first ? share_of_regions * share : share_of_regions + (1 - share_of_regions) * share);
     return !ends_early();
 }
@@ -165,7 +165,7 @@ double Optimiser::round()
     ++report_.rounds;
     const std::uint32_t since = std::exchange(round_began_, mark_ + 1);
     const std::size_t regions = pass(since, tets_per_region);
-    if (regions > 1 && !ends_early()) pass(mark_ + 1, no_regions);
+    if (regions > 1 && !ends_early()) pass(++mark_, no_regions);
     return before - cost_;
 }
 

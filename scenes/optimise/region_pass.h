@@ -26,7 +26,7 @@ class RegionPass {
 public:
     struct Orders {
         std::uint32_t since;                     ///< only what was marked with it or later is looked at
-        std::uint32_t mark;                      ///< for what changes (EditableMesh::round)
+        std::uint32_t mark;                      ///< for what changes (EditableMesh::round); more than `since`
         double least;                            ///< gain, an area
         bool inserts;                            ///< at the end
         std::function<bool(double share)> go_on; ///< asked now and then, with the share that is done
@@ -42,8 +42,9 @@ public:
 private:
     template <class Try>
     void sweep(Operation operation, std::uint32_t count, const Try& try_one);
-    void flip();
+    void flip(std::uint32_t since);
     [[nodiscard]] bool is_new_tet(std::uint32_t tet) const;
+    [[nodiscard]] bool is_new_face(std::uint32_t tet, std::uint32_t face) const;
     [[nodiscard]] bool is_new_vertex(std::uint32_t vertex) const;
 
     Orders orders_;
