@@ -36,7 +36,7 @@ struct OptimiserOperation {
     std::string name;
     std::uint64_t done = 0;
     double gain = 0; ///< by which it lowered the cost
-    double seconds = 0;
+    double seconds = 0; ///< of all threads together
 
     friend bool operator==(const OptimiserOperation&, const OptimiserOperation&) = default;
 };
