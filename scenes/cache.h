@@ -13,8 +13,12 @@ namespace tetrace {
 /// first written to. Throws Error{missing} where neither variable names a folder.
 [[nodiscard]] std::filesystem::path cache_directory();
 
+/// A part of the key of tets for rays: raised where the optimiser makes others of the same mesh.
+inline constexpr std::uint32_t optimiser_version = 2;
+
 /// The file of the scene that is built from a mesh with these options: `<label>-<16 digits>.tet`. The digits are a hash
-/// of the mesh's bytes (mesh_hash), of the options that decide the tets, and of scene_file_version.
+/// of the mesh's bytes (mesh_hash), of the options that decide the tets, of scene_file_version, and of
+/// optimiser_version for tets for rays.
 [[nodiscard]] std::filesystem::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash,
                                                       const BuildOptions& options);
 

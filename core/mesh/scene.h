@@ -35,8 +35,8 @@ inline constexpr auto enum_names<OptimiserEnd> = names_up_to<OptimiserEnd::inter
 struct OptimiserOperation {
     std::string name;
     std::uint64_t done = 0;
-    double gain = 0; ///< by which it lowered the cost
-    double seconds = 0;
+    double gain = 0;    ///< by which it lowered the cost
+    double seconds = 0; ///< of all threads together
 
     friend bool operator==(const OptimiserOperation&, const OptimiserOperation&) = default;
 };

@@ -84,21 +84,42 @@ std::vector<Tet> connect(const TetgenOutput& output)
     return tets;
 }
 
+std::vector<bool> surface_points(const TetgenOutput& output)
+{
+    std::vector<bool> found(output.points.size(), false);
+    for (const auto& face : output.surface_faces)
+        if (face.triangle >= 0)
+            for (const std::int32_t corner : face.corners)
+                found[static_cast<std::size_t>(corner)] = true;
+    return found;
+}
+
 void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
 {
     std::unordered_map<Triple, std::int32_t, TripleHash> triangles;
     triangles.reserve(output.surface_faces.size());
     for (const auto& face : output.surface_faces)
         if (face.triangle >= 0) triangles.emplace(sorted(face.corners), face.triangle);
+    const std::vector<bool> on_surface = surface_points(output);
     std::uint64_t sides = 0;
-    for (std::size_t i = 0; i < tets.size(); ++i) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            const auto found = triangles.find(face_of(output.tets[i], k));
-            if (found == triangles.end()) continue;
-            tets[i].faces[k] = static_cast<std::uint32_t>(found->second);
-            ++sides;
-        }
-    }
+    const auto look_up = [&](std::uint32_t tet, std::uint32_t face) {
+        const std::uint32_t link = tets[tet].links[face];
+        if (link != NO_LINK && link < make_link(tet, face)) return; // looked up from its other side
+        const Triple corners = face_of(output.tets[tet], face);
+        for (const std::int32_t corner : corners)
+            if (!on_surface[static_cast<std::size_t>(corner)]) return;
+        const auto found = triangles.find(corners);
+        if (found == triangles.end()) return;
+        const auto triangle = static_cast<std::uint32_t>(found->second);
+        tets[tet].faces[face] = triangle;
+        ++sides;
+        if (link == NO_LINK) return;
+        tets[link_tet(link)].faces[link_face(link)] = triangle;
+        ++sides;
+    };
+    for (std::uint32_t tet = 0; tet < tets.size(); ++tet)
+        for (std::uint32_t face = 0; face < 4; ++face)
+            look_up(tet, face);
     if (sides != 2 * triangles.size())
         absurd(fmt::format("{} faces lie on input triangles, but tets have {} sides of them instead of {}",
                            triangles.size(), sides, 2 * triangles.size()));

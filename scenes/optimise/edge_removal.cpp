@@ -1,5 +1,6 @@
 #include "scenes/optimise/edge_removal.h"
 
+#include "core/mesh/face_corners.h"
 #include "scenes/optimise/shape.h"
 
 #include <algorithm>
@@ -32,14 +33,25 @@ Place next_of(const EditableMesh& mesh, const Place& at)
 
 enum class RingEnd { closed, at_boundary, refused };
 
-RingEnd follow(const EditableMesh& mesh, const Place& begin, std::size_t most, EdgeRing& ring)
+// A tet from which the edge is looked at, too, and before the one where the search began.
+struct Earlier {
+    std::uint32_t tet, since;
+
+    [[nodiscard]] bool has(const EditableMesh& mesh, std::uint32_t other) const
+    {
+        return other < tet && mesh.tet_changed(other) >= since;
+    }
+};
+
+RingEnd follow(const EditableMesh& mesh, const Place& begin, std::size_t most, const Earlier& earlier, EdgeRing& ring)
 {
     ring.tets.clear();
     ring.vertices.clear();
     Place at = begin;
     do {
         const Tet& here = mesh.tet(at.tet);
-        if (here.faces[at.back] != FREE_FACE || ring.vertices.size() == most) return RingEnd::refused;
+        if (here.faces[at.back] != FREE_FACE || ring.vertices.size() == most || earlier.has(mesh, at.tet))
+            return RingEnd::refused;
         ring.tets.push_back(at.tet);
         ring.vertices.push_back(here.vertices[at.back]);
         if (here.links[at.back] == NO_LINK) {
@@ -53,28 +65,25 @@ RingEnd follow(const EditableMesh& mesh, const Place& begin, std::size_t most, E
 
 } // namespace
 
-bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, EdgeRing& ring)
+bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, std::uint32_t since,
+               EdgeRing& ring)
 {
     const auto& [a, b, c, d] = edge_first[edge];
     const Corners& corners = mesh.tet(tet).vertices;
     ring.a = corners[a];
     ring.b = corners[b];
-    const RingEnd end = follow(mesh, {tet, c, d}, most, ring);
+    const Earlier earlier{tet, since};
+    const RingEnd end = follow(mesh, {tet, c, d}, most, earlier, ring);
     if (end != RingEnd::at_boundary) return end == RingEnd::closed && ring.tets.size() >= 3;
     Place begin{tet, d, c}; // looking back, where the ring begins
     for (std::size_t i = 0; mesh.tet(begin.tet).links[begin.back] != NO_LINK; ++i) {
-        if (mesh.tet(begin.tet).faces[begin.back] != FREE_FACE || i == most) return false;
+        if (mesh.tet(begin.tet).faces[begin.back] != FREE_FACE || i == most || earlier.has(mesh, begin.tet))
+            return false;
         begin = next_of(mesh, begin);
     }
     if (mesh.tet(begin.tet).faces[begin.back] != FREE_FACE) return false;
-    return follow(mesh, {begin.tet, begin.front, begin.back}, most, ring) == RingEnd::at_boundary &&
+    return follow(mesh, {begin.tet, begin.front, begin.back}, most, earlier, ring) == RingEnd::at_boundary &&
            ring.tets.size() >= 2;
-}
-
-bool EdgeRemoval::is_first(std::uint32_t tet) const
-{
-    return std::none_of(ring_.tets.begin(), ring_.tets.end(),
-                        [&](std::uint32_t other) { return other < tet && mesh_.tet_changed(other) >= since; });
 }
 
 // Whether the boundary faces at an open ring's ends lie on one side of the box.
@@ -124,7 +133,7 @@ void EdgeRemoval::emit(std::size_t i, std::size_t k)
 
 double EdgeRemoval::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
-    if (!find_ring(mesh_, tet, edge, most_around_edge, ring_) || !is_first(tet)) return 0;
+    if (!find_ring(mesh_, tet, edge, most_around_edge, since, ring_)) return 0;
     const std::size_t last = ring_.vertices.size() - 1, open = ring_.is_open() ? 1 : 0;
     if (open == 1 && !ends_on_one_side()) return 0;
     double before = 0; // the free faces: those of an open ring's ends are on the boundary
@@ -135,6 +144,24 @@ double EdgeRemoval::try_edge(std::uint32_t tet, std::uint32_t edge, double least
     fresh_.clear();
     emit(0, last);
     return mesh_.replace(ring_.tets, fresh_) ? before - cost_[0][last] : 0;
+}
+
+double try_face(EditableMesh& mesh, std::uint32_t tet, std::uint32_t face, double least)
+{
+    const Tet& here = mesh.tet(tet);
+    const std::uint32_t link = here.links[face];
+    if (link == NO_LINK || here.faces[face] != FREE_FACE) return 0;
+    const std::uint32_t a = here.vertices[face], b = mesh.tet(link_tet(link)).vertices[link_face(link)];
+    const auto& [i, j, k] = face_corners[face];
+    const std::uint32_t p = here.vertices[i], q = here.vertices[j], r = here.vertices[k];
+    double gain = area(mesh.point(p), mesh.point(q), mesh.point(r));
+    for (const std::uint32_t corner : {p, q, r}) {
+        gain -= area(mesh.point(a), mesh.point(b), mesh.point(corner));
+        if (gain <= least) return 0;
+    }
+    const std::array<std::uint32_t, 2> old = {tet, link_tet(link)};
+    const std::array<Corners, 3> fresh = {{{a, b, p, q}, {a, b, q, r}, {a, b, r, p}}};
+    return mesh.replace(old, fresh) ? gain : 0;
 }
 
 } // namespace tetrace

@@ -17,9 +17,14 @@ struct EdgeRing {
     [[nodiscard]] bool is_open() const { return vertices.size() > tets.size(); }
 };
 
+/// For find_ring(): from whichever tet.
+inline constexpr std::uint32_t from_any_tet = 0xFFFFFFFF;
+
 /// Finds the ring of edge 0..5 (vertices 01 02 03 12 13 23) of a tet. False, where an occlusive face has the edge, or
-/// it has more than `most` vertices.
-bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, EdgeRing& ring);
+/// it has more than `most` vertices; and where a tet of the ring with a smaller number changed in round `since` or
+/// later, as a sweep over all tets that changed since then looks at the edge from that one.
+bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, std::size_t most, std::uint32_t since,
+               EdgeRing& ring);
 
 /// Edge removal: the tets round an edge become the 2 (n - 2) above and below a triangulation of their ring of n
 /// vertices, the cheapest one whose tets may be made, found by dynamic programming over the ring's chords. Where the
@@ -37,7 +42,6 @@ public:
     std::uint32_t since = 1;
 
 private:
-    [[nodiscard]] bool is_first(std::uint32_t tet) const;
     [[nodiscard]] bool ends_on_one_side() const;
     void triangulate(double limit);
     void emit(std::size_t i, std::size_t k);
@@ -50,5 +54,10 @@ private:
     std::array<std::array<std::size_t, most_around_edge>, most_around_edge> middle_{};
     std::vector<Corners> fresh_;
 };
+
+/// Face removal, the inverse of removing an edge with three tets: the two tets of a free face become three round the
+/// edge between the vertices opposite it. Returns by how much cost fell; 0 where the face stays, since cost would fall
+/// by `least` or less, or a tet may not be made. face: 0..3.
+double try_face(EditableMesh& mesh, std::uint32_t tet, std::uint32_t face, double least);
 
 } // namespace tetrace

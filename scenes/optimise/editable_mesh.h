@@ -1,10 +1,11 @@
 #pragma once
 
-#include "core/mesh/tet_mesh.h"
+#include "scenes/optimise/mesh_arrays.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tetrace {
@@ -12,43 +13,32 @@ namespace tetrace {
 /// The vertices of a tet, positive as core/mesh/tet_mesh.h has it.
 using Corners = std::array<std::uint32_t, 4>;
 
-/// A set of sides of the domain's box, a bit each: 2 axis + (1 on the high side).
-using BoxSides = std::uint32_t;
-inline constexpr BoxSides all_box_sides = 0x3F;
-
-/// Whether a point that stays on these sides keeps its coordinate along the axis.
-[[nodiscard]] constexpr bool holds_axis(BoxSides sides, int axis)
-{
-    return (sides >> (2 * axis) & 3u) != 0;
-}
-
 /// A tet mesh whose parts are replaced by others. Everything that changes it keeps it a tetrahedralization of the same
 /// domain with the same occlusive faces (docs/spec/rays-tets.md, O1). Memory: linear.
 class EditableMesh {
 public:
     /// mesh: sound (find_defect and find_gap find nothing).
-    explicit EditableMesh(const TetMesh& mesh);
+    explicit EditableMesh(const TetMesh& mesh) : EditableMesh(arrays_of(mesh)) {}
+    /// arrays: sound, with no unused tets.
+    explicit EditableMesh(MeshArrays arrays);
 
-    [[nodiscard]] std::uint32_t tet_slots() const { return static_cast<std::uint32_t>(tets_.size()); }
-    [[nodiscard]] std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(points_.size()); }
-    [[nodiscard]] const Tet& tet(std::uint32_t index) const { return tets_[index]; }
-    [[nodiscard]] Double3 point(std::uint32_t vertex) const { return points_[vertex]; }
+    [[nodiscard]] std::uint32_t tet_slots() const { return static_cast<std::uint32_t>(arrays_.tets.size()); }
+    [[nodiscard]] std::uint32_t vertex_slots() const { return static_cast<std::uint32_t>(arrays_.points.size()); }
+    [[nodiscard]] const Tet& tet(std::uint32_t index) const { return arrays_.tets[index]; }
+    [[nodiscard]] Double3 point(std::uint32_t vertex) const { return arrays_.points[vertex]; }
 
-    /// A tet that rays from outside reach: a chain of free faces leads from the domain's boundary to it. Operations
-    /// change no other.
-    [[nodiscard]] bool is_reached(std::uint32_t tet) const { return states_[tet] == State::reached; }
-    /// Whether a vertex may move or vanish: it is on no occlusive face, its tets are reached, it is no corner of the
-    /// domain, and its boundary faces lie on the sides of a box. It stays on the sides that it lies on.
-    [[nodiscard]] bool is_free(std::uint32_t vertex) const { return kinds_[vertex] == VertexKind::free; }
+    /// Operations change no tets but these.
+    [[nodiscard]] bool is_reached(std::uint32_t tet) const { return arrays_.states[tet] == TetState::reached; }
+    /// Whether a vertex may move or vanish. It stays on the sides of the domain's box that it lies on.
+    [[nodiscard]] bool is_free(std::uint32_t vertex) const { return arrays_.kinds[vertex] == VertexKind::free; }
     /// The sides of the domain's box that a vertex lies on: none inside, two on an edge of the box, three at a corner.
-    [[nodiscard]] BoxSides box_sides(std::uint32_t vertex) const { return box_sides_[vertex]; }
+    [[nodiscard]] BoxSides box_sides(std::uint32_t vertex) const { return arrays_.box_sides[vertex]; }
     /// A tet that has the vertex; NO_TET for a slot without a vertex.
     [[nodiscard]] std::uint32_t tet_of(std::uint32_t vertex) const { return tet_of_[vertex]; }
 
-    /// Sum of the areas of the free faces of the tets that rays reach. What the optimiser lowers.
-    [[nodiscard]] double cost() const;
-    /// Area of the domain's boundary.
-    [[nodiscard]] double boundary_area() const;
+    /// The free_area() of its arrays: what the optimiser lowers.
+    [[nodiscard]] double cost() const { return free_area(arrays_); }
+    [[nodiscard]] double boundary_area() const { return tetrace::boundary_area(arrays_); }
 
     /// Puts `fresh` in the place of `old`, where that is sound: each fresh tet may be made (shape.h), and the fresh
     /// tets' outer faces are those of the old ones, side by side, but for boundary faces, which may become others of
@@ -66,8 +56,8 @@ public:
 
     /// The number that tets and vertices are marked with when they change. Starts with 1, and so do their marks.
     std::uint32_t round = 1;
-    [[nodiscard]] std::uint32_t tet_changed(std::uint32_t tet) const { return tet_changed_[tet]; }
-    [[nodiscard]] std::uint32_t vertex_changed(std::uint32_t vertex) const { return vertex_changed_[vertex]; }
+    [[nodiscard]] std::uint32_t tet_changed(std::uint32_t tet) const { return arrays_.tet_changed[tet]; }
+    [[nodiscard]] std::uint32_t vertex_changed(std::uint32_t vertex) const { return arrays_.vertex_changed[vertex]; }
 
     /// Marks on tets for a moment: unmark_all() is quick.
     void unmark_all() { ++mark_; }
@@ -80,12 +70,11 @@ public:
     [[nodiscard]] bool is_marked(std::uint32_t tet) const { return marks_[tet] == mark_; }
 
     /// The mesh without unused slots; vertices and tets keep their order.
-    [[nodiscard]] TetMesh take() const;
+    [[nodiscard]] TetMesh take() const { return mesh_of(arrays_); }
+    /// All that it holds; then it is empty.
+    [[nodiscard]] MeshArrays take_arrays() { return std::move(arrays_); }
 
 private:
-    enum class State : std::uint8_t { unused, hidden, reached };
-    enum class VertexKind : std::uint8_t { held, free };
-
     /// One side of a face. Equal keys: the same face; equal turns: the same side of it.
     struct Side {
         std::array<std::uint32_t, 3> key; ///< vertices, ascending
@@ -95,10 +84,6 @@ private:
         std::uint32_t triangle;
     };
 
-    void find_reached();
-    void find_box_sides();
-    void find_kinds();
-    [[nodiscard]] BoxSides common_sides(const std::array<std::uint32_t, 3>& vertices) const;
     [[nodiscard]] bool may_be_on_boundary(const std::array<std::uint32_t, 3>& vertices) const;
     [[nodiscard]] bool may_stay(const Tet& tet) const;
     [[nodiscard]] static Side side_of(const Corners& corners, std::uint32_t face);
@@ -109,12 +94,8 @@ private:
     void connect();
     void connect_fresh(const Side& a, const Side& b);
 
-    std::vector<Double3> points_; ///< of floats
-    std::vector<Tet> tets_;
-    std::vector<State> states_;
-    std::vector<VertexKind> kinds_;
-    std::vector<BoxSides> box_sides_;
-    std::vector<std::uint32_t> tet_of_, tet_changed_, vertex_changed_, marks_;
+    MeshArrays arrays_;
+    std::vector<std::uint32_t> tet_of_, marks_;
     std::vector<std::uint32_t> unused_tets_, unused_vertices_;
     std::uint32_t mark_ = 0;
     std::vector<Side> sides_;                    ///< of the replacement at work

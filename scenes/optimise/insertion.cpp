@@ -13,12 +13,6 @@ constexpr int steps_past_best = 8, regrowths = 2, insertion_halvings = 5;
 
 } // namespace
 
-bool Insertion::is_first(std::uint32_t tet) const
-{
-    return std::none_of(ring_.tets.begin(), ring_.tets.end(),
-                        [&](std::uint32_t other) { return other < tet && mesh_.tet_changed(other) >= since; });
-}
-
 // Whether the tet of a point and a face may be made.
 bool Insertion::sees(Double3 at, const Tet& tet, std::uint32_t face) const
 {
@@ -185,7 +179,7 @@ Double3 Insertion::better_point(Double3 at) const
 
 double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
-    if (!find_ring(mesh_, tet, edge, most_round_edge, ring_) || !is_first(tet)) return 0;
+    if (!find_ring(mesh_, tet, edge, most_round_edge, since, ring_)) return 0;
     sides_ = ring_.is_open() ? mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) : 0;
     if (ring_.is_open() && sides_ == 0) return 0; // the domain is no box
     Double3 at = rounded_point((mesh_.point(ring_.a) + mesh_.point(ring_.b)) * 0.5);

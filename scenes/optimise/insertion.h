@@ -26,7 +26,6 @@ private:
         std::uint32_t tet;
         double change; ///< of cost, if it joins the cavity
     };
-    [[nodiscard]] bool is_first(std::uint32_t tet) const;
     [[nodiscard]] bool is_on_box(std::uint32_t p, std::uint32_t q) const;
     [[nodiscard]] bool is_flush(const Tet& tet, std::uint32_t face) const;
     [[nodiscard]] bool sees(Double3 at, const Tet& tet, std::uint32_t face) const;

@@ -1,15 +1,17 @@
 #include "scenes/optimise/optimise.h"
 
 #include "core/base/stopwatch.h"
-#include "scenes/optimise/collapse.h"
-#include "scenes/optimise/edge_removal.h"
-#include "scenes/optimise/face_removal.h"
 #include "scenes/optimise/forecast.h"
-#include "scenes/optimise/insertion.h"
-#include "scenes/optimise/vertex_move.h"
+#include "scenes/optimise/region_pass.h"
+#include "scenes/optimise/regions.h"
 
 #include <algorithm>
+#include <exception>
 #include <fmt/format.h>
+#include <limits>
+#include <mutex>
+#include <omp.h>
+#include <utility>
 
 namespace tetrace {
 namespace {
@@ -21,19 +23,21 @@ struct Effort {
     bool inserts;
 };
 constexpr std::array<Effort, most_effort + 1> efforts = {
-    {{0, 1, false}, {2, 0.05, false}, {16, 0.004, false}, {40, 0.001, true}}};
-constexpr double negligible = 1e-12;                // a gain, as a part of the boundary's area
-constexpr std::uint32_t tries_between_looks = 1024; // at clock and limits
+    {{0, 1, false}, {2, 0.05, false}, {16, 0.003, false}, {40, 0.001, true}}};
+constexpr double negligible = 1e-12; // a gain, as a part of the boundary's area
+constexpr std::size_t tets_per_region = 12288;
+constexpr std::size_t no_regions = std::numeric_limits<std::size_t>::max();
+constexpr double share_of_regions = 0.7; // of a round's time; the rest is for what walls kept from being done
 
 class Optimiser {
 public:
     Optimiser(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress)
         : limits_(limits), effort_(efforts[static_cast<std::size_t>(std::clamp(limits.effort, 0, most_effort))]),
-          progress_(progress), mesh_(mesh), per_area_(2 / mesh_.boundary_area()), least_(negligible / per_area_),
-          edges_(mesh_), collapse_(mesh_), insertion_(mesh_)
+          progress_(progress), given_(mesh), mesh_(arrays_of(mesh)), per_area_(2 / boundary_area(mesh_)),
+          least_(negligible / per_area_)
     {
         report_.operations = {{{"edges removed"}, {"faces removed"}, {"moves"}, {"collapses"}, {"insertions"}}};
-        report_.cost_before = cost_ = mesh_.cost() * per_area_;
+        report_.cost_before = cost_ = free_area(mesh_) * per_area_;
     }
 
     [[nodiscard]] OptimisedTets run()
@@ -43,52 +47,56 @@ public:
             if (gain < effort_.share * cost_) break;
             forecast_.end_round(watch_.seconds(), gain);
         }
-        report_.cost_after = mesh_.cost() * per_area_;
+        const bool changed = std::any_of(report_.operations.begin(), report_.operations.end(),
+                                         [](const OperationCount& operation) { return operation.done > 0; });
+        report_.cost_after = changed ? free_area(mesh_) * per_area_ : report_.cost_before;
         report_.seconds = watch_.seconds();
-        return {mesh_.take(), report_};
+        return {changed ? mesh_of(mesh_) : given_, report_};
     }
 
 private:
-    enum Operation : std::size_t { edge, face, move, collapse, insertion };
-
     double round();
-    template <class Try>
-    void sweep(Operation operation, std::uint32_t count, const Try& try_one);
-    void flip();
-    void insert_vertices();
+    std::size_t pass(std::uint32_t since, std::size_t most_tets);
+    void work_on(const Regions& regions, std::size_t index, Region& region, Regions::Scratch& scratch);
+    void count(const std::array<OperationTally, operation_count>& tallies);
     [[nodiscard]] bool ends_early() const { return report_.end != OptimiserEnd::finished; }
-    void look_at_limits(double share_of_sweep);
-    void tell(double share_of_sweep) const;
+    [[nodiscard]] bool go_on(double share_of_region);
+    void tell(double share_of_round) const;
 
     OptimiserLimits limits_;
     Effort effort_;
     const Progress& progress_;
     Stopwatch watch_;
-    EditableMesh mesh_;
+    const TetMesh& given_;
+    MeshArrays mesh_;
     double per_area_; ///< of a sum of areas, to the number of faces that a uniform line crosses
     double least_;
-    EdgeRemoval edges_;
-    Collapse collapse_;
-    Insertion insertion_;
-    VertexStar star_;
     OptimiserReport report_;
     double cost_ = 0;
-    std::uint32_t since_ = 1;
-    std::uint32_t sweeps_ = 0; ///< of this round
+    std::uint32_t mark_ = 1, since_ = 1; ///< of this pass: EditableMesh::round, and the first one that is new
+    std::uint32_t round_began_ = 1;      ///< the first mark of the last round
+    std::vector<std::array<OperationTally, operation_count>> tallies_; ///< of this pass, per region
+    std::mutex looking_;                                               ///< for limits, progress, regions_done_
+    std::size_t regions_done_ = 0;
     Forecast forecast_;
 };
 
-void Optimiser::look_at_limits(double share_of_sweep)
+// Asked by all threads.
+bool Optimiser::go_on(double share_of_region)
 {
+    const std::lock_guard lock(looking_);
+    if (ends_early()) return false;
     if (limits_.time_limit_s > 0 && watch_.seconds() > limits_.time_limit_s) report_.end = OptimiserEnd::out_of_time;
     if (limits_.stop != nullptr && limits_.stop->load()) report_.end = OptimiserEnd::interrupted;
-    tell(share_of_sweep);
+    const double share = (static_cast<double>(regions_done_) + share_of_region) / static_cast<double>(tallies_.size());
+    const bool is_first = mark_ == round_began_;
+    tell(is_first ? share_of_regions * share : share_of_regions + (1 - share_of_regions) * share);
+    return !ends_early();
 }
 
-void Optimiser::tell(double share_of_sweep) const
+void Optimiser::tell(double share_of_round) const
 {
     if (!progress_) return;
-    const double share_of_round = (sweeps_ + share_of_sweep) / (effort_.inserts ? 7 : 6);
     double left_s =
         forecast_.left_s(watch_.seconds(), share_of_round, effort_.share * cost_, effort_.most_rounds - report_.rounds);
     if (limits_.time_limit_s > 0) left_s = std::min(left_s, std::max(0.0, limits_.time_limit_s - watch_.seconds()));
@@ -97,57 +105,68 @@ void Optimiser::tell(double share_of_sweep) const
                           report_.cost_before));
 }
 
-// try_one(index) returns the gain as an area. Only what changed since the last round is looked at.
-template <class Try>
-void Optimiser::sweep(Operation operation, std::uint32_t count, const Try& try_one)
+void Optimiser::work_on(const Regions& regions, std::size_t index, Region& region, Regions::Scratch& scratch)
 {
-    const double begin_s = watch_.seconds();
-    OperationCount& total = report_.operations[operation];
-    for (std::uint32_t i = 0; i < count && !ends_early(); ++i) {
-        if (i % tries_between_looks == 0) look_at_limits(static_cast<double>(i) / count);
-        const double gain = ends_early() ? 0 : try_one(i) * per_area_;
-        if (gain <= 0) continue;
-        ++total.done;
-        total.gain += gain;
-        cost_ -= gain;
+    region = regions.cut(index, since_, mark_ + 1, scratch);
+    RegionPass pass(std::move(region.mesh),
+                    {since_, mark_, least_, effort_.inserts, [this](double share) { return go_on(share); }});
+    region.mesh = pass.run();
+    tallies_[index] = pass.tallies();
+    const std::lock_guard lock(looking_);
+    ++regions_done_;
+}
+
+// In the order of the regions: floating-point sums depend on it.
+void Optimiser::count(const std::array<OperationTally, operation_count>& tallies)
+{
+    for (std::size_t i = 0; i < operation_count; ++i) {
+        report_.operations[i].done += tallies[i].done;
+        report_.operations[i].gain += tallies[i].gain * per_area_;
+        report_.operations[i].seconds += tallies[i].seconds;
+        cost_ -= tallies[i].gain * per_area_;
     }
-    total.seconds += watch_.seconds() - begin_s;
-    ++sweeps_;
 }
 
-void Optimiser::flip()
+// Looks at what was marked with `since` or later. Returns the number of regions.
+std::size_t Optimiser::pass(std::uint32_t since, std::size_t most_tets)
 {
-    edges_.since = since_;
-    const auto is_new = [&](std::uint32_t tet) { return mesh_.is_reached(tet) && mesh_.tet_changed(tet) >= since_; };
-    sweep(edge, mesh_.tet_slots() * 6,
-          [&](std::uint32_t i) { return is_new(i / 6) ? edges_.try_edge(i / 6, i % 6, least_) : 0.0; });
-    sweep(face, mesh_.tet_slots() * 4,
-          [&](std::uint32_t i) { return is_new(i / 4) ? try_face(mesh_, i / 4, i % 4, least_) : 0.0; });
+    since_ = since;
+    ++mark_;
+    const Regions regions(mesh_, report_.rounds, most_tets);
+    std::vector<Region> parts(regions.size());
+    tallies_.assign(parts.size(), {});
+    regions_done_ = 0;
+    std::exception_ptr failure;
+    const int threads = limits_.threads > 0 ? limits_.threads : omp_get_max_threads();
+#pragma omp parallel num_threads(std::clamp(static_cast <int>(parts.size()), 1, threads))
+    {
+        Regions::Scratch scratch;
+#pragma omp for schedule(dynamic, 1)
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            try {
+                work_on(regions, i, parts[i], scratch);
+            } catch (...) { // none may leave a parallel region
+                const std::lock_guard lock(looking_);
+                failure = std::current_exception();
+            }
+        }
+    }
+    if (failure) std::rethrow_exception(failure);
+    for (const auto& tallies : tallies_)
+        count(tallies);
+    Regions::join(mesh_, std::move(parts));
+    return regions.size();
 }
 
+// All regions at once, then, in the whole mesh, what their walls kept from being looked at.
 double Optimiser::round()
 {
     const double before = cost_;
     ++report_.rounds;
-    sweeps_ = 0;
-    since_ = mesh_.round++;
-    const auto is_new = [&](std::uint32_t v) { return mesh_.is_free(v) && mesh_.vertex_changed(v) >= since_; };
-    flip();
-    flip();
-    sweep(collapse, mesh_.vertex_slots(),
-          [&](std::uint32_t v) { return is_new(v) ? collapse_.try_vertex(v, least_) : 0.0; });
-    sweep(move, mesh_.vertex_slots(),
-          [&](std::uint32_t v) { return is_new(v) ? try_move(mesh_, v, least_, star_) : 0.0; });
-    if (effort_.inserts) insert_vertices();
+    const std::uint32_t since = std::exchange(round_began_, mark_ + 1);
+    const std::size_t regions = pass(since, tets_per_region);
+    if (regions > 1 && !ends_early()) pass(++mark_, no_regions);
     return before - cost_;
-}
-
-void Optimiser::insert_vertices()
-{
-    insertion_.since = since_;
-    const auto is_new = [&](std::uint32_t tet) { return mesh_.is_reached(tet) && mesh_.tet_changed(tet) >= since_; };
-    sweep(insertion, mesh_.tet_slots() * 6,
-          [&](std::uint32_t i) { return is_new(i / 6) ? insertion_.try_edge(i / 6, i % 6, least_) : 0.0; });
 }
 
 } // namespace

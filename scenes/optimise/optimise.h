@@ -17,14 +17,15 @@ struct OptimiserLimits {
     int effort = default_effort;
     double time_limit_s = 0;                 ///< it ends after so many seconds; 0: no limit
     const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
+    int threads = 0;                         ///< 0: as many as OpenMP has. The result does not depend on it
 };
 
 /// What an operation did.
 struct OperationCount {
     std::string_view name;
     std::uint64_t done = 0;
-    double gain = 0; ///< free faces that a uniform line crosses fewer
-    double seconds = 0;
+    double gain = 0;    ///< free faces that a uniform line crosses fewer
+    double seconds = 0; ///< of all threads together
 };
 
 /// Costs are the expected number of free faces that a uniform line crosses outside the objects, as if they let it
@@ -44,9 +45,10 @@ struct OptimisedTets {
 
 /// Changes the tets that rays from outside reach so that these cross fewer faces: edges and faces are removed, vertices
 /// moved, collapsed and inserted, each only where cost falls. Occlusive faces, the region of the domain and the tets
-/// inside closed objects stay; the sides of a box get other boundary faces. The same bits on every machine, unless it
-/// ends early; what it has is sound then too. Memory linear; time linear per round. mesh: sound (find_defect and
-/// find_gap find nothing); so is the result.
+/// inside closed objects stay; the sides of a box get other boundary faces. The same bits on every machine and for any
+/// number of threads, unless it ends early; what it has is sound then too. Memory linear; time n log n per round.
+/// mesh: sound (find_defect and find_gap find nothing); so is the result. progress: called by one thread at a time, not
+/// always the same.
 [[nodiscard]] OptimisedTets optimise(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress);
 
 } // namespace tetrace

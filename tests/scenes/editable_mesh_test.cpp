@@ -2,7 +2,6 @@
 // free faces; and each operation on it lowers the cost by what it says.
 #include "scenes/optimise/collapse.h"
 #include "scenes/optimise/edge_removal.h"
-#include "scenes/optimise/face_removal.h"
 #include "scenes/optimise/insertion.h"
 #include "scenes/optimise/vertex_move.h"
 #include "scenes/procedural.h"
@@ -178,7 +177,7 @@ TEST(EdgeRemoval, finds_the_cheapest_of_all_triangulations_of_the_ring)
         const std::uint32_t n = 3 + static_cast<std::uint32_t>(trial) % 6;
         EditableMesh mesh(fan(n, random));
         EdgeRing ring;
-        ASSERT_TRUE(find_ring(mesh, 0, 0, most_around_edge, ring));
+        ASSERT_TRUE(find_ring(mesh, 0, 0, most_around_edge, from_any_tet, ring));
         ASSERT_EQ(ring.tets.size(), n);
         const double before = mesh.cost(), expected = cheapest(mesh, ring, 0, n - 1);
         const double gain = EdgeRemoval(mesh).try_edge(0, 0, anything);

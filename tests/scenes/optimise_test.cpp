@@ -78,6 +78,25 @@ TEST(Optimise, gives_the_same_bits_each_time)
     EXPECT_EQ(optimised(scene.tets, 3).mesh, optimised(scene.tets, 3).mesh);
 }
 
+TEST(Optimise, gives_the_same_bits_for_any_number_of_threads)
+{
+    const Scene scene = make_cubes(20);
+    ASSERT_GT(count_faces(scene.tets).reached_tets, 4u * 8192) << "too few for several regions";
+    for (const int effort : {2, 3}) {
+        OptimiserLimits limits{effort, 0};
+        limits.threads = 1;
+        const OptimisedTets alone = optimise(scene.tets, limits, {});
+        expect_same_domain(alone.mesh, scene);
+        for (const int threads : {2, 3, 8}) {
+            limits.threads = threads;
+            const OptimisedTets result = optimise(scene.tets, limits, {});
+            EXPECT_EQ(result.mesh, alone.mesh) << threads << " threads";
+            EXPECT_EQ(result.report.cost_after, alone.report.cost_after);
+            EXPECT_EQ(result.report.rounds, alone.report.rounds);
+        }
+    }
+}
+
 TEST(Optimise, leaves_a_mesh_alone_that_it_cannot_better)
 {
     TetMesh mesh = make_cubes(4).tets;
