@@ -29,16 +29,16 @@ if(TETRACE_SANITIZE)
 endif()
 
 # tetrace_room(<target> <sources>...): adds a folder's sources; a unity build, of mode GROUP, compiles them with those of
-# the other rooms of TETRACE_FLOOR: what all of them include takes longer than what each has of its own. A floor takes
+# the other rooms of TETRACE_WING: what all of them include takes longer than what each has of its own. A wing takes
 # gcc 12 less than 30 s.
 function(tetrace_room target)
   target_sources(${target} PRIVATE ${ARGN})
-  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${TETRACE_FLOOR})
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${TETRACE_WING})
 endfunction()
 
-# tetrace_floor(<name> <room>...): adds the rooms of one floor.
-macro(tetrace_floor name)
-  set(TETRACE_FLOOR ${name})
+# tetrace_wing(<name> <room>...): adds the rooms of one wing.
+macro(tetrace_wing name)
+  set(TETRACE_WING ${name})
   foreach(room ${ARGN})
     add_subdirectory(${room})
   endforeach()

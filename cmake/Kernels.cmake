@@ -9,6 +9,7 @@ if(NOT TETRACE_COMPILES MATCHES "^(all|by_default)$")
 endif()
 set(TETRACE_MATH_MODES exact fast)
 if(TETRACE_COMPILES STREQUAL "by_default")
+  message(STATUS "Kernels: those of the default rows alone (TETRACE_COMPILES)")
   set(TETRACE_MATH_MODES exact)
 endif()
 

@@ -26,8 +26,9 @@ double end_of(const Pulse& pulse)
 
 } // namespace
 
-MachineWatch::MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before, Clock clock)
-    : clock_([this, clock = std::move(clock)] { return before_s_ + clock(); }),
+MachineWatch::MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before, Clock clock,
+                           double sampled_until_s)
+    : before_s_(sampled_until_s), clock_([this, clock = std::move(clock)] { return before_s_ + clock(); }),
       pulses_(std::move(host), [this] { return now(); })
 {
     for (const nlohmann::json& readings : before)

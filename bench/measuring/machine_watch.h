@@ -11,10 +11,10 @@ namespace tetrace {
 class MachineWatch {
 public:
     /// host: the work of its pulse. before: what new_readings() of the run's earlier processes gave, in their order.
-    /// clock: the host's; tests pass their own. Throws nlohmann::json's exceptions or std::domain_error where a reading
-    /// is damaged.
-    explicit MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before = {},
-                          Clock clock = host_clock());
+    /// clock: the host's; tests pass their own. sampled_until_s: when the last sample of earlier processes ended.
+    /// Throws nlohmann::json's exceptions or std::domain_error where a reading is damaged.
+    explicit MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before = {}, Clock clock = host_clock(),
+                          double sampled_until_s = 0);
 
     MachineWatch(const MachineWatch&) = delete;
     MachineWatch& operator=(const MachineWatch&) = delete;
@@ -40,7 +40,7 @@ private:
     };
     void restore(const nlohmann::json& readings);
 
-    double before_s_ = 0; ///< the time that earlier processes took
+    double before_s_; ///< the time that earlier processes took, as far as they recorded it
     Clock clock_;
     Pulses pulses_;
     std::map<std::string, std::size_t> written_; ///< by pulse: readings that the journal has

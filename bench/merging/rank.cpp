@@ -65,6 +65,8 @@ std::string job_of_pmi(const Environment& environment, const Rank& rank, const L
     if (const std::string named = text_in(environment, {"TETRACE_LAUNCH"}); !named.empty())
         return "named " + printable_text(named);
     if (const std::string job = job_of_slurm(environment); !job.empty()) return job;
+    if (const std::string job = text_in(environment, {"FLUX_JOB_ID", "PALS_APID"}); !job.empty())
+        return "job " + printable_text(job);
     if (number_in(environment, {"MPI_LOCALNRANKS"}) == rank.size)
         if (const std::string name = launcher(); !name.empty()) return name;
     throw Error(

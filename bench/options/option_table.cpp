@@ -76,7 +76,7 @@ std::vector<OptionRow> scene_options()
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
          "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
-         "optimiser takes 5 to 9 times as long, for 1 to 2 % fewer steps). Default: " +
+         "optimiser takes ten times as long, for fewer steps on some scenes only). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
@@ -190,7 +190,9 @@ std::vector<OptionRow> ray_options()
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
-         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use. Default: 0.",
+         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use, as scenes are "
+         "always "
+         "built. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
         {"Rays", "--tile", "WxH",
          "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,

@@ -55,14 +55,33 @@ void RunProgress::show(const std::string& stage) const
     progress_line().show(stage, fraction, left_s);
 }
 
+namespace {
+
+/// By the clock of MachineWatch; 0 where the entry has no samples.
+double last_sample_end(const json& entry)
+{
+    double end_s = 0;
+    if (entry.contains("rows"))
+        for (const json& row : entry["rows"])
+            if (row.contains("sampled_s"))
+                for (const json& sample : row["sampled_s"])
+                    end_s = std::max(end_s, sample.at(1).get<double>());
+    return end_s;
+}
+
+} // namespace
+
 MachineWatch watch_of(Pulses::Work host, const Journal* journal, Clock clock)
 {
     std::vector<json> readings;
-    if (journal != nullptr)
-        for (const json& entry : journal->entries())
-            if (entry.contains(MachineWatch::entry_key)) readings.push_back(entry[MachineWatch::entry_key]);
+    double sampled_until_s = 0;
     try {
-        return MachineWatch(std::move(host), readings, std::move(clock));
+        if (journal != nullptr)
+            for (const json& entry : journal->entries()) {
+                if (entry.contains(MachineWatch::entry_key)) readings.push_back(entry[MachineWatch::entry_key]);
+                sampled_until_s = std::max(sampled_until_s, last_sample_end(entry));
+            }
+        return MachineWatch(std::move(host), readings, std::move(clock), sampled_until_s);
     } catch (const json::exception& error) {
         journal->reject(fmt::format("a reading of the machine in the journal is damaged: {}", error.what()));
     } catch (const std::logic_error& error) {

@@ -48,7 +48,7 @@ void write_junit(const std::vector<RowRun>& rows, const Options& options, const 
 /// A command line of tetrace's with these arguments, as a shell takes it.
 [[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);
 
-/// What a long run says where it is interrupted: how to go on, or that it begins again. Empty for a short one.
+/// What a long run says where it is interrupted and keeps nothing: how to begin again. Empty for a short one.
 [[nodiscard]] std::string words_when_begun(const Options& options);
 
 /// What a program does besides help and version.

@@ -1,5 +1,4 @@
 // tetrace-first: `tetrace bench` alone, so that a new machine has a table before the rest is compiled (make first).
-#include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
 
@@ -7,7 +6,6 @@ namespace {
 
 int run_verb(const tetrace::Options& options)
 {
-    tetrace::say_when_interrupted(tetrace::words_when_begun(options));
     if (options.verb == tetrace::Verb::bench) return tetrace::bench_command(options);
     throw tetrace::Error(tetrace::ErrorKind::usage,
                          "tetrace-first has the verb bench alone; `make build` builds tetrace, which has all of them");

@@ -41,9 +41,6 @@ std::string command_with(const std::string& option)
 
 std::string words_when_begun(const Options& options)
 {
-    if (options.verb == Verb::reproduce && options.out)
-        return fmt::format("tetrace: what is finished is in '{}.journal'; to go on: {}", options.out->string(),
-                           command_with("--resume"));
     const bool is_long = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render ||
                          options.verb == Verb::build || options.verb == Verb::inspect || options.verb == Verb::trace ||
                          options.verb == Verb::reproduce;
@@ -51,9 +48,9 @@ std::string words_when_begun(const Options& options)
     const char* kept = options.verb == Verb::build    ? "scenes that were built before are in the cache"
                        : options.verb == Verb::render ? "pictures that were written before are whole"
                                                       : "an earlier result is as it was";
-    const char* hint = options.verb == Verb::bench       ? "; --budget, --views or --size make it shorter"
-                       : options.verb == Verb::reproduce ? "; with --out FILE.json, --resume can go on"
-                                                         : "";
+    const char* hint = options.verb == Verb::bench ? "; --budget, --views or --size make it shorter"
+                       : options.verb == Verb::reproduce && !options.out ? "; with --out FILE.json, --resume can go on"
+                                                                         : "";
     return fmt::format("tetrace: interrupted; {}. To begin again: {}{}", kept, command_of(command_line()), hint);
 }
 

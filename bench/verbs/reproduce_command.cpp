@@ -126,7 +126,10 @@ struct Keeping {
           watch(watch_of(host_pulse(resolved_threads(options)), journal.get())),
           pictures(options.out ? std::make_unique<ResultPictures>(*options.out) : nullptr)
     {
-        if (journal != nullptr) check_entries(*journal, builds);
+        if (journal == nullptr) return;
+        check_entries(*journal, builds);
+        say_when_interrupted(fmt::format("tetrace: what is finished is in '{}'; to go on: {}",
+                                         journal_file(*options.out).string(), command_with("--resume")));
     }
 
     std::unique_ptr<Journal> journal;

@@ -65,7 +65,7 @@ json reproduction_json(const Reproduction& all, const Options& options)
     return {{"tetrace", std::move(section)}};
 }
 
-/// Empty where nothing was timed.
+/// Empty where nothing was timed, or no pulse was taken, as by `merge`.
 std::string trust_of(const Reproduction& all)
 {
     Steadiness steadiness = all.steadiness;
@@ -75,7 +75,7 @@ std::string trust_of(const Reproduction& all)
     if (all.searches)
         for (const RowRun& row : all.searches->rows)
             steadiness.count(row);
-    return steadiness.timed == 0 ? std::string() : trust_text(steadiness);
+    return steadiness.timed == 0 || steadiness.pulses.empty() ? std::string() : trust_text(steadiness);
 }
 
 /// records: of these rows.

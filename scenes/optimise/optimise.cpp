@@ -25,7 +25,6 @@ struct Effort {
 constexpr std::array<Effort, most_effort + 1> efforts = {
     {{0, 1, false}, {2, 0.05, false}, {16, 0.003, false}, {40, 0.001, true}}};
 constexpr double negligible = 1e-12; // a gain, as a part of the boundary's area
-constexpr std::size_t tets_per_region = 12288;
 constexpr std::size_t no_regions = std::numeric_limits<std::size_t>::max();
 constexpr double share_of_regions = 0.7; // of a round's time; the rest is for what walls kept from being done
 
@@ -164,7 +163,7 @@ double Optimiser::round()
     const double before = cost_;
     ++report_.rounds;
     const std::uint32_t since = std::exchange(round_began_, mark_ + 1);
-    const std::size_t regions = pass(since, tets_per_region);
+    const std::size_t regions = pass(since, limits_.tets_per_region);
     if (regions > 1 && !ends_early()) pass(++mark_, no_regions);
     return before - cost_;
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -18,6 +19,7 @@ struct OptimiserLimits {
     double time_limit_s = 0;                 ///< it ends after so many seconds; 0: no limit
     const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
     int threads = 0;                         ///< 0: as many as OpenMP has. The result does not depend on it
+    std::size_t tets_per_region = 12288; ///< at most (docs/spec/rays-tets.md, In parallel); the result depends on it
 };
 
 /// What an operation did.

@@ -109,6 +109,7 @@ Region Regions::cut(std::size_t index, std::uint32_t since, std::uint32_t later,
             const auto wall = static_cast<std::uint32_t>(region.walls.size());
             region.walls.push_back(
                 {make_link(t, face), beyond, std::exchange(tet.faces[face], Region::first_wall + wall)});
+            if (whole_.states[link_tet(beyond)] != TetState::reached) continue; // an object's face: no tet waits beyond
             for (const std::uint32_t corner : face_corners[face])
                 at_wall[tet.vertices[corner]] = 1;
         }

@@ -1,7 +1,9 @@
 #include "tests/reproduce/journal_lines.h"
 #include "tests/reproduce/reproduce_fixture.h"
 
+#include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 
 using namespace tetrace;
@@ -12,8 +14,8 @@ namespace {
 
 class Resume : public ReproduceTest {
 protected:
-    /// What a run says that Ctrl-C ends, once it has anything to say: it handles the signal then.
-    std::string interrupted(const std::string& arguments) const
+    /// What a run says that Ctrl-C ends, once it handles the signal, and its journal has an entry where one is named.
+    std::string interrupted(const std::string& arguments, const char* journal = nullptr) const
     {
         const pid_t child = start(arguments);
         const auto handles = [&] {
@@ -23,7 +25,11 @@ protected:
             return at != std::string::npos &&
                    (std::stoull(status.substr(at + 7), nullptr, 16) >> (SIGINT - 1)) % 2 == 1;
         };
-        while (!handles())
+        const auto has_entry = [&] {
+            if (journal == nullptr || !std::filesystem::exists(folder_ / journal)) return journal == nullptr;
+            return std::ranges::count(read_text(folder_ / journal), '\n') > 1;
+        };
+        while (!handles() || !has_entry())
             ::usleep(1000);
         ::kill(child, SIGINT);
         const Ended ended = end(child);
@@ -78,7 +84,7 @@ TEST_F(Resume, ctrl_c_says_how_to_go_on_or_to_begin_again)
     const std::string long_run = "table4 --size 4096 --views 0-1281";
     EXPECT_TRUE(contains(interrupted(long_run), "interrupted; an earlier result is as it was. To begin again: tetrace "
                                                 "reproduce table4"));
-    const std::string resumed = interrupted(long_run + " --out r.json");
+    const std::string resumed = interrupted("table4 --size 96 --views 0-1281 --out r.json", "r.json.journal");
     EXPECT_TRUE(contains(resumed, "what is finished is in 'r.json.journal'; to go on: tetrace reproduce")) << resumed;
     EXPECT_TRUE(contains(resumed, " --threads 1 --resume")) << resumed;
 }

@@ -1,4 +1,5 @@
 // Regions: parts of a mesh that are changed apart from each other, and put together again.
+#include "scenes/optimise/collapse.h"
 #include "scenes/optimise/edge_removal.h"
 #include "scenes/optimise/insertion.h"
 #include "scenes/optimise/regions.h"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 using namespace tetrace;
@@ -64,13 +66,23 @@ TEST(Regions, keep_what_lies_at_walls_and_ask_for_it_later)
 {
     const MeshArrays mesh = arrays_of(cubes().tets);
     for (const Region& region : all_regions(mesh, 0, 700)) {
-        std::set<std::uint32_t> at_walls;
+        std::set<std::uint32_t> at_walls, beside_parts; // an object's inside is no part: its faces are never changed
         for (std::size_t t = 0; t < region.mesh.tets.size(); ++t)
             for (std::uint32_t face = 0; face < 4; ++face)
                 if (region.mesh.tets[t].faces[face] != FREE_FACE &&
-                    region.mesh.tets[t].faces[face] >= Region::first_wall)
-                    for (const std::uint32_t corner : face_corners[face])
+                    region.mesh.tets[t].faces[face] >= Region::first_wall) {
+                    const Wall& wall = region.walls.at(region.mesh.tets[t].faces[face] - Region::first_wall);
+                    const bool has_part_beyond = mesh.states[link_tet(wall.beyond)] == TetState::reached;
+                    for (const std::uint32_t corner : face_corners[face]) {
                         at_walls.insert(region.mesh.tets[t].vertices[corner]);
+                        if (has_part_beyond) beside_parts.insert(region.mesh.tets[t].vertices[corner]);
+                    }
+                }
+        for (std::size_t t = 0; t < region.mesh.tets.size(); ++t) {
+            const auto corners = std::ranges::count_if(region.mesh.tets[t].vertices,
+                                                       [&](std::uint32_t v) { return beside_parts.contains(v); });
+            EXPECT_EQ(region.mesh.tet_changed[t], corners > 1 ? 7u : 1u);
+        }
         for (std::uint32_t v = 0; v < region.vertices.size(); ++v) {
             const bool is_free = mesh.kinds[region.vertices[v]] == VertexKind::free, at_wall = at_walls.contains(v);
             EXPECT_EQ(region.mesh.kinds[v], !is_free  ? VertexKind::held
@@ -105,14 +117,16 @@ TEST(Regions, stay_sound_through_random_operations_in_each)
             EditableMesh part(std::move(region.mesh));
             EdgeRemoval edges(part);
             Insertion insertion(part);
+            Collapse collapse(part);
             VertexStar star;
             for (int i = 0; i < 1000; ++i) {
                 const std::uint32_t t = below(part.tet_slots()), v = below(part.vertex_slots());
                 double gain = 0;
-                switch (part.is_reached(t) ? below(4) : 3) {
+                switch (part.is_reached(t) ? below(5) : 3) {
                 case 0: gain = edges.try_edge(t, below(6), -1e9); break;
                 case 1: gain = try_face(part, t, below(4), -1e9); break;
                 case 2: gain = insertion.try_edge(t, below(6), below(64) == 0 ? -1e9 : 0); break;
+                case 4: gain = part.is_free(v) ? collapse.try_vertex(v, -1e9) : 0; break;
                 default: gain = part.is_free(v) ? try_move(part, v, -1e9, star) : 0; break;
                 }
                 done += gain != 0 ? 1 : 0;

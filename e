@@ -1,1 +1,0 @@
-tetrace: --budget: '0' is not accepted; accepted: a positive number of seconds, or a number followed by s, m or h
