@@ -71,7 +71,7 @@ void require_all(const std::vector<ShardResult>& shards)
     std::vector<std::string> missing;
     for (unsigned number = 1; number <= shards.front().shard.of; ++number)
         if (std::ranges::none_of(shards, [&](const ShardResult& one) { return one.shard.number == number; }))
-            missing.push_back(text_of({number, shards.front().shard.of}));
+            missing.push_back(text_of(Shard{number, shards.front().shard.of}));
     if (!missing.empty())
         refuse(fmt::format("{} {} missing: {}", missing.size() == 1 ? "shard" : "shards",
                            missing.size() == 1 ? "is" : "are", fmt::join(missing, ", ")));

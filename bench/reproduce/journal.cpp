@@ -27,7 +27,7 @@ constexpr std::string_view before_checksum = R"({"checksum":")", before_entry = 
 constexpr std::size_t largest_journal = std::size_t{1} << 30;
 
 /// In one line; what is not UTF-8, such as a path may be, is replaced.
-std::string text_of(const json& value)
+std::string json_text(const json& value)
 {
     return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -63,8 +63,8 @@ std::string differences(const json& theirs, const json& ours)
     std::string text;
     for (const auto& [key, value] : ours.items())
         if (!theirs.contains(key) || theirs[key] != value)
-            text += fmt::format("\n  {}: {} there, {} here", key, theirs.contains(key) ? text_of(theirs[key]) : "none",
-                                text_of(value));
+            text += fmt::format("\n  {}: {} there, {} here", key,
+                                theirs.contains(key) ? json_text(theirs[key]) : "none", json_text(value));
     return text.empty() ? "\n  it was written by another version" : text;
 }
 
@@ -132,7 +132,7 @@ struct OpenFile {
 
 Journal::Journal(std::filesystem::path path, const json& asked, bool resume) : path_(std::move(path))
 {
-    const json head = json::parse(text_of(asked)); // as it comes back from the file
+    const json head = json::parse(json_text(asked)); // as it comes back from the file
     open_and_lock();
     try {
         if (read(head, resume)) return;
@@ -230,7 +230,7 @@ bool Journal::read(const json& head, bool resume)
 
 void Journal::write_line(const json& line)
 {
-    const std::string entry = text_of(line);
+    const std::string entry = json_text(line);
     checksum_ = checksum(entry, checksum_);
     const std::string text = line_of(entry, checksum_) + "\n";
     for (std::size_t done = 0; done < text.size();) {
