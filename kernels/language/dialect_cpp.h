@@ -3,7 +3,7 @@
 // The kernels' language as host C++. Include it, and the kernel headers after it, inside an unnamed namespace: every
 // kernel is compiled once per layout and math mode, and their names must not collide.
 // Include <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/device/backend.h before it.
-#define KERNEL_FN [[maybe_unused]] inline
+#define KERNEL_FN [[maybe_unused, gnu::always_inline]] inline
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})
@@ -33,6 +33,11 @@ KERNEL_FN real square_root(real value)
 KERNEL_FN real to_real(uint value)
 {
     return real(static_cast<float>(value));
+}
+// Rounded down. value: not negative.
+KERNEL_FN uint to_uint(real value)
+{
+    return static_cast<uint>(value);
 }
 
 // a * b + c, rounded once or twice: only for what decides nothing, such as the boxes of BVHs (docs/spec/bvhs.md, B7).

@@ -24,6 +24,11 @@ KERNEL_FN real to_real(uint value)
 {
     return __uint2float_rn(value);
 }
+// Rounded down. value: not negative.
+KERNEL_FN uint to_uint(real value)
+{
+    return static_cast<uint>(value);
+}
 // a * b + c, rounded once or twice: only for what decides nothing, such as the boxes of BVHs (docs/spec/bvhs.md, B7).
 KERNEL_FN real multiply_add(real a, real b, real c)
 {

@@ -29,6 +29,11 @@ KERNEL_FN real to_real(uint value)
 {
     return real(value);
 }
+// Rounded down. value: not negative.
+KERNEL_FN uint to_uint(real value)
+{
+    return uint(value);
+}
 KERNEL_FN real square_root(real value)
 {
     return sqrt(value);

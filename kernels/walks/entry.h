@@ -46,15 +46,9 @@ KERNEL_FN uint second_axis(uint across)
     return across == 0u ? 2u : across - 1u;
 }
 
-// The distance from the ray's origin to the plane of the side across this axis by which the ray could enter.
-KERNEL_FN real gap_to_side(DomainBox box, Ray ray, uint across)
-{
-    bool from_high = component(ray.direction, across) < real(0.0f);
-    PRECISE real gap = component(from_high ? box.high : box.low, across) - component(ray.origin, across);
-    return gap;
-}
-
-// Where the ray meets that plane, along an axis. It is beyond a line if slope (line - origin) <= reach.
+// Where the ray meets the plane of a side, along an axis of that side. It is beyond a line there if slope (line -
+// origin)
+// <= reach. first, last: that product for the side's borders.
 STRUCT(SideCrossing)
 {
     uint axis;
@@ -62,66 +56,84 @@ STRUCT(SideCrossing)
     real direction;
     real slope;
     real reach;
+    real first;
+    real last;
 };
 
-KERNEL_FN SideCrossing side_crossing(DomainBox box, Ray ray, uint across, uint axis)
+// gap, slope: the distance to the plane, and how fast the ray comes nearer to it.
+KERNEL_FN SideCrossing side_crossing(DomainBox box, Ray ray, real gap, real slope, uint axis)
 {
     SideCrossing at;
     at.axis = axis;
     at.origin = component(ray.origin, axis);
     at.direction = component(ray.direction, axis);
-    at.slope = magnitude(component(ray.direction, across));
-    PRECISE real reach = magnitude(gap_to_side(box, ray, across)) * at.direction;
+    at.slope = slope;
+    PRECISE real reach = gap * at.direction;
+    PRECISE real first = (component(box.low, axis) - at.origin) * slope;
+    PRECISE real last = (component(box.high, axis) - at.origin) * slope;
     at.reach = reach;
+    at.first = first;
+    at.last = last;
     return at;
-}
-
-KERNEL_FN bool is_beyond_line(SceneView scene, SideCrossing at, uint index)
-{
-    PRECISE real product = (domain_line(scene, at.axis, index) - at.origin) * at.slope;
-    return product <= at.reach;
 }
 
 // Whether the ray meets the plane between the side's borders. On a border it must be moving inwards: a ray that runs in
 // the plane of a side (a grazing ray) misses the box.
-KERNEL_FN bool is_on_side(DomainBox box, SideCrossing at)
+KERNEL_FN bool is_on_side(SideCrossing at)
 {
-    PRECISE real first = (component(box.low, at.axis) - at.origin) * at.slope;
-    PRECISE real last = (component(box.high, at.axis) - at.origin) * at.slope;
-    if (first > at.reach || last < at.reach) return false;
-    if (first == at.reach && at.direction <= real(0.0f)) return false;
-    return last != at.reach || at.direction < real(0.0f);
+    bool is_inside = at.first < at.reach || (at.first == at.reach && at.direction > real(0.0f));
+    return is_inside && (at.reach < at.last || (at.reach == at.last && at.direction < real(0.0f)));
 }
 
-KERNEL_FN bool enters_across(DomainBox box, Ray ray, uint across)
+// How a ray enters the box: by which side, and where.
+STRUCT(Entry)
 {
-    real direction = component(ray.direction, across);
-    real gap = gap_to_side(box, ray, across);
-    bool ahead = direction < real(0.0f) ? gap < real(0.0f) : (direction > real(0.0f) && gap > real(0.0f));
-    return ahead && is_on_side(box, side_crossing(box, ray, across, first_axis(across))) &&
-           is_on_side(box, side_crossing(box, ray, across, second_axis(across)));
+    uint side;      // 2 axis, and 1 more for the high one; 6 where the ray misses the box
+    SideCrossing a; // along first_axis() of the side's axis
+    SideCrossing b; // along second_axis() of it
+};
+
+// How far the ray is from the plane of the side across an axis that it moves towards; 0 if it does not, or is beyond
+// it.
+KERNEL_FN real gap_along(DomainBox box, Ray ray, uint axis)
+{
+    real direction = component(ray.direction, axis);
+    real origin = component(ray.origin, axis);
+    PRECISE real above = origin - component(box.high, axis);
+    PRECISE real below = component(box.low, axis) - origin;
+    real gap = direction < real(0.0f) ? above : direction > real(0.0f) ? below : real(0.0f);
+    return maximum(gap, real(0.0f));
 }
 
-// The square of the box by which the ray enters, or 6 divisions^2 where it misses the box. The origin is not inside.
-KERNEL_FN uint entry_square(SceneView scene, Ray ray)
+// The origin is not inside. Of the sides that it moves towards, a ray enters by the one whose plane it meets last, if
+// at all. Two planes are compared by the products of is_on_side(); since rounding is monotone, at least one of three
+// planes is not met before another.
+KERNEL_FN Entry entry_of(DomainBox box, Ray ray)
 {
-    uint n = scene.divisions;
-    DomainBox box = domain_box(scene);
-    uint across = 3u;
-    for (uint axis = 0u; axis < 3u; ++axis)
-        across = enters_across(box, ray, axis) ? axis : across;
-    if (across == 3u) return 6u * n * n;
-    SideCrossing a = side_crossing(box, ray, across, first_axis(across));
-    SideCrossing b = side_crossing(box, ray, across, second_axis(across));
-    uint i = 0u; // the last line that the ray is beyond is one of `count` lines from here on
-    uint j = 0u;
-    for (uint count = n; count > 1u; count -= count >> 1u) {
-        uint middle = count >> 1u;
-        i += is_beyond_line(scene, a, i + middle) ? middle : 0u;
-        j += is_beyond_line(scene, b, j + middle) ? middle : 0u;
-    }
-    uint side = 2u * across + (component(ray.direction, across) < real(0.0f) ? 1u : 0u);
-    return (side * n + j) * n + i;
+    Vec3 gap = VEC3(gap_along(box, ray, 0u), gap_along(box, ray, 1u), gap_along(box, ray, 2u));
+    Vec3 rise = magnitudes(ray.direction);
+    PRECISE real xy = gap.x * rise.y;
+    PRECISE real yx = gap.y * rise.x;
+    PRECISE real yz = gap.y * rise.z;
+    PRECISE real zy = gap.z * rise.y;
+    PRECISE real zx = gap.z * rise.x;
+    PRECISE real xz = gap.x * rise.z;
+    uint across = gap.x > real(0.0f) && xy >= yx && xz >= zx ? 0u : 3u;
+    across = gap.y > real(0.0f) && yx >= xy && yz >= zy ? 1u : across;
+    across = gap.z > real(0.0f) && zx >= xz && zy >= yz ? 2u : across;
+    uint met = across == 3u ? 0u : across;
+    Entry entry;
+    entry.a = side_crossing(box, ray, component(gap, met), component(rise, met), first_axis(met));
+    entry.b = side_crossing(box, ray, component(gap, met), component(rise, met), second_axis(met));
+    bool is_met = across != 3u && is_on_side(entry.a) && is_on_side(entry.b);
+    entry.side = is_met ? 2u * met + (component(ray.direction, met) < real(0.0f) ? 1u : 0u) : 6u;
+    return entry;
+}
+
+// The square in column i and row j of the side by which the ray enters.
+KERNEL_FN uint square_at(SceneView scene, Entry entry, uint i, uint j)
+{
+    return (entry.side * scene.divisions + j) * scene.divisions + i;
 }
 
 // How deep the ray is inside a boundary face: the smallest of its three side products, negative outside. They are the

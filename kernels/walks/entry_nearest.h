@@ -1,5 +1,28 @@
 // The boundary face by which a ray enters the domain, for walks by links.
 
+KERNEL_FN bool is_beyond_line(SceneView scene, SideCrossing at, uint index)
+{
+    PRECISE real product = (domain_line(scene, at.axis, index) - at.origin) * at.slope;
+    return product <= at.reach;
+}
+
+// The last line that the ray is beyond; that is the number of its column or row.
+KERNEL_FN uint line_passed(SceneView scene, SideCrossing at)
+{
+    uint first = 0u; // the line is one of `count` lines from here on
+    for (uint count = scene.divisions; count > 1u; count -= count >> 1u)
+        first += is_beyond_line(scene, at, first + (count >> 1u)) ? count >> 1u : 0u;
+    return first;
+}
+
+// The square of the box by which the ray enters, or 6 divisions^2 where it misses the box.
+KERNEL_FN uint entry_square(SceneView scene, Ray ray)
+{
+    Entry entry = entry_of(domain_box(scene), ray);
+    if (entry.side == 6u) return 6u * scene.divisions * scene.divisions;
+    return square_at(scene, entry, line_passed(scene, entry.a), line_passed(scene, entry.b));
+}
+
 // The number of the first of the square's faces that the ray is inside; if it is inside none, of the nearest one;
 // NO_ENTRY where the ray misses the domain.
 KERNEL_FN uint entry_index(SceneView scene, Ray ray)

@@ -66,6 +66,25 @@ KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
     return found;
 }
 
+// The number of the square's column or row, by one quotient. Rounding may name the square beyond a line: that one lists
+// all faces near it, and the ray enters by the same face (docs/spec/data-and-rays.md, D5).
+KERNEL_FN uint line_near(uint divisions, SideCrossing at)
+{
+    PRECISE real place = (at.reach - at.first) * to_real(divisions) / (at.last - at.first);
+    uint line = to_uint(maximum(place, real(0.0f)));
+    return line < divisions ? line : divisions - 1u;
+}
+
+// A square of the box at which the ray enters, or 6 divisions^2 where it misses the box.
+KERNEL_FN uint entry_square(SceneView scene, Ray ray)
+{
+    Entry entry = entry_of(domain_box(scene), ray);
+    if (entry.side == 6u) return 6u * scene.divisions * scene.divisions;
+    uint i = line_near(scene.divisions, entry.a);
+    uint j = line_near(scene.divisions, entry.b);
+    return square_at(scene, entry, i, j);
+}
+
 // The number of the boundary face by which the ray enters, or NO_ENTRY where it misses the domain. Float products
 // decide nearly all cases. Ties are decided after the loop, since some devices execute a conditional block even if no
 // lane needs it.

@@ -200,6 +200,15 @@ TEST(Entry, rays_in_the_plane_of_a_side_or_along_an_edge_of_the_box_miss_it)
     expect_brute_force({low.x - 1, 0, high.z + 1}, {1, 0, -1});
 }
 
+TEST(Entry, a_ray_at_a_corner_of_the_box_is_not_dropped_between_its_sides)
+{
+    // Of the planes of its three sides, rounding puts z level with y, y level with x, and z before x.
+    const Float3 origin{-0x1.581922p+0f, -0x1.f5964p+0f, -0x1.c7ba6ep+0f};
+    const Float3 direction{0x1.128d3ep-2f, 0x1.7ead58p-1f, 0x1.37383p-1f};
+    ASSERT_EQ(box().scene.domain.low(), (Float3{-1, -1, -1}));
+    EXPECT_NE(look_up(origin, direction), NO_LINK);
+}
+
 TEST(Entry, a_ray_through_a_line_belongs_to_the_square_above_it)
 {
     const auto& lines = box().scene.domain.lines;

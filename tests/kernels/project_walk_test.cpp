@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace tetrace;
@@ -26,6 +27,17 @@ bool holds(const Grid& grid, std::uint32_t link, const right::Ray& ray)
     };
     return right::side_at_entry(ray, corner(0), corner(1)) > 0 && right::side_at_entry(ray, corner(1), corner(2)) > 0 &&
            right::side_at_entry(ray, corner(2), corner(0)) > 0;
+}
+
+// Whether a domain's squares are equally wide, as they are in all scenes but some of the tests'.
+bool has_even_lines(const Grid& grid)
+{
+    return std::ranges::all_of(grid.scene.domain.lines, [](const std::vector<float>& lines) {
+        const double width = (double{lines.back()} - lines.front()) / static_cast<double>(lines.size() - 1);
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            if (std::abs(lines.front() + width * static_cast<double>(i) - lines[i]) > 0x1p-20) return false;
+        return true;
+    });
 }
 
 } // namespace
@@ -139,6 +151,48 @@ TEST(ProjectWalk, enters_by_a_face_anywhere_or_misses_where_the_square_has_none)
         }
     }
     EXPECT_GT(sought[0], 0u) << "rays whose square has no face that holds them";
+}
+
+TEST(ProjectWalk, asks_a_square_within_rounding_of_where_the_ray_meets_the_domain)
+{
+    Random random(66);
+    int met = 0, missed = 0;
+    for (const auto& grid : grids()) {
+        if (!has_even_lines(*grid)) continue;
+        const auto& lines = grid->scene.domain.lines;
+        const std::uint32_t n = grid->packed.divisions;
+        for (int i = 0; i < 2000; ++i) {
+            const Float3 origin = random.point(-3, 3), to = random.point(-1.5f, 1.5f);
+            if (grid->scene.domain.contains(origin)) continue;
+            const Float3 u = without_small({to.x - origin.x, to.y - origin.y, to.z - origin.z});
+            const auto ray = right::make_ray(right::to_vec3(origin), right::to_vec3(u));
+            // By double precision: the side whose plane the ray meets last, and how far inside it that is.
+            std::size_t across = 3;
+            double entered_at = 0, left_at = HUGE_VAL;
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto& of_axis = lines[static_cast<std::size_t>(axis)];
+                const auto [near, far] = std::minmax({(of_axis.front() - double{origin[axis]}) / u[axis],
+                                                      (of_axis.back() - double{origin[axis]}) / u[axis]});
+                if (near > entered_at) across = static_cast<std::size_t>(axis);
+                entered_at = std::max(entered_at, near);
+                left_at = std::min(left_at, far);
+            }
+            if (std::abs(left_at - entered_at) < 1e-5) continue; // rounding may tell
+            const std::uint32_t square = right::entry_square(grid->view, ray);
+            ASSERT_EQ(square == 6 * n * n, left_at < entered_at) << grid->name << ", ray " << i;
+            ++(left_at < entered_at ? missed : met);
+            if (left_at < entered_at) continue;
+            ASSERT_EQ(square / (n * n), 2 * across + (u[static_cast<int>(across)] < 0 ? 1 : 0));
+            const std::uint32_t column = square % n, row = square / n % n;
+            for (const auto& [axis, line] : {std::pair{(across + 1) % 3, column}, std::pair{(across + 2) % 3, row}}) {
+                const auto point = origin[static_cast<int>(axis)] + entered_at * u[static_cast<int>(axis)];
+                EXPECT_GT(point, lines[axis][line] - 0x1p-17) << grid->name << ", ray " << i;
+                EXPECT_LT(point, lines[axis][line + 1] + 0x1p-17) << grid->name << ", ray " << i;
+            }
+        }
+    }
+    EXPECT_GT(met, 1000);
+    EXPECT_GT(missed, 1000);
 }
 
 TEST(ProjectWalk, passes_over_no_boundary_face_that_it_enters_by)

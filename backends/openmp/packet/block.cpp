@@ -88,13 +88,23 @@ void trace_packets(const PacketJob& job, const Packets& block, const uint* numbe
     if (any[0] != 0) trace_lanes<0, count>(job, block, numbers, packets, lanes);
     if (any[1] != 0) trace_lanes<1, count>(job, block, numbers, packets, lanes);
     if (any[2] != 0) trace_lanes<2, count>(job, block, numbers, packets, lanes);
+    if (count > 1)
+        for (const Packet& packet : packets)
+            prefetch_triangles(job, packet);
     for (Packet& packet : packets)
         write_counted_hits(job, packet);
 }
 
-// A packet whose beam has ended.
+// A packet whose beam has ended; most have left the domain, and need no rays for that.
 void write_ended(const PacketJob& job, const Packets& block, uint number)
 {
+    const uint x_end = block.x[number] + packet_width, y_end = block.y[number] + packet_height;
+    if (block.exit[number] == NO_LINK && block.steps[number] <= job.max_steps && x_end <= job.width &&
+        y_end <= job.height) {
+        write_misses(job, block.x[number], block.y[number], x_end, y_end, block.record[number] >> 2,
+                     block.steps[number]);
+        return;
+    }
     Packet packet;
     make_rays(job, block.x[number], block.y[number], packet);
     packet.exit = all(block.exit[number]);
@@ -140,7 +150,7 @@ void collect(const PacketJob& job, uint x, uint y, Packets& block)
     if (x >= job.width || y >= job.height) return;
     const Square square = square_at(job, x, y, size);
     if (misses_domain(job, square)) {
-        write_misses(job, square.x, square.y, square.x_end, square.y_end);
+        write_misses(job, square.x, square.y, square.x_end, square.y_end, NO_TET, 0);
     } else if constexpr (size <= 8) {
         for (uint row = square.y; row < square.y_end; row += packet_height)
             for (uint column = square.x; column < square.x_end; column += packet_width) {

@@ -5,6 +5,24 @@ struct Hits {
     Words of[HIT_WORDS];
 };
 
+// The lanes that have met a triangle.
+LANE_FN uint lanes_hitting(const Packet& packet, uint lanes)
+{
+    return lanes & ~packet.left_to_scalar & ~lanes_of(equal(packet.exit, all(NO_LINK)));
+}
+
+// Prefetches the triangles that a packet has met, while those of other packets are tested.
+LANE_FN void prefetch_triangles(const PacketJob& job, const Packet& packet)
+{
+    LaneWords faces;
+    store(faces, packet.exit >> 2);
+    for (uint left = lanes_hitting(packet, packet.lanes); left != 0; left &= left - 1) {
+        const uint* const triangle = job.triangles + 4 * TRIANGLE_QUADS * std::size_t{faces.of[first_of(left)]};
+        __builtin_prefetch(triangle);
+        __builtin_prefetch(triangle + 4 * TRIANGLE_QUADS - 1);
+    }
+}
+
 // The triangle, t, u and v of lanes that hit one, for rays that do not end before it. A ray that sees
 // its triangle edge-on is left to the scalar kernel.
 LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hits& hits)
@@ -56,21 +74,19 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
     hits.of[0] = all(NO_HIT);
     hits.of[1] = packet.record >> 2; // NO_TET for a ray that entered none
     hits.of[5] = packet.steps;
-    const uint hitting = lanes & ~packet.left_to_scalar & ~lanes_of(equal(packet.exit, all(NO_LINK)));
+    const uint hitting = lanes_hitting(packet, lanes);
     if (hitting != 0) meet_triangles(job, packet, hitting, hits);
     write_words(job, packet, lanes & ~packet.left_to_scalar, hits);
     for (uint left = lanes & packet.left_to_scalar; left != 0; left &= left - 1)
         job.trace_one(job.context, packet.numbers.of[first_of(left)]);
 }
 
-// The hits of rays that miss the domain, of pixels [x, x_end) x [y, y_end).
-LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint x_end, uint y_end)
+// The hits of rays that all leave the domain from the same tet after as many steps, or miss it (NO_TET, 0), of pixels
+// [x, x_end) x [y, y_end).
+LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint x_end, uint y_end, uint tet, uint steps)
 {
+    const uint hit[HIT_WORDS] = {NO_HIT, tet, 0, 0, 0, steps};
     for (; y < y_end; ++y)
-        for (uint i = x; i < x_end; ++i) {
-            uint* const to = job.hits + HIT_WORDS * (std::size_t{y} * job.width + i);
-            to[0] = NO_HIT;
-            to[1] = NO_TET;
-            to[2] = to[3] = to[4] = to[5] = 0;
-        }
+        for (uint i = x; i < x_end; ++i)
+            __builtin_memcpy(job.hits + HIT_WORDS * (std::size_t{y} * job.width + i), hit, sizeof(hit));
 }

@@ -1,33 +1,54 @@
 // Where the lanes of a packet begin: entry.h and start_face() of project.h, lane by lane.
 
-// entry_square() of entry.h; 6 n^2 for lanes that miss the domain.
+// The number that a lane's axis has among three.
+LANE_FN Floats of_axis(const Mask* is_axis, uint turn, const Floats* of)
+{
+    const uint y = (1 + turn) % 3, z = (2 + turn) % 3;
+    return select(is_axis[1], of[y], select(is_axis[2], of[z], of[turn]));
+}
+
+// entry_square() of entry_on_path.h; 6 n^2 for lanes that miss the domain.
 LANE_FN Words entry_squares(const PacketJob& job, const Packet& packet)
 {
     const uint n = job.divisions;
-    Words squares = all(6 * n * n);
+    Floats low[3], high[3], gap[3], rise[3];
+    Words side_of[3];
     for (uint axis = 0; axis < 3; ++axis) {
-        const uint across[2] = {axis == 2 ? 0 : axis + 1, axis == 0 ? 2 : axis - 1};
-        const float* const planes = job.lines + axis * (n + 1);
-        const Floats origin = packet.origin[axis], direction = packet.direction[axis], slope = magnitude(direction);
-        const Mask from_high = greater(origin, all(planes[n]));
-        const Floats gap = select(from_high, origin - all(planes[n]), all(planes[0]) - origin);
-        Mask met = (from_high & greater(Floats{}, direction)) |
-                   (greater(all(planes[0]), origin) & greater(direction, Floats{}));
-        Words index[2]{};
-        for (uint i = 0; i < 2; ++i) {
-            const float* const lines = job.lines + across[i] * (n + 1);
-            const Floats start = packet.origin[across[i]], along = packet.direction[across[i]], reach = gap * along;
-            const Floats first = (all(lines[0]) - start) * slope, last = (all(lines[n]) - start) * slope;
-            met = met & (greater(reach, first) | (equal(reach, first) & greater(along, Floats{})));
-            met = met & (greater(last, reach) | (equal(last, reach) & greater(Floats{}, along)));
-            if (lanes_of(met) == 0) break;
-            for (uint line = 1; line < n; ++line)
-                index[i] = select(greater((all(lines[line]) - start) * slope, reach), index[i], index[i] + all(1u));
-        }
-        const Words side = all(2 * axis) + select(from_high, all(1u), Words{});
-        squares = select(met, (side * n + index[1]) * n + index[0], squares);
+        low[axis] = all(job.lines[axis * (n + 1)]);
+        high[axis] = all(job.lines[axis * (n + 1) + n]);
+        const Floats origin = packet.origin[axis], direction = packet.direction[axis];
+        const Mask falls = greater(Floats{}, direction), rises = greater(direction, Floats{});
+        const Floats distance = select(falls, origin - high[axis], select(rises, low[axis] - origin, Floats{}));
+        gap[axis] = select(greater(distance, Floats{}), distance, Floats{});
+        rise[axis] = magnitude(direction);
+        side_of[axis] = all(2 * axis) + select(falls, all(1u), Words{});
     }
-    return squares;
+    // The last of the planes that is not met before another.
+    Mask is_axis[3];
+    for (uint axis = 0; axis < 3; ++axis) {
+        is_axis[axis] = greater(gap[axis], Floats{});
+        for (uint other = (axis + 1) % 3; other != axis; other = (other + 1) % 3)
+            is_axis[axis] = without(is_axis[axis], greater(gap[other] * rise[axis], gap[axis] * rise[other]));
+    }
+    is_axis[1] = without(is_axis[1], is_axis[2]);
+    is_axis[0] = without(without(is_axis[0], is_axis[1]), is_axis[2]);
+    Mask met = is_axis[0] | is_axis[1] | is_axis[2];
+    const Words side = select(is_axis[1], side_of[1], select(is_axis[2], side_of[2], side_of[0]));
+    const Floats gap_met = of_axis(is_axis, 0, gap), slope = of_axis(is_axis, 0, rise);
+    Words index[2];
+    for (uint i = 0; i < 2; ++i) {
+        const Floats origin = of_axis(is_axis, (1 + i) % 3, packet.origin);
+        const Floats direction = of_axis(is_axis, (1 + i) % 3, packet.direction);
+        const Floats reach = gap_met * direction;
+        const Floats first = (of_axis(is_axis, (1 + i) % 3, low) - origin) * slope;
+        const Floats last = (of_axis(is_axis, (1 + i) % 3, high) - origin) * slope;
+        met = met & (greater(reach, first) | (equal(reach, first) & greater(direction, Floats{})));
+        met = met & (greater(last, reach) | (equal(last, reach) & greater(Floats{}, direction)));
+        const Floats place = (reach - first) * all(static_cast<float>(n)) / (last - first);
+        const Floats inside = select(met & greater(place, Floats{}), place, Floats{});
+        index[i] = least(reinterpret_cast<Words>(__builtin_convertvector(inside, Ints)), all(n - 1));
+    }
+    return select(met, (side * n + index[1]) * n + index[0], all(6 * n * n));
 }
 
 // The lanes that enter the domain by a boundary face, by its corners; `left_to_scalar` gets those for which a sign is a
