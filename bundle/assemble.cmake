@@ -1,7 +1,8 @@
 # Assembles the bundle anew: cmake -DSOURCE= -DBUNDLE= -DPARTS= -DPROGRAM= -DXZ= -DLOADERS= -DBUILDER= -DCACHE= -DOBJDUMP=
-#                                -DVERSION= -P assemble.cmake
+#                                -DVERSION= -DCUDA_CODE= -P assemble.cmake
 # BUNDLE is the folder to make, PARTS keeps packed scenes between calls, PROGRAM is the relocatable tetrace, BUILDER
-# tetrace-builder or empty, CACHE where scenes are built.
+# tetrace-builder or empty, CACHE where scenes are built, CUDA_CODE the compiler of the CUDA kernels that are in it, or
+# empty.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/libraries.cmake)
 include(${SOURCE}/scenes.cmake)
@@ -22,6 +23,14 @@ list(JOIN packages "\n    " PACKAGES)
 list(JOIN scenes ", " SCENES)
 if(NOT scenes)
   set(SCENES "none (tetrace-builder or Debian's libcgal-demo was missing); the embedded scene cubes runs")
+endif()
+if(CUDA_CODE)
+  set(CUDA "its kernels are in it, compiled by ${CUDA_CODE} for each generation that this knows, and as assembly (PTX) for newer ones")
+else()
+  string(CONCAT CUDA "its kernels are in it as source alone, since no nvcc was there when it was built: the machine needs "
+    "NVRTC (libnvrtc.so.13, .12 or .11.2, of CUDA's toolkit or the package libnvrtc12), or else CUDA is left out. "
+    "libnvrtc.so.* and libnvrtc-builtins.so.* copied into lib/ serve too")
+  message(STATUS "The bundle lacks compiled CUDA kernels (no nvcc): ${CUDA}")
 endif()
 configure_file(${SOURCE}/README.in ${BUNDLE}/README @ONLY)
 

@@ -112,13 +112,23 @@ void CudaSession::launch(const TraceJob& job)
     entry_ = job.start_tet == NO_TET ? outside_ : inside_;
     launched_tiles_ = 0;
     launches_.start(
-        launch_params(job, divisions_, tile_height_, TetParts{}.log2_bytes),
-        [this](const LaunchParams& params, std::uint32_t tiles) {
-            finish_launch(); // for the previous launch: there is only one stopwatch
-            schedule_ == Schedule::persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
-            launched_tiles_ = tiles;
+        launch_params(job, divisions_, tile_height_, TetParts{}.log2_bytes), job.passes,
+        [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
+            start_launch(params, tiles, passes);
         },
         [this] { finish_launch(); });
+}
+
+/// Persistent threads count tiles down: their counter is filled before each pass, which is no part of its time.
+void CudaSession::start_launch(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
+{
+    const bool is_persistent = schedule_ == Schedule::persistent;
+    for (std::uint32_t pass = 0; pass < (is_persistent ? passes : 1); ++pass) {
+        finish_launch(); // for the previous launch: there is only one stopwatch
+        launched_passes_ = is_persistent ? 1 : passes;
+        is_persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
+        launched_tiles_ = tiles;
+    }
 }
 
 void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
@@ -127,7 +137,8 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
     Address output = output_.address(), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
     timer_.start(device_.stream.get());
-    device_.launch(entry_.function, tiles, TILE_WIDTH * tile_height_, parameters);
+    for (std::uint32_t pass = 0; pass < launched_passes_; ++pass)
+        device_.launch(entry_.function, tiles, TILE_WIDTH * tile_height_, parameters);
     timer_.stop(device_.stream.get());
 }
 
@@ -147,7 +158,7 @@ void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t ti
 void CudaSession::finish_launch()
 {
     if (launched_tiles_ == 0) return;
-    launches_.took(launched_tiles_, timer_.seconds());
+    launches_.took(launched_tiles_, launched_passes_, timer_.seconds());
     launched_tiles_ = 0;
 }
 

@@ -26,6 +26,7 @@ private:
     void make_current();
     void upload(const PackedScene& scene);
     void poison_output(std::size_t words);
+    void start_launch(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
     void launch_tiles(const LaunchParams& params, std::uint32_t tiles);
     void launch_persistent(const LaunchParams& params, std::uint32_t tiles);
     /// A kernel's entry point.
@@ -53,6 +54,7 @@ private:
     Launches launches_;
     Entry entry_ = {};                 ///< of the image
     std::uint32_t launched_tiles_ = 0; ///< of the current launch; 0: there is none
+    std::uint32_t launched_passes_ = 1;
     SetupTimes setup_;
     std::uint64_t bytes_;
 };

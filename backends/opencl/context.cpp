@@ -24,10 +24,10 @@ cl::Device part_of(cl::Device device, unsigned units)
 
 } // namespace
 
-double seconds_of(const cl::Event& event)
+double seconds_between(const cl::Event& first, const cl::Event& last)
 {
-    return 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    return 1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                      first.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
 Context::Context(const FoundDevice& found, unsigned threads)

@@ -8,8 +8,8 @@
 
 namespace tetrace::opencl {
 
-/// Seconds that a finished command took on the device.
-[[nodiscard]] double seconds_of(const cl::Event& event);
+/// Seconds from the begin of one command to the end of a later one on the device, or of the same; both are finished.
+[[nodiscard]] double seconds_between(const cl::Event& first, const cl::Event& last);
 
 /// A context on a device, shared by its sessions. It turns the API's errors into Error.
 class Context {

@@ -93,7 +93,7 @@ void OpenclSession::compile()
         LaunchParams nothing{};
         nothing.width = 1;
         nothing.tile_height = tile_height_;
-        enqueue(nothing, 1);
+        enqueue(nothing, 1, 1);
         queue_.finish();
         enqueued_.clear();
     });
@@ -157,17 +157,25 @@ std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
     return std::min<std::size_t>(tiles, resident);
 }
 
-void OpenclSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
+/// Persistent groups count tiles: their counter is filled before each pass, which is no part of its time.
+void OpenclSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
 {
-    if (kernel_id_.schedule == Schedule::persistent)
-        queue_.enqueueFillBuffer(counter_, params.first_tile, 0, sizeof(params.first_tile));
+    const bool is_persistent = kernel_id_.schedule == Schedule::persistent;
     kernel_.setArg(launch_argument, params);
     kernel_.setArg(end_tile_argument, params.first_tile + tiles);
     const std::size_t group_items = std::size_t{TILE_WIDTH} * tile_height_;
-    Enqueued& launched = enqueued_.emplace_back();
-    launched.tiles = tiles;
-    queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups_for(tiles) * group_items),
-                                cl::NDRange(group_items), nullptr, &launched.event);
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        if (is_persistent) queue_.enqueueFillBuffer(counter_, params.first_tile, 0, sizeof(params.first_tile));
+        const bool is_first = is_persistent || pass == 0;
+        if (is_first) enqueued_.push_back({tiles, is_persistent ? 1 : passes, {}, {}});
+        Enqueued& launched = enqueued_.back();
+        const bool is_timed = is_first || pass + 1 == passes;
+        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups_for(tiles) * group_items),
+                                    cl::NDRange(group_items), nullptr,
+                                    !is_timed  ? nullptr
+                                    : is_first ? &launched.first
+                                               : &launched.last);
+    }
 }
 
 void OpenclSession::launch(const TraceJob& job)
@@ -178,8 +186,10 @@ void OpenclSession::launch(const TraceJob& job)
         enqueued_.clear();
         queue_.enqueueFillBuffer(output_, POISON, 0, output_bytes());
         launches_.start(
-            launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
-            [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },
+            launch_params(job, divisions_, tile_height_, parts_.log2_bytes), job.passes,
+            [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
+                enqueue(params, tiles, passes);
+            },
             [this] { take_times(); });
         queue_.flush();
     });
@@ -195,8 +205,10 @@ void OpenclSession::take_times()
 {
     queue_.finish();
     for (const Enqueued& launched : enqueued_) {
-        launched.event.wait(); // reports an error of the kernel
-        launches_.took(launched.tiles, seconds_of(launched.event));
+        const cl::Event& last = launched.passes > 1 ? launched.last : launched.first;
+        launched.first.wait(); // reports an error of the kernel
+        last.wait();
+        launches_.took(launched.tiles, launched.passes, seconds_between(launched.first, last));
     }
     enqueued_.clear();
 }

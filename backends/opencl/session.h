@@ -33,7 +33,7 @@ private:
     void upload(const PackedScene& scene);
     void set_arguments();
     void resize_output(std::size_t words);
-    void enqueue(const LaunchParams& params, std::uint32_t tiles);
+    void enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
     [[nodiscard]] std::size_t groups_for(std::uint32_t tiles) const;
     /// Waits for enqueued work, and counts its times.
     void take_times();
@@ -41,10 +41,10 @@ private:
     void run(const char* doing, std::uint64_t output_bytes, const Work& work);
     [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
 
-    /// Tiles of a launch that was enqueued, and the event of its kernel.
+    /// Tiles of a launch that was enqueued, how often it runs, and the events of its first and last pass.
     struct Enqueued {
-        std::uint32_t tiles;
-        cl::Event event;
+        std::uint32_t tiles, passes;
+        cl::Event first, last;
     };
 
     std::shared_ptr<Context> context_;

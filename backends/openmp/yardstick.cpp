@@ -1,6 +1,7 @@
 #include "backends/openmp/yardstick.h"
 
 #include "core/base/stopwatch.h"
+#include "core/device/host.h"
 #include "core/device/yardstick.h"
 
 #include <algorithm>
@@ -14,33 +15,32 @@ namespace tetrace::openmp {
 
 namespace {
 
-constexpr std::size_t words = std::size_t{128} << 17; // 128 MiB
-constexpr int passes = 6;                             // the first one touches the pages
-
-void copy_words(std::uint64_t* to, const std::uint64_t* from, int threads)
+/// Each thread copies its share again and again, now one way and now the other, without waiting for the others.
+void copy_words(std::uint64_t* a, std::uint64_t* b, std::size_t words, unsigned times, int team)
 {
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (std::size_t i = 0; i < words; ++i)
-        to[i] = from[i];
+#pragma omp parallel num_threads(team)
+    for (unsigned time = 0; time < times; ++time) {
+        const std::uint64_t* const from = time % 2 == 0 ? a : b;
+        std::uint64_t* const to = time % 2 == 0 ? b : a;
+#pragma omp for schedule(static) nowait
+        for (std::size_t i = 0; i < words; ++i)
+            to[i] = from[i];
+    }
 }
 
-double copy_bytes_per_s(int team)
+Yardstick measured_copies(int team)
 {
+    const std::size_t bytes = copied_bytes(host_device().memory_bytes, 0), words = bytes / sizeof(std::uint64_t);
     // Not initialised here: each page belongs to the thread that touches it first.
     const std::unique_ptr<std::uint64_t[]> a(new std::uint64_t[words]), b(new std::uint64_t[words]);
 #pragma omp parallel for schedule(static) num_threads(team)
     for (std::size_t i = 0; i < words; ++i)
-        a[i] = i;
-    double best_s = 1e300;
-    for (int pass = 0; pass < passes; ++pass) {
+        a[i] = b[i] = i;
+    return measure_copies(words * sizeof(std::uint64_t), [&](std::uint64_t each, unsigned times) {
         const Stopwatch watch;
-        if (pass % 2 == 0)
-            copy_words(b.get(), a.get(), team);
-        else
-            copy_words(a.get(), b.get(), team);
-        if (pass > 0) best_s = std::min(best_s, watch.seconds());
-    }
-    return 2.0 * static_cast<double>(words * sizeof(std::uint64_t)) / best_s;
+        copy_words(a.get(), b.get(), each / sizeof(std::uint64_t), times, team);
+        return watch.seconds();
+    });
 }
 
 double launch_s(int team)
@@ -113,7 +113,9 @@ double pulse_s(unsigned threads)
 Yardstick measure_host(unsigned threads)
 {
     const int team = static_cast<int>(threads);
-    return {copy_bytes_per_s(team), launch_s(team)};
+    Yardstick measured = measured_copies(team);
+    measured.launch_s = launch_s(team);
+    return measured;
 }
 
 } // namespace tetrace::openmp

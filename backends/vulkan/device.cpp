@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <thread>
 
 namespace tetrace::vulkan {
@@ -24,11 +25,17 @@ FoundDevice no_device(const std::string& reason)
     return none;
 }
 
+/// A driver's text; not every driver ends it where it should.
+template <std::size_t Size>
+std::string text_of(const vk::ArrayWrapper1D<char, Size>& text)
+{
+    return {text.data(), ::strnlen(text.data(), Size)};
+}
+
 bool has_extension(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name)
 {
-    return std::ranges::any_of(extensions, [&](const vk::ExtensionProperties& extension) {
-        return std::string_view(extension.extensionName.data()) == name;
-    });
+    return std::ranges::any_of(
+        extensions, [&](const vk::ExtensionProperties& extension) { return text_of(extension.extensionName) == name; });
 }
 
 std::string version_text(std::uint32_t version)
@@ -94,8 +101,8 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
     if (has_extension(extensions, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) {
         const auto driver = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>()
                                 .get<vk::PhysicalDeviceDriverProperties>();
-        found.facts.driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data();
-        found.facts.implementation = implementation_of(driver.driverName.data(), driver.driverInfo.data());
+        found.facts.driver = text_of(driver.driverName) + " " + text_of(driver.driverInfo);
+        found.facts.implementation = implementation_of(text_of(driver.driverName), text_of(driver.driverInfo));
         found.facts.most_steps = most_steps_of(found.facts.implementation);
     }
     if (has_extension(extensions, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME))
@@ -116,7 +123,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     found.handle = *device;
     found.limits = limits_of(device);
     Device& facts = found.facts;
-    facts.name = properties.deviceName.data();
+    facts.name = text_of(properties.deviceName);
     const bool is_emulated = properties.deviceType == vk::PhysicalDeviceType::eCpu;
     facts.kind = is_emulated ? DeviceKind::emulated : DeviceKind::gpu;
     if (is_emulated) facts.threads = std::max(1u, std::thread::hardware_concurrency());

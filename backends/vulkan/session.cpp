@@ -210,7 +210,7 @@ const vk::raii::CommandBuffer& VulkanSession::commands_for(std::size_t index)
     return chunks_[index].commands;
 }
 
-void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
+void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
 {
     const vk::raii::CommandBuffer& commands = commands_for(enqueued_.size());
     const vk::raii::QueryPool& times = chunks_[enqueued_.size()].times;
@@ -221,12 +221,15 @@ void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles)
     }
     program_->record(commands);
     record_begin_time(commands, times);
-    record_dispatches(commands, params, tiles);
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        if (pass > 0) record_barrier(commands); // else passes may run at once
+        record_dispatches(commands, params, tiles);
+    }
     record_end_time(commands, times);
     record_barrier(commands);
     commands.end();
     context_.submit(commands);
-    enqueued_.push_back(tiles);
+    enqueued_.push_back({tiles, passes});
 }
 
 void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params,
@@ -254,8 +257,10 @@ void VulkanSession::launch(const TraceJob& job)
         if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
         resize_output(output_words(job, kernel_.task));
         launches_.start(
-            launch_params(job, divisions_, tile_height_, parts_.log2_bytes),
-            [this](const LaunchParams& params, std::uint32_t tiles) { enqueue(params, tiles); },
+            launch_params(job, divisions_, tile_height_, parts_.log2_bytes), job.passes,
+            [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
+                enqueue(params, tiles, passes);
+            },
             [this] { take_times(); });
     });
 }
@@ -271,7 +276,7 @@ void VulkanSession::take_times()
 {
     context_.finish();
     for (std::size_t i = 0; i < enqueued_.size(); ++i)
-        launches_.took(enqueued_[i], context_.seconds_of(chunks_[i].times));
+        launches_.took(enqueued_[i].tiles, enqueued_[i].passes, context_.seconds_of(chunks_[i].times));
     enqueued_.clear();
 }
 

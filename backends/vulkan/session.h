@@ -45,7 +45,7 @@ private:
     /// Command buffer and timestamps number `index` of a launch, made when first asked for.
     const vk::raii::CommandBuffer& commands_for(std::size_t index);
     /// The image's first launch poisons the output before its kernel.
-    void enqueue(const LaunchParams& params, std::uint32_t tiles);
+    void enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
     /// Records the dispatches of that many tiles, such that each of the device's threads gets tiles from all over the
     /// image.
     void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
@@ -75,8 +75,12 @@ private:
         vk::raii::CommandBuffer commands{nullptr};
         vk::raii::QueryPool times{nullptr};
     };
-    std::vector<Chunk> chunks_;           ///< those of the largest launch so far
-    std::vector<std::uint32_t> enqueued_; ///< tiles of each chunk that has not been waited for
+    std::vector<Chunk> chunks_; ///< those of the largest launch so far
+    /// What a chunk that has not been waited for runs.
+    struct Enqueued {
+        std::uint32_t tiles, passes;
+    };
+    std::vector<Enqueued> enqueued_;
     Launches launches_;
 };
 

@@ -3,15 +3,11 @@
 #include "backends/vulkan/program.h"
 #include "core/device/yardstick.h"
 
-#include <algorithm>
-
 namespace tetrace::vulkan {
 
 namespace {
 
-constexpr int passes = 6;
-
-double copy_bytes_per_s(const Context& context, std::uint64_t bytes)
+Yardstick measured_copies(const Context& context, std::uint64_t bytes)
 {
     const Buffer from(context, bytes, Place::device), to(context, bytes, Place::device);
     const vk::raii::QueryPool times = context.make_timestamps();
@@ -23,18 +19,19 @@ double copy_bytes_per_s(const Context& context, std::uint64_t bytes)
     commands.end();
     context.submit(commands);
     context.finish();
-    double best_s = 1e300;
-    for (int pass = 0; pass < passes; ++pass) {
+    return measure_copies(bytes, [&](std::uint64_t each, unsigned count) {
         commands.begin({});
         record_begin_time(commands, times);
-        commands.copyBuffer(from.handle(), to.handle(), vk::BufferCopy{}.setSize(bytes));
+        for (unsigned time = 0; time < count; ++time) {
+            if (time > 0) record_barrier(commands); // else several may run at once
+            commands.copyBuffer(from.handle(), to.handle(), vk::BufferCopy{}.setSize(each));
+        }
         record_end_time(commands, times);
         commands.end();
         context.submit(commands);
         context.finish();
-        best_s = std::min(best_s, context.seconds_of(times));
-    }
-    return best_s > 0 ? 2.0 * static_cast<double>(bytes) / best_s : 0;
+        return context.seconds_of(times);
+    });
 }
 
 double launch_s(const Context& context, const Program& nothing)
@@ -55,9 +52,11 @@ double launch_s(const Context& context, const Program& nothing)
 Yardstick measure_device(const Context& context, std::uint64_t max_buffer_bytes)
 {
     const Program nothing(context, {"empty"}, ProgramCache({}));
-    const std::uint64_t bytes = copied_bytes(context.facts(), max_buffer_bytes);
+    const std::uint64_t bytes = copied_bytes(context.facts().memory_bytes, max_buffer_bytes);
     const Yardstick measured = context.run("measuring the device", 2 * bytes, [&] {
-        return Yardstick{copy_bytes_per_s(context, bytes), launch_s(context, nothing)};
+        Yardstick copies = measured_copies(context, bytes);
+        copies.launch_s = launch_s(context, nothing);
+        return copies;
     });
     context.check_validation("the next call");
     return measured;

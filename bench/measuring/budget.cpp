@@ -97,7 +97,7 @@ std::string budget_text(double seconds)
 
 Budget::Budget(double seconds, Clock clock) : seconds_(seconds), clock_(std::move(clock)), start_s_(clock_()) {}
 
-void Budget::plan(std::vector<RowRun>& rows, unsigned samples)
+void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s)
 {
     start_s_ = now();
     if (std::isinf(seconds_)) return;
@@ -110,7 +110,10 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples)
         if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
         if (!is_alive(row)) continue;
         const auto views = static_cast<double>(row.scene->views().size());
-        entry.views_left = views + 1 + views + views * std::min(samples, fewest_samples);
+        const double pass_s = entry.view_s * views;
+        // A sample of several passes has one more, which is launched alone.
+        const double passes = pass_s > 0 && pass_s < sample_s ? sample_s / pass_s + 2 : 1;
+        entry.views_left = views + 1 + views + passes * views * std::min(samples, fewest_samples);
         entries_.push_back(entry);
         if (scenes.insert(row.scene).second) views_to_judge_ += views;
     }

@@ -29,9 +29,9 @@ public:
 
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
-    /// samples: the number asked for. Throws Error{usage} where no row fits, or not all of openmp's rows that others
-    /// are compared with.
-    void plan(std::vector<RowRun>& rows, unsigned samples);
+    /// samples: the number asked for. sample_s: that each lasts at least. Throws Error{usage} where no row fits, or not
+    /// all of openmp's rows that others are compared with.
+    void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0);
 
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);

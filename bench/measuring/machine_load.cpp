@@ -1,11 +1,11 @@
 #include "bench/measuring/machine_load.h"
 
+#include "core/base/file_bytes.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sched.h>
 #include <sstream>
 #include <string>
@@ -29,8 +29,7 @@ std::set<unsigned> allowed_processors()
 
 std::string text_of(const std::filesystem::path& path)
 {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
+    return file_bytes(path).value_or("");
 }
 
 std::optional<double> busy_seconds(const std::set<unsigned>& processors)

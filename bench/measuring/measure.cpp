@@ -1,6 +1,7 @@
 #include "bench/measuring/measure.h"
 
 #include "bench/measuring/reporters.h"
+#include "bench/rows/physical_device.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
@@ -10,8 +11,10 @@
 #include "core/base/whole_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <sstream>
 #include <unistd.h>
 
@@ -26,10 +29,29 @@ void set_counters(benchmark::State& state, const RowRun& row)
     state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced(row)->totals.rays) / row.samples_s.back();
 }
 
+/// The monitors of the rows' GPUs, each found once.
+class Monitors {
+public:
+    explicit Monitors(FindMonitor find) : find_(std::move(find)) {}
+    /// Null where nothing tells about the row's device.
+    [[nodiscard]] GpuMonitor* of(const RowRun& row)
+    {
+        const auto [place, is_new] = found_.try_emplace({row.key.backend, row.key.device});
+        if (is_new) place->second = find_(row.device);
+        return place->second.get();
+    }
+
+private:
+    FindMonitor find_;
+    std::map<std::pair<std::string, std::size_t>, std::unique_ptr<GpuMonitor>> found_;
+};
+
 /// Counts the repetitions of all rows, for the progress line.
 struct Sweep {
     const Budget* budget; ///< whose clock is read
     Pulses* pulses;
+    Monitors* monitors;
+    double sample_s; ///< that a sample lasts at least
     double done = 0, all = 1;
 };
 
@@ -38,24 +60,33 @@ struct Pass {
     double kernel_s = 0, wall_s = 0, download_s = 0;
 };
 
-/// hits: receives each view's hits; may be null.
-Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
-                 const std::function<void(double)>& tell_progress)
+/// What happens in a pass besides.
+struct Besides {
+    std::function<void(double)> tell_progress;
+    std::vector<Hit>* hits = nullptr;          ///< receives each view's hits
+    std::function<void()> in_last_launch = {}; ///< called while the last view is traced
+};
+
+/// passes: of each view; the seconds are those of all of them.
+Pass trace_views(RowRun& row, std::uint32_t passes, const Budget& budget, const Besides& besides)
 {
     const std::size_t views = row.scene->views().size();
     Pass pass;
     for (std::size_t view = 0; view < views; ++view) {
         // Not inside a timed interval: a sample may take minutes, and drawing adds nothing to a row's time.
-        tell_progress(static_cast<double>(view) / static_cast<double>(views));
+        besides.tell_progress(static_cast<double>(view) / static_cast<double>(views));
         const std::size_t rays = ray_count(row, view);
         if (rays == 0) continue; // given rays, of which this view has none
-        const TraceJob job = prepare_view(row, view);
-        const auto [kernel_s, wall_s] = timed_launch(*row.session, job, budget.clock());
+        TraceJob job = prepare_view(row, view);
+        job.passes = passes;
+        const bool is_last = besides.in_last_launch && view == last_view_with_rays(row);
+        const auto [kernel_s, wall_s] =
+            timed_launch(*row.session, job, budget.clock(), is_last ? besides.in_last_launch : std::function<void()>());
         pass.kernel_s += kernel_s;
         pass.wall_s += wall_s;
-        if (hits == nullptr) continue;
-        hits->resize(rays);
-        row.session->read_back(*hits);
+        if (besides.hits == nullptr) continue;
+        besides.hits->resize(rays);
+        row.session->read_back(*besides.hits);
         pass.download_s += row.session->download_s();
     }
     return pass;
@@ -64,19 +95,21 @@ Pass trace_views(RowRun& row, const Budget& budget, std::vector<Hit>* hits,
 /// Verification has already paid the costs of a row's first passes: compiling at the first launch, finding the launch
 /// size, touching memory. One more pass just before the samples wakes the device up, shows what a sample costs, and
 /// times the download.
-void warm_up(RowRun& row, Budget& budget, const std::function<void(double)>& tell_progress)
+void warm_up(RowRun& row, double sample_s, Budget& budget, const std::function<void(double)>& tell_progress)
 {
+    constexpr double for_faster_clocks = 1.25; // a device that has rested is slower than it will be
     guarded(row, [&] {
         std::vector<Hit> hits;
-        const Pass pass = trace_views(row, budget, &hits, tell_progress);
+        const Pass pass = trace_views(row, 1, budget, {tell_progress, &hits});
         std::get<Traced>(row.outcome).download_s = pass.download_s;
-        row.warm_s = pass.wall_s;
+        row.passes = passes_for(for_faster_clocks * sample_s, pass.kernel_s);
+        row.warm_s = pass.wall_s + (row.passes > 1 ? row.passes * pass.kernel_s : 0);
         budget.traced(row, row.scene->views().size(), pass.wall_s);
     });
 }
 
 /// Seconds of one sample of every row.
-double warm_up_rows(std::vector<RowRun>& rows, Budget& budget)
+double warm_up_rows(std::vector<RowRun>& rows, double sample_s, Budget& budget)
 {
     double done = 0;
     for (RowRun& row : rows) {
@@ -85,7 +118,7 @@ double warm_up_rows(std::vector<RowRun>& rows, Budget& budget)
             progress_line().show("warming up", (done + part) / static_cast<double>(rows.size()), -1,
                                  row.key.scene + ", " + row_label(row.key));
         };
-        if (is_timed(row)) warm_up(row, budget, tell);
+        if (is_timed(row)) warm_up(row, sample_s, budget, tell);
         done += 1;
     }
     budget.review_timed();
@@ -95,17 +128,46 @@ double warm_up_rows(std::vector<RowRun>& rows, Budget& budget)
     return sweep_s;
 }
 
+/// Traces a sample's passes; where its GPU was throttled meanwhile, once more, and once more again.
+Pass unthrottled(RowRun& row, GpuMonitor* monitor, const Budget& budget,
+                 const std::function<Pass(const std::function<void()>&)>& trace)
+{
+    if (monitor == nullptr) return trace({});
+    if (!row.gpu) row.gpu.emplace();
+    for (int attempt = 1;; ++attempt) {
+        GpuState state;
+        const Pass sample = trace([&] { state = monitor->read(); });
+        if (!state.throttled.empty()) row.gpu->add_reason(state.throttled);
+        if (state.throttled.empty() || attempt == 3 || budget.left_s() <= 0) {
+            row.gpu->states.push_back(std::move(state));
+            return sample;
+        }
+        ++row.gpu->dropped;
+    }
+}
+
+/// Seconds of a pass. What launching and waiting take is that of a pass alone: several passes share it.
 double take_sample(RowRun& row, const Sweep& sweep)
 {
     sweep.pulses->take_if_due();
+    const auto trace = [&](std::uint32_t passes, const std::function<void()>& meanwhile) {
+        const auto tell = [&](double done) {
+            progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
+                                 row.key.scene + ", " + row_label(row.key));
+        };
+        return trace_views(row, passes, *sweep.budget, {tell, nullptr, meanwhile});
+    };
+    const Pass alone = row.passes > 1 ? trace(1, {}) : Pass{};
     const double begin_s = sweep.budget->now();
-    const Pass pass = trace_views(row, *sweep.budget, nullptr, [&](double done) {
-        progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
-                             row.key.scene + ", " + row_label(row.key));
-    });
+    const Pass sample =
+        unthrottled(row, sweep.monitors->of(row), *sweep.budget,
+                    [&](const std::function<void()>& meanwhile) { return trace(row.passes, meanwhile); });
     sweep.pulses->sampled(row, begin_s, sweep.budget->now());
-    row.wall_samples_s.push_back(pass.wall_s);
-    return pass.kernel_s;
+    const double kernel_s = sample.kernel_s / row.passes;
+    const Pass& launched = row.passes > 1 ? alone : sample;
+    row.wall_samples_s.push_back(kernel_s + launched.wall_s - launched.kernel_s);
+    row.passes = std::max(row.passes, passes_for(sweep.sample_s, kernel_s));
+    return kernel_s;
 }
 
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
@@ -125,17 +187,26 @@ void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
     set_counters(state, row);
 }
 
-void register_rows(std::vector<RowRun>& rows, unsigned samples, Sweep& sweep)
+void register_rows(const std::vector<RowRun*>& rows, unsigned samples, Sweep& sweep)
 {
     benchmark::ClearRegisteredBenchmarks();
+    for (RowRun* const row : rows)
+        benchmark::RegisterBenchmark(row_name(row->key).c_str(),
+                                     [row, &sweep](benchmark::State& state) { run_row(state, *row, sweep); })
+            ->Iterations(1)
+            ->Repetitions(static_cast<int>(samples))
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
+}
+
+/// The timed rows on GPUs, then those on the host; those groups that have any.
+std::vector<std::vector<RowRun*>> groups_of(std::vector<RowRun>& rows)
+{
+    std::vector<std::vector<RowRun*>> groups(2);
     for (RowRun& row : rows)
-        if (is_timed(row))
-            benchmark::RegisterBenchmark(row_name(row.key).c_str(),
-                                         [&row, &sweep](benchmark::State& state) { run_row(state, row, sweep); })
-                ->Iterations(1)
-                ->Repetitions(static_cast<int>(samples))
-                ->UseManualTime()
-                ->Unit(benchmark::kMillisecond);
+        if (is_timed(row)) groups[runs_on_host(row.device) ? 1 : 0].push_back(&row);
+    std::erase_if(groups, [](const auto& group) { return group.empty(); });
+    return groups;
 }
 
 /// As Google Benchmark chooses them, but that NO_COLOR is honoured.
@@ -146,24 +217,27 @@ benchmark::ConsoleReporter::OutputOptions console_options(const BenchmarkFlags& 
     return static_cast<Console::OutputOptions>(colour | (flags.tabular ? Console::OO_Tabular : Console::OO_None));
 }
 
-std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& recorded)
+std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& recorded, std::size_t runs)
 {
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
     receivers.push_back(make_reporter("json", recorded));
     if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout, console_options(flags)));
-    return std::make_unique<RowReporter>(std::move(receivers));
+    return std::make_unique<RowReporter>(std::move(receivers), runs);
 }
 
 /// Keeps what is to be written to the file of --benchmark_out. Google Benchmark gives the stream of that option only
 /// to the file reporter; read_benchmark_flags() lets it lead nowhere.
 class FileReporter : public RowReporter {
 public:
-    explicit FileReporter(const std::string& format) : FileReporter(format, std::make_unique<std::ostringstream>()) {}
+    FileReporter(const std::string& format, std::size_t runs)
+        : FileReporter(format, runs, std::make_unique<std::ostringstream>())
+    {
+    }
     [[nodiscard]] std::string text() const { return text_->str(); }
 
 private:
-    FileReporter(const std::string& format, std::unique_ptr<std::ostringstream> text)
-        : RowReporter(one(make_reporter(format, *text))), text_(std::move(text))
+    FileReporter(const std::string& format, std::size_t runs, std::unique_ptr<std::ostringstream> text)
+        : RowReporter(one(make_reporter(format, *text)), runs), text_(std::move(text))
     {
     }
     static std::vector<std::unique_ptr<benchmark::BenchmarkReporter>>
@@ -207,6 +281,12 @@ void check_rows_after(std::vector<RowRun>& rows)
 
 } // namespace
 
+std::uint32_t passes_for(double sample_s, double pass_s)
+{
+    constexpr double most = 4096; // a launch of Vulkan's lists them all
+    return pass_s > 0 ? static_cast<std::uint32_t>(std::clamp(std::ceil(sample_s / pass_s), 1.0, most)) : 1;
+}
+
 unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 {
     if (sweep_s * asked <= left_s) return asked;
@@ -215,25 +295,29 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 }
 
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget,
-                         const Pulses::Work& host)
+                         const Pulses::Work& host, const FindMonitor& find_monitor)
 {
     Measurement result;
     const LoadMeter meter;
-    const double sweep_s = warm_up_rows(rows, budget);
+    const double sweep_s = warm_up_rows(rows, options.sample_s, budget);
     result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
     result.lowered = !flags.repetitions && result.samples < options.samples;
     const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
+    const auto groups = groups_of(rows);
     const Stopwatch watch;
     Pulses pulses(rows, host ? host : host_pulse(resolved_threads(options)), budget.clock());
-    Sweep sweep{&budget, &pulses, 0, static_cast<double>(timed) * result.samples};
-    register_rows(rows, result.samples, sweep);
+    Monitors monitors(find_monitor);
+    Sweep sweep{&budget, &pulses, &monitors, options.sample_s, 0, static_cast<double>(timed) * result.samples};
     std::ostringstream json;
-    const auto display = make_display(flags, json);
-    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format);
+    const auto display = make_display(flags, json, groups.size());
+    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, groups.size());
     pulses.take();
-    // The filter was applied to the rows themselves, under the reported names.
-    benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    for (const auto& group : groups) {
+        register_rows(group, result.samples, sweep);
+        // The filter was applied to the rows themselves, under the reported names.
+        benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    }
     pulses.take();
     result.load = meter.load();
     result.pulses = pulses.found();

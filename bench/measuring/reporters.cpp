@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 
 #include <sstream>
+#include <utility>
 
 namespace tetrace {
 
@@ -21,6 +22,7 @@ std::string without_debug_warning(const std::string& text)
 
 bool RowReporter::ReportContext(const Context& context)
 {
+    if (std::exchange(has_begun_, true)) return true;
     bool go_on = true;
     for (const auto& receiver : receivers_) {
         std::ostream& errors = receiver->GetErrorStream();
@@ -47,6 +49,7 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs)
 
 void RowReporter::Finalize()
 {
+    if (--runs_left_ > 0) return;
     for (const auto& receiver : receivers_)
         receiver->Finalize();
 }

@@ -11,11 +11,11 @@ namespace tetrace {
 /// Passes Google Benchmark's reports on to several reporters, under the bare row names. It removes the suffixes
 /// "/iterations:1/manual_time", which are the same for all rows and would make names depend on the number of
 /// measurements. Leaves out the warning that the library was built for debugging: what it times here is one call, by
-/// our own clock.
+/// our own clock. Several runs in turn are one report.
 class RowReporter : public benchmark::BenchmarkReporter {
 public:
-    explicit RowReporter(std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers)
-        : receivers_(std::move(receivers))
+    explicit RowReporter(std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers, std::size_t runs = 1)
+        : receivers_(std::move(receivers)), runs_left_(runs)
     {
     }
 
@@ -25,6 +25,8 @@ public:
 
 private:
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers_;
+    std::size_t runs_left_; ///< the report ends with the last
+    bool has_begun_ = false;
 };
 
 /// Google Benchmark's own reporter for a format: "console", "json" or "csv". Its options are those of the console's.

@@ -96,12 +96,15 @@ void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& opti
     progress_line().clear();
 }
 
-std::optional<double> share_of_copy(const RowRun& row, const std::vector<RowDevice>& devices)
+std::optional<CopyShares> copy_shares(const RowRun& row, const std::vector<RowDevice>& devices)
 {
     const auto figures = figures_of(row);
     const auto place = device_of(row, devices);
     if (!figures || !figures->gb_per_s || !place || !devices[*place].yardstick) return std::nullopt;
-    return 1e9 * *figures->gb_per_s / devices[*place].yardstick->copy_bytes_per_s;
+    const Yardstick& yardstick = *devices[*place].yardstick;
+    const double bytes_per_s = 1e9 * *figures->gb_per_s;
+    const double ceiling = yardstick.copy_bytes_per_s_of(row.session != nullptr ? row.session->bytes() : 0);
+    return CopyShares{bytes_per_s / yardstick.copy_bytes_per_s, bytes_per_s / ceiling, ceiling};
 }
 
 } // namespace tetrace

@@ -33,7 +33,13 @@ void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& opti
 /// The index of the row's device in the list; empty where the row was not opened.
 [[nodiscard]] std::optional<std::size_t> device_of(const RowRun& row, const std::vector<RowDevice>& devices);
 
-/// The row's estimated bandwidth over the copy bandwidth of its device; empty where either is unknown.
-[[nodiscard]] std::optional<double> share_of_copy(const RowRun& row, const std::vector<RowDevice>& devices);
+/// The row's estimated bandwidth over copy bandwidths of its device.
+struct CopyShares {
+    double of_memory;           ///< of its memory
+    double of_ceiling;          ///< of the level of its memory that holds the row's scene
+    double ceiling_bytes_per_s; ///< that level's
+};
+/// Empty where the row has no estimated bandwidth, or its device no yardstick.
+[[nodiscard]] std::optional<CopyShares> copy_shares(const RowRun& row, const std::vector<RowDevice>& devices);
 
 } // namespace tetrace

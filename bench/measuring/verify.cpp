@@ -113,6 +113,7 @@ public:
         image.hit_hash = hash_of(hits);
         if (reference_of(row.key)) compare(row, image, view);
         image.verdicts = judge(row.key, view, image.hit_hash);
+        name_source_triangles(image);
         return image;
     }
 
@@ -196,6 +197,20 @@ private:
         const std::uint32_t pixel = pixel_of_ray(row, view, ray);
         image.first_different = DifferingRay{scene_->view_numbers()[view], pixel % scene_->width(),
                                              pixel / scene_->width(), hits[ray], reference[ray]};
+    }
+
+    /// Users know the triangles of their file, not the pieces that a repair cut these into.
+    void name_source_triangles(ImageVerdict& image) const
+    {
+        const auto rename = [&](std::uint32_t& face_id) { face_id = source_triangle(scene_->loaded().scene, face_id); };
+        if (auto& ray = image.first_different) {
+            rename(ray->ours.face_id);
+            rename(ray->openmp.face_id);
+        }
+        if (auto& ray = image.verdicts.first_wrong) {
+            rename(ray->ours.face_id);
+            rename(ray->reference_face);
+        }
     }
 
     /// Made only where a row needs it: it builds its own BVH.

@@ -29,9 +29,12 @@ std::string timed_sentence(const BenchResult& result)
                                    instead, in_all);
     if (!result.scenes.empty()) {
         const ResultValue scene(result.scenes.front(), "scene");
-        text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads.", scene.at("views").items().size(),
+        std::uint32_t passes = 1;
+        for (const RowRun& row : result.run.rows)
+            passes = std::max(passes, row.passes);
+        text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads{}.", scene.at("views").items().size(),
                             scene.at("camera_set").line(), scene.at("width").count(), scene.at("height").count(),
-                            result.threads);
+                            result.threads, passes > 1 ? fmt::format(", up to {} times in turn", passes) : "");
     }
     return text + few;
 }

@@ -72,7 +72,7 @@ std::vector<RowFacts> facts_of(const BenchResult& result)
         RowFacts& facts = all.emplace_back(row);
         facts.comparison = result.comparisons.at(all.size() - 1);
         facts.ratio_to_single = ratio_to_single(row, result.run.rows);
-        facts.share_of_copy = share_of_copy(row, result.devices);
+        facts.copy_shares = copy_shares(row, result.devices);
     }
     return all;
 }

@@ -49,6 +49,21 @@ json self_test_json(const SelfTest& test)
             {"text", test.text()}};
 }
 
+json gpu_json(const GpuReadings& readings)
+{
+    json object = {{"dropped_samples", readings.dropped}};
+    const std::pair<const char*, std::optional<double> GpuState::*> told[] = {
+        {"clock_mhz", &GpuState::clock_mhz},
+        {"memory_clock_mhz", &GpuState::memory_clock_mhz},
+        {"power_w", &GpuState::power_w},
+        {"temperature_c", &GpuState::temperature_c}};
+    for (const auto& [key, member] : told)
+        if (const auto median = readings.median(member)) object[key] = *median;
+    set_known(object, "throttled_samples", readings.throttled());
+    set_known(object, "throttled_by", readings.reasons);
+    return object;
+}
+
 json row_device_json(const RowDevice& device)
 {
     json object = device_json(device.device);
@@ -58,6 +73,8 @@ json row_device_json(const RowDevice& device)
     if (device.yardstick) {
         set_known(object, "copy_bytes_per_s", device.yardstick->copy_bytes_per_s);
         set_known(object, "launch_s", device.yardstick->launch_s);
+        for (const CopyRate& copy : device.yardstick->copies)
+            if (copy.bytes_per_s > 0) object["copies"].push_back({copy.bytes, copy.bytes_per_s});
     }
     for (const auto& [math, test] : device.self_tests)
         object["self_test"][std::string(name_of(math))] = self_test_json(test);

@@ -16,6 +16,9 @@ namespace tetrace {
 /// A device that rows ran on, with its yardstick and self-tests.
 [[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
 
+/// What a row's GPU told while its samples were taken.
+[[nodiscard]] nlohmann::json gpu_json(const GpuReadings& readings);
+
 /// Sets a result's `load` and `pulses`, where they are known.
 void set_steadiness(nlohmann::json& section, const std::optional<MachineLoad>& load, const std::vector<Pulse>& pulses);
 

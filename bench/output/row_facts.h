@@ -2,6 +2,7 @@
 
 #include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
+#include "bench/measuring/row_devices.h"
 
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -20,14 +21,15 @@ struct RowFacts {
     std::optional<Figures> figures;
     // Set only by `bench`, which has all rows and devices.
     std::optional<Comparison> comparison;
-    std::optional<double> ratio_to_single, share_of_copy;
+    std::optional<double> ratio_to_single;
+    std::optional<CopyShares> copy_shares;
     // Set only by `check`.
     std::optional<std::string> conformity;
 };
 
 /// Reads a field. It is built from a function of one part of a row, or from a member of that part: RowFacts, RowKey,
-/// RowRun, SetupTimes, Traced, Visits, Figures or Comparison. The field has no value (null) where the row lacks the
-/// part, and where an optional result is empty.
+/// RowRun, SetupTimes, Traced, Visits, Figures, CopyShares or Comparison. The field has no value (null) where the row
+/// lacks the part, and where an optional result is empty.
 class FieldValue {
 public:
     template <class Read>
@@ -65,6 +67,8 @@ private:
             return read_part(traced(row) != nullptr && traced(row)->visits.rays > 0 ? &traced(row)->visits : nullptr);
         else if constexpr (std::is_invocable_v<Read, const Figures&>)
             return read_part(facts.figures ? &*facts.figures : nullptr);
+        else if constexpr (std::is_invocable_v<Read, const CopyShares&>)
+            return read_part(facts.copy_shares ? &*facts.copy_shares : nullptr);
         else {
             static_assert(std::is_invocable_v<Read, const Comparison&>, "a field is read from a part of a row");
             return read_part(facts.comparison ? &*facts.comparison : nullptr);

@@ -222,8 +222,11 @@ std::vector<RowField> rate_fields()
                                      : json();
          },
          recorded("line")},
-        {"rates", "share_of_copy_bandwidth", &RowFacts::share_of_copy,
-         recorded("positive", optional, "of the row's own device"), csv("share of copy"),
+        {"rates", "share_of_copy_bandwidth", &CopyShares::of_memory,
+         recorded("positive", optional, "of the memory of the row's own device"), csv("share of copy")},
+        {"rates", "ceiling_bytes_per_s", &CopyShares::ceiling_bytes_per_s,
+         recorded("positive", optional, "copy bandwidth of the level of that memory that holds the row's `bytes`")},
+        {"rates", "share_of_ceiling", &CopyShares::of_ceiling, recorded("positive"), csv("share of ceiling"),
          rates({.title = "of copy", .cell = percent<0>, .rank = 3})},
     };
 }
@@ -257,7 +260,11 @@ std::vector<RowField> time_fields()
         {"times", "first_wall_s", &Traced::wall_s, recorded("not_negative", required), csv("first", "s", 6),
          times("first", "ms", 1, milliseconds), report("first", "", 1, milliseconds)},
         {"times", "samples_s", unless_empty(&RowRun::samples_s),
-         recorded("durations", optional, "kernel alone, all views")},
+         recorded("durations", optional, "kernel alone, all views, a pass")},
+        {"times", "passes", [](const RowRun& row) { return row.passes > 1 ? json(row.passes) : json(); },
+         recorded(R"({ "type": "integer", "minimum": 2 })", optional,
+                  "of a sample, which traces all views so often; left out where once is long enough"),
+         csv("passes")},
         {"times", "wall_samples_s", unless_empty(&RowRun::wall_samples_s),
          recorded("durations", optional, "launch to the end of waiting, on the host's clock")},
         {"times", "median_s", in(&Figures::kernel_s, &Statistics::median), recorded("positive"), csv("median", "s", 6),
@@ -288,6 +295,8 @@ std::vector<RowField> time_fields()
         {"", "bytes", [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
          recorded("count", optional, "of the structure and its scene data on the device"),
          times("size", "MB", 1, megabytes), report("size", "MB", 1, megabytes)},
+        {"", "gpu", [](const RowRun& row) { return row.gpu ? gpu_json(*row.gpu) : json(); },
+         recorded("gpu", optional, "what it told in the middle of the samples: medians")},
         {"", "samples", [](const RowRun& row) { return row.samples_s.size(); }, csv("samples")},
         {"", "status", status_text, rates({.title = "status", .rank = 0})},
     };

@@ -20,6 +20,15 @@ nlohmann::json optimised_json(const OptimisedInfo& made)
     return object;
 }
 
+nlohmann::json repair_json(const RepairInfo& repair)
+{
+    return {{"crossing_pairs", repair.crossing_pairs},
+            {"cut_triangles", repair.cut_triangles},
+            {"pieces", repair.pieces},
+            {"dropped", repair.dropped},
+            {"passes", repair.passes}};
+}
+
 } // namespace
 
 nlohmann::json scene_json(const SceneWork& scene, const Options& options)
@@ -49,6 +58,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
     if (options.own_cameras) object["camera_set_hash"] = hash_text(options.own_cameras->hash());
+    if (build.repair.asked) object["repair"] = repair_json(build.repair);
     if (build.optimised.asked == TetsKind::rays) object["optimised"] = optimised_json(build.optimised);
     if (const auto& walk = scene.start_walk())
         object["start_walk"] = {{"walked", walk->counts.walked},

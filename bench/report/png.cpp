@@ -3,13 +3,12 @@
 #include "bench/report/html/html_table.h"
 #include "bench/report/png_encoder.h"
 #include "core/base/error.h"
+#include "core/base/file_bytes.h"
 
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 namespace tetrace {
@@ -59,21 +58,21 @@ Png converted(const std::string& ppm)
     return {png_bytes(width, height, pixels), width, height};
 }
 
-std::string file_bytes(const std::filesystem::path& path)
+std::string picture_bytes(const std::filesystem::path& path)
 {
     std::error_code problem;
     if (!std::filesystem::exists(path, problem)) throw Problem{ErrorKind::missing, "there is no such file"};
     if (!std::filesystem::is_regular_file(path, problem)) throw not_valid("it is no file");
     if (std::filesystem::file_size(path, problem) > largest_file) throw not_valid("it is larger than 64 MiB");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw not_valid(std::strerror(errno));
-    return {std::istreambuf_iterator<char>(file), {}};
+    auto bytes = file_bytes(path);
+    if (!bytes) throw not_valid(std::strerror(errno));
+    return *std::move(bytes);
 }
 
 /// Throws Problem.
 Png picture_of(const std::filesystem::path& path)
 {
-    Png png{file_bytes(path), 0, 0};
+    Png png{picture_bytes(path), 0, 0};
     if (png.bytes.size() < signature.size() + 8 || png.bytes.compare(0, signature.size(), signature) != 0)
         return converted(png.bytes);
     png.width = word_at(png.bytes, signature.size());

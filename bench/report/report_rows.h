@@ -13,7 +13,8 @@ struct RowRate {
     double mrays_per_s = 0, low = 0, high = 0;
     std::vector<double> samples; ///< Mrays/s of each sample
     std::optional<double> msteps_per_s, bytes_per_step;
-    std::optional<double> launch_share; ///< launching and waiting, as a share of the wall time
+    std::optional<double> ceiling_bytes_per_s; ///< of the level of memory that holds the scene; old results lack it
+    std::optional<double> launch_share;        ///< launching and waiting, as a share of the wall time
     bool noisy = false;
 };
 

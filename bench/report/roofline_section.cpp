@@ -12,9 +12,10 @@ namespace {
 
 const char* const how_to_read_roofs =
     "Msteps/s against the ceiling that memory sets: the copy bandwidth that the device reached in the same run (bytes "
-    "read and written), over the bytes that a step loads of its tet's record. Both are estimates, not limits: "
-    "memory moves whole lines, which lowers what can be reached, and caches keep some of them, which lifts a row above "
-    "the line. Percentages are shares of the ceiling.";
+    "read and written), over the bytes that a step loads of its tet's record. A row's ceiling is that of the level of "
+    "memory that holds its scene: of the copies whose buffers were as large or larger, the fastest. Both are "
+    "estimates, not limits: memory moves whole lines, which lowers what can be reached, and nearer caches keep some of "
+    "them, which lifts a row above its line. Percentages are shares of the ceiling.";
 
 /// A device of a result under its roof.
 struct DeviceRoof {
@@ -42,7 +43,7 @@ void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
     roof.kind = row.kind();
     roof.roofline.points.push_back({row.name(), without_structure(row.kernel_and_rays()) + "  " + row.row->scene,
                                     scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
-                                    *rate.msteps_per_s});
+                                    *rate.msteps_per_s, rate.ceiling_bytes_per_s.value_or(0)});
     if (rate.launch_share)
         roof.largest_launch_share = std::max(roof.largest_launch_share.value_or(0), *rate.launch_share);
 }

@@ -1,7 +1,9 @@
 #include "bench/reproduce/yardsticks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace tetrace {
 
@@ -13,7 +15,13 @@ constexpr const char* entry_key = "yardstick";
 
 json entry_of(const std::string& device, const Yardstick& yardstick)
 {
-    return {{entry_key, device}, {"copy_bytes_per_s", yardstick.copy_bytes_per_s}, {"launch_s", yardstick.launch_s}};
+    json copies = json::array(); // pairs of bytes and rate
+    for (const CopyRate& copy : yardstick.copies)
+        copies.push_back({copy.bytes, copy.bytes_per_s});
+    return {{entry_key, device},
+            {"copy_bytes_per_s", yardstick.copy_bytes_per_s},
+            {"launch_s", yardstick.launch_s},
+            {"copies", std::move(copies)}};
 }
 
 bool is_positive(const json& entry, const char* key)
@@ -21,9 +29,28 @@ bool is_positive(const json& entry, const char* key)
     return entry.contains(key) && entry[key].is_number() && std::isfinite(entry[key].get<double>()) && entry[key] > 0;
 }
 
+bool is_copy(const json& copy)
+{
+    return copy.is_array() && copy.size() == 2 && copy[0].is_number_unsigned() && copy[1].is_number() &&
+           std::isfinite(copy[1].get<double>()) && copy[1] >= 0;
+}
+
 bool is_whole_entry(const json& entry)
 {
-    return entry[entry_key].is_string() && is_positive(entry, "copy_bytes_per_s") && is_positive(entry, "launch_s");
+    if (!entry[entry_key].is_string() || !is_positive(entry, "copy_bytes_per_s") || !is_positive(entry, "launch_s"))
+        return false;
+    const auto copies = entry.find("copies");
+    return copies != entry.end() && copies->is_array() && copies->size() == Yardstick{}.copies.size() &&
+           std::ranges::all_of(*copies, is_copy);
+}
+
+Yardstick yardstick_of(const json& entry)
+{
+    Yardstick yardstick{entry["copy_bytes_per_s"], entry["launch_s"]};
+    std::ranges::transform(entry["copies"], yardstick.copies.begin(), [](const json& copy) {
+        return CopyRate{copy[0], copy[1]};
+    });
+    return yardstick;
 }
 
 std::string device_key(const RowDevice& device)
@@ -39,7 +66,7 @@ Yardsticks::Yardsticks(Journal* journal) : journal_(journal)
     for (const json& entry : journal->entries()) {
         if (!entry.contains(entry_key)) continue;
         if (!is_whole_entry(entry)) journal->reject("a yardstick in the journal is damaged");
-        known_[entry[entry_key]] = {entry["copy_bytes_per_s"], entry["launch_s"]};
+        known_[entry[entry_key]] = yardstick_of(entry);
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/rows/gpu_state.h"
 #include "bench/rows/rows.h"
 #include "bench/rows/scene_work.h"
 #include "bench/truth/hit_checks.h"
@@ -98,8 +99,10 @@ struct RowRun {
     Outcome outcome = Traced{};
     std::string recorded_reason = {};       ///< of a row that was read from a result, in place of its outcome's
     double warm_s = 0;                      ///< wall seconds of the warm-up pass
-    std::vector<double> samples_s;          ///< device seconds for all selected views, one value for each repetition
+    std::uint32_t passes = 1;               ///< of a sample: how often it traces all selected views
+    std::vector<double> samples_s;          ///< device seconds for all selected views, a pass, one value a repetition
     std::vector<double> wall_samples_s;     ///< the same by the host's clock, from launch to the end of wait
+    std::optional<GpuReadings> gpu = {};    ///< of a row on a GPU that tells something
     std::optional<double> pulse_ratio = {}; ///< of the pulse beside the samples to its fastest, their median
     std::string disturbance = {};           ///< why the rate is not to be trusted, see disturbance_text()
 };

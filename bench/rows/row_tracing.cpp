@@ -68,10 +68,12 @@ Clock host_clock()
     return [watch = Stopwatch()] { return watch.seconds(); };
 }
 
-LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock)
+LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock,
+                         const std::function<void()>& meanwhile)
 {
     const double start_s = clock();
     session.launch(job);
+    if (meanwhile) meanwhile();
     const double kernel_s = session.wait();
     return {kernel_s, clock() - start_s};
 }

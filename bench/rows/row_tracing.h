@@ -42,7 +42,9 @@ using Clock = std::function<double()>;
 /// The steady clock, starting now.
 [[nodiscard]] Clock host_clock();
 
-/// Launches a job and waits; reads nothing back. clock: the host's; tests of budgets pass their own.
-[[nodiscard]] LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock = host_clock());
+/// Launches a job and waits; reads nothing back. clock: the host's; tests of budgets pass their own. meanwhile: called
+/// between the two, where a device of its own is at work.
+[[nodiscard]] LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock = host_clock(),
+                                       const std::function<void()>& meanwhile = {});
 
 } // namespace tetrace

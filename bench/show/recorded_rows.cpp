@@ -215,6 +215,25 @@ Outcome outcome_from(const ResultValue& value, const ResultRow& row, bool with_r
     return traced;
 }
 
+/// As medians over the samples that were kept; the first of them are those that were throttled.
+void read_gpu(RowRun& run, const ResultValue& value)
+{
+    const auto gpu = value.find("gpu");
+    if (!gpu) return;
+    const auto told = [&](const char* key) {
+        const auto number = gpu->find(key);
+        return number ? std::optional(number->number()) : std::nullopt;
+    };
+    GpuReadings& readings = run.gpu.emplace();
+    const GpuState state{told("clock_mhz"), told("memory_clock_mhz"), told("power_w"), told("temperature_c"), ""};
+    readings.states.assign(run.samples_s.size(), state);
+    readings.dropped = static_cast<std::uint32_t>(count_at(*gpu, "dropped_samples"));
+    readings.reasons = printable_text(gpu->text_at("throttled_by"));
+    const auto throttled = std::min<std::uint64_t>(count_at(*gpu, "throttled_samples"), readings.states.size());
+    for (std::size_t i = 0; i < throttled; ++i)
+        readings.states[i].throttled = readings.reasons;
+}
+
 void read_times(RowRun& run, const ResultValue& value)
 {
     SetupTimes setup;
@@ -226,6 +245,7 @@ void read_times(RowRun& run, const ResultValue& value)
         if (const auto walls = times->find("wall_samples_s"))
             for (const ResultValue& wall : walls->items())
                 run.wall_samples_s.push_back(wall.number());
+        if (const auto passes = times->find("passes")) run.passes = static_cast<std::uint32_t>(passes->count());
         if (const auto pulse = times->find("pulse")) run.pulse_ratio = pulse->number();
         if (const auto disturbed = times->find("disturbed")) run.disturbance = disturbed->line();
     }
@@ -246,6 +266,7 @@ RowRun row_from(const ResultValue& value, const ResultRow& row, bool with_rays)
     run.recorded_reason = row.reason;
     run.samples_s = row.samples_s;
     read_times(run, value);
+    read_gpu(run, value);
     return run;
 }
 
@@ -277,6 +298,21 @@ RowRun search_row_from(const ResultValue& value)
     return run;
 }
 
+/// Those that this program has room for.
+decltype(Yardstick::copies) copies_from(const ResultValue& device)
+{
+    decltype(Yardstick::copies) copies{};
+    const auto list = device.find("copies");
+    if (!list) return copies;
+    const auto items = list->items();
+    for (std::size_t i = 0; i < std::min(copies.size(), items.size()); ++i) {
+        const auto pair = items[i].items();
+        if (pair.size() != 2) items[i].reject("is no pair of bytes and bytes a second");
+        copies[i] = {pair[0].count(), pair[1].number()};
+    }
+    return copies;
+}
+
 RowDevice row_device_from(const ResultValue& value)
 {
     RowDevice device;
@@ -285,7 +321,7 @@ RowDevice row_device_from(const ResultValue& value)
     device.device = device_from(value);
     device.hardware = value.at("hardware").count();
     const double copy = number_at(value, "copy_bytes_per_s"), launch = number_at(value, "launch_s");
-    if (copy > 0 || launch > 0) device.yardstick = Yardstick{copy, launch};
+    if (copy > 0 || launch > 0) device.yardstick = Yardstick{copy, launch, copies_from(value)};
     if (const auto tests = value.find("self_test"))
         for (const auto& [math, test] : tests->members())
             device.self_tests[math == "fast" ? MathMode::fast : MathMode::exact] = self_test_from(test);

@@ -5,6 +5,7 @@
 #include "core/rays/camera.h"
 #include "core/rays/hit.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -69,6 +70,7 @@ struct TraceJob {
     StartTet start;                   ///< of start_tet, see start_in()
     std::uint32_t max_steps = 0;      ///< a walk with this many steps is LOST
     bool any_hit = false;             ///< any hit will do, so the first one found is the answer
+    std::uint32_t passes = 1;         ///< how often the whole is traced, with the same hits each time
 };
 
 /// The cap of walks through so many tets: one step more than there are tets, because a path visits none twice
@@ -95,10 +97,21 @@ struct SetupTimes {
     double build_s = 0;          ///< a BVH built by the device's driver, on the device's clock
 };
 
+/// Memory copied to memory, again and again: a level of caches that holds both buffers serves it.
+struct CopyRate {
+    std::uint64_t bytes = 0; ///< of both buffers together
+    double bytes_per_s = 0;  ///< read and written
+};
+
 /// What a device can do at best; every row on the device is compared with it.
 struct Yardstick {
-    double copy_bytes_per_s = 0; ///< its memory copied to its memory, bytes read and written
+    double copy_bytes_per_s = 0; ///< its memory copied to its memory, bytes read and written: the largest of `copies`
     double launch_s = 0;         ///< an empty kernel, from launch to the end of wait on the host's clock; median
+    std::array<CopyRate, 6> copies = {}; ///< of ascending sizes; those of no bytes were not measured
+
+    /// The rate of the level of memory that holds so many bytes: the best of the copies that are as large or larger,
+    /// else that of the largest. Launching makes small copies slow on a GPU, so a larger one may be the best.
+    [[nodiscard]] double copy_bytes_per_s_of(std::uint64_t bytes) const;
 };
 
 /// One scene on one device with one kernel. Every call throws Error, and only Error: unsupported where memory or a
@@ -112,9 +125,11 @@ public:
     /// TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest buffer.
     virtual void set_rays(std::span<const Quad> quads);
     /// Fills the whole output with POISON, untimed, then starts the kernel; uses several launches where one would run
-    /// long enough for a watchdog to fire (core/device/launch.h).
+    /// long enough for a watchdog to fire (core/device/launch.h). Passes that fit in one launch follow each other
+    /// without the host, between two readings of the device's clock, and none begins before the one before it has
+    /// ended.
     virtual void launch(const TraceJob& job) = 0;
-    /// Waits for the launch; returns device seconds of the kernel alone.
+    /// Waits for the launch; returns device seconds of the kernel alone, of all its passes together.
     [[nodiscard]] virtual double wait() = 0;
     /// Copies the hits of the last launch, row after row; hits.size() == width * height.
     /// Throws Error{wrong_result} if the kernel wrote outside its output.

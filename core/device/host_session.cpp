@@ -13,7 +13,8 @@ void HostSession::launch(const TraceJob& job)
     output_.assign(output_words(job, task_), POISON);
     const auto between_guards = std::span(output_).subspan(GUARD_WORDS, output_.size() - 2 * std::size_t{GUARD_WORDS});
     const Stopwatch watch;
-    run(job, between_guards);
+    for (std::uint32_t pass = 0; pass < job.passes; ++pass)
+        run(job, between_guards);
     kernel_s_ = watch.seconds();
 }
 

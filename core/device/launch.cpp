@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint32_t first_launch_rays = 16'384;
 constexpr double launch_target_s = 0.1;
 constexpr double largest_growth = 4;
+constexpr std::uint32_t most_targets = 10; // of all passes of a launch: a second, half of the shortest watchdog
 
 } // namespace
 
@@ -76,25 +77,38 @@ void LaunchSize::took(std::uint32_t tiles, double seconds)
     tiles_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, largest));
 }
 
-void Launches::start(const LaunchParams& image,
-                     const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
+void Launches::start(const LaunchParams& image, std::uint32_t passes, const Enqueue& enqueue,
                      const std::function<void()>& take_times)
 {
     seconds_ = 0;
+    while (passes > 0) {
+        const std::uint32_t tiles = tile_count(image);
+        const bool fits = !is_first_image_ && tiles > 0 && tiles <= size_.tiles();
+        const std::uint32_t together = fits ? std::min(passes, most_targets * (size_.tiles() / tiles)) : 1;
+        if (fits)
+            enqueue(image, tiles, together);
+        else
+            start_pass(image, enqueue, take_times);
+        passes -= together;
+    }
+}
+
+void Launches::start_pass(const LaunchParams& image, const Enqueue& enqueue, const std::function<void()>& take_times)
+{
     LaunchParams params = image;
     const std::uint32_t end = tile_count(image);
     while (params.first_tile < end) {
         const std::uint32_t tiles = std::min(size_.tiles(), end - params.first_tile);
-        enqueue(params, tiles);
+        enqueue(params, tiles, 1);
         params.first_tile += tiles;
         if (is_first_image_) take_times();
     }
     is_first_image_ = false;
 }
 
-void Launches::took(std::uint32_t tiles, double seconds)
+void Launches::took(std::uint32_t tiles, std::uint32_t passes, double seconds)
 {
-    size_.took(tiles, seconds);
+    size_.took(tiles, seconds / passes);
     seconds_ += seconds;
 }
 

@@ -61,17 +61,22 @@ public:
         : size_(tile_height, most_tiles)
     {
     }
-    /// Calls enqueue for each launch with its params and its number of tiles. image: params of the first launch.
-    /// take_times must call took(). During the session's first image it is called after each launch, because nothing is
-    /// known yet about how long a launch takes.
-    void start(const LaunchParams& image, const std::function<void(const LaunchParams&, std::uint32_t tiles)>& enqueue,
+    /// Starts a launch of so many tiles from the params' first one on, so many times.
+    using Enqueue = std::function<void(const LaunchParams&, std::uint32_t tiles, std::uint32_t passes)>;
+    /// Calls enqueue for each launch. image: params of the first launch. passes: of the image; where a launch may have
+    /// all its tiles, as many of them are one call as fit into a second. take_times must call took(). During the
+    /// session's first image it is called after each launch, because nothing is known yet about how long a launch
+    /// takes.
+    void start(const LaunchParams& image, std::uint32_t passes, const Enqueue& enqueue,
                const std::function<void()>& take_times);
-    /// Reports how long a launch of that many tiles took on the device.
-    void took(std::uint32_t tiles, double seconds);
+    /// Reports how long a launch of that many tiles took on the device, all its passes together.
+    void took(std::uint32_t tiles, std::uint32_t passes, double seconds);
     /// Of the image's launches that were reported to took().
     [[nodiscard]] double seconds() const { return seconds_; }
 
 private:
+    void start_pass(const LaunchParams& image, const Enqueue& enqueue, const std::function<void()>& take_times);
+
     LaunchSize size_;
     bool is_first_image_ = true;
     double seconds_ = 0;

@@ -2,24 +2,23 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_bytes.h"
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string>
 
 namespace tetrace {
 
 std::optional<std::vector<unsigned char>> ProgramCache::find(std::uint64_t key) const
 {
     if (folder_.empty()) return std::nullopt;
-    std::ifstream file(path_of(key), std::ios::binary);
-    std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::optional<std::string> file = file_bytes(path_of(key));
     std::uint64_t hash = 0;
-    if (bytes.size() <= sizeof(hash)) return std::nullopt;
-    std::memcpy(&hash, bytes.data(), sizeof(hash));
-    bytes.erase(bytes.begin(), bytes.begin() + sizeof(hash));
-    if (hash != hash_of(bytes)) return std::nullopt;
-    return bytes;
+    if (!file || file->size() <= sizeof(hash)) return std::nullopt;
+    std::memcpy(&hash, file->data(), sizeof(hash));
+    std::vector<unsigned char> program(file->begin() + sizeof(hash), file->end());
+    if (hash != hash_of(program)) return std::nullopt;
+    return program;
 }
 
 void ProgramCache::keep(std::uint64_t key, std::span<const unsigned char> program) const

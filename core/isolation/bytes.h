@@ -57,6 +57,7 @@ public:
     [[nodiscard]] T get()
     {
         static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+        if constexpr (std::is_same_v<T, bool>) return get<unsigned char>() != 0; // no other bits are a bool's
         T value{};
         take(&value, sizeof value);
         return value;

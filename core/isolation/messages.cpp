@@ -123,6 +123,9 @@ std::vector<Device> get_devices(ByteReader& from)
         Device& device = devices.emplace_back();
         each_text(device, [&](std::string& text) { text = from.get_text(); });
         each_number(device, [&](auto& number) { number = from.get<std::remove_reference_t<decltype(number)>>(); });
+        if (static_cast<std::size_t>(device.kind) >= enum_names<DeviceKind>.size())
+            throw Error(ErrorKind::internal,
+                        "a message from a driver's process is damaged: it has no such kind of device");
     }
     return devices;
 }

@@ -25,6 +25,22 @@ TEST_P(Devices, give_the_same_hits_when_a_job_is_launched_twice)
     }
 }
 
+TEST_P(Devices, give_the_same_hits_after_several_passes_in_either_schedule)
+{
+    const DeviceRays rays(make_cubes(4), Layout::tet80);
+    TraceJob job = rays.from_outside(50, 50);
+    for (const std::size_t device : usable)
+        for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
+            const KernelId kernel{.schedule = schedule};
+            if (!backend.why_not(device, kernel).empty()) continue;
+            const auto session = backend.open(device, kernel, rays.data(), {});
+            for (const std::uint32_t passes : {1u, 5u, 2u}) { // the first image is launched in steps
+                job.passes = passes;
+                EXPECT_EQ(wrong_rays(device, traced(*session, job), openmp_hits(rays, job)), 0u) << passes;
+            }
+        }
+}
+
 TEST_P(Devices, give_whole_hits_before_anybody_waits)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);

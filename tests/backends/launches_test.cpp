@@ -65,13 +65,14 @@ TEST(Launches, cover_each_tile_of_an_image_once_and_in_order)
     Launches launches(8, 100);
     const LaunchParams image = params_of(300, 200);
     std::uint32_t next_tile = 0;
-    const auto enqueue = [&](const LaunchParams& params, std::uint32_t tiles) {
+    const auto enqueue = [&](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
+        EXPECT_EQ(passes, 1u);
         EXPECT_EQ(params.first_tile, next_tile);
         EXPECT_LE(tiles, 100u);
         next_tile += tiles;
-        launches.took(tiles, 1e-3);
+        launches.took(tiles, passes, 1e-3);
     };
-    launches.start(image, enqueue, [] {});
+    launches.start(image, 1, enqueue, [] {});
     EXPECT_EQ(next_tile, tile_count(image));
 }
 
@@ -82,7 +83,7 @@ TEST(Launches, ask_for_times_after_each_of_the_first_image_only)
     for (const bool is_first : {true, false}) {
         int enqueued = 0, asked = 0;
         launches.start(
-            image, [&](const LaunchParams&, std::uint32_t) { ++enqueued; }, [&] { ++asked; });
+            image, 1, [&](const LaunchParams&, std::uint32_t, std::uint32_t) { ++enqueued; }, [&] { ++asked; });
         EXPECT_GT(enqueued, 1);
         EXPECT_EQ(asked, is_first ? enqueued : 0);
     }
@@ -94,10 +95,10 @@ TEST(Launches, add_up_the_seconds_of_one_image)
     const LaunchParams image = params_of(80, 80); // one launch
     for (const double seconds : {3.0, 0.5}) {
         launches.start(
-            image, [](const LaunchParams&, std::uint32_t) {}, [] {});
+            image, 1, [](const LaunchParams&, std::uint32_t, std::uint32_t) {}, [] {});
         EXPECT_EQ(launches.seconds(), 0);
-        launches.took(60, seconds);
-        launches.took(40, 1.0);
+        launches.took(60, 1, seconds);
+        launches.took(40, 1, 1.0);
         EXPECT_EQ(launches.seconds(), seconds + 1.0);
     }
 }
@@ -107,11 +108,30 @@ TEST(Launches, are_sized_by_the_times_they_are_told)
     Launches launches(8);
     std::vector<std::uint32_t> sizes;
     launches.start(
-        params_of(2000, 2000), [&](const LaunchParams&, std::uint32_t tiles) { sizes.push_back(tiles); },
-        [&] { launches.took(sizes.back(), sizes.back() * 1e-3); }); // a tenth of a second: a hundred tiles
+        params_of(2000, 2000), 1,
+        [&](const LaunchParams&, std::uint32_t tiles, std::uint32_t) { sizes.push_back(tiles); },
+        [&] { launches.took(sizes.back(), 1, sizes.back() * 1e-3); }); // a tenth of a second: a hundred tiles
     ASSERT_GT(sizes.size(), 3u);
     EXPECT_NEAR(sizes[1], 100, 1);
     EXPECT_NEAR(sizes[2], 100, 1);
+}
+
+TEST(Launches, of_an_image_that_fits_in_one_have_all_its_passes)
+{
+    Launches launches(8);
+    const LaunchParams small = params_of(64, 64), large = params_of(2000, 2000);
+    std::vector<std::uint32_t> passes;
+    const auto enqueue = [&](const LaunchParams&, std::uint32_t tiles, std::uint32_t count) {
+        passes.push_back(count);
+        launches.took(tiles, count, 1e-3 * tiles * count); // a tenth of a second: a hundred tiles
+    };
+    launches.start(small, 3, enqueue, [] {});
+    EXPECT_EQ(passes, (std::vector<std::uint32_t>{1, 2})) << "how long a launch takes is not known before the first";
+    EXPECT_DOUBLE_EQ(launches.seconds(), 3 * 64e-3);
+    passes.clear();
+    launches.start(large, 2, enqueue, [] {});
+    EXPECT_GT(passes.size(), 2 * tile_count(large) / 400);
+    EXPECT_EQ(std::ranges::count(passes, 1u), static_cast<std::ptrdiff_t>(passes.size()));
 }
 
 TEST(LaunchParams, carry_the_job_word_for_word)

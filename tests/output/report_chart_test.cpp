@@ -296,6 +296,20 @@ TEST(Roofline, a_point_below_the_ceiling_is_drawn_below_the_line_and_one_above_a
     }
 }
 
+TEST(Roofline, has_a_line_for_each_level_of_memory_that_holds_a_scene)
+{
+    const Roofline roofline{
+        "a device",
+        12.8e9,
+        {{"a", "in memory", 0, 64, 50}, {"b", "in a cache", 0, 64, 50, 128e9}, {"c", "too", 0, 32, 50, 128e9}}};
+    EXPECT_EQ(roofline.bandwidths(), (std::vector<double>{12.8e9, 128e9}));
+    EXPECT_DOUBLE_EQ(roofline.share(roofline.points[0]), 0.25);
+    EXPECT_DOUBLE_EQ(roofline.share(roofline.points[1]), 0.025);
+    const std::string drawing = draw(roofline).str();
+    EXPECT_EQ(attribute_of(drawing, "roof", "y1").size(), 2u);
+    EXPECT_TRUE(contains(drawing, "128 GB/s") && contains(drawing, "12.8 GB/s"));
+}
+
 TEST(Roofline, has_a_mark_a_point_however_many)
 {
     Roofline roofline{"a device", 1e10, {}};

@@ -109,7 +109,7 @@ protected:
         EXPECT_NE(reason_of(rows_[row]).find("with --budget "), std::string::npos) << reason_of(rows_[row]);
     }
 
-    Options options_ = parse_options({"bench", "--size", "16", "--views", "0,1"});
+    Options options_ = parse_options({"bench", "--size", "16", "--views", "0,1", "--sample-time", "0"});
     SceneWork scene_{loaded_cubes(), options_};
     std::vector<RowRun> rows_;
     std::vector<std::unique_ptr<double>> ray_s_;

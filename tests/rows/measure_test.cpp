@@ -2,6 +2,7 @@
 #include "bench/measuring/measure.h"
 #include "bench/measuring/verify.h"
 #include "tests/support/row_runs.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
 
 #include <algorithm>
@@ -73,6 +74,44 @@ private:
     std::function<void()> lose_;
 };
 
+/// Notes how many passes each launch has; each takes a millisecond.
+class PassesSession : public WrappedSession {
+public:
+    PassesSession(std::unique_ptr<Session> inner, std::vector<std::uint32_t>& passes)
+        : WrappedSession(std::move(inner)), passes_(&passes)
+    {
+    }
+    void launch(const TraceJob& job) override
+    {
+        passes_->push_back(job.passes);
+        WrappedSession::launch(job);
+    }
+    [[nodiscard]] double wait() override
+    {
+        static_cast<void>(WrappedSession::wait());
+        return 1e-3 * passes_->back();
+    }
+
+private:
+    std::vector<std::uint32_t>* passes_;
+};
+
+/// A GPU that is throttled at some of the readings.
+class ThrottledAt : public GpuMonitor {
+public:
+    ThrottledAt(int& asked, int first, int last) : asked_(&asked), first_(first), last_(last) {}
+    [[nodiscard]] GpuState read() override
+    {
+        const bool is_throttled = *asked_ >= first_ && *asked_ <= last_;
+        ++*asked_;
+        return {1500, {}, {}, {}, is_throttled ? "heat" : ""};
+    }
+
+private:
+    int* asked_;
+    int first_, last_;
+};
+
 class Measure : public testing::Test {
 protected:
     Measure() { set_up_rows(); }
@@ -92,7 +131,8 @@ protected:
         launched_.clear();
     }
 
-    Options options_ = parse_options({"bench", "--size", "8", "--views", "0,1", "--samples", "30"});
+    Options options_ =
+        parse_options({"bench", "--size", "8", "--views", "0,1", "--samples", "30", "--sample-time", "0"});
     SceneWork scene_{loaded_cubes(), options_};
     std::vector<RowRun> rows_;
     std::vector<std::size_t> launched_;
@@ -131,6 +171,73 @@ TEST_F(Measure, rows_are_interleaved_unless_a_flag_says_otherwise)
     const auto flags = read_benchmark_flags({"--benchmark_enable_random_interleaving=false"});
     static_cast<void>(measure_rows(rows_, options_, flags));
     EXPECT_TRUE(first_row_ends_before_the_second_starts(launched_));
+}
+
+TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launch_a_view)
+{
+    rows_.pop_back();
+    options_.sample_s = 0.02;
+    options_.samples = 3;
+    std::vector<std::uint32_t> passes;
+    rows_[0].session = std::make_unique<PassesSession>(std::move(rows_[0].session), passes);
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+    const RowRun& row = rows_[0];
+    ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
+    EXPECT_EQ(row.passes, 13u) << "of two milliseconds, for a device whose clocks rise by a quarter";
+    // Warm-up, and for each sample a pass alone: two views each.
+    EXPECT_EQ(std::ranges::count(passes, 1u), 2 + 3 * 2);
+    EXPECT_EQ(passes.size(), 2u + 3 * 4);
+    EXPECT_EQ(row.samples_s, (std::vector<double>{2e-3, 2e-3, 2e-3})) << "the seconds are those of a pass";
+}
+
+TEST_F(Measure, rows_on_gpus_are_interleaved_with_each_other_alone)
+{
+    for (const std::size_t row : {0u, 1u}) {
+        set_up_rows();
+        rows_[row].device.kind = DeviceKind::gpu;
+        static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+        // The warm-up comes before them, and the GPU's pulse, which is its row's, after them.
+        const auto samples = std::vector(launched_.begin() + 2 * 2, launched_.end() - 3);
+        EXPECT_EQ(samples.front(), row) << "GPUs come first";
+        EXPECT_TRUE(row == 0 ? std::ranges::is_sorted(samples) : std::ranges::is_sorted(samples, std::greater<>()));
+    }
+    const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
+    EXPECT_GE(measured.google_benchmark.at("benchmarks").size(), 2u * 30) << "one report";
+}
+
+TEST_F(Measure, a_sample_is_taken_again_while_its_gpu_is_throttled)
+{
+    rows_[0].device.kind = DeviceKind::gpu;
+    rows_[0].key.backend = "another";
+    int asked = 0;
+    const auto find = [&](const Device& device) -> std::unique_ptr<GpuMonitor> {
+        if (device.kind != DeviceKind::gpu) return nullptr;
+        return std::make_unique<ThrottledAt>(asked, 3, 4);
+    };
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), no_budget(), {}, find));
+    ASSERT_TRUE(rows_[0].gpu.has_value());
+    EXPECT_FALSE(rows_[1].gpu.has_value());
+    EXPECT_EQ(rows_[0].samples_s.size(), 30u);
+    EXPECT_EQ(rows_[0].gpu->states.size(), 30u);
+    EXPECT_EQ(rows_[0].gpu->dropped, 2u);
+    EXPECT_EQ(rows_[0].gpu->throttled(), 0u);
+    EXPECT_EQ(rows_[0].gpu->reasons, "heat");
+    EXPECT_EQ(rows_[0].gpu->median(&GpuState::clock_mhz), 1500);
+    EXPECT_EQ(rows_[0].gpu->median(&GpuState::power_w), std::nullopt);
+}
+
+TEST_F(Measure, a_row_whose_gpu_stays_throttled_is_noisy_and_says_why)
+{
+    rows_[0].device.kind = DeviceKind::gpu;
+    rows_[0].key.backend = "another";
+    int asked = 0;
+    const auto find = [&](const Device&) { return std::make_unique<ThrottledAt>(asked, 0, 1'000'000); };
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), no_budget(), {}, find));
+    EXPECT_EQ(rows_[0].gpu->dropped, 2u * 30);
+    EXPECT_EQ(rows_[0].gpu->throttled(), 30u);
+    EXPECT_TRUE(contains(rows_[0].disturbance, "its GPU was throttled in 30 of 30 samples (heat)"))
+        << rows_[0].disturbance;
+    EXPECT_TRUE(figures_of(rows_[0])->noisy);
 }
 
 TEST_F(Measure, a_device_that_is_lost_ends_its_row_and_the_others_go_on)

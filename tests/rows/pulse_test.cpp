@@ -66,7 +66,8 @@ protected:
         }
     }
 
-    Options options_ = parse_options({"bench", "--size", "8", "--views", "0,1", "--samples", "10"});
+    Options options_ =
+        parse_options({"bench", "--size", "8", "--views", "0,1", "--samples", "10", "--sample-time", "0"});
     SceneWork scene_{loaded_cubes(), options_};
     std::vector<RowRun> rows_;
     double now_s_ = 100, host_s_ = 0.01;

@@ -1,5 +1,6 @@
 #include "bench/measuring/row_devices.h"
 
+#include "core/device/yardstick.h"
 #include "tests/support/fake_backend.h"
 #include "tests/support/row_runs.h"
 
@@ -36,6 +37,20 @@ RowRun row_of(Backend& backend)
     return row;
 }
 
+/// Known by its size alone.
+class SessionOfBytes : public Session {
+public:
+    explicit SessionOfBytes(std::uint64_t bytes) : bytes_(bytes) {}
+    void launch(const TraceJob&) override {}
+    [[nodiscard]] double wait() override { return 0; }
+    [[nodiscard]] SetupTimes setup_times() const override { return {}; }
+    [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
+
+private:
+    void read_output(std::span<std::uint32_t>) override {}
+    std::uint64_t bytes_;
+};
+
 } // namespace
 
 TEST(RowDevices, are_listed_once_by_hardware_emulations_last)
@@ -60,10 +75,49 @@ TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
     fast.measure = [] { return Yardstick{440e9, 1e-6}; };
     const auto rows = list(row_of(slow), row_of(fast));
     auto devices = devices_of(rows);
-    EXPECT_FALSE(share_of_copy(rows[0], devices).has_value()) << "not measured yet";
+    EXPECT_FALSE(copy_shares(rows[0], devices).has_value()) << "not measured yet";
     measure_devices(devices, {});
-    EXPECT_DOUBLE_EQ(share_of_copy(rows[0], devices).value(), 0.5);
-    EXPECT_DOUBLE_EQ(share_of_copy(rows[1], devices).value(), 0.1);
+    EXPECT_DOUBLE_EQ(copy_shares(rows[0], devices).value().of_memory, 0.5);
+    EXPECT_DOUBLE_EQ(copy_shares(rows[1], devices).value().of_memory, 0.1);
+}
+
+TEST(RowDevices, a_row_s_ceiling_is_that_of_the_level_that_holds_its_scene)
+{
+    static FakeBackend gpu("a", device("GPU", DeviceKind::gpu, "a"));
+    gpu.measure = [] {
+        return Yardstick{44e9, 1e-6, {{{1'000, 30e9}, {4'000, 176e9}, {16'000, 88e9}, {64'000, 44e9}}}};
+    };
+    for (const auto& [bytes, ceiling] :
+         {std::pair(500, 176e9), {4'000, 176e9}, {4'001, 88e9}, {64'000, 44e9}, {1 << 30, 44e9}}) {
+        auto rows = list(row_of(gpu));
+        rows[0].session = std::make_unique<SessionOfBytes>(bytes);
+        auto devices = devices_of(rows);
+        measure_devices(devices, {});
+        const CopyShares shares = copy_shares(rows[0], devices).value();
+        EXPECT_EQ(shares.ceiling_bytes_per_s, ceiling) << bytes;
+        EXPECT_DOUBLE_EQ(shares.of_ceiling, 44e9 / ceiling) << bytes;
+        EXPECT_DOUBLE_EQ(shares.of_memory, 1) << bytes;
+    }
+}
+
+TEST(Yardstick, copies_at_sizes_from_caches_to_memory_and_each_long_enough)
+{
+    constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
+    // 100 GB/s from a cache of 20 MiB, 10 GB/s beyond, and a microsecond for each copy.
+    const Yardstick measured = measure_copies(512 * mebibyte, [](std::uint64_t bytes, unsigned times) {
+        return times * (1e-6 + 2.0 * static_cast<double>(bytes) / (2 * bytes > 20 * mebibyte ? 10e9 : 100e9));
+    });
+    for (std::size_t i = 0; i < measured.copies.size(); ++i) {
+        EXPECT_EQ(measured.copies[i].bytes, mebibyte << (2 * i));
+        EXPECT_NEAR(measured.copies[i].bytes_per_s, i < 3 ? 100e9 : 10e9, i == 0 ? 10e9 : 3e9) << i;
+    }
+    EXPECT_EQ(measured.copy_bytes_per_s, measured.copies.back().bytes_per_s);
+    const Yardstick small = measure_copies(100, [](std::uint64_t, unsigned times) { return 1e-3 * times; });
+    EXPECT_EQ(small.copies[0].bytes, 200u);
+    EXPECT_GT(small.copy_bytes_per_s, 0);
+    EXPECT_EQ(copied_bytes(std::uint64_t{80} << 30, 0), 512 * mebibyte);
+    EXPECT_EQ(copied_bytes(std::uint64_t{2} << 30, 0), 256 * mebibyte);
+    EXPECT_EQ(copied_bytes(std::uint64_t{80} << 30, 1023), 1020u);
 }
 
 TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a_gpu_none)

@@ -27,9 +27,14 @@ std::string point_text(const Roofline& roofline, const RooflinePoint& point)
     return fmt::format("{}  {}", short_percent(roofline.share(point)), point.label);
 }
 
-std::string roof_text(const Roofline& roofline)
+std::string roof_text(double bytes_per_s)
 {
-    return fmt::format("copying at {} GB/s", short_number(1e-9 * roofline.copy_bytes_per_s));
+    return fmt::format("copying at {} GB/s", short_number(1e-9 * bytes_per_s));
+}
+
+double ceiling_of(double bytes_per_s, double bytes_per_step)
+{
+    return 1e-6 * bytes_per_s / bytes_per_step;
 }
 
 /// The plot reaches from half of the slowest row's rate to the roof over the row that loads least.
@@ -37,7 +42,11 @@ RooflineFrame frame_of(const Roofline& roofline)
 {
     std::vector<double> loads;
     double slowest = std::numeric_limits<double>::max(), fastest = 0;
-    double labels = text_width(roof_text(roofline), label_size);
+    const std::vector<double> roofs = roofline.bandwidths();
+    const auto [lowest, highest] = std::ranges::minmax(roofs);
+    double labels = 0;
+    for (const double roof : roofs)
+        labels = std::max(labels, text_width(roof_text(roof), label_size));
     for (const RooflinePoint& point : roofline.points) {
         loads.push_back(point.bytes_per_step);
         slowest = std::min(slowest, point.msteps_per_s);
@@ -45,9 +54,9 @@ RooflineFrame frame_of(const Roofline& roofline)
         labels = std::max(labels, text_width(point_text(roofline, point), label_size));
     }
     const Axis bytes = Axis::logarithmic_at(loads, 1.5);
-    const Axis rate = Axis::logarithmic(std::min(slowest, roofline.ceiling(bytes.high())),
-                                        std::max(fastest, roofline.ceiling(bytes.low())));
-    const double labelled = side_label_pitch * static_cast<double>(roofline.points.size() + 1);
+    const Axis rate = Axis::logarithmic(std::min(slowest, ceiling_of(lowest, bytes.high())),
+                                        std::max(fastest, ceiling_of(highest, bytes.low())));
+    const double labelled = side_label_pitch * static_cast<double>(roofline.points.size() + roofs.size());
     return {bytes, rate, side_labels_left(labels), top + std::max(shortest_plot, labelled)};
 }
 
@@ -59,12 +68,12 @@ Html grid(const RooflineFrame& frame)
 }
 
 /// The line spans the whole axis of bytes.
-Html roof(const Roofline& roofline, const RooflineFrame& frame, double label_y)
+Html roof(double bytes_per_s, const RooflineFrame& frame, double label_y)
 {
     const double low = frame.bytes.low(), high = frame.bytes.high();
-    const double end = frame.y(roofline.ceiling(high));
-    return svg_line(frame.x(low), frame.y(roofline.ceiling(low)), frame.x(high), end, "roof") +
-           side_label(frame.right, end, frame.right, label_y, roof_text(roofline));
+    const double end = frame.y(ceiling_of(bytes_per_s, high));
+    return svg_line(frame.x(low), frame.y(ceiling_of(bytes_per_s, low)), frame.x(high), end, "roof") +
+           side_label(frame.right, end, frame.right, label_y, roof_text(bytes_per_s));
 }
 
 Html point_mark(const Roofline& roofline, const RooflinePoint& point, const RooflineFrame& frame, double label_y)
@@ -73,23 +82,40 @@ Html point_mark(const Roofline& roofline, const RooflinePoint& point, const Roof
     const std::string label = point_text(roofline, point);
     const std::string tooltip =
         fmt::format("{} of the ceiling: {} of {} Msteps/s at {} bytes a step", label, short_number(point.msteps_per_s),
-                    short_number(roofline.ceiling(point.bytes_per_step)), short_number(point.bytes_per_step));
+                    short_number(roofline.ceiling(point)), short_number(point.bytes_per_step));
     return svg_mark(series_class(point.series), point.id, tooltip,
                     side_label(x, y, frame.right, label_y, label) + svg_shape(x, y, point.series, "solid"));
 }
 
 } // namespace
 
+std::vector<double> Roofline::bandwidths() const
+{
+    std::vector<double> all;
+    for (const RooflinePoint& point : points)
+        all.push_back(bandwidth_over(point));
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    std::erase(all, copy_bytes_per_s);
+    all.insert(all.begin(), copy_bytes_per_s);
+    return all;
+}
+
 Html draw(const Roofline& roofline)
 {
     const RooflineFrame frame = frame_of(roofline);
-    std::vector<double> wanted = {frame.y(roofline.ceiling(frame.bytes.high()))};
+    const std::vector<double> roofs = roofline.bandwidths();
+    std::vector<double> wanted;
+    for (const double bandwidth : roofs)
+        wanted.push_back(frame.y(ceiling_of(bandwidth, frame.bytes.high())));
     for (const RooflinePoint& point : roofline.points)
         wanted.push_back(frame.y(point.msteps_per_s));
     const auto places = spread_apart(wanted, side_label_pitch, top + 6, frame.bottom - 4);
-    Html content = grid(frame) + roof(roofline, frame, places.front());
+    Html content = grid(frame);
+    for (std::size_t i = 0; i < roofs.size(); ++i)
+        content += roof(roofs[i], frame, places[i]);
     for (std::size_t i = 0; i < roofline.points.size(); ++i)
-        content += point_mark(roofline, roofline.points[i], frame, places[i + 1]);
+        content += point_mark(roofline, roofline.points[i], frame, places[roofs.size() + i]);
     return svg_drawing(frame.bottom + axis_room, roofline.label, content);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace tetrace {
 
 /// A number that counts what is done with it: the kernels' `real` where their operations are counted. Comparisons and
@@ -10,6 +12,7 @@ struct Counted {
 
     Counted() = default;
     explicit Counted(float v) : value(v) {}
+    explicit operator std::uint32_t() const { return static_cast<std::uint32_t>(value); }
     friend Counted operator+(Counted a, Counted b) { return ++operations, Counted(a.value + b.value); }
     friend Counted operator-(Counted a, Counted b) { return ++operations, Counted(a.value - b.value); }
     friend Counted operator*(Counted a, Counted b) { return ++operations, Counted(a.value * b.value); }

@@ -1,0 +1,28 @@
+#include "bench/rows/gpu_state.h"
+
+#include <algorithm>
+
+namespace tetrace {
+
+std::uint32_t GpuReadings::throttled() const
+{
+    return static_cast<std::uint32_t>(
+        std::ranges::count_if(states, [](const GpuState& state) { return !state.throttled.empty(); }));
+}
+
+std::optional<double> GpuReadings::median(std::optional<double> GpuState::*member) const
+{
+    std::vector<double> values;
+    for (const GpuState& state : states)
+        if (state.*member) values.push_back(*(state.*member));
+    if (values.empty()) return std::nullopt;
+    std::ranges::sort(values);
+    return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+void GpuReadings::add_reason(const std::string& reason)
+{
+    if (reasons.find(reason) == std::string::npos) reasons += (reasons.empty() ? "" : ", ") + reason;
+}
+
+} // namespace tetrace
