@@ -30,6 +30,13 @@ const std::vector<CatalogueEntry>& catalogue()
          "Stanford's armadillo, 52,000 triangles as Debian's libcgal-demo has it",
          "data/meshes/armadillo.off",
          {"armadillo.off", "armadillo.ply", "Armadillo.ply"}},
+        {"lattice",
+         SceneSource::lattice,
+         fmt::format("grid of cubes of any size with solid ones scattered in it; lattice:N has N along an axis, {} "
+                     "without N; needs no TetGen",
+                     usual_lattice),
+         "",
+         {}},
     };
     return rows;
 }
@@ -42,17 +49,43 @@ BuildOptions default_build(TetsKind tets)
     return build;
 }
 
+namespace {
+
+/// The number behind the head of a name; empty for a name without that head, and 0 for what is no number of 32 bits.
+std::optional<std::uint32_t> number_behind(std::string_view head, const std::string& name)
+{
+    if (!name.starts_with(head)) return std::nullopt;
+    std::uint32_t number = 0;
+    const char *first = name.data() + head.size(), *last = name.data() + name.size();
+    const auto [end, error] = std::from_chars(first, last, number);
+    return error == std::errc() && end == last ? number : 0;
+}
+
+} // namespace
+
 std::optional<std::uint32_t> banana_triangles(const std::string& name)
 {
-    constexpr std::string_view head = "banana@";
-    if (!name.starts_with(head)) return std::nullopt;
-    std::uint32_t triangles = 0;
-    const char *first = name.data() + head.size(), *last = name.data() + name.size();
-    const auto [end, error] = std::from_chars(first, last, triangles);
-    if (error != std::errc() || end != last || triangles < least_banana || triangles > most_banana)
+    const auto triangles = number_behind("banana@", name);
+    if (triangles && (*triangles < least_banana || *triangles > most_banana))
         throw Error(ErrorKind::usage, fmt::format("scene {}: behind the @ stands the number of its triangles, {} to {}",
                                                   name, least_banana, most_banana));
     return triangles;
+}
+
+std::optional<std::uint32_t> lattice_resolution(const std::string& name)
+{
+    if (name == "lattice") return usual_lattice;
+    const auto resolution = number_behind("lattice:", name);
+    if (resolution && (*resolution < least_lattice || *resolution > most_lattice))
+        throw Error(ErrorKind::usage,
+                    fmt::format("scene {}: behind the colon stands the number of its cubes along an axis, {} to {}",
+                                name, least_lattice, most_lattice));
+    return resolution;
+}
+
+bool is_made_in_place(const std::string& name)
+{
+    return name == "cubes" || lattice_resolution(name);
 }
 
 const CatalogueEntry* find_in_catalogue(const std::string& name)
@@ -71,7 +104,7 @@ std::string why_not_available(const std::string& name)
 {
     const CatalogueEntry* entry = find_in_catalogue(name);
     if (entry != nullptr) return entry->source == SceneSource::file ? locate_mesh(*entry).reason : "";
-    if (banana_triangles(name)) return "";
+    if (banana_triangles(name) || lattice_resolution(name)) return "";
     std::error_code ignored; // what cannot be looked at is not there for us
     if (std::filesystem::is_regular_file(name, ignored)) return "";
     return fmt::format("scene {}: neither a name of the catalogue nor a file", name);

@@ -11,9 +11,10 @@ namespace tetrace {
 
 /// Where a scene's triangles come from.
 enum class SceneSource {
-    cubes,  ///< embedded: tets made directly, no TetGen
-    banana, ///< procedural mesh, CDT by the builder
-    file,   ///< a mesh file: of Debian's libcgal-demo, or the user's
+    cubes,   ///< embedded: tets made directly, no TetGen
+    banana,  ///< procedural mesh, CDT by the builder
+    lattice, ///< embedded as cubes are, of any size
+    file,    ///< a mesh file: of Debian's libcgal-demo, or the user's
 };
 
 /// One row of the catalogue: adding a scene is adding a row.
@@ -32,6 +33,20 @@ inline constexpr std::uint32_t least_banana = 500, most_banana = 4'000'000;
 /// not a number in that range.
 [[nodiscard]] std::optional<std::uint32_t> banana_triangles(const std::string& name);
 
+/// Cubes along an axis that `lattice` can have; of these more than 563 have more tets than links can name.
+inline constexpr std::uint32_t least_lattice = 4, most_lattice = 563;
+/// What `lattice` has where no number is given: 200 MB in layout half32.
+inline constexpr std::uint32_t usual_lattice = 64;
+[[nodiscard]] constexpr std::uint64_t lattice_tets(std::uint64_t resolution)
+{
+    return 6 * resolution * resolution * resolution;
+}
+/// N of a name "lattice:N"; usual_lattice of "lattice"; empty for another name. Throws Error{usage} where N is not a
+/// number in that range.
+[[nodiscard]] std::optional<std::uint32_t> lattice_resolution(const std::string& name);
+/// Whether its tets are made in place, with nothing built and nothing cached: `cubes` and `lattice`.
+[[nodiscard]] bool is_made_in_place(const std::string& name);
+
 /// The optimiser's effort where none is asked for (scenes/optimise/optimise.h).
 inline constexpr int usual_effort = 2;
 
@@ -40,6 +55,7 @@ struct BuildOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y"; ///< TetGen's, as in its manual; results/switches.md says why these
+    bool repair = false;           ///< cut triangles of a mesh that cross, in place of refusing it
     TetsKind tets = TetsKind::cdt;
     int effort = usual_effort;     ///< of the optimiser, 0 to 3; for TetsKind::rays
     std::uint32_t resolution = 16; ///< of `cubes`: cubes along each axis
@@ -53,7 +69,8 @@ struct BuildOptions {
 /// are another set (docs/spec/rays-tets.md).
 [[nodiscard]] BuildOptions default_build(TetsKind tets);
 
-/// A scene that the user asked for: a name of the catalogue, `banana@N`, or the path of a mesh file or a `.tet` file.
+/// A scene that the user asked for: a name of the catalogue, `banana@N`, `lattice:N`, or the path of a mesh file or a
+/// `.tet` file.
 struct SceneRequest {
     std::string name; ///< as given; rows show scene_label()
     BuildOptions build;

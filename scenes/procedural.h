@@ -12,6 +12,13 @@ namespace tetrace {
 /// surface is closed from 3 on; at 2 it is that of one corner cube, open towards the domain's boundary.
 [[nodiscard]] Scene make_cubes(std::uint32_t resolution);
 
+/// A scene of any size: the same grid of resolution^3 cubes, of which some are solid, scattered so that a line through
+/// the grid meets one after half its length on average. 6 resolution^3 tets, so that packed forms exceed any cache;
+/// made in linear time and memory, reproducible bit for bit. resolution: least_lattice to most_lattice
+/// (scenes/catalogue.h), else throws Error{usage}. Throws Error{unsupported} with both numbers where the tets alone
+/// exceed the machine's memory.
+[[nodiscard]] Scene make_lattice(std::uint32_t resolution);
+
 /// A curved, tapering, capped tube in mesh units: 25,000 triangles, closed, the same bits everywhere. Its CDT with the
 /// default switches keeps them whole and has about 71,000 tets, the size of the paper's smallest scene (Table 3's
 /// banana).

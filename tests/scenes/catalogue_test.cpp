@@ -50,13 +50,14 @@ TEST_F(Catalogue, has_each_name_once)
     std::set<std::string> names;
     for (const CatalogueEntry& entry : catalogue())
         EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
-    for (const char* name : {"cubes", "banana", "bunny", "armadillo"})
+    for (const char* name : {"cubes", "banana", "bunny", "armadillo", "lattice"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 
 TEST_F(Catalogue, labels_a_path_by_its_stem_and_a_row_by_its_name)
 {
     EXPECT_EQ(scene_label("bunny"), "bunny");
+    EXPECT_EQ(scene_label("lattice:138"), "lattice:138");
     EXPECT_EQ(scene_label("/some/where/dragon.v2.ply"), "dragon.v2");
     EXPECT_EQ(scene_label("some/\xff\x1b[2J\n.ply"), "??[2J?") << "of any name a text that can be shown";
 }
@@ -111,6 +112,7 @@ TEST_F(Catalogue, says_how_to_get_a_mesh_that_is_not_here)
     EXPECT_TRUE(contains(why_not_available("/no/such/file.ply"), "neither a name of the catalogue nor a file"));
     EXPECT_EQ(why_not_available("cubes"), "");
     EXPECT_EQ(why_not_available("banana"), "");
+    EXPECT_EQ(why_not_available("lattice:138"), "");
 }
 
 TEST_F(Catalogue, runs_bunny_and_armadillo_by_default_where_they_are)

@@ -2,6 +2,7 @@
 
 #include "core/base/hash.h"
 #include "core/mesh/entry_grid.h"
+#include "core/mesh/sides.h"
 #include "scenes/catalogue.h"
 #include "tests/support/temporary_folder.h"
 
@@ -146,6 +147,61 @@ TEST(Cubes, refuse_resolutions_beyond_their_range)
         EXPECT_TRUE(
             contains(error_of([&] { (void)make_cubes(n); }), "usage: making scene cubes: " + std::to_string(n)));
     EXPECT_EQ(make_cubes(128).tets.tets.size(), 12582912u);
+}
+
+TEST(Lattice, is_a_valid_tet_mesh_at_every_small_size)
+{
+    for (std::uint32_t n = least_lattice; n <= 20; ++n) {
+        const Scene scene = make_lattice(n);
+        EXPECT_EQ(scene.tets.tets.size(), lattice_tets(n));
+        const auto defect = find_defect(scene.tets, scene.mesh.triangles.size());
+        EXPECT_FALSE(defect) << n << ": " << defect->what;
+        const auto gap = find_gap(scene.tets, scene.mesh, size_of(scene.domain));
+        EXPECT_FALSE(gap) << n << ": " << gap->what;
+        EXPECT_EQ(find_weak_side(scene, make_entry_grid(scene.domain, scene.tets)), "") << n;
+        EXPECT_GT(volume(scene.mesh), 0) << n;
+    }
+}
+
+TEST(Lattice, stops_a_line_after_half_its_length_on_average)
+{
+    // A cube shows 1.5 sides to a line and has 12 triangles, but where two meet; none is at the domain's sides.
+    for (const double n : {24.0, 40.0}) {
+        const double share = 4 / (3 * n), inside = (n - 2) * (n - 2) * (n - 2);
+        const Scene scene = make_lattice(static_cast<std::uint32_t>(n));
+        EXPECT_NEAR(static_cast<double>(scene.mesh.triangles.size()), 12 * inside * share * (1 - share),
+                    0.05 * 12 * inside * share);
+        EXPECT_NEAR(1 / (1.5 * share), n / 2, 1e-9);
+    }
+}
+
+TEST(Lattice, has_squares_of_several_cubes_where_there_are_more_than_128)
+{
+    const Scene scene = make_lattice(129);
+    EXPECT_EQ(scene.domain.divisions, 65u);
+    EXPECT_EQ(scene.domain.lines[0].size(), 66u);
+    EXPECT_EQ(scene.domain.high(), (Float3{1, 1, 1}));
+    EXPECT_EQ(find_weak_side(scene, make_entry_grid(scene.domain, scene.tets)), "");
+    EXPECT_FALSE(find_defect(scene.tets, scene.mesh.triangles.size()));
+}
+
+TEST(Lattice, is_the_same_bits_everywhere)
+{
+    EXPECT_EQ(hash_text(scene_hash(make_lattice(16))), "3df268369dd2db15");
+    EXPECT_EQ(make_lattice(16), make_lattice(16));
+}
+
+TEST(Lattice, refuses_sizes_beyond_its_range)
+{
+    for (const std::uint32_t n : {0u, least_lattice - 1, most_lattice + 1})
+        EXPECT_TRUE(contains(error_of([&] { (void)make_lattice(n); }), "usage: making scene lattice: "));
+    EXPECT_LE(lattice_tets(most_lattice), MAX_TETS);
+    EXPECT_GT(lattice_tets(most_lattice + 1), MAX_TETS);
+    EXPECT_EQ(lattice_resolution("lattice:138"), 138u);
+    EXPECT_EQ(lattice_resolution("lattice"), usual_lattice);
+    EXPECT_EQ(lattice_resolution("lattices"), std::nullopt);
+    for (const char* const name : {"lattice:", "lattice:x", "lattice:3", "lattice:564", "lattice:16.5", "lattice:-1"})
+        EXPECT_TRUE(contains(error_of([&] { (void)lattice_resolution(name); }), "the number of its cubes")) << name;
 }
 
 TEST(Banana, is_closed_and_wound_outwards)

@@ -1,0 +1,52 @@
+// Solid cubes scattered through a grid of cubes.
+#include "core/base/error.h"
+#include "scenes/catalogue.h"
+#include "scenes/grids/cube_grid.h"
+#include "scenes/procedural.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace tetrace {
+
+namespace {
+
+/// Whether the cube is solid: 4 of 3 n are. A cube shows 1.5 times the area of its side to a line, on average over all
+/// directions, so a line goes through n / 2 cubes before it meets a solid one. None is solid at the domain's sides.
+bool is_solid(const CubeGrid::Cell& cube, std::int32_t n)
+{
+    for (const std::int32_t i : cube)
+        if (i == 0 || i == n - 1) return false;
+    if (cube == CubeGrid::Cell{n / 2, n / 2, n / 2}) return true; // so that no lattice is empty
+    const auto number = static_cast<std::uint32_t>((cube[2] * n + cube[1]) * n + cube[0]);
+    return scramble(~number) % static_cast<std::uint32_t>(3 * n) < 4;
+}
+
+/// Memory that the system hands out is not always there; a process that uses more is killed.
+void require_memory(std::uint64_t n)
+{
+    const std::uint64_t needed = lattice_tets(n) * sizeof(Tet) + (n + 1) * (n + 1) * (n + 1) * sizeof(Float3);
+    const auto there =
+        static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
+    if (needed > there)
+        throw Error(ErrorKind::unsupported,
+                    fmt::format("making scene lattice:{}: its {} tets take {} bytes before they are packed, and this "
+                                "machine's memory has {}; use a smaller one",
+                                n, lattice_tets(n), needed, there));
+}
+
+} // namespace
+
+Scene make_lattice(std::uint32_t resolution)
+{
+    if (resolution < least_lattice || resolution > most_lattice)
+        throw Error(ErrorKind::usage, fmt::format("making scene lattice: {} cubes along an axis; {} to {} are accepted",
+                                                  resolution, least_lattice, most_lattice));
+    require_memory(resolution);
+    return CubeGrid(resolution)
+        .make("lattice",
+              [n = static_cast<std::int32_t>(resolution)](const CubeGrid::Cell& cube) { return is_solid(cube, n); });
+}
+
+} // namespace tetrace
