@@ -19,7 +19,7 @@ enum BuilderExit : int {
 };
 
 /// Remedies: the builder prints them; its parent does where the builder was killed first.
-inline constexpr std::string_view try_other_switches = "try other --switches (pq5YMT1e-13, pq5, p)";
+inline constexpr std::string_view try_other_switches = "try other --switches (pq5YMT1e-13, pq5, p, pMT1e-13)";
 inline constexpr std::string_view allow_more_memory = "allow more with tetrace's --memory-limit, or simplify the mesh";
 
 } // namespace tetrace

@@ -4,6 +4,11 @@
 
 namespace tetrace {
 
+std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id)
+{
+    return face_id < scene.origins.size() ? scene.origins[face_id] : face_id;
+}
+
 std::uint64_t scene_hash(const Scene& scene)
 {
     std::uint64_t hash = hash_of(scene.mesh.vertices);

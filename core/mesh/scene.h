@@ -56,6 +56,18 @@ struct OptimisedInfo {
     friend bool operator==(const OptimisedInfo&, const OptimisedInfo&) = default;
 };
 
+/// What was done to a mesh whose triangles cross or overlap.
+struct RepairInfo {
+    bool asked = false;               ///< whether triangles that cross were to be cut; else such a mesh is refused
+    std::uint64_t crossing_pairs = 0; ///< pairs of the mesh's triangles that met outside a shared vertex or edge
+    std::uint64_t cut_triangles = 0;  ///< triangles of the mesh that were cut
+    std::uint64_t pieces = 0;         ///< triangles of the scene that are parts of these
+    std::uint64_t dropped = 0;        ///< parts that lay on another, or that rounding left without area
+    std::uint32_t passes = 0;         ///< rounding makes new crossings, so that pieces may be cut again
+
+    friend bool operator==(const RepairInfo&, const RepairInfo&) = default;
+};
+
 /// How a scene was made; recorded with every result.
 struct BuildInfo {
     std::string source;            ///< the mesh file's name, or the generator
@@ -68,6 +80,7 @@ struct BuildInfo {
     std::uint64_t degenerate_triangles = 0;
     std::uint64_t duplicate_triangles = 0;
     std::uint64_t snapped_coordinates = 0; ///< coordinates rounded to the 2^-40 grid (only those below 2^-16)
+    RepairInfo repair;
     OptimisedInfo optimised;
 
     friend bool operator==(const BuildInfo&, const BuildInfo&) = default;
@@ -76,7 +89,10 @@ struct BuildInfo {
 /// A triangle mesh placed in its domain, and a tetrahedralization of the two. Independent of any packed layout.
 struct Scene {
     std::string name;
-    TriangleMesh mesh; ///< the input triangles in domain units: what face_id counts, what Embree and the oracle get
+    TriangleMesh
+        mesh; ///< the input triangles in domain units: what Hit::face_id counts, what Embree and the oracle get
+    /// Of each triangle, the number of the source's triangle that it is, or is a part of; empty: they are the same.
+    std::vector<std::uint32_t> origins = {};
     TetMesh tets;
     Domain domain;
     BuildInfo build;
@@ -84,7 +100,11 @@ struct Scene {
     friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-/// 64-bit hash of all that decides a ray's answer: mesh, tets, domain. Neither name nor build time is part of it.
+/// The source's triangle of a Hit::face_id: what users are told. What names no triangle (NO_HIT, LOST) stays.
+[[nodiscard]] std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id);
+
+/// 64-bit hash of all that decides a ray's answer: mesh, tets, domain. Neither name nor origins nor build time is part
+/// of it.
 [[nodiscard]] std::uint64_t scene_hash(const Scene& scene);
 
 } // namespace tetrace

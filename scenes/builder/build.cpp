@@ -6,10 +6,13 @@
 #include "scenes/builder/failure.h"
 #include "scenes/builder/mesh_reader.h"
 #include "scenes/builder/place.h"
-#include "scenes/builder/self_intersection.h"
+#include "scenes/builder/repair/repair.h"
+#include "scenes/builder/repair/self_intersection.h"
 #include "scenes/optimise/graded_points.h"
 
 #include <fmt/format.h>
+
+#include <numeric>
 
 namespace tetrace {
 namespace {
@@ -29,7 +32,7 @@ void note_clean_up(const CleanUp& cleaned, const std::string& why, const Builder
 
 void clean(Scene& scene, const std::string& why, const BuilderTalk& talk)
 {
-    const CleanUp cleaned = clean_up(scene.mesh);
+    const CleanUp cleaned = clean_up(scene.mesh, scene.origins);
     note_clean_up(cleaned, why, talk);
     scene.build.merged_vertices += cleaned.merged_vertices;
     scene.build.degenerate_triangles += cleaned.degenerate_triangles;
@@ -40,7 +43,7 @@ void clean(Scene& scene, const std::string& why, const BuilderTalk& talk)
             fmt::format("cleaning {}: no triangle has an area; check the mesh's coordinates", scene.build.source));
 }
 
-void place_in_domain(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
+void place_mesh(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
 {
     const Placement placement = place(scene.mesh, options.domain);
     scene.build.scale_exponent = placement.scale_exponent;
@@ -49,6 +52,10 @@ void place_in_domain(Scene& scene, const BuilderOptions& options, const BuilderT
         talk.note(fmt::format("{} coordinates near 0 rounded to the grid of 2^-40", placement.snapped_coordinates));
         clean(scene, " after rounding to the grid", talk);
     }
+}
+
+void add_domain(Scene& scene, const BuilderOptions& options)
+{
     scene.domain = make_domain(scene.mesh, options.domain, options.divisions);
     const Float3 low = scene.domain.low(), high = scene.domain.high();
     for (int axis = 0; axis < 3; ++axis)
@@ -62,8 +69,27 @@ void require_no_self_intersection(const Scene& scene)
     const SelfIntersections found = find_self_intersections(scene.mesh);
     if (found.count > 0)
         throw BuilderFailure(BUILDER_SELF_INTERSECTION,
-                             fmt::format("checking {}: {}", scene.build.source,
-                                         describe(found, scene.mesh, scene.build.scale_exponent)));
+                             fmt::format("checking {}: {}", scene.build.source, describe(found, scene)));
+}
+
+void repair_or_refuse(Scene& scene, const BuilderOptions& options, const BuilderTalk& talk)
+{
+    scene.build.repair.asked = options.repair;
+    if (!options.repair) {
+        talk.stage("looking for self-intersections");
+        return require_no_self_intersection(scene);
+    }
+    talk.stage("repairing");
+    repair(scene, talk.stage);
+    talk.note(repair_text(scene.build.repair));
+}
+
+// Most meshes need no repair and lose no triangle: then there is nothing to keep.
+void drop_own_numbers(std::vector<std::uint32_t>& origins)
+{
+    for (std::uint32_t i = 0; i < origins.size(); ++i)
+        if (origins[i] != i) return;
+    origins.clear();
 }
 
 const char* name_of(Kind kind)
@@ -198,13 +224,16 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
         talk.note(fmt::format("{} faces of fewer than three corners skipped", soup.skipped_faces));
     scene.mesh = std::move(soup.mesh);
     scene.build.source_hash = soup.source_hash;
+    scene.origins.resize(scene.mesh.triangles.size());
+    std::iota(scene.origins.begin(), scene.origins.end(), 0u);
 
     talk.stage("cleaning and placing");
     clean(scene, "", talk);
-    place_in_domain(scene, options, talk);
+    place_mesh(scene, options, talk);
+    repair_or_refuse(scene, options, talk);
+    drop_own_numbers(scene.origins);
+    add_domain(scene, options);
     prepared.surface = domain_surface(scene.domain);
-    talk.stage("looking for self-intersections");
-    require_no_self_intersection(scene);
     scene.build.optimised.asked = options.tets;
     prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
     if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)

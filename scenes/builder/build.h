@@ -2,8 +2,8 @@
 
 #include "core/base/stopwatch.h"
 #include "core/mesh/scene.h"
-#include "scenes/builder/clean.h"
 #include "scenes/builder/convert_tets.h"
+#include "scenes/builder/repair/clean.h"
 #include "scenes/builder/run_tetgen.h"
 #include "scenes/optimise/optimise.h"
 
@@ -21,6 +21,7 @@ struct BuilderOptions {
     DomainKind domain = DomainKind::tight;
     std::uint32_t divisions = 8;
     std::string switches = "pq5Y";
+    bool repair = false; ///< cut triangles that cross
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
@@ -45,8 +46,9 @@ struct PreparedScene {
 /// This program and the libraries that decide a scene, with their versions.
 [[nodiscard]] std::string builder_tool();
 
-/// Reads, cleans, places and checks a mesh and makes its domain.
-/// Throws Error as read_mesh and make_domain do, and BuilderFailure{BUILDER_SELF_INTERSECTION} with the first pairs.
+/// Reads, cleans, places and checks a mesh, or repairs it, and makes its domain.
+/// Throws Error as read_mesh and make_domain do, and BuilderFailure{BUILDER_SELF_INTERSECTION} with the first pairs, or
+/// as repair() does.
 [[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);
 
 /// Why optimised tets may not take the place of the scene's own: they cost no less, or fail a check. Empty where they

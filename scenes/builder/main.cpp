@@ -86,11 +86,12 @@ int guarded(const Work& work)
 // Nothing where the command line is complete, else the exit code.
 std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
 {
-    CLI::App app{"Builds a tetrace scene: reads a triangle mesh (PLY, OBJ, OFF, STL), checks it, tetrahedralizes its "
-                 "domain with\n"
-                 "TetGen and writes a .tet file. `tetrace build` runs it; it links CGAL (GPL) and TetGen (AGPL), "
-                 "tetrace does not.",
-                 "tetrace-builder"};
+    CLI::App app{
+        "Builds a tetrace scene: reads a triangle mesh (PLY, OBJ, OFF, STL, glTF), checks it, tetrahedralizes its "
+        "domain with\n"
+        "TetGen and writes a .tet file. `tetrace build` runs it; it links CGAL (GPL) and TetGen (AGPL), "
+        "tetrace does not.",
+        "tetrace-builder"};
     app.set_version_flag("--version", builder_tool());
     app.add_option("--mesh", options.mesh, "mesh file to read")->required()->type_name("FILE");
     app.add_option("--out", options.out, "scene file to write, replaced as a whole")->required()->type_name("FILE.tet");
@@ -105,6 +106,8 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
         ->check(CLI::Range(1, 64).description(""))
         ->type_name("N");
     app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
+    app.add_flag("--repair", options.repair,
+                 "cut triangles that cross along their intersections, in place of refusing");
     std::string tets(name_of(options.tets));
     const std::string cdt(name_of(TetsKind::cdt)), rays(name_of(TetsKind::rays));
     app.add_option("--tets", tets,

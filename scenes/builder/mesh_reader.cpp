@@ -39,8 +39,9 @@ void read_as(const std::string& extension, MeshSource& source)
     if (extension == ".obj") return read_obj(source);
     if (extension == ".off") return read_off(source);
     if (extension == ".stl") return read_stl(source);
+    if (extension == ".glb" || extension == ".gltf") return read_gltf(source);
     source.fail("name", "the format '" + extension + "' is not known",
-                "use a file with the extension .ply, .obj, .off or .stl");
+                "use a file with the extension .ply, .obj, .off, .stl, .glb or .gltf");
 }
 
 } // namespace

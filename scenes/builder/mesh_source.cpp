@@ -1,6 +1,7 @@
 #include "scenes/builder/mesh_source.h"
 
 #include "core/base/printable.h"
+#include "scenes/builder/polygon.h"
 
 #include <fmt/format.h>
 
@@ -54,9 +55,23 @@ void MeshSource::add_face(const std::vector<std::int64_t>& corners, std::size_t 
             fail(place, fmt::format("vertex index {} is out of range (the mesh has {} vertices, counted from 0)",
                                     corner, vertex_count));
     if (corners.size() < 3) ++soup_.skipped_faces;
+    if (corners.size() > 3) return add_polygon(corners);
     const auto index = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
-    for (std::size_t i = 2; i < corners.size(); ++i)
-        soup_.mesh.triangles.push_back({index(0), index(i - 1), index(i)});
+    if (corners.size() == 3) soup_.mesh.triangles.push_back({index(0), index(1), index(2)});
+}
+
+void MeshSource::add_polygon(const std::vector<std::int64_t>& corners)
+{
+    std::vector<Float3> places;
+    for (const std::int64_t corner : corners)
+        // PLY may have vertices after faces; then nothing is known of the polygon yet.
+        if (static_cast<std::uint64_t>(corner) < soup_.mesh.vertices.size())
+            places.push_back(soup_.mesh.vertices[static_cast<std::size_t>(corner)]);
+    if (places.size() < corners.size()) places.assign(corners.size(), Float3{});
+    for (const std::array<std::size_t, 3>& triangle : cut_polygon(places)) {
+        const auto index = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[triangle[i]]); };
+        soup_.mesh.triangles.push_back({index(0), index(1), index(2)});
+    }
 }
 
 bool LineReader::next_raw(std::string_view& line)

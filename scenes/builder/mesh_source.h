@@ -32,10 +32,12 @@ public:
     void require_room(const std::string& elements, std::int64_t count, std::size_t least_bytes) const;
     /// Adds a vertex; throws where a coordinate is no finite float.
     void add_vertex(Float3 position, const std::string& place);
-    /// Adds a polygon as a fan; throws where an index is not below `vertex_count`.
+    /// Adds a polygon as triangles (cut_polygon); throws where an index is not below `vertex_count`.
     void add_face(const std::vector<std::int64_t>& corners, std::size_t vertex_count, const std::string& place);
 
 private:
+    void add_polygon(const std::vector<std::int64_t>& corners);
+
     std::string name_;
     std::string_view bytes_;
     MeshSoup soup_;
@@ -75,5 +77,7 @@ void read_ply(MeshSource& source);
 void read_obj(MeshSource& source);
 void read_off(MeshSource& source);
 void read_stl(MeshSource& source);
+/// Throws Error{invalid_input} where this was built without tinygltf.
+void read_gltf(MeshSource& source);
 
 } // namespace tetrace

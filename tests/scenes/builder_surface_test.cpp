@@ -1,7 +1,7 @@
 // What the builder does to a mesh before TetGen: clean it, place it in the domain, refuse one that meets itself.
-#include "scenes/builder/clean.h"
 #include "scenes/builder/place.h"
-#include "scenes/builder/self_intersection.h"
+#include "scenes/builder/repair/clean.h"
+#include "scenes/builder/repair/self_intersection.h"
 #include "tests/support/builder_meshes.h"
 
 #include <cmath>
@@ -96,7 +96,11 @@ TEST(SelfIntersection, lists_the_first_pairs_in_mesh_units)
     EXPECT_EQ(found.count, 9u);
     using Pair = std::pair<std::uint32_t, std::uint32_t>;
     EXPECT_EQ(found.first, (std::vector<Pair>{{0, 1}, {0, 2}, {0, 3}}));
-    const std::string text = describe(found, mesh, 1);
-    EXPECT_TRUE(contains(text, "triangle 1 (0.5, 0.5, -0.5) (0.5, 0.5, 0.5) (1, 0.5, 0.5)"));
-    EXPECT_TRUE(contains(text, "does not repair"));
+    Scene scene;
+    scene.mesh = mesh;
+    scene.build.scale_exponent = 1;
+    scene.origins = {7, 8, 9, 10};
+    const std::string text = describe(found, scene);
+    EXPECT_TRUE(contains(text, "triangle 8 (0.5, 0.5, -0.5) (0.5, 0.5, 0.5) (1, 0.5, 0.5)"));
+    EXPECT_TRUE(contains(text, "--repair cuts them"));
 }

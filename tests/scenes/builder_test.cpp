@@ -155,6 +155,40 @@ TEST_F(BuilderProgram, lists_self_intersections_with_code_10)
     EXPECT_TRUE(contains(ended.errors, "error:   triangle 1 (1, 1, -1) (1, 1, 1) (2, 1, 1)\n"));
 }
 
+TEST_F(BuilderProgram, repairs_crossing_triangles_where_it_is_asked_to)
+{
+    const TriangleMesh cubes = joined(box({0, 0, 0}, {1, 1, 1}), box({0.5f, 0.25f, 0.375f}, {1.5f, 1.25f, 1.375f}));
+    const auto mesh = write("two.off", to_off(cubes));
+    EXPECT_TRUE(contains(run_on(mesh).errors, "error: --repair cuts them"));
+    for (const std::string how :
+         {"", "--domain wide --divisions 1", "--tets rays --switches pY", "--tets rays --switches pY --domain wide"}) {
+        const auto ended = run_on(mesh, "--repair " + how);
+        ASSERT_EQ(ended.code, BUILDER_GOOD) << how << ended.errors;
+        const Scene scene = read_scene(folder_ / "out.tet");
+        expect_sound(scene);
+        const RepairInfo& repair = scene.build.repair;
+        EXPECT_TRUE(contains(ended.errors, "note: " + std::to_string(repair.crossing_pairs) + " pairs of triangles "));
+        EXPECT_TRUE(repair.asked);
+        EXPECT_GT(repair.crossing_pairs, 0u);
+        EXPECT_GT(repair.cut_triangles, 5u);
+        EXPECT_EQ(scene.origins.size(), scene.mesh.triangles.size());
+        for (const std::uint32_t origin : scene.origins)
+            EXPECT_LT(origin, cubes.triangles.size());
+    }
+    const auto sound = run_on(write("ball.off", to_off(sphere(2))), "--repair");
+    EXPECT_EQ(sound.code, BUILDER_GOOD);
+    EXPECT_TRUE(contains(sound.errors, "note: no triangles cross"));
+    EXPECT_TRUE(read_scene(folder_ / "out.tet").origins.empty());
+}
+
+TEST_F(BuilderProgram, numbers_triangles_as_the_file_does_where_some_are_dropped)
+{
+    TriangleMesh mesh = tetrahedron();
+    mesh.triangles.insert(mesh.triangles.begin() + 1, {0, 0, 1});
+    ASSERT_EQ(run_on(write("a.off", to_off(mesh))).code, BUILDER_GOOD);
+    EXPECT_EQ(read_scene(folder_ / "out.tet").origins, (std::vector<std::uint32_t>{0, 2, 3, 4}));
+}
+
 TEST_F(BuilderProgram, tells_tetgens_refusal_with_code_11)
 {
     // Two triangles over one edge, so close to each other that TetGen takes them for one.

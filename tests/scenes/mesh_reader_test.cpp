@@ -152,6 +152,51 @@ TEST_F(MeshReader, cuts_polygons_into_fans)
     EXPECT_EQ(read("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").triangles, fan);
 }
 
+TEST_F(MeshReader, cuts_polygons_that_are_not_convex_without_overlap)
+{
+    // An arrowhead, whose fan from the first corner would lie outside it; in each plane, and turned both ways.
+    const double corners[4][2] = {{0, 0}, {2, 1}, {4, 0}, {2, 4}}, area = 6;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const std::string order : {"0 1 2 3", "3 2 1 0", "2 3 0 1"}) {
+            std::string text = "OFF\n4 1 0\n";
+            for (const auto& [x, y] : corners) {
+                double at[3] = {0.125 * x, 0.125 * x, 0.125 * x};
+                at[(axis + 1) % 3] = x, at[(axis + 2) % 3] = y;
+                for (const double coordinate : at)
+                    text += std::to_string(coordinate) + " ";
+                text += "\n";
+            }
+            const TriangleMesh mesh = read("a.off", text + "4 " + order + "\n");
+            ASSERT_EQ(mesh.triangles.size(), 2u);
+            double sum = 0, signs = 0;
+            for (const auto& [a, b, c] : mesh.triangles) {
+                const Double3 p = to_double(mesh.vertices[a]);
+                const Double3 normal = cross(to_double(mesh.vertices[b]) - p, to_double(mesh.vertices[c]) - p);
+                const double part = axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z;
+                sum += std::abs(part) / 2;
+                signs += part < 0 ? -1 : 1;
+            }
+            EXPECT_DOUBLE_EQ(sum, area) << axis << ", " << order;
+            EXPECT_EQ(std::abs(signs), 2) << "both are turned as the polygon is";
+        }
+    }
+    // A comb of many teeth.
+    std::string comb = "OFF\n202 1 0\n0 -1 0\n", face = "202 0";
+    for (int i = 0; i <= 200; ++i) {
+        comb += std::to_string(200 - i) + (i % 2 == 0 ? " 0 0\n" : " 9 0\n");
+        face += " " + std::to_string(i + 1);
+    }
+    double sum = 0;
+    const TriangleMesh teeth = read("a.off", comb + face + "\n");
+    for (const auto& [a, b, c] : teeth.triangles) {
+        const Double3 p = to_double(teeth.vertices[a]);
+        const Double3 normal = cross(to_double(teeth.vertices[b]) - p, to_double(teeth.vertices[c]) - p);
+        EXPECT_GE(normal.z, 0);
+        sum += normal.z / 2;
+    }
+    EXPECT_NEAR(sum, 100 + 900, 1e-6);
+}
+
 TEST_F(MeshReader, counts_faces_that_are_no_polygons)
 {
     const auto soup = read_mesh(write("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n"));
@@ -269,7 +314,7 @@ TEST_F(MeshReader, names_empty_files_and_unknown_formats)
 {
     for (const std::string name : {"a.off", "a.obj", "a.ply", "a.stl"})
         expect_error(name, "", {"empty"});
-    expect_error("a.glb", "glTF", {"'.glb' is not known", ".ply, .obj, .off or .stl"});
+    expect_error("a.fbx", "glTF", {"'.fbx' is not known", ".ply, .obj, .off, .stl, .glb or .gltf"});
     expect_error("a.off", "ply\n", {"begins with 'ply'", "extension"});
     expect_error("a.ply", tetrahedron_off, {"does not begin with 'ply'"});
     expect_error("a.obj", tetrahedron_off, {"'OFF' is no keyword", "line 1"});

@@ -61,6 +61,38 @@ namespace tetrace::test {
     return mesh;
 }
 
+/// A box of 12 triangles, outwards.
+[[nodiscard]] inline TriangleMesh box(Float3 low, Float3 high)
+{
+    return domain_surface({DomainKind::tight, 1, {{{low.x, high.x}, {low.y, high.y}, {low.z, high.z}}}});
+}
+
+[[nodiscard]] inline TriangleMesh moved(TriangleMesh mesh, Float3 by, float scale = 1)
+{
+    for (Float3& v : mesh.vertices)
+        v = {scale * v.x + by.x, scale * v.y + by.y, scale * v.z + by.z};
+    return mesh;
+}
+
+/// Both, with the second's triangles last.
+[[nodiscard]] inline TriangleMesh joined(TriangleMesh first, const TriangleMesh& second)
+{
+    const auto offset = static_cast<std::uint32_t>(first.vertices.size());
+    first.vertices.insert(first.vertices.end(), second.vertices.begin(), second.vertices.end());
+    for (const auto& [a, b, c] : second.triangles)
+        first.triangles.push_back({a + offset, b + offset, c + offset});
+    return first;
+}
+
+/// Those triangles of a mesh whose corners all have z >= 0.
+[[nodiscard]] inline TriangleMesh upper_half(TriangleMesh mesh)
+{
+    std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
+        return std::any_of(triangle.begin(), triangle.end(), [&](std::uint32_t v) { return mesh.vertices[v].z < 0; });
+    });
+    return mesh;
+}
+
 /// Two triangles that cross, far from any shared vertex.
 [[nodiscard]] inline TriangleMesh crossing_pair()
 {

@@ -1,4 +1,4 @@
-#include "scenes/builder/clean.h"
+#include "scenes/builder/repair/clean.h"
 
 #include "scenes/builder/triple_hash.h"
 
@@ -48,16 +48,32 @@ bool is_degenerate(const TriangleMesh& mesh, const Triple& triangle)
     return CGAL::collinear(point(a), point(b), point(c));
 }
 
-std::uint64_t remove_degenerate(TriangleMesh& mesh)
+// Returns how many went.
+template <class Unwanted>
+std::uint64_t remove_triangles(TriangleMesh& mesh, std::vector<std::uint32_t>& origins, const Unwanted& is_unwanted)
 {
-    return std::erase_if(mesh.triangles, [&](const Triple& triangle) { return is_degenerate(mesh, triangle); });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (is_unwanted(mesh.triangles[i])) continue;
+        mesh.triangles[kept] = mesh.triangles[i];
+        origins[kept++] = origins[i];
+    }
+    const std::uint64_t removed = mesh.triangles.size() - kept;
+    mesh.triangles.resize(kept);
+    origins.resize(kept);
+    return removed;
 }
 
-std::uint64_t remove_duplicates(TriangleMesh& mesh)
+std::uint64_t remove_degenerate(TriangleMesh& mesh, std::vector<std::uint32_t>& origins)
+{
+    return remove_triangles(mesh, origins, [&](const Triple& triangle) { return is_degenerate(mesh, triangle); });
+}
+
+std::uint64_t remove_duplicates(TriangleMesh& mesh, std::vector<std::uint32_t>& origins)
 {
     std::unordered_set<Triple, TripleHash> seen;
     seen.reserve(mesh.triangles.size());
-    return std::erase_if(mesh.triangles, [&](Triple triangle) {
+    return remove_triangles(mesh, origins, [&](Triple triangle) {
         std::sort(triangle.begin(), triangle.end());
         return !seen.insert(triangle).second;
     });
@@ -87,14 +103,20 @@ std::uint64_t remove_unused(TriangleMesh& mesh)
 
 } // namespace
 
-CleanUp clean_up(TriangleMesh& mesh)
+CleanUp clean_up(TriangleMesh& mesh, std::vector<std::uint32_t>& origins)
 {
     CleanUp result;
     result.merged_vertices = merge_vertices(mesh);
-    result.degenerate_triangles = remove_degenerate(mesh);
-    result.duplicate_triangles = remove_duplicates(mesh);
+    result.degenerate_triangles = remove_degenerate(mesh, origins);
+    result.duplicate_triangles = remove_duplicates(mesh, origins);
     result.unused_vertices = remove_unused(mesh) - result.merged_vertices;
     return result;
+}
+
+CleanUp clean_up(TriangleMesh& mesh)
+{
+    std::vector<std::uint32_t> origins(mesh.triangles.size());
+    return clean_up(mesh, origins);
 }
 
 } // namespace tetrace

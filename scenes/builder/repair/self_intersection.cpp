@@ -1,4 +1,4 @@
-#include "scenes/builder/self_intersection.h"
+#include "scenes/builder/repair/self_intersection.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
@@ -91,35 +91,50 @@ std::string corners_text(const TriangleMesh& mesh, std::uint32_t triangle, int s
     return text;
 }
 
+// Calls what(pair) for each, in no order.
+template <class What>
+void for_each_pair(const TriangleMesh& mesh, const What& what)
+{
+    const PairTest test(mesh);
+    std::vector<Box> boxes = test.boxes();
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+        const auto [low, high] = std::minmax({a.info(), b.info()});
+        if (test.meet_elsewhere(low, high)) what(TrianglePair{low, high});
+    });
+}
+
 } // namespace
 
 SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t listed)
 {
-    const PairTest test(mesh);
-    std::vector<Box> boxes = test.boxes();
     SelfIntersections found;
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-        const auto [low, high] = std::minmax({a.info(), b.info()});
-        if (!test.meet_elsewhere(low, high)) return;
+    for_each_pair(mesh, [&](const TrianglePair& pair) {
         ++found.count;
-        const std::pair<std::uint32_t, std::uint32_t> pair{low, high};
         found.first.insert(std::upper_bound(found.first.begin(), found.first.end(), pair), pair);
         if (found.first.size() > listed) found.first.pop_back();
     });
     return found;
 }
 
-std::string describe(const SelfIntersections& found, const TriangleMesh& mesh, int scale_exponent)
+std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh)
+{
+    std::vector<TrianglePair> pairs;
+    for_each_pair(mesh, [&](const TrianglePair& pair) { pairs.push_back(pair); });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+std::string describe(const SelfIntersections& found, const Scene& scene)
 {
     std::string text =
         fmt::format("{} pairs of triangles intersect elsewhere than in a shared vertex or edge", found.count);
-    for (const auto& [a, b] : found.first)
-        text += fmt::format("\n  triangle {}{}\n  triangle {}{}", a, corners_text(mesh, a, scale_exponent), b,
-                            corners_text(mesh, b, scale_exponent));
+    for (const auto& pair : found.first)
+        for (const std::uint32_t triangle : {pair.first, pair.second})
+            text += fmt::format("\n  triangle {}{}", source_triangle(scene, triangle),
+                                corners_text(scene.mesh, triangle, scene.build.scale_exponent));
     if (found.first.size() < found.count) text += "\n  ...";
-    return text +
-           "\ntetrace does not repair meshes yet: remove the intersections in another program (MeshLab: Filters, "
-           "Cleaning and Repairing; CGAL: autorefine) and try again";
+    return text + "\n--repair cuts them along their intersections; or remove these in another program (MeshLab: "
+                  "Filters, Cleaning and Repairing; CGAL: autorefine) and try again";
 }
 
 } // namespace tetrace

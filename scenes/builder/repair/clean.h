@@ -3,6 +3,7 @@
 #include "core/mesh/triangle_mesh.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace tetrace {
 
@@ -18,6 +19,8 @@ struct CleanUp {
 
 /// Merges vertices that are equal bit for bit (-0 counts as 0), then removes degenerate and duplicate triangles and
 /// unused vertices. The order of what remains is kept. Coordinates are finite; indices are in range.
+/// origins: as many values as triangles; those of removed triangles go too.
+CleanUp clean_up(TriangleMesh& mesh, std::vector<std::uint32_t>& origins);
 CleanUp clean_up(TriangleMesh& mesh);
 
 } // namespace tetrace

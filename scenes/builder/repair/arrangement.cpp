@@ -1,0 +1,164 @@
+#include "scenes/builder/repair/arrangement.h"
+
+#include "core/base/exact.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <array>
+#include <map>
+#include <variant>
+
+namespace tetrace {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Number = Kernel::FT;
+using Point = Kernel::Point_3;
+using Corners = std::array<Point, 3>;
+using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Default, CGAL::Exact_intersections_tag>;
+using FlatPoint = Delaunay::Point;
+
+// std's from CGAL 6 on, boost's before.
+template <class Shape, class Variant>
+const Shape* held_shape(const Variant& variant)
+{
+    if constexpr (requires { std::get_if<Shape>(&variant); })
+        return std::get_if<Shape>(&variant);
+    else
+        return get<Shape>(&variant);
+}
+
+// The corners of what two triangles share, in order: one of a point, two of a segment, else those of a polygon.
+std::vector<Point> shared_corners(const Corners& a, const Corners& b)
+{
+    const auto shared = CGAL::intersection(Kernel::Triangle_3(a[0], a[1], a[2]), Kernel::Triangle_3(b[0], b[1], b[2]));
+    if (!shared) return {};
+    if (const auto* point = held_shape<Point>(*shared)) return {*point};
+    if (const auto* segment = held_shape<Kernel::Segment_3>(*shared)) return {segment->source(), segment->target()};
+    if (const auto* triangle = held_shape<Kernel::Triangle_3>(*shared))
+        return {triangle->vertex(0), triangle->vertex(1), triangle->vertex(2)};
+    return *held_shape<std::vector<Point>>(*shared);
+}
+
+// The same float for the same number, however it was computed: an interval round it would depend on that.
+float rounded(const Number& number)
+{
+    return snap_to_grid(static_cast<float>(CGAL::to_double(CGAL::exact(number))));
+}
+
+// A triangle's plane, seen along the axis that its normal leans to most.
+class Plane {
+public:
+    explicit Plane(const Corners& corners) : plane_(corners[0], corners[1], corners[2])
+    {
+        const auto size = [&](int axis) { return CGAL::abs(normal(axis)); };
+        for (int axis = 1; axis < 3; ++axis)
+            if (size(axis) > size(along_)) along_ = axis;
+    }
+
+    [[nodiscard]] FlatPoint flat(const Point& point) const { return {point[across(1)], point[across(2)]}; }
+    // The point of the plane there.
+    [[nodiscard]] Float3 lifted(const FlatPoint& at) const
+    {
+        const Number height = -(normal(across(1)) * at.x() + normal(across(2)) * at.y() + plane_.d()) / normal(along_);
+        Float3 point;
+        point[along_] = rounded(height);
+        point[across(1)] = rounded(at.x());
+        point[across(2)] = rounded(at.y());
+        return point;
+    }
+    // Whether the triangle's own order of corners is clockwise there.
+    [[nodiscard]] bool is_turned() const { return normal(along_) < 0; }
+
+private:
+    [[nodiscard]] int across(int step) const { return (along_ + step) % 3; }
+    [[nodiscard]] Number normal(int axis) const { return axis == 0 ? plane_.a() : axis == 1 ? plane_.b() : plane_.c(); }
+
+    Kernel::Plane_3 plane_;
+    int along_ = 0;
+};
+
+// A triangle, and the lines along which it is cut.
+class CutTriangle {
+public:
+    explicit CutTriangle(const Corners& corners) : plane_(corners) { add({corners.begin(), corners.end()}); }
+
+    // Corners as of shared_corners().
+    void add(const std::vector<Point>& corners)
+    {
+        std::vector<FlatPoint> flat;
+        for (const Point& corner : corners)
+            flat.push_back(plane_.flat(corner));
+        if (flat.size() == 1) delaunay_.insert(flat.front());
+        if (flat.size() == 2) delaunay_.insert_constraint(flat[0], flat[1]);
+        for (std::size_t i = 0; flat.size() > 2 && i < flat.size(); ++i)
+            delaunay_.insert_constraint(flat[i], flat[(i + 1) % flat.size()]);
+    }
+    [[nodiscard]] std::vector<std::array<Float3, 3>> pieces() const
+    {
+        std::vector<std::array<Float3, 3>> pieces;
+        for (auto face = delaunay_.finite_faces_begin(); face != delaunay_.finite_faces_end(); ++face) {
+            const auto corner = [&](int i) { return plane_.lifted(face->vertex(i)->point()); };
+            const bool turned = plane_.is_turned();
+            pieces.push_back({corner(0), corner(turned ? 2 : 1), corner(turned ? 1 : 2)});
+        }
+        return pieces;
+    }
+
+private:
+    Plane plane_;
+    Delaunay delaunay_;
+};
+
+Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle)
+{
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Double3 v = to_double(mesh.vertices[mesh.triangles[triangle][i]]);
+        corners[i] = Point(v.x, v.y, v.z);
+    }
+    return corners;
+}
+
+std::map<std::uint32_t, CutTriangle> cut(const TriangleMesh& mesh, std::span<const TrianglePair> pairs)
+{
+    std::map<std::uint32_t, CutTriangle> triangles;
+    const auto triangle_of = [&](std::uint32_t triangle, const Corners& corners) -> CutTriangle& {
+        return triangles.try_emplace(triangle, corners).first->second;
+    };
+    for (const auto& [first, second] : pairs) {
+        const Corners a = corners_of(mesh, first), b = corners_of(mesh, second);
+        const std::vector<Point> shared = shared_corners(a, b);
+        triangle_of(first, a).add(shared);
+        triangle_of(second, b).add(shared);
+    }
+    return triangles;
+}
+
+} // namespace
+
+CutMesh cut_along_intersections(const TriangleMesh& mesh, std::span<const TrianglePair> pairs)
+{
+    const std::map<std::uint32_t, CutTriangle> triangles = cut(mesh, pairs);
+    CutMesh result;
+    result.mesh.vertices = mesh.vertices;
+    auto next = triangles.begin();
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (next == triangles.end() || next->first != i) {
+            result.mesh.triangles.push_back(mesh.triangles[i]);
+            result.parents.push_back(i);
+            continue;
+        }
+        for (const std::array<Float3, 3>& piece : (next++)->second.pieces()) {
+            const auto first = static_cast<std::uint32_t>(result.mesh.vertices.size());
+            result.mesh.vertices.insert(result.mesh.vertices.end(), piece.begin(), piece.end());
+            result.mesh.triangles.push_back({first, first + 1, first + 2});
+            result.parents.push_back(i);
+        }
+    }
+    return result;
+}
+
+} // namespace tetrace

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/mesh/scene.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+
+/// Two triangles of a mesh, the lower number first.
+using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Pairs of triangles that meet outside the vertex or edge that they share; overlap in a plane counts.
+struct SelfIntersections {
+    std::uint64_t count = 0;
+    std::vector<TrianglePair> first; ///< the first pairs in lexicographic order
+};
+
+/// Exact. The mesh has no degenerate and no duplicate triangles (clean_up). At most `listed` pairs are named.
+[[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t listed = 5);
+
+/// All such pairs, in lexicographic order.
+[[nodiscard]] std::vector<TrianglePair> intersecting_pairs(const TriangleMesh& mesh);
+
+/// Sentences for a person: the count, the pairs with their numbers in the source and their corners in mesh units
+/// (placed coordinates times 2^-scale_exponent), and what to do.
+[[nodiscard]] std::string describe(const SelfIntersections& found, const Scene& scene);
+
+} // namespace tetrace

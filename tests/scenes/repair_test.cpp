@@ -1,0 +1,203 @@
+// Triangles that cross are cut along their exact intersections: what is left meets in shared vertices and edges alone.
+#include "scenes/builder/failure.h"
+#include "scenes/builder/repair/clean.h"
+#include "scenes/builder/repair/repair.h"
+#include "scenes/builder/repair/self_intersection.h"
+#include "tests/support/builder_meshes.h"
+#include "tests/support/random.h"
+
+#include <cmath>
+#include <numeric>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+/// The mesh on the grid, with its numbers.
+Scene scene_of(TriangleMesh mesh)
+{
+    Scene scene;
+    for (Float3& v : mesh.vertices)
+        v = snap_to_grid(v);
+    scene.mesh = std::move(mesh);
+    scene.origins.resize(scene.mesh.triangles.size());
+    std::iota(scene.origins.begin(), scene.origins.end(), 0u);
+    clean_up(scene.mesh, scene.origins);
+    return scene;
+}
+
+Double3 normal_of(const TriangleMesh& mesh, std::size_t triangle)
+{
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const Double3 p = to_double(mesh.vertices[a]);
+    return cross(to_double(mesh.vertices[b]) - p, to_double(mesh.vertices[c]) - p);
+}
+
+/// Twice the area of each triangle, as a vector along its normal.
+std::vector<Double3> areas(const TriangleMesh& mesh, const std::vector<std::uint32_t>& origins, std::size_t count)
+{
+    std::vector<Double3> sums(count, Double3{0, 0, 0});
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        sums[origins[i]] = sums[origins[i]] + normal_of(mesh, i);
+    return sums;
+}
+
+/// Repairs it, and expects pieces that meet in shared vertices and edges, turned and as large as their triangles.
+/// Where triangles overlap in a plane, pieces belong to one of them: then areas are not compared.
+Scene repaired(const TriangleMesh& mesh, bool overlap = false)
+{
+    Scene scene = scene_of(mesh);
+    const std::size_t count = mesh.triangles.size();
+    const auto before = areas(scene.mesh, scene.origins, count);
+    repair(scene);
+    EXPECT_TRUE(intersecting_pairs(scene.mesh).empty());
+    EXPECT_EQ(scene.origins.size(), scene.mesh.triangles.size());
+    const auto after = areas(scene.mesh, scene.origins, count);
+    for (std::size_t i = 0; i < count && !overlap; ++i)
+        EXPECT_LT(length(after[i] - before[i]), 1e-5) << "triangle " << i;
+    for (std::size_t i = 0; i < scene.mesh.triangles.size(); ++i)
+        EXPECT_GT(dot(normal_of(scene.mesh, i), before[scene.origins[i]]), -1e-9) // rounding may turn a sliver
+            << "piece " << i << " is turned";
+    return scene;
+}
+
+bool has_vertex(const TriangleMesh& mesh, Float3 vertex)
+{
+    return std::find(mesh.vertices.begin(), mesh.vertices.end(), vertex) != mesh.vertices.end();
+}
+
+/// Edges with an odd number of triangles.
+std::size_t open_edges(const TriangleMesh& mesh)
+{
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> counts;
+    for (const auto& triangle : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            ++counts[std::minmax(triangle[i], triangle[(i + 1) % 3])];
+    return static_cast<std::size_t>(
+        std::count_if(counts.begin(), counts.end(), [](const auto& edge) { return edge.second % 2 != 0; }));
+}
+
+} // namespace
+
+TEST(Repair, leaves_a_sound_mesh_as_it_is)
+{
+    for (const TriangleMesh& mesh : {tetrahedron(), sphere(3), flat_cube(4)}) {
+        const Scene before = scene_of(mesh);
+        Scene scene = before;
+        repair(scene);
+        EXPECT_EQ(scene, before);
+        EXPECT_TRUE(contains(repair_text(scene.build.repair), "nothing to repair"));
+    }
+}
+
+TEST(Repair, cuts_two_triangles_along_the_segment_that_they_share)
+{
+    const Scene scene = repaired(crossing_pair());
+    EXPECT_EQ(scene.build.repair, (RepairInfo{false, 1, 2, 8, 0, 1}));
+    EXPECT_EQ(std::count(scene.origins.begin(), scene.origins.end(), 0u), 5);
+    EXPECT_EQ(std::count(scene.origins.begin(), scene.origins.end(), 1u), 3);
+    EXPECT_TRUE(has_vertex(scene.mesh, {1.5f, 1, 0}));
+    EXPECT_EQ(repair_text(scene.build.repair), "1 pairs of triangles crossed: 2 triangles were cut into 8 pieces in 1 "
+                                               "pass; 0 others lay on these or had no area after rounding, and were "
+                                               "dropped");
+}
+
+TEST(Repair, cuts_every_way_in_which_two_triangles_meet)
+{
+    const std::vector<Float3> v = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {2, 1, 1},  {1, 1, 0},
+                                   {2, 1, 0}, {5, 5, 0}, {4, 4, 0}, {0, 0, 3},  {2, 0, 0}, {2, -1, 0}, {3, -1, 1}};
+    using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+    const auto pieces = [&](const Triangles& triangles, bool overlap = false) {
+        return repaired({v, triangles}, overlap).mesh.triangles.size();
+    };
+    EXPECT_EQ(pieces({{0, 1, 2}, {6, 4, 5}}), 4u) << "a vertex inside the other";
+    EXPECT_EQ(pieces({{0, 1, 2}, {11, 12, 13}}), 3u) << "a vertex on the other's edge";
+    EXPECT_EQ(pieces({{0, 1, 2}, {6, 7, 4}}), 6u) << "an edge inside the other";
+    EXPECT_GT(pieces({{0, 1, 2}, {0, 3, 4}}), 4u) << "from a shared vertex";
+    EXPECT_GT(pieces({{0, 1, 2}, {6, 7, 8}}, true), 4u) << "overlap in a plane";
+    EXPECT_EQ(pieces({{0, 1, 2}, {0, 1, 6}}, true), 3u) << "folded onto each other over an edge";
+}
+
+TEST(Repair, keeps_overlapping_faces_once)
+{
+    const TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                              {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}}};
+    const Scene both = repaired(square, true); // the same square, with either diagonal
+    double area = 0;
+    for (std::size_t i = 0; i < both.mesh.triangles.size(); ++i)
+        area += normal_of(both.mesh, i).z / 2;
+    EXPECT_DOUBLE_EQ(area, 1);
+    const Scene boxes = repaired(joined(box({0, 0, 0}, {1, 1, 1}), box({1, 0.25f, 0.25f}, {2, 0.75f, 0.625f})), true);
+    EXPECT_GT(boxes.build.repair.dropped, 0u) << "where the side of one lies on that of the other";
+}
+
+TEST(Repair, gives_three_triangles_the_point_in_which_they_meet)
+{
+    const float r = 1.0f / 3;
+    TriangleMesh planes{{{-1, -1, r},
+                         {1, -1, r},
+                         {0, 1.5f, r},
+                         {r, -1, -1},
+                         {r, 1, -1},
+                         {r, 0, 1.5f},
+                         {-1, r, -1},
+                         {1, r, -1},
+                         {0, r, 1.5f}},
+                        {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}};
+    const Scene scene = repaired(planes);
+    EXPECT_TRUE(has_vertex(scene.mesh, {r, r, r}));
+    EXPECT_EQ(scene.build.repair.crossing_pairs, 3u);
+}
+
+TEST(Repair, leaves_closed_surfaces_closed)
+{
+    const TriangleMesh two = joined(sphere(3), moved(sphere(3), {0.31f, 0.47f, 0.59f}, 0.9f));
+    for (const TriangleMesh& mesh : {two, joined(two, moved(flat_cube(3), {-0.1f, -0.7f, 0.2f}))}) {
+        const Scene scene = repaired(mesh);
+        EXPECT_EQ(open_edges(scene.mesh), 0u);
+        EXPECT_GT(scene.build.repair.cut_triangles, 50u);
+        EXPECT_LE(scene.build.repair.passes, 3u);
+    }
+}
+
+TEST(Repair, cleans_a_soup_of_triangles)
+{
+    Random random(19);
+    const auto coordinate = [&] { return static_cast<float>(random.below(1u << 20)) * 0x1p-20f; };
+    TriangleMesh soup;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+        for (int corner = 0; corner < 3; ++corner)
+            soup.vertices.push_back({coordinate(), coordinate(), coordinate()});
+        soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    EXPECT_GT(repaired(soup).build.repair.crossing_pairs, 100u);
+}
+
+TEST(Repair, gives_up_where_the_cuts_have_no_end)
+{
+    // Fans over each of two polygons in one tilted plane, whose corners floats take off it in all directions.
+    Random random(19);
+    const auto fan = [&](float turn) {
+        TriangleMesh mesh;
+        for (int i = 0; i < 24; ++i) {
+            const double angle = turn + i * 6.28318530718 / 24, x = std::cos(angle), y = std::sin(angle);
+            mesh.vertices.push_back(to_float(Double3{x, y, 0.3 * x + 0.7 * y + 1e-7 * random.unit()}));
+        }
+        for (std::uint32_t i = 2; i < 24; ++i)
+            mesh.triangles.push_back({0, i - 1, i});
+        return mesh;
+    };
+    Scene scene = scene_of(joined(joined(fan(0), fan(1)), fan(2)));
+    scene.build.source = "flat.off";
+    std::vector<std::string> told;
+    try {
+        repair(scene, [&](const std::string& stage) { told.push_back(stage); });
+        ADD_FAILURE() << repair_text(scene.build.repair);
+    } catch (const BuilderFailure& failure) {
+        EXPECT_EQ(failure.code(), BUILDER_SELF_INTERSECTION);
+        EXPECT_TRUE(contains(failure.what(), "repairing flat.off: after "));
+        EXPECT_TRUE(contains(failure.what(), "pairs of pieces cross"));
+    }
+    EXPECT_TRUE(contains(told.at(0), "repairing, pass 1: "));
+}
