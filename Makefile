@@ -5,15 +5,17 @@ comma := ,
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
-.PHONY: help bench first test sanitize build bundle deb cluster-test format lint clean
+.PHONY: help bench first test sanitize sanitize-threads fuzz build bundle deb cluster-test format lint clean
 
 help:
 	@echo "make bench    install what is missing, build, run the main job; table, JSON, page, pictures (build/bench/);"
 	@echo "              QUICK=1: bunny alone, in small images"
 	@echo "make first    the part of make bench that comes first on a new machine: a small table within minutes"
 	@echo "make test     install what is missing, build, run all tests"
-	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer;"
-	@echo "              ROOMS=core,scenes: those of these folders of tests/ alone"
+	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer, then make fuzz;"
+	@echo "              ROOMS=core,scenes: the tests of these folders of tests/ alone"
+	@echo "make sanitize-threads  the tests of what has threads that share data, under ThreadSanitizer (clang)"
+	@echo "make fuzz     libFuzzer (clang) on what tetrace reads (but glTF), FUZZ_SECONDS=60 each; TARGETS='ply journal': those alone"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"
@@ -72,6 +74,22 @@ sanitize:
 	cmake --build --preset asan -j $(JOBS) --target $(if $(ROOMS),$(patsubst %,small_tests_%,$(subst $(comma), ,$(ROOMS))),small_tests)
 	ctest --preset asan -j $(JOBS) -L '$(if $(ROOMS),^small-($(subst $(comma),|,$(ROOMS)))$$,small)' --output-log build/asan/test.log
 	@echo "== asan"; grep -A 1000 '% tests passed' build/asan/test.log
+	$(if $(ROOMS),,$(MAKE) fuzz)
+
+sanitize-threads:
+	@scripts/install-packages build test clang
+	cmake --preset tsan -G Ninja -DBUILD_TESTING=ON
+	cmake --build --preset tsan -j $(JOBS) --target threaded_tests
+	TSAN_OPTIONS=ignore_noninstrumented_modules=1 OMP_NUM_THREADS=4 \
+	    OMP_TOOL_LIBRARIES=$(lastword $(wildcard /usr/lib/llvm-*/lib/libarcher.so)) \
+	    ctest --preset tsan -j $(JOBS) -L '^threads-' --output-log build/tsan/test.log
+	@echo "== tsan"; grep -A 1000 '% tests passed' build/tsan/test.log
+
+fuzz:
+	@scripts/install-packages build test clang
+	cmake --preset fuzz -G Ninja -DBUILD_TESTING=ON
+	cmake --build --preset fuzz -j $(JOBS) --target fuzzers
+	FUZZ_SECONDS=$(or $(FUZZ_SECONDS),60) scripts/fuzz build/fuzz $(TARGETS)
 
 format:
 	@scripts/install-packages lint

@@ -12,7 +12,7 @@ add_library(tetrace_options INTERFACE)
 target_compile_features(tetrace_options INTERFACE cxx_std_20)
 target_include_directories(tetrace_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(tetrace_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
-if(CMAKE_UNITY_BUILD) # gcc takes a source that another one includes for a header
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU") # it takes a source that another one includes for a header
   target_compile_options(tetrace_options INTERFACE -Wno-subobject-linkage)
 endif()
 
@@ -26,6 +26,15 @@ option(TETRACE_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSaniti
 if(TETRACE_SANITIZE)
   target_compile_options(tetrace_options INTERFACE -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(tetrace_options INTERFACE -fsanitize=address,undefined)
+endif()
+option(TETRACE_FUZZ "With TETRACE_SANITIZE and clang: build libFuzzer's programs, the target 'fuzzers'" OFF)
+if(TETRACE_FUZZ)
+  target_compile_options(tetrace_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+option(TETRACE_SANITIZE_THREADS "With clang: build with ThreadSanitizer" OFF)
+if(TETRACE_SANITIZE_THREADS)
+  target_compile_options(tetrace_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+  target_link_options(tetrace_options INTERFACE -fsanitize=thread)
 endif()
 
 # tetrace_room(<target> <sources>...): adds a folder's sources; a unity build, of mode GROUP, compiles them with those of

@@ -108,7 +108,8 @@ Ending ending_of_exit(int code)
         return {ErrorKind::internal, "the builder failed by its own fault (exit code 4)", "please report it"};
     case BUILDER_SELF_INTERSECTION:
         return {ErrorKind::invalid_input, "the mesh intersects itself",
-                "repair the mesh so that its triangles meet only in shared edges and vertices", true};
+                "give `--repair`, or repair the mesh so that its triangles meet only in shared edges and vertices",
+                true};
     case BUILDER_TETGEN_REFUSED:
         return {ErrorKind::invalid_input, "TetGen refused the mesh",
                 fmt::format("{}, or repair the mesh", try_other_switches), true};
@@ -173,7 +174,7 @@ std::string finding(const Report& report)
 std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out, const std::string& label,
                                       const BuildOptions& options)
 {
-    return {
+    std::vector<std::string> arguments = {
         "--mesh",         mesh.string(),
         "--out",          out.string(),
         "--name",         label,
@@ -183,6 +184,8 @@ std::vector<std::string> arguments_of(const fs::path& mesh, const fs::path& out,
         "--tets",         std::string(name_of(options.tets)),
         "--effort",       std::to_string(options.effort),
         "--optimise-for", fmt::format("{:g}", options.optimise_s > 0 ? options.optimise_s : options.time_limit_s / 2)};
+    if (options.repair) arguments.emplace_back("--repair");
+    return arguments;
 }
 
 /// A builder that has ended, and what it said.
@@ -207,8 +210,9 @@ Run run_builder(const fs::path& builder, const std::vector<std::string>& argumen
                 const BuildOptions& options, const Progress& progress)
 {
     Run run;
+    // A scene's file is shorter than what it takes in memory.
     ChildLimits limits = {options.time_limit_s, options.memory_limit_bytes,
-                          options.keep_unfinished ? to_check_and_write_s : 0};
+                          options.keep_unfinished ? to_check_and_write_s : 0, options.memory_limit_bytes};
     // AddressSanitizer reserves terabytes of address space, in the builder of the same build too.
     if (address_space_is_shadowed) limits.memory_bytes = 0;
     run.outcome = run_child(
@@ -261,7 +265,7 @@ bool build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
 std::vector<std::string> fallback_switches(const BuildOptions& options)
 {
     std::vector<std::string> all{default_build(TetsKind::rays).switches, default_build(TetsKind::cdt).switches,
-                                 default_build(TetsKind::cdt).switches + "MT1e-13", "p"};
+                                 default_build(TetsKind::cdt).switches + "MT1e-13", "p", "pMT1e-13"};
     if (options.switches != default_build(options.tets).switches) return {};
     all.erase(all.begin(), std::ranges::find(all, options.switches) + 1);
     return all;

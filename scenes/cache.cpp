@@ -195,6 +195,7 @@ fs::path cached_scene_path(const std::string& label, std::uint64_t mesh_hash, co
     std::string key = fmt::format("version {} mesh {} domain {} divisions {} switches {} tets {}", scene_file_version,
                                   hash_text(mesh_hash), name_of(options.domain), options.divisions, options.switches,
                                   name_of(options.tets));
+    if (options.repair) key += " repaired";
     if (options.tets == TetsKind::rays)
         key += fmt::format(" effort {} optimiser {}", options.effort, optimiser_version);
     return cache_directory() / fmt::format("{}-{}.tet", safe_name(label), hash_text(hash_of(key)));
@@ -213,6 +214,15 @@ std::vector<CachedFile> list_cache()
     for (const OwnEntry& entry : own_entries(cache_directory()))
         if (entry.kind != OwnEntry::Kind::lock) files.push_back({entry.path, entry.bytes});
     return files;
+}
+
+void clear_leftovers(const fs::path& scene_file)
+{
+    for (const fs::path& path : children(scene_file.parent_path())) {
+        const auto entry = scene_entry(path);
+        std::error_code ignored; // what cannot be removed is listed and cleared with the cache
+        if (entry && entry->kind == OwnEntry::Kind::work && entry->scene == scene_file) fs::remove_all(path, ignored);
+    }
 }
 
 std::uint64_t clear_cache()

@@ -35,6 +35,10 @@ struct CachedFile {
 /// Scenes, meshes, compiled programs and what killed processes left behind; sorted by path within each.
 [[nodiscard]] std::vector<CachedFile> list_cache();
 
+/// Removes what killed builds of a scene left behind. The caller holds the lock of the scene's file, so no other build
+/// of it is going on.
+void clear_leftovers(const std::filesystem::path& scene_file);
+
 /// Removes what tetrace put there, and nothing else; returns how many bytes that freed. Keeps what another process is
 /// building.
 std::uint64_t clear_cache();

@@ -12,6 +12,7 @@ struct ChildLimits {
     double time_s = 0;              ///< wall clock; 0 is none
     std::uint64_t memory_bytes = 0; ///< address space (RLIMIT_AS); 0 is none
     double finish_s = 0;            ///< what a child gets to finish its work after SIGINT; 0: it is ended at once
+    std::uint64_t file_bytes = 0;   ///< of the longest file that it may write (RLIMIT_FSIZE); 0 is none
 };
 
 /// How a child ended.
@@ -26,9 +27,10 @@ struct ChildOutcome {
 
 /// Runs a program and waits for it, killing it past its limits. SIGINT and SIGTERM sent to this process end the child
 /// too (End::interrupted); with finish_s the first of them is passed on as SIGINT, and the second ends the child. The
-/// child dies with its parent, however the parent ends.
-/// on_error_line: each whole line of the child's standard error as it comes; on_tick: about ten times a second.
-/// Throws Error{missing} where the program cannot be started.
+/// child dies with its parent, however the parent ends. It has an empty standard input, pipes for its output, and no
+/// other open file; no program that it starts gains privileges, and it leaves no core. on_error_line: each whole line
+/// of the child's standard error as it comes; on_tick: about ten times a second. Throws Error{missing} where the
+/// program cannot be started.
 [[nodiscard]] ChildOutcome run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                      const ChildLimits& limits,
                                      const std::function<void(const std::string&)>& on_error_line = {},

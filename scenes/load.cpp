@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <span>
 #include <thread>
@@ -118,6 +119,8 @@ std::string MeshSceneLoader::mismatch(const Scene& scene) const
     const std::vector<std::string> others = fallback_switches(asked);
     if (scene.build.switches != asked.switches && std::ranges::find(others, scene.build.switches) == others.end())
         return fmt::format("it was made with the switches {}, not {}", scene.build.switches, asked.switches);
+    if (scene.build.repair.asked != asked.repair)
+        return asked.repair ? "its mesh was not to be repaired" : "its mesh was to be repaired";
     const OptimisedInfo& made = scene.build.optimised;
     if (made.asked != asked.tets)
         return fmt::format("its tets are of kind {}, not {}", name_of(made.asked), name_of(asked.tets));
@@ -148,6 +151,14 @@ bool MeshSceneLoader::read_cached()
     const BuildInfo& info = loaded_.scene.build;
     if (difference.empty() && !info.optimised.reason.empty())
         loaded_.messages.push_back(fmt::format("{}: the tets are TetGen's: {}", label_, info.optimised.reason));
+    const RepairInfo& repair = info.repair;
+    if (difference.empty() && repair.crossing_pairs > 0)
+        loaded_.messages.push_back(fmt::format(
+            "{}: repaired when it was built: {} pairs of triangles crossed, and {} triangles were cut into {}", label_,
+            repair.crossing_pairs, repair.cut_triangles, repair.pieces));
+    if (difference.empty() && info.switches != request_.build.switches)
+        loaded_.messages.push_back(fmt::format("{}: made with TetGen's switches {}, since {} failed", label_,
+                                               info.switches, request_.build.switches));
     if (difference.empty() && info.degenerate_triangles + info.duplicate_triangles > 0)
         loaded_.messages.push_back(
             fmt::format("{}: {} degenerate and {} duplicate triangles were removed when it was built", label_,
@@ -171,6 +182,7 @@ void MeshSceneLoader::build_alone()
 {
     make_cache_folder(file_.parent_path());
     const FileLock lock = wait_for_lock();
+    clear_leftovers(file_);
     loaded_.messages.clear();    // the second look says again what is still wrong
     if (!read_cached()) build(); // another process may have built it while we waited
 }
@@ -223,6 +235,7 @@ struct Unused {
         if (asked.divisions != standard.divisions) options.emplace_back("--divisions");
         if (asked.switches != standard.switches) options.emplace_back("--switches");
         if (asked.effort != standard.effort) options.emplace_back("--effort");
+        if (asked.repair) options.emplace_back("--repair");
     }
     void add_resolution()
     {
@@ -238,17 +251,36 @@ struct Unused {
     }
 };
 
-LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
+/// A scene that is made here, without a builder and without the cache.
+LoadedScene made_in_place(const SceneRequest& request, const Progress& progress, const std::function<Scene()>& make)
 {
-    if (progress) progress("making cubes", -1, "");
+    if (progress) progress("making " + request.name, -1, "");
     const Stopwatch watch;
     LoadedScene loaded;
-    loaded.scene = make_cubes(request.build.resolution);
+    loaded.scene = make();
     loaded.scene.build.build_s = watch.seconds();
     loaded.hash = scene_hash(loaded.scene);
+    return loaded;
+}
+
+constexpr const char* own_domain = "it is made in place, in a domain of its own";
+
+LoadedScene load_cubes(const SceneRequest& request, const Progress& progress)
+{
+    LoadedScene loaded = made_in_place(request, progress, [&] { return make_cubes(request.build.resolution); });
     Unused unused{request.build, {}};
     unused.add_build();
-    unused.tell("cubes", "it is made in place, in a domain of its own", loaded);
+    unused.tell(request.name, own_domain, loaded);
+    return loaded;
+}
+
+LoadedScene load_lattice(const SceneRequest& request, std::uint32_t resolution, const Progress& progress)
+{
+    LoadedScene loaded = made_in_place(request, progress, [&] { return make_lattice(resolution); });
+    Unused unused{request.build, {}};
+    unused.add_build();
+    unused.add_resolution();
+    unused.tell(request.name, own_domain, loaded);
     return loaded;
 }
 
@@ -283,7 +315,7 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
     const bool is_path = name.find('/') != std::string::npos || fs::path(name).has_extension();
     throw Error(is_path ? ErrorKind::missing : ErrorKind::usage,
                 fmt::format("scene {}: neither a name of the catalogue ({}) nor a file; give one of these "
-                            "names, or the path of a mesh (.ply, .obj, .off, .stl) or of a .tet file",
+                            "names, or the path of a mesh (.ply, .obj, .off, .stl, .glb, .gltf) or of a .tet file",
                             name, names));
 }
 
@@ -291,6 +323,7 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
 
 LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
 {
+    if (const auto resolution = lattice_resolution(request.name)) return load_lattice(request, *resolution, progress);
     if (const CatalogueEntry* entry = find_in_catalogue(request.name)) {
         if (entry->source == SceneSource::cubes) return load_cubes(request, progress);
         return load_mesh_scene(request, mesh_file(*entry), progress);

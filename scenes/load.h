@@ -11,17 +11,17 @@ struct LoadedScene {
     std::uint64_t hash = 0; ///< scene_hash(scene)
     bool from_cache = false;
     bool interrupted = false;   ///< Ctrl-C came while it was built (BuildOptions::keep_unfinished)
-    std::filesystem::path file; ///< the `.tet` file; empty for `cubes`
+    std::filesystem::path file; ///< the `.tet` file; empty for `cubes` and `lattice`
     std::vector<std::string>
         messages; ///< for the user: a damaged cache file rebuilt, triangles dropped, options not used
 };
 
-/// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` is made in place. A scene whose
-/// optimiser was stopped early, by its time limit or by Ctrl-C, is put beside it under a name of its own, and never
-/// taken for the whole one. Throws Error{usage} for a name that is neither in the catalogue nor a path (lists the
-/// accepted ones) and for switches that the builder does not accept, Error{missing} for a file or a mesh that is not
-/// available here, Error{invalid_input} with the builder's finding, Error{interrupted} after Ctrl-C (the builder is
-/// ended too).
+/// Finds a scene in the cache, or builds it with tetrace-builder and caches it. `cubes` and `lattice` are made in
+/// place. A scene whose optimiser was stopped early, by its time limit or by Ctrl-C, is put beside it under a name of
+/// its own, and never taken for the whole one. Throws Error{usage} for a name that is neither in the catalogue nor a
+/// path (lists the accepted ones) and for switches that the builder does not accept, Error{missing} for a file or a
+/// mesh that is not available here, Error{invalid_input} with the builder's finding, Error{interrupted} after Ctrl-C
+/// (the builder is ended too).
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
 
 } // namespace tetrace

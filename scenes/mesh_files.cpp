@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_bytes.h"
 #include "core/base/hash.h"
 #include "scenes/archive.h"
 #include "scenes/cache.h"
@@ -10,7 +11,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
 #include <iterator>
 #include <span>
 
@@ -80,8 +80,7 @@ fs::path banana_file(const TriangleMesh& mesh)
 {
     const std::string text = off_text(mesh);
     fs::path target = cached_mesh_path("banana.off", hash_of(text));
-    std::ifstream present(target, std::ios::binary);
-    if (present && std::string(std::istreambuf_iterator<char>(present), {}) == text) return target;
+    if (file_bytes(target) == text) return target;
     AtomicFile file(target);
     file.write(std::as_bytes(std::span(text)));
     file.commit();

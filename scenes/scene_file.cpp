@@ -7,9 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/exact.h"
 #include "core/base/hash.h"
-#include "core/base/printable.h"
 #include "core/mesh/sides.h"
-#include "scenes/information.h"
+#include "scenes/scene_information.h"
 
 #include <array>
 #include <bit>
@@ -53,13 +52,14 @@ struct SectionKind {
     std::string_view name;
     std::size_t element_bytes;
 };
-constexpr std::array<SectionKind, 6> kinds = {{{"information", 1},
+constexpr std::array<SectionKind, 7> kinds = {{{"information", 1},
                                                {"mesh vertices", sizeof(Float3)},
                                                {"triangles", 3 * sizeof(std::uint32_t)},
+                                               {"origins", sizeof(std::uint32_t)},
                                                {"tet vertices", sizeof(Float3)},
                                                {"tets", sizeof(Tet)},
                                                {"domain lines", sizeof(float)}}};
-enum SectionId : std::size_t { information, mesh_vertices, triangles, tet_vertices, tets, domain_lines };
+enum SectionId : std::size_t { information, mesh_vertices, triangles, origins, tet_vertices, tets, domain_lines };
 
 constexpr std::uint32_t most_divisions = 128; // those of the finest cubes; the entry grid grows with their square
 
@@ -69,100 +69,6 @@ constexpr std::size_t header_bytes = sizeof(FileHeader) + sizeof(Table) + sizeof
 std::uint64_t header_checksum(const FileHeader& header, const Table& table)
 {
     return hash_of(table, hash_bytes(std::as_bytes(std::span(&header, 1))));
-}
-
-void put_optimised(InformationWriter& out, const OptimisedInfo& info)
-{
-    out.put(static_cast<std::uint32_t>(info.asked));
-    out.put(static_cast<std::uint32_t>(info.tets));
-    out.put(info.reason);
-    out.put(static_cast<std::int32_t>(info.effort));
-    for (const double value : {info.cost_before, info.cost_after, info.seconds})
-        out.put(value);
-    out.put(info.rounds);
-    out.put(static_cast<std::uint32_t>(info.operations.size()));
-    for (const OptimiserOperation& operation : info.operations) {
-        out.put(operation.name);
-        out.put(operation.done);
-        out.put(operation.gain);
-        out.put(operation.seconds);
-    }
-    out.put(static_cast<std::uint32_t>(info.end));
-}
-
-bool get_optimised(InformationReader& in, OptimisedInfo& info)
-{
-    for (TetsKind* kind : {&info.asked, &info.tets}) {
-        std::uint32_t value = 0;
-        in.get(value);
-        if (value > static_cast<std::uint32_t>(TetsKind::rays)) return false;
-        *kind = static_cast<TetsKind>(value);
-        if (kind == &info.tets) in.get(info.reason);
-    }
-    std::int32_t effort = 0;
-    in.get(effort);
-    info.effort = effort;
-    for (double* value : {&info.cost_before, &info.cost_after, &info.seconds})
-        in.get(*value);
-    in.get(info.rounds);
-    std::uint32_t operations = 0, end = 0;
-    in.get(operations);
-    if (operations > 64) return false; // there are fewer than ten
-    info.operations.resize(operations);
-    for (OptimiserOperation& operation : info.operations) {
-        in.get(operation.name);
-        in.get(operation.done);
-        in.get(operation.gain);
-        in.get(operation.seconds);
-    }
-    in.get(end);
-    info.end = static_cast<OptimiserEnd>(end);
-    return end <= static_cast<std::uint32_t>(OptimiserEnd::interrupted);
-}
-
-std::vector<char> pack_information(const Scene& scene)
-{
-    InformationWriter out;
-    out.put(scene.name);
-    out.put(static_cast<std::uint32_t>(scene.domain.kind));
-    out.put(scene.domain.divisions);
-    const BuildInfo& build = scene.build;
-    out.put(build.source);
-    out.put(build.source_hash);
-    out.put(build.switches);
-    out.put(build.tool);
-    out.put(build.build_s);
-    out.put(static_cast<std::int32_t>(build.scale_exponent));
-    for (const std::uint64_t count :
-         {build.merged_vertices, build.degenerate_triangles, build.duplicate_triangles, build.snapped_coordinates})
-        out.put(count);
-    put_optimised(out, build.optimised);
-    return out.take();
-}
-
-bool unpack_information(std::span<const char> bytes, Scene& scene)
-{
-    InformationReader in(bytes);
-    in.get(scene.name);
-    scene.name = printable_line(scene.name);
-    std::uint32_t kind = 0;
-    in.get(kind);
-    if (kind > static_cast<std::uint32_t>(DomainKind::wide)) return false;
-    scene.domain.kind = static_cast<DomainKind>(kind);
-    in.get(scene.domain.divisions);
-    BuildInfo& build = scene.build;
-    in.get(build.source);
-    in.get(build.source_hash);
-    in.get(build.switches);
-    in.get(build.tool);
-    in.get(build.build_s);
-    std::int32_t exponent = 0;
-    in.get(exponent);
-    build.scale_exponent = exponent;
-    for (std::uint64_t* count :
-         {&build.merged_vertices, &build.degenerate_triangles, &build.duplicate_triangles, &build.snapped_coordinates})
-        in.get(*count);
-    return get_optimised(in, build.optimised) && in.finished();
 }
 
 std::vector<float> joined_lines(const Domain& domain)
@@ -265,10 +171,13 @@ void SceneReader::check_table() const
         if (entry.offset != end || entry.bytes > file_bytes_ - end) refuse(kinds[i].name, "it lies outside the file");
         if (entry.bytes % kinds[i].element_bytes != 0 || entry.bytes / kinds[i].element_bytes != entry.elements)
             refuse(kinds[i].name, "its bytes and its number of elements do not agree");
-        if (entry.elements == 0) refuse(kinds[i].name, "it is empty; every scene has some");
+        if (entry.elements == 0 && i != origins) refuse(kinds[i].name, "it is empty; every scene has some");
         end += entry.bytes;
     }
     if (end != file_bytes_) refuse("file", fmt::format("{} bytes follow the last section", file_bytes_ - end));
+    if (table_[origins].elements != 0 && table_[origins].elements != table_[triangles].elements)
+        refuse("origins",
+               fmt::format("{} of them for {} triangles", table_[origins].elements, table_[triangles].elements));
     if (table_[tets].elements > MAX_TETS) refuse("tets", fmt::format("more than {} tets", MAX_TETS));
 }
 
@@ -344,6 +253,7 @@ Scene SceneReader::read()
     if (!unpack_information(read_section<char>(information), scene)) refuse("information", "its fields cannot be read");
     scene.mesh.vertices = read_section<Float3>(mesh_vertices);
     scene.mesh.triangles = read_section<std::array<std::uint32_t, 3>>(triangles);
+    scene.origins = read_section<std::uint32_t>(origins);
     scene.tets.vertices = read_section<Float3>(tet_vertices);
     scene.tets.tets = read_section<Tet>(tets);
     set_lines(scene.domain, read_section<float>(domain_lines));
@@ -362,6 +272,7 @@ void write_scene(const std::filesystem::path& path, const Scene& scene)
         std::as_bytes(std::span(info)),
         std::as_bytes(std::span(scene.mesh.vertices)),
         std::as_bytes(std::span(scene.mesh.triangles)),
+        std::as_bytes(std::span(scene.origins)),
         std::as_bytes(std::span(scene.tets.vertices)),
         std::as_bytes(std::span(scene.tets.tets)),
         std::as_bytes(std::span(lines))};

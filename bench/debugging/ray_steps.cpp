@@ -34,14 +34,14 @@ std::optional<std::uint32_t> face_towards(const Tet& tet, std::uint32_t next)
 }
 
 /// The face of the walk's last tet, as its hit tells. has_end: the ray may end inside the tet.
-void end_with(RayStep& step, const Tet& tet, const Hit& hit, bool has_end)
+void end_with(RayStep& step, const Tet& tet, const Hit& hit, bool has_end, const Scene& scene)
 {
     if (hit.face_id == LOST) {
         step.beyond = "the ray is lost here";
         return;
     }
     const bool hits = hit.face_id != NO_HIT;
-    step.beyond = hits ? fmt::format("triangle {}", hit.face_id) : "outside";
+    step.beyond = hits ? fmt::format("triangle {}", source_triangle(scene, hit.face_id)) : "outside";
     std::uint32_t count = 0;
     for (std::uint32_t face = 0; face < 4; ++face) {
         const bool fits = hits ? tet.faces[face] == hit.face_id : tet.links[face] == NO_LINK;
@@ -56,8 +56,9 @@ void end_with(RayStep& step, const Tet& tet, const Hit& hit, bool has_end)
 }
 
 std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit& hit, bool is_cut, bool has_end,
-                              const PackedScene& packed, const TetMesh& mesh)
+                              const PackedScene& packed, const Scene& scene)
 {
+    const TetMesh& mesh = scene.tets;
     std::vector<RayStep> steps;
     for (const std::uint32_t position : path) {
         RayStep& step = steps.emplace_back();
@@ -74,7 +75,7 @@ std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit&
     if (is_cut)
         steps.back().beyond = "not followed further";
     else
-        end_with(steps.back(), mesh.tets[*steps.back().tet], hit, has_end);
+        end_with(steps.back(), mesh.tets[*steps.back().tet], hit, has_end, scene);
     return steps;
 }
 
@@ -193,7 +194,7 @@ RayOnDevice follow_ray(RowRun& row, std::size_t view, const ImagePixel& pixel)
         const bool has_end = line.given && line.given->end < NO_END;
         const auto path = walk_path(ray.hit, image.max_steps, trace, most_shown_steps);
         ray.is_cut = ray.hit.steps > most_shown_steps;
-        ray.steps = steps_of(path, ray.hit, ray.is_cut, has_end, row.packed->data, row.scene->loaded().scene.tets);
+        ray.steps = steps_of(path, ray.hit, ray.is_cut, has_end, row.packed->data, row.scene->loaded().scene);
         add_products(ray, line, row.scene->loaded().scene.tets);
     } else
         ray.visits = count_visits_of_ray(row, view, hits, number, row.scene->threads());

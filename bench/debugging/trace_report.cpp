@@ -38,8 +38,12 @@ nlohmann::json device_json(const RowRun& row, const TraceRun& run)
     nlohmann::json object = row_json(row);
     const auto ray = std::ranges::find(run.rays, &row, &RayOnDevice::row);
     if (ray == run.rays.end()) return object;
-    object["hit"] = hit_json(ray->hit);
-    object["alone"] = hit_json(ray->alone);
+    const auto named = [&](Hit hit) {
+        hit.face_id = source_triangle(run.scene->loaded().scene, hit.face_id);
+        return hit_json(hit);
+    };
+    object["hit"] = named(ray->hit);
+    object["alone"] = named(ray->alone);
     object["steps"] = nlohmann::json::array();
     for (const RayStep& step : ray->steps)
         object["steps"].push_back(step_json(step));
@@ -53,7 +57,7 @@ nlohmann::json device_json(const RowRun& row, const TraceRun& run)
 }
 
 /// What is not as it is of primary rays, and of tets in Hilbert order.
-void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray)
+void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray, const Scene& scene)
 {
     if (key.order != TetOrder::hilbert) trace["order"] = name_of(key.order);
     if (key.ray_order != RayOrder::tiles) trace["ray_order"] = name_of(key.ray_order);
@@ -63,7 +67,7 @@ void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray)
     if (given.end < NO_END) trace["end"] = given.end;
     if (given.link == NO_LINK || key.kernel.structure != Structure::cdt) return; // a BVH starts at a point
     trace["start"] = {{"tet", link_tet(given.link)}, {"face", link_face(given.link)}};
-    if (given.triangle != FREE_FACE) trace["start"]["triangle"] = given.triangle;
+    if (given.triangle != FREE_FACE) trace["start"]["triangle"] = source_triangle(scene, given.triangle);
 }
 
 nlohmann::json trace_json(const TraceRun& run, const Options& options)
@@ -78,7 +82,7 @@ nlohmann::json trace_json(const TraceRun& run, const Options& options)
                             {"origin", numbers(run.ray.origin)},
                             {"direction", numbers(run.ray.direction)},
                             {"devices", nlohmann::json::array()}};
-    add_given(trace, run.rows.front().key, run.ray);
+    add_given(trace, run.rows.front().key, run.ray, run.scene->loaded().scene);
     for (const RowRun& row : run.rows)
         trace["devices"].push_back(device_json(row, run));
     nlohmann::json section = result_head(options);

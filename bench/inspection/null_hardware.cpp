@@ -3,6 +3,7 @@
 #include "bench/inspection/work_folder.h"
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/base/whole_file.h"
 #include "core/device/backend.h"
 #include "core/device/code_source.h"
 #include "scenes/child_process.h"
@@ -68,7 +69,7 @@ std::string code_name(const std::string& target, const EntryPoint& point)
 json compiled_json(const CodeSource& source, std::size_t device, const EntryPoint& point, const fs::path& code)
 try {
     const CompiledCode compiled = source.compiled(device, point.kernel, point.entry == Entry::outside);
-    if (!code.empty()) std::ofstream(code) << compiled.text;
+    if (!code.empty()) write_whole(code, compiled.text);
     json line = {{"compiler", compiled.compiler}, {"lanes", compiled.lanes}, {"statistics", compiled.statistics}};
     if (!compiled.text.empty()) line["code"] = figures_json(read_amd(compiled.text));
     return line;

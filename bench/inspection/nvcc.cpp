@@ -4,7 +4,9 @@
 #include "bench/inspection/occupancy.h"
 #include "bench/inspection/work_folder.h"
 #include "core/base/error.h"
+#include "core/base/file_bytes.h"
 #include "core/base/printable.h"
+#include "core/base/whole_file.h"
 #include "core/device/open_checks.h"
 #include "scenes/child_process.h"
 
@@ -64,8 +66,7 @@ std::string first_line(const std::string& text)
 
 std::string text_of(const fs::path& file)
 {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return file_bytes(file).value_or("");
 }
 
 /// As kernel.cu calls it.
@@ -103,12 +104,12 @@ Compiled compile(const Nvcc& nvcc, const Target& target, const cuda::ProgramId& 
     if (!succeeded(outcome)) return {{}, {}, {}, first_line(outcome.errors)};
     Compiled compiled{text_of(folder.path() / (program.name() + ".ptx")), {}, read_ptxas(outcome.errors), {}};
     const std::string name = target.name + "-" + program.name();
-    if (!code.empty()) std::ofstream(code / (name + ".ptx")) << compiled.ptx;
+    if (!code.empty()) write_whole(code / (name + ".ptx"), compiled.ptx);
     if (nvcc.disassembler.empty()) return compiled;
     const fs::path listing = folder.path() / "listing"; // longer than what run_child() keeps
     if (succeeded(run("/bin/sh", {"-c", "exec \"$0\" -c \"$1\" > \"$2\"", nvcc.disassembler, binary, listing})))
         compiled.sass = text_of(listing);
-    if (!code.empty()) std::ofstream(code / (name + ".sass")) << compiled.sass;
+    if (!code.empty()) write_whole(code / (name + ".sass"), compiled.sass);
     return compiled;
 }
 

@@ -42,8 +42,8 @@ std::vector<OptionRow> reproduce_options()
         {"Tables", "--builds", "LIST",
          "Which builds of the scenes: 'ours', a CDT as the options of scenes say; 'paper', of banana, bunny and "
          "armadillo, a CDT near the paper's counts, in a domain that holds the cameras; 'rays', tets that are changed "
-         "until rays cross few faces, which decide no claim of the paper. growth has no 'paper'; cubes and .tet files "
-         "have ours alone. Default: all.",
+         "until rays cross few faces, which decide no claim of the paper. growth has no 'paper'; cubes, lattices and "
+         ".tet files have ours alone. Default: all.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
@@ -60,18 +60,24 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
-         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana with about N triangles), a mesh file "
-         "(PLY, OBJ, OFF, STL), or a .tet file. May be repeated, or a list with commas. Default: bunny and armadillo, "
-         "or the embedded scenes if those are missing.",
+         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana with about N triangles, lattice:N "
+         "has 6 N^3 tets, for example 2 GB in layout half32 with N = 138), a mesh file (PLY, OBJ, OFF, STL, glTF), or "
+         "a .tet file. May be repeated, or a list with commas. Default: bunny and armadillo, or the embedded scenes if "
+         "those are missing.",
          building, true, append_text(&Options::scenes)},
+        {"Scenes", "--repair", "",
+         "Cut triangles of a mesh that cross, overlap or touch along their exact intersections. Without it such a mesh "
+         "is refused. face_id in results still names the file's triangles.",
+         building, false, set(&Options::repair)},
         {"Scenes", "--domain", "KIND",
          "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
          "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
          building, true, append("--domain", &Options::domains)},
         {"Scenes", "--tets", "KIND",
          "How the domain is filled: 'rays', tets that are changed until rays cross few faces, or 'cdt', the "
-         "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes' and .tet files "
-         "have tets of their own. 'build' takes a list, and so does 'render', whose steps are then side by side; "
+         "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes', 'lattice' "
+         "and .tet files have tets of their own. 'build' takes a list, and so does 'render', whose steps are then side "
+         "by side; "
          "'reproduce' has --builds. Default: rays.",
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
@@ -231,10 +237,15 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples a row, 3 to 10000; a sample traces all selected views once. Fewer than 5 give no interval, neither "
-         "here nor "
-         "in 'compare'. Default: 10.",
+         "Samples a row, 3 to 10000; a sample traces all selected views, again and again for --sample-time. Fewer than "
+         "5 give no interval, neither here nor in 'compare'. Default: 10.",
          bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
+        {"Measuring", "--sample-time", "TIME",
+         "A sample lasts at least this long on its device (seconds, or a number followed by s, m or h), or 4096 "
+         "passes: a GPU traces all views in less than a millisecond, before its clocks have settled. Passes follow "
+         "each other without the host, and a rate is that of a pass. 0: a sample is one pass. Default: 0.1.",
+         bit(Verb::bench), false,
+         [](Options& o, const std::string& v) { o.sample_s = v == "0" ? 0 : parse_seconds("--sample-time", v); }},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--budget", "TIME",

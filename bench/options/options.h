@@ -107,6 +107,7 @@ struct Options {
     std::vector<TetsKind> tets = {TetsKind::rays};
     std::vector<std::uint32_t> divisions; ///< empty: those of default_build()
     std::vector<std::string> switches;    ///< empty: those of default_build()
+    bool repair = false;
     int effort = usual_effort;
     std::uint32_t resolution = BuildOptions{}.resolution;
     double time_limit_s = BuildOptions{}.time_limit_s;
@@ -137,6 +138,7 @@ struct Options {
     unsigned packet_lanes = 0;      ///< one of packet_widths; 0: the widest available
     std::uint64_t buffer_limit = 0; ///< largest buffer of every device, in bytes; 0: unchanged
     unsigned samples = 10;
+    double sample_s = 0.1; ///< that a sample of `bench` lasts at least, on its device; 0: a pass
     double budget_s = 240; ///< for verifying and timing all rows
 
     std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper

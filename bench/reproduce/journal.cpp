@@ -102,6 +102,22 @@ std::string whole_lines(std::string text)
     return text;
 }
 
+/// The value of a text; of none where it is no JSON, or nested deeper than any entry: the library writes a value by a
+/// call a level, so that a deep one would exhaust the stack.
+json parsed_entry(std::string_view text)
+{
+    constexpr int deepest = 64;
+    bool is_deep = false;
+    json entry = json::parse(
+        text,
+        [&](int depth, json::parse_event_t, const json&) {
+            is_deep = is_deep || depth > deepest;
+            return !is_deep;
+        },
+        false);
+    return is_deep ? json() : entry;
+}
+
 /// The entries of whole lines. last: the last one's checksum.
 std::vector<json> parse(std::string_view text, const std::filesystem::path& path, std::uint64_t& last)
 {
@@ -112,7 +128,7 @@ std::vector<json> parse(std::string_view text, const std::filesystem::path& path
         const std::string_view entry = entry_of(line);
         last = checksum(entry, last);
         const bool is_sound = line == line_of(entry, last);
-        parsed.push_back(is_sound ? json::parse(entry, nullptr, false) : json());
+        parsed.push_back(is_sound ? parsed_entry(entry) : json());
         if (!parsed.back().is_object())
             throw Error(ErrorKind::invalid_input,
                         fmt::format("line {} of the journal '{}' is damaged, or one before it is missing: its checksum "

@@ -20,6 +20,7 @@ constexpr std::uint64_t oldest_schema_version = 1;
 // "[]," took 1.3 GB.
 constexpr std::size_t largest_file = std::size_t{64} << 20;
 constexpr std::size_t most_values = 6'000'000;
+constexpr int deepest = 64;                // results have 12 levels; the library writes a value by a call a level
 constexpr std::size_t longest_name = 1000; // of a row, in bytes
 
 [[noreturn]] void reject_file(const std::filesystem::path& path, ErrorKind kind, const std::string& why)
@@ -64,6 +65,8 @@ nlohmann::json parse(const std::filesystem::path& path, Repetitions repetitions)
             const bool is_value = event == Event::object_start || event == Event::array_start || event == Event::value;
             if (is_value && ++values > most_values)
                 reject_file(path, ErrorKind::invalid_input, "it has more than 6,000,000 values, which no result has");
+            if (depth > deepest)
+                reject_file(path, ErrorKind::invalid_input, "its values are nested deeper than 64 levels");
             const bool is_dropped = repetitions == Repetitions::dropped && depth == 1 && event == Event::key &&
                                     parsed.get_ref<const std::string&>() == "benchmarks";
             return !is_dropped;

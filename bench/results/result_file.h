@@ -87,8 +87,8 @@ enum class Repetitions { dropped, kept };
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
 /// ResultFile's members hold.
 /// Throws Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
-/// read, exceeds 64 MiB or 6,000,000 values, is no JSON, no result, of another schema version, lacks a key or has one
-/// of another type.
+/// read, exceeds 64 MiB, 6,000,000 values or 64 levels, is no JSON, no result, of another schema version, lacks a key
+/// or has one of another type.
 [[nodiscard]] ResultFile read_result(const std::filesystem::path& path, Repetitions repetitions = Repetitions::dropped);
 
 } // namespace tetrace

@@ -16,12 +16,10 @@ bool wants_build(const Options& options, PaperBuild build)
     return builds.empty() || std::ranges::find(builds, build) != builds.end();
 }
 
-/// Whether the builder makes its tets: those of cubes and of .tet files are their own.
+/// Whether the builder makes its tets: those of cubes, of lattices and of .tet files are their own.
 bool is_tetrahedralized(const std::string& name)
 {
-    const CatalogueEntry* entry = find_in_catalogue(name);
-    if (entry != nullptr) return entry->source != SceneSource::cubes;
-    return std::filesystem::path(name).extension() != ".tet";
+    return !is_made_in_place(name) && std::filesystem::path(name).extension() != ".tet";
 }
 
 /// Whether the scene is one of the paper's, and TetGen makes its tets with the given switches.

@@ -73,6 +73,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                                   {"divisions", how.divisions},
                                   {"tets", name_of(how.tets)},
                                   {"effort", how.effort},
+                                  {"repair", how.repair},
                                   {"switches", how.switches},
                                   {"resolution", how.resolution},
                                   {"views", selected_views(options_of_build(build, options))},

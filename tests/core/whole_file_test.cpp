@@ -1,5 +1,6 @@
 #include "core/base/whole_file.h"
 
+#include "core/base/file_bytes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <csignal>
@@ -59,6 +60,17 @@ TEST_F(WholeFile, appears_with_all_its_bytes)
     write_whole(folder_ / "a", "");
     EXPECT_EQ(read_text(folder_ / "a"), "");
     EXPECT_EQ(files(), 1);
+}
+
+TEST_F(WholeFile, is_read_with_all_its_bytes_or_not_at_all)
+{
+    const std::string text("a\0b\n", 4);
+    write_whole(folder_ / "a", text);
+    EXPECT_EQ(file_bytes(folder_ / "a"), text);
+    EXPECT_EQ(file_bytes(folder_ / "none"), std::nullopt);
+    EXPECT_EQ(file_bytes(folder_.path()), std::nullopt) << "it can be opened";
+    EXPECT_EQ(file_bytes("/proc/self/mem"), std::nullopt) << "its first page cannot be read";
+    EXPECT_FALSE(file_bytes("/proc/self/stat")->empty()) << "whose size is said to be 0";
 }
 
 TEST_F(WholeFile, does_not_appear_where_the_disk_is_full)

@@ -113,7 +113,8 @@ TEST_F(DriverFaults, row_of_a_crash_is_the_only_one_that_fails)
 TEST_F(DriverFaults, crash_in_the_middle_of_timing_costs_no_other_rows_samples)
 {
     if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
-    const Ended ended = run_faulty("launch:40 abort", "bench --samples 20 --layout tet80 --out bench.json");
+    const Ended ended =
+        run_faulty("launch:40 abort", "bench --samples 20 --sample-time 0 --layout tet80 --out bench.json");
     EXPECT_EQ(ended.code, 1) << ended.out << ended.errors;
     EXPECT_TRUE(contains(ended.out, crash_ + "launching cdt/maria/tet80"));
     EXPECT_TRUE(contains(file("bench.json"), "\"samples_s\""));
@@ -125,6 +126,16 @@ TEST_F(DriverFaults, hang_ends_at_its_limit)
     const Ended ended = run_faulty("launch:3 hang", "check --views 0 --layout tet80 --driver-limit 15");
     EXPECT_EQ(ended.code, 1) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "gave no answer for 15 s, and was ended, while launching cdt/maria/tet80"));
+}
+
+TEST_F(DriverFaults, version_of_the_future_is_used_and_one_that_is_no_text_is_no_crash)
+{
+    if (!has("opencl")) GTEST_SKIP() << "there is no OpenCL device";
+    for (const char* fault : {"version future", "version rubbish"}) {
+        const Ended ended = run_faulty(fault, "check --views 0 --layout tet80");
+        EXPECT_EQ(ended.code, 0) << fault << ended.out << ended.errors;
+        EXPECT_TRUE(contains(ended.out, "bit-exact")) << fault;
+    }
 }
 
 TEST_F(DriverFaults, garbage_and_nan_in_results_are_wrong)

@@ -1,14 +1,17 @@
 // Loaded before the OpenCL loader (LD_PRELOAD), makes the drivers behind it misbehave: FAULTY_OPENCL is "<call> <how>",
 // or "<call>:<n> <how>" for the n-th call of its kind. Only a process that loads drivers ever comes here.
 #define CL_TARGET_OPENCL_VERSION 120
+#include "tests/isolation/misbehaviour.h"
+
 #include <CL/cl.h>
 
-#include <csignal>
-#include <cstdlib>
+#include <algorithm>
 #include <cstring>
 #include <dlfcn.h>
 #include <string>
-#include <unistd.h>
+
+using tetrace::test::fault_at;
+using tetrace::test::misbehave;
 
 namespace {
 
@@ -19,26 +22,9 @@ Function* real(Function*, const char* name)
 }
 #define REAL(function) real(&function, #function)
 
-/// How the call is to go wrong; empty: not at all.
-std::string fault_at(const std::string& call, int number)
+std::string fault(const char* call, int number)
 {
-    const char* const asked = std::getenv("FAULTY_OPENCL");
-    if (asked == nullptr) return {};
-    const std::string text = asked;
-    for (const std::string& name : {call + " ", call + ":" + std::to_string(number) + " "})
-        if (text.rfind(name, 0) == 0) return text.substr(name.size());
-    return {};
-}
-
-std::string misbehave(const std::string& how)
-{
-    if (how == "abort") std::abort();
-    if (how == "segv") std::signal(SIGSEGV, SIG_DFL), std::raise(SIGSEGV); // PoCL catches it
-    if (how == "kill") std::raise(SIGKILL);
-    if (how == "exit") ::_exit(7);
-    while (how == "hang")
-        ::pause();
-    return how;
+    return misbehave(fault_at("FAULTY_OPENCL", call, number));
 }
 
 /// The codes that an API has for what may happen.
@@ -55,7 +41,7 @@ extern "C" cl_int clBuildProgram(cl_program program, cl_uint count, const cl_dev
                                  void(CL_CALLBACK* notify)(cl_program, void*), void* data)
 {
     static int calls = 0;
-    misbehave(fault_at("build", ++calls));
+    static_cast<void>(fault("build", ++calls));
     return REAL(clBuildProgram)(program, count, devices, options, notify, data);
 }
 
@@ -64,7 +50,7 @@ extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kerne
                                          const cl_event* wait_list, cl_event* event)
 {
     static int calls = 0;
-    if (const cl_int code = code_of(misbehave(fault_at("launch", ++calls))); code != CL_SUCCESS) return code;
+    if (const cl_int code = code_of(fault("launch", ++calls)); code != CL_SUCCESS) return code;
     return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, wait_list, event);
 }
 
@@ -72,9 +58,19 @@ extern "C" cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_
                                       void* to, cl_uint waits, const cl_event* wait_list, cl_event* event)
 {
     static int calls = 0;
-    const std::string how = misbehave(fault_at("read", ++calls));
+    const std::string how = fault("read", ++calls);
     const cl_int code = REAL(clEnqueueReadBuffer)(queue, buffer, CL_TRUE, offset, bytes, to, waits, wait_list, event);
     if (how == "garbage") std::memset(static_cast<char*>(to) + bytes / 2, 0x5a, bytes / 16);
     if (how == "nan") std::memset(static_cast<char*>(to) + bytes / 2, 0xff, bytes / 16);
     return code;
+}
+
+extern "C" cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t bytes, void* to, size_t* needed)
+{
+    const std::string how = what == CL_DEVICE_VERSION ? fault("version", 1) : std::string();
+    if (how.empty()) return REAL(clGetDeviceInfo)(device, what, bytes, to, needed);
+    const std::string version = how == "future" ? "OpenCL 9.9 of a time to come" : "\x1b[2J\xff 1.";
+    if (needed != nullptr) *needed = version.size() + 1;
+    if (to != nullptr) std::memcpy(to, version.c_str(), std::min(bytes, version.size() + 1));
+    return CL_SUCCESS;
 }

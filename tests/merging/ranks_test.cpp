@@ -122,7 +122,7 @@ TEST_F(Ranks, launches_without_a_name_are_told_apart_by_the_process_that_started
 TEST_F(Ranks, write_google_benchmark_s_own_form_each_to_a_file_of_its_own)
 {
     const std::string bench =
-        "bench --backend openmp --layout tet80 --scene cubes --resolution 6 --size 16 --samples 3 "
+        "bench --backend openmp --layout tet80 --scene cubes --resolution 6 --size 16 --samples 3 --sample-time 0 "
         "--benchmark_out=gb.json --out all.json";
     EXPECT_EQ(run_all(2, bench), (std::vector<int>{0, 0})) << file("rank0.err");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "gb.json"));

@@ -136,6 +136,12 @@ TEST_F(ResultFiles, without_an_end_is_refused_and_not_read_for_ever)
     EXPECT_TRUE(contains(error_of([] { static_cast<void>(read_result("/dev/zero")); }), "larger than 64 MiB"));
 }
 
+TEST_F(ResultFiles, whose_values_are_nested_so_deep_that_writing_them_would_exhaust_the_stack_is_refused)
+{
+    const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+    EXPECT_TRUE(contains(error_of_text(R"({"extra": )" + deep + "}"), "nested deeper than 64 levels"));
+}
+
 TEST_F(ResultFiles, whose_values_would_fill_the_memory_is_refused)
 {
     std::string text = R"({"tetrace": [)";
@@ -149,7 +155,7 @@ TEST_F(ResultFiles, that_is_no_json_or_was_cut_off_names_file_and_place)
     const std::string whole = small_result().dump();
     for (const std::string& text :
          {std::string("hello"), std::string("{\"tetrace\": nan}"), whole + "x", whole.substr(0, whole.size() / 2),
-          whole.substr(0, whole.size() - 1), std::string("{\"tetrace\": \"\xff\"}"), std::string(100000, '[')}) {
+          whole.substr(0, whole.size() - 1), std::string("{\"tetrace\": \"\xff\"}")}) {
         const std::string error = error_of_text(text);
         EXPECT_TRUE(contains(error, "invalid_input: reading the result")) << error;
         EXPECT_TRUE(contains(error, "a.json")) << error;

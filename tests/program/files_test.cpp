@@ -63,9 +63,9 @@ TEST_F(Files, results_are_whole_or_not_written)
 {
     expect_refusal(std::string("check --out a.json") + tiny, "a.json");
     expect_refusal(std::string("check --junit a.xml --method all") + tiny, "a.xml");
-    expect_refusal(std::string("bench --samples 3 --out a.json") + tiny, "a.json");
-    expect_refusal(std::string("bench --samples 30 --benchmark_out=gb.json") + tiny, "gb.json");
-    ASSERT_EQ(run(std::string("bench --samples 3 --out good.json") + tiny).code, 0);
+    expect_refusal(std::string("bench --samples 3 --sample-time 0 --out a.json") + tiny, "a.json");
+    expect_refusal(std::string("bench --samples 3 --sample-time 0 --benchmark_out=gb.json") + tiny, "gb.json");
+    ASSERT_EQ(run(std::string("bench --samples 3 --sample-time 0 --out good.json") + tiny).code, 0);
     expect_refusal("report good.json --out a.html", "a.html");
     expect_refusal("compare good.json good.json --out a.json", "a.json");
     expect_refusal("devices --out a.json", "a.json");
@@ -73,7 +73,7 @@ TEST_F(Files, results_are_whole_or_not_written)
 
 TEST_F(Files, a_dash_means_standard_output)
 {
-    const std::string bench = std::string("bench --samples 3 --format json --out -") + tiny;
+    const std::string bench = std::string("bench --samples 3 --sample-time 0 --format json --out -") + tiny;
     EXPECT_EQ(run(bench).out.rfind("{", 0), 0u);
     const Ended check = run(std::string("check --junit - --out check.json") + tiny);
     EXPECT_EQ(check.code, 0) << check.errors;
@@ -98,7 +98,7 @@ TEST_F(Files, one_exit_code_tells_of_every_missing_file)
 
 TEST_F(Files, what_cannot_be_printed_is_an_error)
 {
-    for (const char* const arguments : {"check", "bench --samples 3 --benchmark_format=json"}) {
+    for (const char* const arguments : {"check", "bench --samples 3 --sample-time 0 --benchmark_format=json"}) {
         const Ended ended = run_script(":", std::string(arguments) + tiny, "/dev/full");
         EXPECT_EQ(ended.code, 2) << arguments << ended.errors;
         EXPECT_TRUE(contains(ended.errors, "standard output")) << ended.errors;

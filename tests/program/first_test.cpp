@@ -25,7 +25,8 @@ TEST_F(First, has_the_rows_of_bench)
 
 TEST_F(First, measures_what_bench_does)
 {
-    const std::string command = "bench --backend openmp --scene cubes --resolution 6 --size 24 --samples 3 --out ";
+    const std::string command =
+        "bench --backend openmp --scene cubes --resolution 6 --size 24 --samples 3 --sample-time 0 --out ";
     ASSERT_EQ(run(command + "first.json", TETRACE_FIRST).code, 0);
     ASSERT_EQ(run(command + "whole.json").code, 0);
     const auto rows_of = [&](const char* name) { return nlohmann::json::parse(file(name)).at("tetrace").at("rows"); };

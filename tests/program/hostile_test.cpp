@@ -37,7 +37,7 @@ TEST_F(Hostile, a_name_that_is_not_utf_8_and_has_escapes_costs_no_result)
 {
     write_scene(folder_ / (name_ + ".tet"), make_cubes(3));
     const std::string bench =
-        "bench --backend openmp --layout tet80 --size 16 --samples 3 --scene '" + name_ + ".tet' ";
+        "bench --backend openmp --layout tet80 --size 16 --samples 3 --sample-time 0 --scene '" + name_ + ".tet' ";
     const Ended ended = run(bench + "--out a.json --benchmark_out=gb.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     expect_printable(ended.out + ended.errors);
@@ -87,8 +87,9 @@ TEST_F(Hostile, drivers_of_backends_that_are_not_asked_for_are_not_loaded)
     const ScopedVariable newer("VK_DRIVER_FILES", folder_ / "broken.json");
     const std::string small = " --isolate none --backend openmp,embree --scene cubes --resolution 4 --size 16 ";
     for (const std::string& arguments :
-         {"check" + small, "bench --samples 3" + small, "bench --list" + small,
-          "bench --samples 3 --device cpu" + small, "reproduce figure6 --views 0-2 --samples 3 --out r.json" + small}) {
+         {"check" + small, "bench --samples 3 --sample-time 0" + small, "bench --list" + small,
+          "bench --samples 3 --sample-time 0 --device cpu" + small,
+          "reproduce figure6 --views 0-2 --samples 3 --out r.json" + small}) {
         const Ended ended = run(arguments);
         EXPECT_TRUE(ended.code == 0 || ended.code == 1) << arguments << ended.code << ended.errors;
     }

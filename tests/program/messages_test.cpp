@@ -94,7 +94,8 @@ TEST_F(Messages, a_mesh_that_intersects_itself_is_told_once_with_one_exit_code)
 TEST_F(Messages, a_reason_that_many_rows_share_is_one_line)
 {
     const ScopedVariable none("CUDA_VISIBLE_DEVICES", "");
-    const Ended ended = run("bench --backend openmp,cuda --scene cubes --resolution 3 --size 16 --samples 3");
+    const Ended ended =
+        run("bench --backend openmp,cuda --scene cubes --resolution 3 --size 16 --samples 3 --sample-time 0");
     EXPECT_EQ(ended.code, 0) << ended.errors;
     EXPECT_EQ(times_in(ended.out, ": skipped: "), 1u) << ended.out;
     EXPECT_TRUE(
@@ -169,7 +170,10 @@ TEST_F(Messages, an_interrupted_reproduce_says_how_to_go_on)
 
 TEST_F(Messages, tables_and_sentences_fit_the_terminal)
 {
-    ASSERT_EQ(run("bench --backend openmp --scene cubes --resolution 6 --size 24 --samples 5 --out a.json").code, 0);
+    ASSERT_EQ(
+        run("bench --backend openmp --scene cubes --resolution 6 --size 24 --samples 5 --sample-time 0 --out a.json")
+            .code,
+        0);
     const ScopedVariable term("TERM", "xterm"), none("NO_COLOR", "1");
     for (const char* const columns : {"80", "60"}) {
         const ScopedVariable width("COLUMNS", columns);

@@ -34,12 +34,14 @@ protected:
 
 TEST_F(Show, prints_what_bench_printed)
 {
-    expect_the_same("bench --samples 5 --backend openmp,embree,cuda-host" + tiny_);
+    expect_the_same("bench --samples 5 --sample-time 0 --backend openmp,embree,cuda-host" + tiny_);
 }
 
 TEST_F(Show, prints_what_bench_printed_of_given_rays_and_rows_that_did_not_run)
 {
-    expect_the_same("bench --samples 3 --backend openmp,cuda-host --rays shadow,random --layout half32,bvh2" + tiny_);
+    expect_the_same(
+        "bench --samples 3 --sample-time 0 --backend openmp,cuda-host --rays shadow,random --layout half32,bvh2" +
+        tiny_);
 }
 
 TEST_F(Show, prints_what_check_printed)
@@ -143,8 +145,8 @@ TEST_F(Show, writes_a_result_anew_value_for_value_in_less_space)
 TEST_F(Show, several_results_stand_side_by_side)
 {
     for (const char* const name : {"a", "b", "c"})
-        ASSERT_EQ(run(std::string("bench --samples 5 --backend openmp --layout tet80,half32 --label ") + name +
-                      " --out " + name + ".json" + tiny_)
+        ASSERT_EQ(run(std::string("bench --samples 5 --sample-time 0 --backend openmp --layout tet80,half32 --label ") +
+                      name + " --out " + name + ".json" + tiny_)
                       .code,
                   0);
     auto other = nlohmann::json::parse(file("c.json"));

@@ -129,6 +129,13 @@ TEST_F(Journals, with_any_byte_changed_is_refused)
     }
 }
 
+TEST_F(Journals, with_an_entry_so_deep_that_writing_it_would_exhaust_the_stack_is_refused)
+{
+    const std::string deep = R"({"journal":{"views":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}}";
+    write_file(path_, R"({"checksum":")" + hash_text(hash_of(deep)) + R"(","entry":)" + deep + "}\n");
+    EXPECT_TRUE(contains(error_of([&] { (void)resumed(head_); }), "invalid_input: line 1 of the journal"));
+}
+
 TEST_F(Journals, with_lines_missing_or_in_another_order_is_refused)
 {
     {

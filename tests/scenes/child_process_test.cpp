@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <fcntl.h>
 #include <iterator>
 #include <sys/wait.h>
 #include <thread>
@@ -85,6 +86,31 @@ TEST(ChildProcess, passes_arguments_as_they_are)
 TEST(ChildProcess, gives_an_empty_standard_input)
 {
     EXPECT_EQ(shell("cat; echo end").out, "end\n");
+}
+
+TEST(ChildProcess, gives_no_open_file_but_the_standard_streams)
+{
+    const int open = ::fcntl(STDERR_FILENO, F_DUPFD, 50); // as a library leaves it, that does not know of the child
+    ASSERT_GE(open, 50);
+    const ChildOutcome outcome = shell("ls /proc/$$/fd");
+    ::close(open);
+    if (const std::string kernel = read_text("/proc/sys/kernel/osrelease"); kernel.starts_with("5.10"))
+        GTEST_SKIP() << "Linux 5.11 is needed, this is " << kernel;
+    EXPECT_FALSE(outcome.out.find(std::to_string(open)) != std::string::npos) << outcome.out;
+}
+
+TEST(ChildProcess, gains_no_privileges)
+{
+    EXPECT_TRUE(contains(shell("grep NoNewPrivs /proc/self/status").out, "1"));
+}
+
+TEST(ChildProcess, writes_no_file_beyond_its_limit)
+{
+    TemporaryFolder folder;
+    const std::string script = "head -c 100000 /dev/zero > '" + (folder / "file").string() + "'; echo $?";
+    EXPECT_EQ(shell(script, {.file_bytes = 50'000}).out, "153\n") << "128 and SIGXFSZ";
+    EXPECT_EQ(std::filesystem::file_size(folder / "file"), 50'000u);
+    EXPECT_EQ(shell(script, {.file_bytes = 200'000}).out, "0\n");
 }
 
 TEST(ChildProcess, reports_the_signal_that_ended_the_child)

@@ -44,6 +44,23 @@ TEST_F(Load, tells_the_builder_all_that_was_asked)
         run, " --name thing --domain wide --divisions 5 --switches pq3Y --tets cdt --effort 2 --optimise-for 300\n"));
 }
 
+TEST_F(Load, keeps_repaired_scenes_apart_and_says_what_was_done)
+{
+    request.build.repair = true;
+    EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "its mesh was not to be repaired"));
+    Scene made = expected();
+    made.build.repair = {true, 4, 3, 20, 1, 2};
+    write_scene(prepared, made);
+    use_builder("");
+    (void)load();
+    EXPECT_TRUE(contains(read_text(folder / "runs"), "--optimise-for 300 --repair\n"));
+    const LoadedScene cached = load();
+    EXPECT_TRUE(cached.from_cache);
+    EXPECT_TRUE(contains(cached.messages.front(), "4 pairs of triangles crossed, and 3 triangles were cut into 20"));
+    request.build.repair = false;
+    EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "give `--repair`, or "));
+}
+
 TEST_F(Load, hands_on_stages_and_notes)
 {
     use_builder("echo 'stage: reading' >&2; sleep 0.3; echo 'note: 3 vertices merged' >&2; echo 'stage: tetgen' >&2; "
@@ -176,7 +193,9 @@ TEST_F(Load, tries_other_switches_where_tetgen_fails_on_tets_for_rays)
     ASSERT_FALSE(loaded.messages.empty());
     EXPECT_TRUE(contains(loaded.messages.front(), "TetGen failed with switches pY (the builder crashed"));
     EXPECT_TRUE(contains(loaded.messages.front(), "; trying pq5Y instead"));
-    EXPECT_TRUE(load().from_cache);
+    const LoadedScene again = load();
+    EXPECT_TRUE(again.from_cache);
+    EXPECT_TRUE(contains(again.messages.front(), "made with TetGen's switches pq5Y, since pY failed"));
     request.build.switches = "pYM"; // the user's own: no others are tried
     use_builder("case \"$*\" in *'--switches pYM '*) kill -SEGV $$;; esac");
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "crashed (signal 11"));
@@ -188,8 +207,10 @@ TEST_F(Load, tries_all_other_switches_in_order_and_names_them_where_none_helps)
     request.build.divisions = 5;
     const std::string refused = std::to_string(BUILDER_TETGEN_REFUSED);
     const std::string error = error_with("exit " + refused);
-    EXPECT_TRUE(contains(error, "with switches pq5Y, then pq5YMT1e-13, then p: TetGen refused the mesh")) << error;
-    EXPECT_EQ(fallback_switches(default_build(TetsKind::rays)), (std::vector<std::string>{"pq5Y", "pq5YMT1e-13", "p"}));
+    EXPECT_TRUE(contains(error, "with switches pq5Y, then pq5YMT1e-13, then p, then pMT1e-13: TetGen refused the mesh"))
+        << error;
+    EXPECT_EQ(fallback_switches(default_build(TetsKind::rays)),
+              (std::vector<std::string>{"pq5Y", "pq5YMT1e-13", "p", "pMT1e-13"}));
     EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_SELF_INTERSECTION)), "with switches pq5Y: "))
         << "other switches do not help";
 }

@@ -23,6 +23,20 @@ TEST_F(Load, makes_cubes_in_place)
     EXPECT_FALSE(fs::exists(folder / "cache"));
 }
 
+TEST_F(Load, makes_a_lattice_of_the_size_that_its_name_has)
+{
+    request.name = "lattice:5";
+    request.build = {};
+    const LoadedScene loaded = load();
+    EXPECT_EQ(loaded.hash, scene_hash(make_lattice(5)));
+    EXPECT_TRUE(loaded.file.empty());
+    EXPECT_TRUE(loaded.messages.empty());
+    request.build = {.domain = DomainKind::wide, .resolution = 3};
+    EXPECT_EQ(load().messages.front(), "scene lattice:5: it is made in place, in a domain of its own: --domain, "
+                                       "--resolution are not used");
+    EXPECT_EQ(builder_runs(), 0u);
+}
+
 TEST_F(Load, tells_which_options_cubes_do_not_heed)
 {
     request.name = "cubes";
@@ -35,6 +49,7 @@ TEST_F(Load, tells_which_options_cubes_do_not_heed)
     expect_unused({.domain = DomainKind::wide, .resolution = 3}, "--domain is");
     expect_unused({.divisions = 3}, "--divisions is");
     expect_unused({.switches = "p"}, "--switches is");
+    expect_unused({.repair = true}, "--repair is");
     expect_unused({.domain = DomainKind::wide, .divisions = 3, .switches = "p"},
                   "--domain, --divisions, --switches are");
 }
@@ -90,7 +105,7 @@ TEST_F(Load, refuses_a_name_that_is_neither_row_nor_file)
     request.name = "bunni";
     const std::string error = error_of([&] { (void)load(); });
     EXPECT_TRUE(contains(error, "usage: scene bunni"));
-    EXPECT_TRUE(contains(error, "cubes, banana, bunny, armadillo"));
+    EXPECT_TRUE(contains(error, "cubes, banana, bunny, armadillo, lattice"));
     request.name = folder.path().string();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "invalid_input: reading mesh"));
     write_file(mesh, "");

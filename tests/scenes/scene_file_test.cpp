@@ -19,12 +19,12 @@ using namespace tetrace::test;
 
 namespace {
 
-// The header's layout, stated again: 32 bytes, six sections of 48 bytes each, 8 bytes of checksum.
+// The header's layout, stated again: 32 bytes, seven sections of 48 bytes each, 8 bytes of checksum.
 constexpr std::size_t version_at = 8, sections_at = 12, file_bytes_at = 16, table_at = 32, entry_bytes = 48,
-                      table_entries = 6;
+                      table_entries = 7;
 constexpr std::size_t checksum_at = table_at + table_entries * entry_bytes;
 constexpr std::size_t offset_in_entry = 16, bytes_in_entry = 24, elements_in_entry = 32;
-constexpr const char* section_names[] = {"information",  "mesh vertices", "triangles",
+constexpr const char* section_names[] = {"information",  "mesh vertices", "triangles",   "origins",
                                          "tet vertices", "tets",          "domain lines"};
 
 Scene sample_scene()
@@ -41,7 +41,10 @@ Scene sample_scene()
                                      7,
                                      {{"moves", 8, 0.75, 0.5}, {"flips"}},
                                      OptimiserEnd::out_of_time};
-    scene.build = {"file \"x\".off", 0x123456789ABCDEFu, "pq5Y", "TetGen 1.5", 1.25, -7, 1, 2, 3, 4, optimised};
+    const RepairInfo repair = {true, 5, 6, 7, 8, 9};
+    scene.build = {"file \"x\".off", 0x123456789ABCDEFu, "pq5Y", "TetGen 1.5", 1.25, -7, 1, 2, 3, 4, repair, optimised};
+    for (std::uint32_t i = 0; i < scene.mesh.triangles.size(); ++i)
+        scene.origins.push_back(i / 2);
     return scene;
 }
 
@@ -204,8 +207,8 @@ TEST_F(SceneFile, allocates_nothing_for_forged_sizes)
         }
     }
     std::string bytes = good;
-    put(bytes, sections_at, std::uint32_t{7});
-    EXPECT_TRUE(contains(error_with(resealed(bytes)), "it states 7 sections"));
+    put(bytes, sections_at, std::uint32_t{8});
+    EXPECT_TRUE(contains(error_with(resealed(bytes)), "it states 8 sections"));
 }
 
 TEST_F(SceneFile, refuses_another_scene_s_hash)
@@ -256,6 +259,7 @@ TEST_F(SceneFile, refuses_a_scene_of_nothing)
                              "reading scene " + path.string() + ": section `" + section + "`: it is empty"));
     };
     const auto free_all = [](Scene& s) {
+        s.origins.clear();
         for (Tet& tet : s.tets.tets)
             tet.faces.fill(FREE_FACE);
         s.mesh.triangles.clear();
@@ -268,6 +272,19 @@ TEST_F(SceneFile, refuses_a_scene_of_nothing)
     expect_empty(clear_mesh, "mesh vertices");
     expect_empty([](Scene& s) { s.tets.tets.clear(); }, "tets");
     expect_empty([](Scene& s) { s.tets.vertices.clear(); }, "tet vertices");
+}
+
+TEST_F(SceneFile, has_an_origin_for_each_triangle_or_none)
+{
+    Scene scene = sample_scene();
+    EXPECT_EQ(source_triangle(scene, 5), 2u);
+    EXPECT_EQ(source_triangle(scene, NO_HIT), NO_HIT);
+    scene.origins.pop_back();
+    EXPECT_TRUE(contains(error_of_written(path, scene), "section `origins`"));
+    scene.origins.clear();
+    write_scene(path, scene);
+    EXPECT_EQ(read_scene(path), scene);
+    EXPECT_EQ(source_triangle(scene, 5), 5u);
 }
 
 TEST_F(SceneFile, refuses_a_triangle_that_no_face_covers)

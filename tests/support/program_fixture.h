@@ -31,7 +31,8 @@ protected:
     Ended bench(const std::string& arguments)
     {
         // Not on this machine's GPU interfaces, whose number nobody knows.
-        return run("bench --backend openmp,embree --scene cubes --resolution 6 --size 24 --samples 3 " + arguments);
+        return run("bench --backend openmp,embree --scene cubes --resolution 6 --size 24 --samples 3 --sample-time 0 " +
+                   arguments);
     }
 
     [[nodiscard]] std::string file(const char* name) const { return read_text(folder_.path() / name); }

@@ -1,0 +1,27 @@
+#include "core/base/file_bytes.h"
+
+#include "core/base/descriptor.h"
+
+#include <array>
+#include <cerrno>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace tetrace {
+
+std::optional<std::string> file_bytes(const std::filesystem::path& path)
+{
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file.open()) return std::nullopt;
+    std::string bytes;
+    std::array<char, 1 << 16> piece{};
+    for (;;) {
+        const ssize_t count = ::read(file.get(), piece.data(), piece.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return std::nullopt;
+        if (count == 0) return bytes;
+        bytes.append(piece.data(), static_cast<std::size_t>(count));
+    }
+}
+
+} // namespace tetrace

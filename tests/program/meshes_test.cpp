@@ -1,0 +1,86 @@
+// Surfaces that are not one closed, simple one: every structure's rays are right, by the oracle, and openmp's.
+#include "tests/support/builder_meshes.h"
+#include "tests/support/program_fixture.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <set>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+class Meshes : public ProgramTest {
+protected:
+    void write(const std::string& name, const TriangleMesh& mesh) const { write_file(folder_ / name, to_off(mesh)); }
+
+    /// The rows of check --out.
+    [[nodiscard]] nlohmann::json rows() const { return nlohmann::json::parse(file("a.json"))["tetrace"]["rows"]; }
+
+    /// Checks these scenes, with rays from outside and inside, primary ones and others.
+    void expect_right(const std::string& scenes, const std::string& tets, std::size_t structures)
+    {
+        for (const std::string domain : {"tight", "wide --divisions 1 --camera-set flight --views 0,400"}) {
+            const Ended ended =
+                run(fmt::format("check --scene {} --tets {} --domain {} --size 32 --rays primary,diffuse,random "
+                                "--structure cdt,bvh --method maria,project,single --backend openmp,embree "
+                                "--schedule tiles,packets --out a.json",
+                                scenes, tets, domain));
+            ASSERT_EQ(ended.code, 0) << ended.errors << ended.out;
+            std::set<std::string> seen;
+            for (const auto& row : rows()) {
+                if (row["status"] == "unsupported") continue; // packets on a processor that has none
+                EXPECT_EQ(row["status"], "ok") << row["name"];
+                EXPECT_GT(row["counts"][row["rays"] == "primary" ? "hits" : "rays"], 0) << row["name"];
+                seen.insert(row["layout"]);
+            }
+            EXPECT_GE(seen.size(), structures);
+        }
+    }
+};
+
+} // namespace
+
+TEST_F(Meshes, nested_open_and_separate_surfaces_are_traced_right_on_every_structure)
+{
+    write("nested.off", joined(box({-1, -1, -1}, {1, 1, 1}), moved(sphere(2), {0.1f, 0, 0}, 0.5f)));
+    write("open.off", upper_half(sphere(3)));
+    const TriangleMesh ball = sphere(1);
+    write("apart.off", joined(joined(ball, moved(ball, {2.5f, 0.3f, 0})), moved(ball, {0.2f, 0.4f, 2.25f}, 0.25f)));
+    write("one.off", {{{0, 0, 0}, {1, 0, 0.25f}, {0, 1, 0.5f}}, {{0, 1, 2}}});
+    for (const char* const tets : {"rays", "cdt"})
+        expect_right("nested.off,open.off,apart.off,one.off", tets, 7);
+}
+
+TEST_F(Meshes, repaired_surfaces_are_traced_right_on_every_structure)
+{
+    write("cubes.off", joined(box({0, 0, 0}, {1, 1, 1}), box({0.5f, 0.25f, 0.375f}, {1.5f, 1.25f, 1.375f})));
+    write("balls.off", joined(sphere(2), moved(sphere(2), {0.31f, 0.47f, 0.59f}, 0.9f)));
+    write("flush.off", joined(box({0, 0, 0}, {1, 1, 1}), box({1, 0.25f, 0.25f}, {2, 0.75f, 0.625f})));
+    const Ended refused = run("check --scene cubes.off --backend openmp --size 8");
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(contains(refused.errors, "--repair cuts them")) << refused.errors;
+    for (const char* const tets : {"rays", "cdt"})
+        expect_right("cubes.off,balls.off,flush.off --repair", tets, 7);
+    const auto scenes = nlohmann::json::parse(file("a.json"))["tetrace"]["scenes"];
+    EXPECT_GT(scenes[0]["repair"]["cut_triangles"], 5);
+    EXPECT_GT(scenes[2]["repair"]["dropped"], 0);
+    for (const char* const verb : {"bench --samples 3 --tets cdt", "build --tets cdt", "render --out b.ppm --tets cdt",
+                                   "reproduce table4 --builds ours"}) {
+        const Ended ended = run(std::string(verb) + " --scene cubes.off --repair --size 16 --views 0" +
+                                (std::string(verb).starts_with("build") ? "" : " --backend openmp"));
+        EXPECT_EQ(ended.code, 0) << verb << ended.errors;
+    }
+}
+
+TEST_F(Meshes, results_name_the_file_s_triangles)
+{
+    write("cubes.off", joined(box({0, 0, 0}, {1, 1, 1}), box({0.5f, 0.25f, 0.375f}, {1.5f, 1.25f, 1.375f})));
+    const Ended ended = run("trace --scene cubes.off --repair --backend openmp --method maria --layout tet80 --size 64 "
+                            "--pixel 32,32 --out a.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto device = nlohmann::json::parse(file("a.json"))["tetrace"]["trace"]["devices"][0];
+    EXPECT_LT(device["hit"]["face_id"], 24);
+    EXPECT_EQ(device["steps"].back()["beyond"], fmt::format("triangle {}", device["hit"]["face_id"].get<int>()));
+}
