@@ -15,7 +15,7 @@ help:
 	@echo "make sanitize the small tests once more, under AddressSanitizer and UndefinedBehaviorSanitizer, then make fuzz;"
 	@echo "              ROOMS=core,scenes: the tests of these folders of tests/ alone"
 	@echo "make sanitize-threads  the tests of what has threads that share data, under ThreadSanitizer (clang)"
-	@echo "make fuzz     libFuzzer (clang) on what tetrace reads (but glTF), FUZZ_SECONDS=60 each; TARGETS='ply journal': those alone"
+	@echo "make fuzz     libFuzzer (clang) on what tetrace reads, FUZZ_SECONDS=60 each; TARGETS='ply journal': those alone"
 	@echo "make build    install what is missing, build build/release/bin/tetrace"
 	@echo "make bundle   build build/release/bundle, a folder to copy to a machine with a GPU and run there"
 	@echo "make deb      build packages of this Debian: tetrace, and tetrace-builder under licences of its own"

@@ -2,6 +2,7 @@
 
 #include "bench/options/option_values.h"
 #include "core/base/error.h"
+#include "core/base/file_bytes.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
 
@@ -10,8 +11,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace tetrace {
 
@@ -51,13 +52,11 @@ private:
         std::error_code ignored;
         if (!std::filesystem::exists(path_, ignored)) reject("there is no such file", ErrorKind::missing);
         if (!std::filesystem::is_regular_file(path_, ignored)) reject("it is no file");
-        std::ifstream file(path_, std::ios::binary);
-        std::string bytes(largest_file + 1, '\0');
-        file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        bytes.resize(static_cast<std::size_t>(file.gcount()));
-        if (bytes.size() > largest_file) reject("it is larger than 16 MiB");
+        const std::optional<std::string> bytes = file_bytes(path_, largest_file + 1);
+        if (!bytes) reject("it cannot be read");
+        if (bytes->size() > largest_file) reject("it is larger than 16 MiB");
         try {
-            return json::parse(bytes);
+            return json::parse(*bytes);
         } catch (const json::exception& problem) {
             reject(fmt::format("it is not JSON: {}", printable_line(problem.what())));
         }

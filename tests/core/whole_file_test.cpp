@@ -67,6 +67,7 @@ TEST_F(WholeFile, is_read_with_all_its_bytes_or_not_at_all)
     const std::string text("a\0b\n", 4);
     write_whole(folder_ / "a", text);
     EXPECT_EQ(file_bytes(folder_ / "a"), text);
+    EXPECT_EQ(file_bytes(folder_ / "a", 3), text.substr(0, 3));
     EXPECT_EQ(file_bytes(folder_ / "none"), std::nullopt);
     EXPECT_EQ(file_bytes(folder_.path()), std::nullopt) << "it can be opened";
     EXPECT_EQ(file_bytes("/proc/self/mem"), std::nullopt) << "its first page cannot be read";
