@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<const char*> answers = {"name", "status", "counts", "visits", "verification", "views_hash"};
 const std::string scene = " --backend openmp,embree --scene cubes --resolution 6 --threads 1";
-const std::string bench_job = "bench" + scene + " --size 24 --samples 5";
+const std::string bench_job = "bench" + scene + " --size 24 --samples 5 --sample-time 0";
 const std::string check_job = "check" + scene + " --size 16 --method all";
 
 class Merge : public MergeTest {};

@@ -179,7 +179,7 @@ TEST_F(Compare, has_an_interval_exactly_where_bench_has_one)
 {
     const auto intervals = [&](const char* samples) {
         const std::string bench =
-            "bench --backend openmp,cuda-host --layout half32 --scene cubes --resolution 3 --size 16 ";
+            "bench --backend openmp,cuda-host --layout half32 --scene cubes --resolution 3 --size 16 --sample-time 0 ";
         EXPECT_EQ(run(bench + "--samples " + samples + " --out a.json").code, 0);
         const Json ratio = Json::parse(file("a.json"))["tetrace"]["ratios"].at(0);
         EXPECT_LE(run("compare a.json a.json --out c.json").code, 1);
