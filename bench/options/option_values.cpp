@@ -78,11 +78,14 @@ std::string did_you_mean(const std::string& text, const std::vector<std::string>
 {
     std::size_t nearest = std::min<std::size_t>(2, text.size() / 3) + 1;
     std::string found;
-    for (const std::string& name : names)
+    for (const std::string& name : names) {
+        const auto [shorter, longer] = std::minmax({text.size(), name.size()});
+        if (longer - shorter >= nearest) continue; // at least so many slips; a text may be as long as a command line
         if (const std::size_t slips = slips_between(text, name); slips < nearest) {
             nearest = slips;
             found = name;
         }
+    }
     return found.empty() ? found : fmt::format("; did you mean {}?", found);
 }
 
