@@ -15,11 +15,12 @@ endif()
 
 # TETRACE_LAYOUTS and TETRACE_KERNELS, as structure/method/layout, are those of ours in kernels/kernel_list.inc, in its
 # order; every backend compiles them in each of TETRACE_MATH_MODES. Also set: TETRACE_FAMILY_<layout> and
-# TETRACE_TASKS_<method>_<layout>.
+# TETRACE_TASKS_<method>_<layout>; TETRACE_NATIVE_KERNELS are those with schedule native.
 set(tetrace_kernel_list ${PROJECT_SOURCE_DIR}/kernels/kernel_list.inc)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${tetrace_kernel_list})
 set(TETRACE_LAYOUTS "")
 set(TETRACE_KERNELS "")
+set(TETRACE_NATIVE_KERNELS "")
 file(STRINGS ${tetrace_kernel_list} rows REGEX "^LAYOUT")
 foreach(row IN LISTS rows)
   string(REGEX MATCH "^LAYOUT.([a-z0-9]+), ([a-z]+)," ignored ${row})
@@ -36,6 +37,9 @@ foreach(row IN LISTS rows)
     set(TETRACE_TASKS_${method}_${layout} ${tasks})
     string(REPLACE compact cdt structure ${TETRACE_FAMILY_${layout}}) # compact layouts are the CDT's too
     list(APPEND TETRACE_KERNELS ${structure}/${method}/${layout})
+    if(row MATCHES "native")
+      list(APPEND TETRACE_NATIVE_KERNELS ${structure}/${method}/${layout})
+    endif()
   endif()
 endforeach()
 
@@ -77,6 +81,12 @@ if(CMAKE_BUILD_TYPE STREQUAL Debug)
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND TETRACE_HOST_FLAGS_fast -march=x86-64-v3) # contraction needs fused instructions; why_not() asks the processor
+endif()
+
+# Schedule native: the decisions of exact mode, by instructions of AVX2. Elsewhere it is what every processor has.
+set(TETRACE_HOST_FLAGS_native ${TETRACE_HOST_FLAGS_exact})
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  list(APPEND TETRACE_HOST_FLAGS_native -march=x86-64-v3)
 endif()
 
 # tetrace_host_kernel_headers(<target> <math> <header>...): precompiles what each kernel reads besides itself, which took

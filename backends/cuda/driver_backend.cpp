@@ -15,7 +15,7 @@ constexpr unsigned probe_block_threads = 64;
 /// Whether a kernel's text, if there is one, has an entry for its task and schedule (kernel.cu).
 bool has_entry(const KernelId& kernel)
 {
-    if (kernel.task == Task::trace) return kernel.schedule != Schedule::packets;
+    if (kernel.task == Task::trace) return !is_for_processors(kernel.schedule);
     return kernel.schedule == Schedule::tiles && has_task(kernel);
 }
 

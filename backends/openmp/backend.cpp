@@ -34,8 +34,7 @@ public:
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
         if (kernel.schedule == Schedule::packets) return has_packets(kernel) && has_task(kernel);
-        return kernel.schedule == Schedule::tiles &&
-               openmp::find_function(openmp::compiled_kernels(), kernel) != nullptr;
+        return function_of(kernel) != nullptr;
     }
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
@@ -43,6 +42,8 @@ public:
         if (!has_kernel(kernel)) return "openmp has no kernel " + name_of(kernel);
         if (kernel.math == MathMode::fast && !host_has_fused_multiply())
             return "math mode fast is compiled for x86-64-v3, which this processor is not; use --math exact";
+        if (kernel.schedule == Schedule::native && !host_has_fused_multiply())
+            return "schedule native is compiled for x86-64-v3, which this processor is not; use --schedule tiles";
         return {};
     }
 
@@ -53,8 +54,7 @@ public:
         if (kernel.schedule == Schedule::packets)
             return std::make_unique<openmp::PacketSession>(openmp::packet_kernel(options.packet_lanes), kernel.task,
                                                            packed, threads_of(options));
-        return std::make_unique<openmp::OpenmpSession>(openmp::find_function(openmp::compiled_kernels(), kernel),
-                                                       kernel.task, packed, threads_of(options),
+        return std::make_unique<openmp::OpenmpSession>(function_of(kernel), kernel.task, packed, threads_of(options),
                                                        tile_height_of(options));
     }
 
@@ -75,6 +75,12 @@ public:
     }
 
 private:
+    /// Null where there is none.
+    [[nodiscard]] static openmp::RunFunction* function_of(const KernelId& kernel)
+    {
+        if (kernel.schedule == Schedule::native) return openmp::find_function(openmp::native_kernels(), kernel);
+        return kernel.schedule == Schedule::tiles ? openmp::find_function(openmp::compiled_kernels(), kernel) : nullptr;
+    }
     [[nodiscard]] unsigned threads_of(const SessionOptions& options) const
     {
         return options.threads != 0 ? options.threads : devices_.front().threads;

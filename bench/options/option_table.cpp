@@ -168,7 +168,8 @@ std::vector<OptionRow> row_options()
         {"Rows", "--schedule", "NAME",
          "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
-         "project on half32. Embree has a schedule of its own. Default: tiles and packets.",
+         "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, project "
+         "on half32, and BVHs. Embree has a schedule of its own. Default: tiles and packets.",
          selecting, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match of a regular expression (RE2's): 'tet96.*openmp'. Default: all.",

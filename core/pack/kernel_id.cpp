@@ -26,7 +26,7 @@ const std::vector<KernelRow>& kernel_rows()
 {
     constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search);
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
-                       packets = bit(Schedule::packets);
+                       packets = bit(Schedule::packets), native = bit(Schedule::native);
     constexpr bool robust = true, fallible = false, by_default = true, on_request = false;
     static const std::vector<KernelRow> rows = {
 #define KERNEL(method, layout, ...) {Method::method, Layout::layout, __VA_ARGS__},
@@ -46,17 +46,17 @@ KernelRow row_of(const KernelId& kernel)
     return row == rows.end() ? KernelRow{kernel.method, kernel.layout, 0, 0, false, false} : *row;
 }
 
-/// Foreign kernels have math mode fast, since we do not control how they compute; packets have exact, as the kernels
-/// that they are compared with.
+/// Foreign kernels have math mode fast, since we do not control how they compute; packets and native have exact, as the
+/// kernels that they are compared with.
 bool has_math(const KernelId& kernel)
 {
     if (!is_portable(kernel)) return kernel.math == MathMode::fast;
-    return kernel.math == MathMode::exact || kernel.schedule != Schedule::packets;
+    return kernel.math == MathMode::exact || !is_for_processors(kernel.schedule);
 }
 
 void add_kernels(std::vector<KernelId>& kernels, Structure structure, bool portable)
 {
-    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent, Schedule::packets})
+    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent, Schedule::packets, Schedule::native})
         for (const MathMode math : {MathMode::exact, MathMode::fast})
             for (const KernelRow& row : kernel_rows()) {
                 const KernelId kernel{structure_of(row.layout), row.method, row.layout, math, schedule};

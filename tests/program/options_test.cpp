@@ -244,7 +244,7 @@ TEST(Options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_EQ(parse_options({"check", "--packet-lanes", "8"}).packet_lanes, 8u);
     for (const char* const bad : {"0", "5", "32", "08", "all"})
         EXPECT_TRUE(contains(rejection({"bench", "--packet-lanes", bad}), "4, 8 or 16")) << bad;
-    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent or packets"));
+    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent, packets or native"));
 }
 
 TEST(Options, files_stand_between_options_wherever_they_are_given)
