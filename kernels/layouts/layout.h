@@ -105,5 +105,8 @@
 #define CWBVH_NODE_QUADS 5u
 #define CWBVH_LEAF_TRIANGLES 3u
 #define CWBVH_STACK 40u // the most pairs of words that wait on a ray's stack
+// How many entries of a ray's stack GPUs keep in the work group's memory (kernels/stack.h).
+#define STACK_TOP_OF_GPUS 6u
+#define STACK_ENTRY_WORDS 2u
 
 #endif

@@ -130,6 +130,24 @@ TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
     }
 }
 
+TEST_P(GivenRays, of_a_tree_that_fills_the_stack_hit_what_openmp_hits)
+{
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const FullStacks full(layout);
+        const SceneData data{&full.mesh, &full.packed};
+        const auto quads = given_quads_offset(full.rays, full.mesh);
+        const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::rays), data, {.threads = 2});
+        const auto right = traced_given(*on_host, full.rays, quads);
+        EXPECT_GT(std::ranges::count_if(right, [](const Hit& hit) { return hit.face_id < 20; }), 50)
+            << "of the triangles that wait longest";
+        for (const std::size_t device : usable) {
+            const auto session = backend.open(device, bvh_kernel(layout, Task::rays), data, {});
+            EXPECT_EQ(different_rays(traced_given(*session, full.rays, quads), right, allowed_ulps(device)), 0u)
+                << backend.devices()[device].name << ' ' << name_of(layout);
+        }
+    }
+}
+
 TEST_P(GivenRays, of_bvhs_that_exceed_a_buffer_are_refused_with_both_numbers)
 {
     const PackedScene packed = make_bvh_scene(cubes.scene.mesh, Layout::bvh2);
