@@ -148,8 +148,8 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
 void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t tiles)
 {
     LaunchParams launch = params;
-    Address output = output_.address(), counter = counter_.address();
-    void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles};
+    Address output = output_.address(), counter = counter_.address(), rays = rays_.address();
+    void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles, &rays}; // the last one is of task rays
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
     device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");

@@ -44,6 +44,11 @@ void ENTRY(run_rays_tiles_, KERNEL_NAME)(void** arguments)
 {
     call(ENTRY(rays_tiles_, KERNEL_NAME), arguments);
 }
+
+void ENTRY(run_rays_persistent_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(rays_persistent_, KERNEL_NAME), arguments);
+}
 #endif
 
 #ifdef SEARCHES_EXITS

@@ -66,12 +66,13 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
 
 #ifdef PERSISTENT
     // A group stays, and its first item fetches the group's next tile, until none is left (Aila, Laine, Karras 2012).
-    __local uint fetched;
-    for (;;) {
-        if (get_local_id(0) == 0u) fetched = atomic_inc(counter);
+    // Two words in turn: while some items still read one of them, the next tile goes to the other. One barrier is enough:
+    // the first item writes a word again only after a barrier that all items reach when they have read it.
+    __local uint fetched[2];
+    for (uint turn = 0u;; turn ^= 1u) {
+        if (get_local_id(0) == 0u) fetched[turn] = atomic_inc(counter);
         barrier(CLK_LOCAL_MEM_FENCE);
-        uint tile = fetched;
-        barrier(CLK_LOCAL_MEM_FENCE); // all items have read it before it changes
+        uint tile = fetched[turn];
         if (tile >= end_tile) break;
         run_item(scene, launch, tile, output, rays);
     }
