@@ -26,6 +26,15 @@ KERNEL_FN Vec3 turned_to(Vec3 a, uint axis)
     return VEC3(x, y, z);
 }
 
+// The other way round: its axes in cyclic order, and `axis` the third.
+KERNEL_FN Vec3 turned_from(Vec3 a, uint axis)
+{
+    real x = axis == 0u ? a.y : axis == 1u ? a.z : a.x;
+    real y = axis == 0u ? a.z : axis == 1u ? a.x : a.y;
+    real z = axis == 0u ? a.x : axis == 1u ? a.y : a.z;
+    return VEC3(x, y, z);
+}
+
 KERNEL_FN Shear shear_along(Vec3 direction)
 {
     uint axis = deepest_axis(direction);

@@ -30,7 +30,9 @@ struct OpenDevice {
     /// Waits for all work in the stream. Throws Error{internal} if any of it failed.
     void synchronize();
     /// Starts a kernel on a line of blocks. parameters: addresses of its arguments.
-    void launch(FunctionHandle function, unsigned blocks, unsigned block_threads, std::span<void* const> parameters);
+    /// shared_bytes: of a block's memory, beyond what the function declares.
+    void launch(FunctionHandle function, unsigned blocks, unsigned block_threads, std::span<void* const> parameters,
+                unsigned shared_bytes = 0);
 };
 
 } // namespace tetrace::cuda

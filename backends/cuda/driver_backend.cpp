@@ -15,8 +15,9 @@ constexpr unsigned probe_block_threads = 64;
 /// Whether a kernel's text, if there is one, has an entry for its task and schedule (kernel.cu).
 bool has_entry(const KernelId& kernel)
 {
-    if (kernel.task == Task::trace) return !is_for_processors(kernel.schedule);
-    return kernel.schedule == Schedule::tiles && has_task(kernel);
+    const bool has_schedule =
+        kernel.task == Task::search ? kernel.schedule == Schedule::tiles : !is_for_processors(kernel.schedule);
+    return has_schedule && has_task(kernel);
 }
 
 ProgramId probe_program(MathMode math)

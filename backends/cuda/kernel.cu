@@ -28,6 +28,18 @@ KERNEL_FN void trace_pixel(SceneView scene, LaunchParams launch, uint tile, uint
     write_hit(hit, output_word(launch, pixel), output);
 }
 
+#ifdef TAKES_RAYS
+KERNEL_FN void trace_given_pixel(SceneView scene, LaunchParams launch, uint tile, uint item, uint* output,
+                                 const uint4* __restrict__ rays)
+{
+    Pixel pixel = pixel_of(launch, tile, item);
+    if (!is_in_image(launch, pixel)) return;
+    uint ray = ray_index(pixel);
+    Hit hit = trace_given(scene, launch.trace, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
+    write_hit(hit, output_word(launch, pixel), output);
+}
+#endif
+
 // One ray per thread, one tile per block.
 KERNEL_FN void trace_tiles(SceneView scene, LaunchParams launch, uint* output)
 {
@@ -35,22 +47,23 @@ KERNEL_FN void trace_tiles(SceneView scene, LaunchParams launch, uint* output)
 }
 
 // As many blocks as the device holds at once. Their warps stay: each fetches the next warp-full of rays from a counter,
-// which is 0 at first, until none of the `tiles` is left.
+// which is 0 at first, until none of the `tiles` is left. Returns the number of the calling thread's ray.
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
 // addendum for Kepler, with Karras, 2012. Blocks are of whole warps, and a tile is one or two warps: either all lanes
 // of a warp get a ray, or none.
+KERNEL_FN uint fetch_item(uint* counter)
+{
+    uint lane = threadIdx.x % warpSize;
+    uint first = 0u;
+    if (lane == 0u) first = atomicAdd(counter, warpSize);
+    return __shfl_sync(0xFFFFFFFFu, first, 0) + lane;
+}
+
 KERNEL_FN void trace_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles)
 {
     uint tile_items = TILE_WIDTH * launch.tile_height;
-    uint lane = threadIdx.x % warpSize;
-    for (;;) {
-        uint first = 0u;
-        if (lane == 0u) first = atomicAdd(counter, warpSize);
-        first = __shfl_sync(0xFFFFFFFFu, first, 0);
-        if (first >= tiles * tile_items) return;
-        uint index = first + lane;
-        trace_pixel(scene, launch, launch.first_tile + index / tile_items, index % tile_items, output);
-    }
+    for (uint item = fetch_item(counter); item < tiles * tile_items; item = fetch_item(counter))
+        trace_pixel(scene, launch, launch.first_tile + item / tile_items, item % tile_items, output);
 }
 
 // Rays from outside have entries of their own: with both kinds in one, either waits for the other's registers.
@@ -89,11 +102,16 @@ extern "C" __global__ void ENTRY(inside_persistent_, KERNEL_NAME)(SceneView scen
 extern "C" __global__ void ENTRY(rays_tiles_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
                                                            const uint4* __restrict__ rays)
 {
-    Pixel pixel = pixel_of(launch, launch.first_tile + blockIdx.x, threadIdx.x);
-    if (!is_in_image(launch, pixel)) return;
-    uint ray = ray_index(pixel);
-    Hit hit = trace_given(scene, launch.trace, __ldg(rays + ray), __ldg(rays + ray_count(launch) + ray));
-    write_hit(hit, output_word(launch, pixel), output);
+    trace_given_pixel(scene, launch, launch.first_tile + blockIdx.x, threadIdx.x, output, rays);
+}
+
+extern "C" __global__ void ENTRY(rays_persistent_, KERNEL_NAME)(SceneView scene, LaunchParams launch, uint* output,
+                                                                uint* counter, uint tiles,
+                                                                const uint4* __restrict__ rays)
+{
+    uint tile_items = TILE_WIDTH * launch.tile_height;
+    for (uint item = fetch_item(counter); item < tiles * tile_items; item = fetch_item(counter))
+        trace_given_pixel(scene, launch, launch.first_tile + item / tile_items, item % tile_items, output, rays);
 }
 #endif
 

@@ -34,7 +34,8 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
                          const PackedScene& scene, const SessionOptions& options, unsigned tile_height)
     : device_(driver, device),
       program_(load_program(device_.context, device_.capability, programs, program_of(kernel), options.program_cache)),
-      task_(kernel.task), schedule_(kernel.schedule), outside_(entry(device, entry_name(name_of(kernel.task), kernel))),
+      task_(kernel.task), schedule_(kernel.schedule), stack_bytes_(stack_bytes_of_item(kernel.layout)),
+      outside_(entry(device, entry_name(name_of(kernel.task), kernel))),
       inside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt
                   ? entry(device, entry_name("inside", kernel))
                   : outside_),
@@ -60,7 +61,8 @@ CudaSession::Entry CudaSession::entry(Ordinal device, const std::string& name)
     const FunctionHandle function = program_.module.function(name);
     const Driver& driver = device_.driver();
     int blocks = 0;
-    device_.context.check(driver.blocks_per_multiprocessor(&blocks, function, persistent_block_threads, 0),
+    device_.context.check(driver.blocks_per_multiprocessor(&blocks, function, persistent_block_threads,
+                                                           std::size_t{stack_bytes_} * persistent_block_threads),
                           "asking how many blocks fit");
     return {function,
             static_cast<unsigned>(std::max(1, blocks * attribute_of(driver, device, attribute_multiprocessors)))};
@@ -136,22 +138,24 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
     LaunchParams launch = params;
     Address output = output_.address(), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
+    const unsigned threads = TILE_WIDTH * tile_height_;
     timer_.start(device_.stream.get());
     for (std::uint32_t pass = 0; pass < launched_passes_; ++pass)
-        device_.launch(entry_.function, tiles, TILE_WIDTH * tile_height_, parameters);
+        device_.launch(entry_.function, tiles, threads, parameters, stack_bytes_ * threads);
     timer_.stop(device_.stream.get());
 }
 
 void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t tiles)
 {
     LaunchParams launch = params;
-    Address output = output_.address(), counter = counter_.address();
-    void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles};
+    Address output = output_.address(), counter = counter_.address(), rays = rays_.address();
+    void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles, &rays}; // the last one is of task rays
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
     device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");
     timer_.start(device_.stream.get());
-    device_.launch(entry_.function, std::min(blocks, entry_.resident_blocks), persistent_block_threads, parameters);
+    device_.launch(entry_.function, std::min(blocks, entry_.resident_blocks), persistent_block_threads, parameters,
+                   stack_bytes_ * persistent_block_threads);
     timer_.stop(device_.stream.get());
 }
 

@@ -42,6 +42,7 @@ private:
     LoadedProgram program_;
     Task task_;
     Schedule schedule_;
+    std::uint32_t stack_bytes_;  ///< of a thread, in its block's memory
     Entry outside_, inside_;     ///< for rays of an image that begin outside the domain, or in a tet
     std::vector<Memory> arrays_; ///< by binding
     std::vector<Address>

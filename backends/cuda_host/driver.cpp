@@ -34,8 +34,8 @@ using namespace cuda;
 
 constexpr int emulated_version = 13000;
 constexpr int emulated_capability = 90;
-constexpr int most_block_threads = 1024;
-constexpr std::size_t device_alignment = 256; // as cuMemAlloc's
+constexpr unsigned most_shared_bytes = 48 * 1024; // of a block, as CUDA has it without an attribute
+constexpr std::size_t device_alignment = 256;     // as cuMemAlloc's
 constexpr std::size_t copy_piece = std::size_t{1} << 20;
 
 thread_local int host_threads = 0; // of this thread's next launches; 0: all
@@ -323,10 +323,11 @@ void run_grid(Entry entry, std::uint32_t blocks, Dimensions block, void** argume
 
 /// Grids are one-dimensional: the backend launches no others.
 Result launch(FunctionHandle function, unsigned grid_x, unsigned grid_y, unsigned grid_z, unsigned block_x,
-              unsigned block_y, unsigned block_z, unsigned, StreamHandle, void** parameters, void**)
+              unsigned block_y, unsigned block_z, unsigned shared_bytes, StreamHandle, void** parameters, void**)
 {
     const std::uint64_t threads = std::uint64_t{block_x} * block_y * block_z;
-    if (grid_x == 0 || threads == 0 || threads > most_block_threads) return error_invalid_value;
+    if (grid_x == 0 || threads == 0 || threads > most_block_threads || shared_bytes > most_shared_bytes)
+        return error_invalid_value;
     if (grid_y != 1 || grid_z != 1) return error_not_supported;
     run_grid(function->entry, grid_x, {block_x, block_y, block_z}, parameters);
     return success;

@@ -8,6 +8,10 @@
 namespace {
 #include "backends/cuda/kernel.cu"
 
+#ifdef SET_ENTRY
+// What a block may have at most: no launch asks for more.
+thread_local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * tetrace::cuda_host::most_block_threads];
+#endif
 static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
 } // namespace
 
@@ -39,6 +43,11 @@ void ENTRY(run_inside_persistent_, KERNEL_NAME)(void** arguments)
 void ENTRY(run_rays_tiles_, KERNEL_NAME)(void** arguments)
 {
     call(ENTRY(rays_tiles_, KERNEL_NAME), arguments);
+}
+
+void ENTRY(run_rays_persistent_, KERNEL_NAME)(void** arguments)
+{
+    call(ENTRY(rays_persistent_, KERNEL_NAME), arguments);
 }
 #endif
 

@@ -12,6 +12,7 @@
 
 #define __device__
 #define __global__
+#define __shared__ thread_local
 #define __restrict__ __restrict
 
 /// CUDA's vectors, which a device loads or stores at once.
@@ -38,6 +39,7 @@ struct Dimensions {
 extern constinit thread_local Dimensions current_thread, current_block, block_size;
 
 constexpr std::uint32_t warp_size = 1;
+constexpr std::uint32_t most_block_threads = 1024;
 
 // Operands are never NaN. A device has an instruction for this; the host's library would make a call, to handle NaN.
 inline float lesser(float a, float b)

@@ -5,7 +5,6 @@
 #include "core/base/stopwatch.h"
 #include "core/bvh/balanced_bvh.h"
 #include "core/bvh/triangle_split.h"
-#include "kernels/layouts/layout.h"
 
 #include <cfenv>
 #include <limits>
@@ -16,6 +15,8 @@ namespace tetrace {
 namespace {
 
 constexpr unsigned most_in_leaf = 4; // triangles
+/// Embree halves by number, whatever the heuristic says, from this many levels above its limit on.
+constexpr unsigned embrees_last_levels = 8;
 
 /// A node in the memory of Embree's BVH.
 struct EmbreeNode {
@@ -120,11 +121,12 @@ struct EmbreeRelease {
     void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
 };
 
-RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& primitives, const TriangleMesh& mesh)
+RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& primitives, const TriangleMesh& mesh,
+                                  std::uint32_t most_depth)
 {
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
-    arguments.maxDepth = BVH2_STACK;
+    arguments.maxDepth = most_depth + embrees_last_levels; // a tree that is not too deep is the heuristic's alone
     arguments.maxLeafSize = most_in_leaf;
     arguments.bvh = bvh;
     arguments.primitives = primitives.data();
@@ -139,15 +141,15 @@ RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& pr
     return arguments;
 }
 
-/// Nothing if the tree would be deeper than the limit given to Embree.
-std::optional<Bvh> build_with_embree(const TriangleMesh& mesh, unsigned threads)
+/// Nothing if the tree would be deeper than Embree was told.
+std::optional<Bvh> build_with_embree(const TriangleMesh& mesh, unsigned threads, std::uint32_t most_depth)
 {
     const std::string config = threads == 0 ? "" : "threads=" + std::to_string(threads);
     const std::unique_ptr<RTCDeviceTy, EmbreeRelease> device(rtcNewDevice(config.c_str()));
     if (device == nullptr) throw Error(ErrorKind::internal, "Embree: no device could be made");
     const std::unique_ptr<RTCBVHTy, EmbreeRelease> bvh(rtcNewBVH(device.get()));
     auto primitives = build_primitives(mesh);
-    const auto arguments = build_arguments(bvh.get(), primitives, mesh);
+    const auto arguments = build_arguments(bvh.get(), primitives, mesh, most_depth);
     const auto* root = static_cast<const EmbreeNode*>(rtcBuildBVH(&arguments));
     const RTCError error = rtcGetDeviceError(device.get());
     if (error == RTC_ERROR_OUT_OF_MEMORY)
@@ -181,19 +183,22 @@ void check_bvh_input(const TriangleMesh& mesh)
 
 } // namespace
 
-BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads)
+BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads, std::uint32_t most_depth)
 {
     check_bvh_input(mesh);
     const Stopwatch watch;
     std::fenv_t environment; // Embree asserts rounding to nearest, and may leave the thread flushing denormals
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV);
-    auto bvh = build_with_embree(mesh, threads);
+    auto bvh = build_with_embree(mesh, threads, most_depth);
     std::fesetenv(&environment);
 
     BuiltBvh built;
-    built.balanced = !bvh || depth_of(*bvh) > BVH2_STACK;
-    built.bvh = built.balanced ? build_balanced_bvh(mesh) : std::move(*bvh);
+    const bool fits = bvh && depth_of(*bvh) <= most_depth;
+    built.bvh = fits ? std::move(*bvh) : build_balanced_bvh(mesh);
+    if (!fits)
+        built.fall_back = "triangles are halved by number: by the surface area heuristic more than " +
+                          std::to_string(most_depth) + " nodes would stand above a leaf";
     built.spatial_splits = built.bvh.references.size() - mesh.triangles.size();
     built.build_s = watch.seconds();
     return built;

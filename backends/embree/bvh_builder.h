@@ -1,8 +1,10 @@
 #pragma once
 
 #include "core/bvh/bvh.h"
+#include "kernels/layouts/layout.h"
 
 #include <cstdint>
+#include <string>
 
 namespace tetrace {
 
@@ -15,16 +17,16 @@ struct BuiltBvh {
     Bvh bvh;
     double build_s = 0;
     std::uint64_t spatial_splits = 0; ///< references beyond one a triangle
-    bool balanced = false;            ///< triangles halved by number: the heuristic's tree would have been too deep
+    std::string fall_back; ///< why it is not the heuristic's tree, but triangles halved by number; empty where it is
 };
 
 /// Builds a binary BVH by the surface area heuristic with spatial splits, with Embree; leaves have 1 to 4 triangles,
-/// and at most BVH2_STACK inner nodes stand above a leaf. The tree does not
-/// depend on the number of threads.
-/// mesh: in domain units. threads: of Embree; 0: all.
+/// and at most BVH2_STACK inner nodes stand above a leaf: where the heuristic would have more, triangles are halved by
+/// number (build_balanced_bvh()), and fall_back says so. The tree does not depend on the number of threads.
+/// mesh: in domain units. threads: of Embree; 0: all. most_depth: in place of BVH2_STACK.
 /// Throws Error{invalid_input} for a mesh without triangles, or with a corner that is missing, not finite or beyond
 /// largest_bvh_coordinate; Error{unsupported} where Embree runs out of memory.
 /// Source: Stich, Friedrich, Dietrich 2009, Spatial Splits in Bounding Volume Hierarchies; Embree's rtcBuildBVH.
-[[nodiscard]] BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads = 0);
+[[nodiscard]] BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads = 0, std::uint32_t most_depth = BVH2_STACK);
 
 } // namespace tetrace

@@ -3,6 +3,7 @@
 #include "backends/opencl/errors.h"
 #include "core/device/device_facts.h"
 #include "core/device/launch.h"
+#include "kernels/layouts/layout.h"
 
 #include <CL/cl_ext.h>
 
@@ -114,6 +115,8 @@ void describe(const cl::Platform& platform, FoundDevice& found)
     facts.threads = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     facts.reason = reason_against(device, group_items);
     facts.usable = facts.reason.empty();
+    // What a processor's driver calls local memory is memory as any other.
+    found.stack_top = facts.kind == DeviceKind::gpu ? STACK_TOP_OF_GPUS : 0;
     found.divides_correctly = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     found.build_key = platform_name + "\n" + platform_version + "\n" + driver_version + "\n" + facts.name + "\n" +
                       device.getInfo<CL_DEVICE_VERSION>();

@@ -15,6 +15,7 @@ struct FoundDevice {
     cl_device_id id = nullptr; ///< not cl::Device, which calls the driver at exit: it may be unloaded by then
     std::string build_key; ///< platform, driver and device with versions: compiled programs are valid only for these
     bool divides_correctly = false; ///< offers correctly rounded division and square root, as a build option
+    unsigned stack_top = 0;         ///< how many entries of a ray's stack are in local memory (kernels/stack.h)
 };
 
 /// Every device of every platform, or one entry that says why there is none. Throws nothing.

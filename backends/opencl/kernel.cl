@@ -1,6 +1,7 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS and
-// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS.
+// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP, where
+// stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/scene_view_opencl.h"
@@ -50,6 +51,10 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
 {
     SceneView scene;
     scene.divisions = launch.divisions;
+#ifdef STACK_TOP
+    __local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * GROUP_ITEMS];
+    scene.group_words = group_words;
+#endif
 #define SCENE_ARRAY(element, name, member, binding) scene.name = name;
 #include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
@@ -61,12 +66,13 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
 
 #ifdef PERSISTENT
     // A group stays, and its first item fetches the group's next tile, until none is left (Aila, Laine, Karras 2012).
-    __local uint fetched;
-    for (;;) {
-        if (get_local_id(0) == 0u) fetched = atomic_inc(counter);
+    // Two words in turn: while some items still read one of them, the next tile goes to the other. One barrier is enough:
+    // the first item writes a word again only after a barrier that all items reach when they have read it.
+    __local uint fetched[2];
+    for (uint turn = 0u;; turn ^= 1u) {
+        if (get_local_id(0) == 0u) fetched[turn] = atomic_inc(counter);
         barrier(CLK_LOCAL_MEM_FENCE);
-        uint tile = fetched;
-        barrier(CLK_LOCAL_MEM_FENCE); // all items have read it before it changes
+        uint tile = fetched[turn];
         if (tile >= end_tile) break;
         run_item(scene, launch, tile, output, rays);
     }

@@ -86,6 +86,9 @@ void OpenclSession::compile()
     if (kernel_id_.task == Task::search) defines += " -DSEARCH";
     if (parts_.count > 1) defines += " -DTETS_IN_PARTS";
     if (starts_outside_) defines += " -DSTARTS_OUTSIDE";
+    const unsigned stack_top = context_->found().stack_top;
+    if (structure_of(kernel_id_.layout) == Structure::bvh && stack_top > 0)
+        defines += " -DSTACK_TOP=" + std::to_string(stack_top) + "u";
     const Program program(*context_, {source_name(kernel_id_), kernel_id_.math, defines}, cache_);
     run("making the kernel", output_bytes(), [&] {
         kernel_ = cl::Kernel(program.handle(), "run_image");

@@ -133,6 +133,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     if (is_emulated) found.shares = facts.threads;
     // lavapipe's minimum is three instructions, two of them for NaNs; with selects bvh2 is 7 % faster, cwbvh 3 %.
     found.selects_minima = is_emulated;
+    found.stack_top = is_emulated ? 0 : STACK_TOP_OF_GPUS; // a processor's shared memory is memory as any other
     facts.driver = "Vulkan driver " + version_text(properties.driverVersion);
     facts.implementation = "vulkan-" + std::to_string(properties.vendorID);
     facts.memory_bytes = device_memory(device);

@@ -43,6 +43,7 @@ struct FoundDevice {
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
     bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
     bool selects_minima = false;   ///< selects the smaller of two numbers faster than its minimum does
+    unsigned stack_top = 0;        ///< how many entries of a ray's stack are in shared memory (kernels/stack.h)
     unsigned shares = 1;           ///< it cuts a dispatch into this many runs of successive groups, one per thread
     bool always_stages = false;    ///< treats the device's memory as if the host did not see it, for tests
     std::string build_key;         ///< device and driver with versions: compiled pipelines are valid only for these

@@ -3,7 +3,14 @@
 // RAYS or SEARCH: the task.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
+#ifndef SCENE_IN_TEXELS // which is for emulated devices: their shared memory is memory as any other (kernels/stack.h)
+layout(constant_id = 3) const uint stack_top = 0u;
+#define STACK_TOP stack_top
+#endif
+#define GROUP_ITEMS (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
 #include "kernels/language/dialect_glsl.h"
+
+layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the tile's height
 
 #ifdef SCENE_IN_TEXELS
 #include "kernels/language/scene_view_texels_glsl.h"
@@ -13,7 +20,6 @@ layout(constant_id = 2) const bool selects_minima = false; // true if the driver
 
 #include "kernels/kernel.h"
 
-layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the tile's height
 layout(constant_id = 1) const bool starts_outside = false; // of all rays: no start in a tet is compiled
 layout(push_constant) uniform Launch
 {

@@ -11,7 +11,8 @@ namespace {
 std::uint64_t key_of(const FoundDevice& device, const ProgramId& id, std::span<const std::byte> code)
 {
     return hash_bytes(code, hash_of(device.build_key + ";" + std::to_string(id.tile_height) +
-                                    (id.starts_outside ? ";outside" : "") + (id.selects_minima ? ";selects" : "")));
+                                    (id.starts_outside ? ";outside" : "") + (id.selects_minima ? ";selects" : "") +
+                                    (id.stack_top != 0 ? ";stack " + std::to_string(id.stack_top) : "")));
 }
 
 vk::raii::PipelineCache make_cache(const Context& context, const ProgramCache& cache, std::uint64_t key)
@@ -83,8 +84,8 @@ vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id, 
         device.createShaderModule(vk::ShaderModuleCreateInfo{}
                                       .setCodeSize(kernel.bytes.size())
                                       .setPCode(reinterpret_cast<const std::uint32_t*>(kernel.bytes.data())));
-    const std::array<std::uint32_t, 3> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE,
-                                                 id.selects_minima ? VK_TRUE : VK_FALSE};
+    const std::array<std::uint32_t, 4> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE,
+                                                 id.selects_minima ? VK_TRUE : VK_FALSE, id.stack_top};
     std::array<vk::SpecializationMapEntry, values.size()> entries;
     for (std::uint32_t i = 0; i < entries.size(); ++i)
         entries[i].setConstantID(i).setOffset(i * sizeof(values[0])).setSize(sizeof(values[0]));

@@ -28,6 +28,7 @@ struct ProgramId {
     unsigned tile_height = 0;                    ///< the height of its work groups; 0: as the module says
     bool starts_outside = false;                 ///< no ray starts in a tet
     bool selects_minima = false;                 ///< as FoundDevice has it
+    std::uint32_t stack_top = 0;                 ///< as FoundDevice has it
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 

@@ -137,7 +137,8 @@ void VulkanSession::make_program()
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_,
                  .starts_outside = starts_outside_,
-                 .selects_minima = context_.found().selects_minima};
+                 .selects_minima = context_.found().selects_minima,
+                 .stack_top = context_.found().stack_top};
     if (in_texels_) id.texels = texel_bindings(kernel_.layout);
     if (acceleration_) id.structure = structure_binding;
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)

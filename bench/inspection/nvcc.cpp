@@ -7,6 +7,7 @@
 #include "core/base/file_bytes.h"
 #include "core/base/printable.h"
 #include "core/base/whole_file.h"
+#include "core/device/launch.h"
 #include "core/device/open_checks.h"
 #include "scenes/child_process.h"
 
@@ -131,7 +132,8 @@ void take(Inspected& row, const Compiled& compiled, const std::string& entry)
     const std::uint64_t block = row.point.kernel.schedule == Schedule::persistent
                                     ? persistent_block
                                     : std::uint64_t{TILE_WIDTH} * tile_height_of({});
-    if (const auto warps = resident_warps(capability, *row.registers, block)) {
+    if (const auto warps =
+            resident_warps(capability, *row.registers, block, block * stack_bytes_of_item(row.point.kernel.layout))) {
         row.subgroups = warps->resident;
         row.most_subgroups = warps->most;
     }

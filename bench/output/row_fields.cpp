@@ -73,15 +73,21 @@ std::string_view status_name(const RowRun& row)
     return name_of(status_of(row));
 }
 
-/// With facts for which the terminal has no column: the reason of a flawed row, and that a row is noisy, which is not
-/// ok.
+json fall_back(const RowRun& row)
+{
+    return row.packed != nullptr ? text_or_nothing(row.packed->fall_back) : json();
+}
+
+/// With facts for which the terminal has no column: the reason of a flawed row, that its tree is a fall-back, and that
+/// a row is noisy, which is not ok.
 std::string status_text(const RowFacts& facts)
 {
     const bool noisy = facts.figures && facts.figures->noisy;
-    if (noisy && status_of(*facts.row) == Status::ok) return "noisy";
+    const std::string tree = fall_back(*facts.row).is_null() ? "" : ", fall-back tree";
+    if (noisy && status_of(*facts.row) == Status::ok) return "noisy" + tree;
     std::string text(status_name(*facts.row));
     if (status_of(*facts.row) == Status::flawed) text += ": " + reason_of(*facts.row);
-    return noisy ? text + ", noisy" : text;
+    return text + tree + (noisy ? ", noisy" : "");
 }
 
 /// Reads an end of the ratio's interval.
@@ -158,6 +164,8 @@ std::vector<RowField> identity_fields()
          csv("schedule")},
         {"", "status", status_name, recorded("status", required), csv("status")},
         {"", "reason", reason_or_nothing, recorded("text"), csv("reason")},
+        {"", "fall_back", fall_back,
+         recorded("line", optional, "of our BVHs: why it is not the heuristic's best tree")},
         {"", "self_test", [](const RowRun& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },
          recorded("self_test", optional, "how the device computes in the row's math mode")},
     };

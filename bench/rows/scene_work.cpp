@@ -43,7 +43,10 @@ const Packed& SceneWork::packed(Layout layout, TetOrder order)
     Packed made;
     made.data = is_bvh ? pack_bvh(loaded_.scene.mesh, built->bvh, layout) : pack(loaded_.scene, layout, order);
     made.pack_s = watch.seconds();
-    if (is_bvh) made.bvh_build_s = built->build_s;
+    if (is_bvh) {
+        made.bvh_build_s = built->build_s;
+        made.fall_back = built->fall_back.empty() ? made.data.fall_back : built->fall_back;
+    }
     return packed_.emplace(key, std::move(made)).first->second;
 }
 

@@ -19,6 +19,7 @@ struct Packed {
     PackedScene data;
     double pack_s = 0;
     std::optional<double> bvh_build_s; ///< of a BVH, which is built once for all its layouts
+    std::string fall_back;             ///< of a BVH: why it is not the heuristic's best tree; empty where it is
 };
 
 /// A loaded scene with everything that its rows share: packed forms, views, start tets.

@@ -1,6 +1,8 @@
 #include "core/device/launch.h"
 
 #include "core/base/error.h"
+#include "core/pack/traits.h"
+#include "kernels/layouts/layout.h"
 
 #include <algorithm>
 #include <string>
@@ -25,6 +27,12 @@ LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigne
 std::uint32_t tile_count(const LaunchParams& image)
 {
     return ((image.width + TILE_WIDTH - 1) / TILE_WIDTH) * ((image.height + image.tile_height - 1) / image.tile_height);
+}
+
+std::uint32_t stack_bytes_of_item(Layout layout)
+{
+    const bool has_stack = structure_of(layout) == Structure::bvh;
+    return has_stack ? STACK_TOP_OF_GPUS * STACK_ENTRY_WORDS * sizeof(std::uint32_t) : 0;
 }
 
 std::size_t words_per_ray(Task task)
@@ -108,7 +116,8 @@ void Launches::start_pass(const LaunchParams& image, const Enqueue& enqueue, con
 
 void Launches::took(std::uint32_t tiles, std::uint32_t passes, double seconds)
 {
-    size_.took(tiles, seconds / passes);
+    const std::uint64_t all = std::uint64_t{tiles} * passes;
+    size_.took(static_cast<std::uint32_t>(std::min<std::uint64_t>(all, no_limit)), seconds);
     seconds_ += seconds;
 }
 

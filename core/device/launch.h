@@ -23,6 +23,10 @@ static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; se
 /// Tiles of an image, row after row.
 [[nodiscard]] std::uint32_t tile_count(const LaunchParams& image);
 
+/// Bytes of a work group's memory that a kernel needs on a GPU for each item: the top of its ray's stack
+/// (kernels/stack.h).
+[[nodiscard]] std::uint32_t stack_bytes_of_item(Layout layout);
+
 /// Words that a kernel writes per ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 

@@ -46,8 +46,10 @@ template <class Visit>
 void each_array(PackedScene& scene, const Visit& visit)
 {
     auto& [layout, tet_count, divisions, tets, triangles, lines, entry_ranges, entry_links, vertices, entry_faces,
-           occlusive_faces, nodes, leaf_triangles, packed_of_mesh, number_of_vertex, last_neighbours] = scene;
-    static_cast<void>(std::tie(layout, tet_count, divisions, packed_of_mesh, number_of_vertex, last_neighbours));
+           occlusive_faces, nodes, leaf_triangles, packed_of_mesh, number_of_vertex, last_neighbours, fall_back] =
+        scene;
+    static_cast<void>(
+        std::tie(layout, tet_count, divisions, packed_of_mesh, number_of_vertex, last_neighbours, fall_back));
     for (std::vector<Quad>* array : {&tets, &triangles, &vertices, &entry_faces, &nodes, &leaf_triangles})
         visit(*array);
     for (std::vector<std::uint32_t>* array : {&lines, &entry_ranges, &entry_links, &occlusive_faces})

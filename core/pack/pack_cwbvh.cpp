@@ -8,6 +8,7 @@
 
 #include <array>
 #include <bit>
+#include <string>
 
 namespace tetrace {
 namespace {
@@ -157,10 +158,17 @@ PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh)
         refuse_to_pack(Layout::cwbvh, depth, "inner nodes above a leaf", most_depth);
     const Bvh binary = with_single_leaves(mesh, bvh);
     WideBvh wide = make_wide(binary, Collapse::cheapest);
-    if (levels_of(wide) > CWBVH_STACK) wide = make_wide(binary, Collapse::shallow);
+    std::string fall_back;
+    if (const auto levels = levels_of(wide); levels > CWBVH_STACK) {
+        wide = make_wide(binary, Collapse::shallow);
+        fall_back = "three binary levels are one of eight children: the cheapest nodes would be " +
+                    std::to_string(levels) + " deep, a ray's stack has room for " + std::to_string(CWBVH_STACK);
+    }
     if (const auto levels = levels_of(wide); levels > CWBVH_STACK)
         refuse_to_pack(Layout::cwbvh, levels, "pairs would wait on a ray's stack", CWBVH_STACK);
-    return CwbvhPacker(mesh, wide).pack();
+    PackedScene packed = CwbvhPacker(mesh, wide).pack();
+    packed.fall_back = std::move(fall_back);
+    return packed;
 }
 
 } // namespace tetrace

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tetrace {
@@ -48,6 +49,7 @@ struct PackedScene {
     std::vector<std::uint32_t> packed_of_mesh;   ///< stays on the host: position of each tet of the scene in `tets`
     std::vector<std::uint32_t> number_of_vertex; ///< of tet20 and tet16, stays too: by vertex of the scene's tets
     std::vector<std::uint32_t> last_neighbours;  ///< stays too: what is behind the face opposite each tet's last vertex
+    std::string fall_back; ///< stays too: why a BVH's nodes are not the cheapest of its tree; empty where they are
 
     [[nodiscard]] std::size_t bytes() const; ///< of all arrays that are copied to a device
 };

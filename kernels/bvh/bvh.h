@@ -3,6 +3,8 @@
 // What the BVHs share: a ray as their tests take it, boxes, and the triangle test (docs/spec/bvhs.md, B4).
 #include "kernels/shear.h"
 
+#include "kernels/stack.h"
+
 // For a build that counts what a ray fetches. That build is never timed.
 #ifndef COUNT_NODE
 #define COUNT_NODE()
@@ -16,7 +18,15 @@ STRUCT(RayFrame)
     Vec3 origin;
     Vec3 inverse; // the depth of one unit along each axis
     Vec3 offset;  // origin * inverse
-    Shear shear;
+    uint axis;    // of the direction's largest component
+    Vec3 shear;   // the direction times 2^20, its axes in cyclic order and `axis` the third; x and y negated
+};
+
+// A vertex as a ray sees it.
+STRUCT(Seen)
+{
+    Sheared at; // the ray is the origin
+    real depth; // times 2^40
 };
 
 // The nearest hit so far.
@@ -54,7 +64,12 @@ KERNEL_FN RayFrame frame_of(Ray ray)
     real deepest = component(ray.direction, deepest_axis(ray.direction));
     RayFrame frame;
     frame.origin = ray.origin;
-    frame.shear = shear_along(ray.direction);
+    frame.axis = deepest_axis(ray.direction);
+    Vec3 turned = turned_from(ray.direction, frame.axis);
+    PRECISE real shear_x = turned.x * real(-1048576.0f);
+    PRECISE real shear_y = turned.y * real(-1048576.0f);
+    PRECISE real shear_z = turned.z * real(1048576.0f);
+    frame.shear = VEC3(shear_x, shear_y, shear_z);
     frame.inverse =
         VEC3(depth_per_unit(magnitude(deepest), ray.direction.x), depth_per_unit(magnitude(deepest), ray.direction.y),
              depth_per_unit(magnitude(deepest), ray.direction.z));
@@ -77,9 +92,20 @@ KERNEL_FN Nearest nothing_before(Ray ray, real end)
     return nearest;
 }
 
-KERNEL_FN Vec3 seen_from(Vec3 origin, uint4 quad)
+// A vertex is needed only as its two coordinates and its depth: a GPU has no registers for more of three vertices.
+KERNEL_FN Seen seen_by(RayFrame frame, uint4 quad)
 {
-    return sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), origin);
+    Vec3 offset = sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), frame.origin);
+    Vec3 turned = turned_from(offset, frame.axis);
+    real forwards = frame.shear.z < real(0.0f) ? real(-1099511627776.0f) : real(1099511627776.0f); // 2^40
+    PRECISE real x = turned.x * frame.shear.z + turned.z * frame.shear.x;
+    PRECISE real y = turned.y * frame.shear.z + turned.z * frame.shear.y;
+    PRECISE real depth = turned.z * forwards;
+    Seen seen;
+    seen.at.x = x;
+    seen.at.y = y;
+    seen.depth = depth;
+    return seen;
 }
 
 // Quotients that are compared must have the same bits everywhere; division does not guarantee that. a: normal, 2^-126
@@ -104,21 +130,17 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest neare
 {
     COUNT_TRIANGLE();
     uint4 quad = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at);
-    Vec3 v0 = seen_from(frame.origin, quad);
-    Vec3 v1 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 1u));
-    Vec3 v2 = seen_from(frame.origin, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 2u));
-    Sheared a = sheared(frame.shear, v0);
-    Sheared b = sheared(frame.shear, v1);
-    Sheared c = sheared(frame.shear, v2);
-    if (has_two_signs(rough_side(b, c), rough_side(c, a), rough_side(a, b))) return nearest;
+    Seen a = seen_by(frame, quad);
+    Seen b = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 1u));
+    Seen c = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 2u));
+    if (has_two_signs(rough_side(b.at, c.at), rough_side(c.at, a.at), rough_side(a.at, b.at))) return nearest;
 
-    real u = fine_side(b, c);
-    real v = fine_side(c, a);
-    real w = fine_side(a, b);
+    real u = fine_side(b.at, c.at);
+    real v = fine_side(c.at, a.at);
+    real w = fine_side(a.at, b.at);
     PRECISE real determinant = u + v + w;
     if (has_two_signs(u, v, w) || determinant == real(0.0f)) return nearest;
-    PRECISE real weighted =
-        u * dot3(v0, frame.shear.along) + v * dot3(v1, frame.shear.along) + w * dot3(v2, frame.shear.along);
+    PRECISE real weighted = u * a.depth + v * b.depth + w * c.depth;
     PRECISE real inverse = reciprocal(magnitude(determinant));
     PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
     PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40

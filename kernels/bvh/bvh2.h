@@ -24,10 +24,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    uint stack[BVH2_STACK + 2u];  // room for BVH2_END, and for a word that is written but not kept
-    real depths[BVH2_STACK + 2u]; // of the waiting children
-    stack[0] = BVH2_END;
-    depths[0] = real(0.0f);
+    STACK(stack, BVH2_STACK + 2u); // children with their depths; BVH2_END; an entry that is written but not kept
+    SET_ENTRY(scene, stack, 0u, BVH2_END, as_bits(real(0.0f)))
     uint waiting = 1u;
     uint child = 0u;
     do {
@@ -43,8 +41,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
                 bool b_first = b < a;
                 // BVH2_LEAF alone is an empty leaf: the ray enters neither box.
                 child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x;
-                stack[waiting] = b_first ? children.x : children.y;
-                depths[waiting] = maximum(a, b);
+                uint later = b_first ? children.x : children.y;
+                SET_ENTRY(scene, stack, waiting, later, as_bits(maximum(a, b)))
                 waiting += maximum(a, b) < NEVER ? 1u : 0u;
             } while ((child & BVH2_LEAF) == 0u);
         }
@@ -59,8 +57,9 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
             }
             do {
                 --waiting;
-            } while (depths[waiting] > with_slack(nearest.depth));
-            child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : stack[waiting];
+            } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.depth));
+            uint next = FIRST_OF_ENTRY(scene, stack, waiting);
+            child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : next;
         }
     } while (child != BVH2_END);
     return hit_of(scene, ray, nearest);

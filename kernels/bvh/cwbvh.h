@@ -77,8 +77,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
     uint turn = turn_of(frame);
-    uint stack_base[CWBVH_STACK];
-    uint stack_hits[CWBVH_STACK];
+    STACK(stack, CWBVH_STACK);
     uint waiting = 0u;
     uint base = 0u;
     uint hits = 0x80000000u; // the root; bits 0 to 7 mark the slots of a group that are inner children
@@ -88,8 +87,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
         uint slot = (bit & 7u) ^ turn;
         uint node = base + bit_count(hits & ((1u << slot) - 1u));
         if (hits > 0x00FFFFFFu) {
-            stack_base[waiting] = base;
-            stack_hits[waiting] = hits;
+            SET_ENTRY(scene, stack, waiting, base, hits)
             ++waiting;
         }
         COUNT_NODE();
@@ -109,8 +107,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
         hits = (node_hits & CWBVH_INNER_HITS) | r0.w >> 24u;
         if (hits <= 0x00FFFFFFu && waiting != 0u) {
             --waiting;
-            base = stack_base[waiting];
-            hits = stack_hits[waiting];
+            base = FIRST_OF_ENTRY(scene, stack, waiting);
+            hits = SECOND_OF_ENTRY(scene, stack, waiting);
         }
         if (params.any_hit != 0u && nearest.triangle != NO_HIT) hits = 0u;
     }

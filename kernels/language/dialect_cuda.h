@@ -8,6 +8,12 @@
 typedef unsigned int uint;
 typedef float real;
 
+// The top of a ray's stack (kernels/stack.h). A launch says how much memory its blocks have. A thread's words are a
+// block apart, so that its neighbours' are in other banks.
+#define STACK_TOP STACK_TOP_OF_GPUS
+#define GROUP_WORDS(count) extern __shared__ uint group_words[];
+#define GROUP_WORD(scene, index) group_words[(index)*blockDim.x + threadIdx.x]
+
 KERNEL_FN real as_real(uint bits)
 {
     return __uint_as_float(bits);

@@ -1,6 +1,7 @@
 // The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
 // Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, true where comparing
-// and selecting is faster than the built-in minimum (the two differ only for NaNs, which never occur).
+// and selecting is faster than the built-in minimum (the two differ only for NaNs, which never occur); STACK_TOP, a
+// constant, and GROUP_ITEMS, the invocations of a work group: see kernels/stack.h.
 #include "kernels/layouts/layout.h"
 
 #ifndef SELECTS_MINIMA
@@ -9,6 +10,9 @@
 #define KERNEL_FN
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) Vec3(x, y, z)
+// An item's words are GROUP_ITEMS apart, so that its neighbours' are in other banks. An array has one word at least.
+#define GROUP_WORDS(count) shared uint group_words[(count) == 0u ? 1u : (count)*GROUP_ITEMS];
+#define GROUP_WORD(scene, index) group_words[(index)*GROUP_ITEMS + gl_LocalInvocationIndex]
 #define real float
 #define uint4 uvec4
 #ifdef MATH_FAST

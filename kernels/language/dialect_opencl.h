@@ -1,7 +1,7 @@
 // The kernels' language as OpenCL C 1.2; include it before kernel.h or probe.h.
 // Compiler options make math mode fast contract and approximate; exact is set here and by options. CALLS_FUNCTIONS,
 // from outside: for a device that must not inline functions. By default PoCL does not inline large functions, which
-// halves the speed.
+// halves the speed. STACK_TOP and GROUP_ITEMS, from outside: see kernels/stack.h.
 #ifndef MATH_FAST
 #pragma OPENCL FP_CONTRACT OFF
 #endif
@@ -17,6 +17,9 @@
     typedef struct name name;                                                                                          \
     struct name
 #define VEC3(x, y, z) ((Vec3){(x), (y), (z)})
+// An item's words are GROUP_ITEMS apart, so that its neighbours' are in other banks. Only a kernel can declare them.
+#define GROUP_WORDS(count)
+#define GROUP_WORD(scene, index) ((scene).group_words[(index)*GROUP_ITEMS + get_local_id(0)])
 typedef float real;
 #define real(value) ((real)(value)) // replaced only where a parenthesis follows
 

@@ -10,6 +10,9 @@ STRUCT(SceneView)
 #include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
     uint divisions;
+#ifdef STACK_TOP
+    __local uint* group_words; // kernels/stack.h
+#endif
 #ifdef TETS_IN_PARTS
 #define PART_MEMBER(number) __global const uint4* part_##number;
     MORE_TET_PARTS(PART_MEMBER)

@@ -95,7 +95,7 @@
 // its sibling's box.
 #define BVH2_NODE_QUADS 4u
 #define BVH2_LEAF 0x80000000u
-#define BVH2_STACK 32u // the most children that wait on a ray's stack: packing refuses deeper trees
+#define BVH2_STACK 64u // the most children that wait on a ray's stack: packing refuses deeper trees
 // cwbvh: eight children, boxes as bytes on the node's own grid.
 //   {origin.xyz, exponents of the grid in bytes 0 to 2, bits of the inner children in byte 3}
 //   {first inner child, first leaf triangle, meta 0..3, meta 4..7}
@@ -104,6 +104,9 @@
 // meta: 0 of an empty slot; 0x20 | 24 + slot of an inner child; count in unary << 5 | offset of a leaf's triangles.
 #define CWBVH_NODE_QUADS 5u
 #define CWBVH_LEAF_TRIANGLES 3u
-#define CWBVH_STACK 16u // the most pairs of words that wait on a ray's stack
+#define CWBVH_STACK 40u // the most pairs of words that wait on a ray's stack
+// How many entries of a ray's stack GPUs keep in the work group's memory (kernels/stack.h).
+#define STACK_TOP_OF_GPUS 6u
+#define STACK_ENTRY_WORDS 2u
 
 #endif

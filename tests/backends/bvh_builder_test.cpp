@@ -40,7 +40,7 @@ TEST(BvhBuilder, tree_of_a_surface_is_whole)
     const TriangleMesh mesh = make_cubes(8).mesh;
     const BuiltBvh built = build_bvh(mesh);
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
-    EXPECT_FALSE(built.balanced);
+    EXPECT_EQ(built.fall_back, "");
     EXPECT_LE(depth_of(built.bvh), BVH2_STACK);
     EXPECT_LE(largest_leaf(built.bvh), 4u);
 }
@@ -52,7 +52,7 @@ TEST(BvhBuilder, needles_are_split)
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
     EXPECT_GT(built.spatial_splits, 50u);
     EXPECT_EQ(built.bvh.references.size(), 500 + built.spatial_splits);
-    EXPECT_FALSE(built.balanced);
+    EXPECT_EQ(built.fall_back, "");
 }
 
 // Where a triangle was cut, each of its leaves may leave out what is in others, and nothing else.
@@ -126,19 +126,32 @@ TEST(BvhBuilder, one_triangle_is_one_leaf)
 TEST(BvhBuilder, tree_that_would_be_too_deep_is_balanced_instead)
 {
     const TriangleMesh mesh = nested_groups(2, 58, 5000);
-    const BuiltBvh built = build_bvh(mesh);
-    EXPECT_TRUE(built.balanced);
+    const BuiltBvh built = build_bvh(mesh, 0, 32);
+    EXPECT_NE(built.fall_back.find("more than 32 nodes"), std::string::npos) << built.fall_back;
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
     EXPECT_LE(depth_of(built.bvh), 16u);
     EXPECT_LE(largest_leaf(built.bvh), 4u);
 }
 
-TEST(BvhBuilder, deep_trees_fit_the_stack)
+TEST(BvhBuilder, deep_trees_are_the_heuristics_and_fit_the_stack)
 {
     for (const int halvings : {1, 2, 3, 6}) {
-        const TriangleMesh mesh = nested_groups(halvings, 20, 1000);
+        const TriangleMesh mesh = nested_groups(halvings, 36 / halvings, 1000);
         const BuiltBvh built = build_bvh(mesh);
+        EXPECT_EQ(built.fall_back, "") << halvings;
         EXPECT_LE(depth_of(built.bvh), BVH2_STACK);
+        EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
+    }
+}
+
+// All were halved by number when the stack had 32 entries.
+TEST(BvhBuilder, the_deepest_trees_that_we_know_to_provoke_fit_the_stack)
+{
+    for (const TriangleMesh& mesh :
+         {nested_groups(2, 58, 5000), nested_in_turn(4, 5, 5), nested_in_turn(5, 20, 1000)}) {
+        const BuiltBvh built = build_bvh(mesh);
+        EXPECT_EQ(built.fall_back, "");
+        EXPECT_GT(depth_of(built.bvh), 32u);
         EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
     }
 }

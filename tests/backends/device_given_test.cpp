@@ -34,6 +34,12 @@ class GivenRays : public UsableDevices, public ::testing::WithParamInterface<std
 protected:
     GivenRays() : UsableDevices(backend_named(GetParam())) {}
 
+    [[nodiscard]] std::vector<Schedule> schedules(KernelId kernel) const
+    {
+        kernel.schedule = Schedule::persistent;
+        return backend.has_kernel(kernel) ? std::vector{Schedule::tiles, Schedule::persistent}
+                                          : std::vector{Schedule::tiles};
+    }
     std::vector<Hit> traced_given(Session& session, const RaySet& set, const std::vector<Quad>& quads) const
     {
         session.set_rays(quads);
@@ -117,15 +123,52 @@ TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
             const auto right = traced_given(*on_host, set, quads);
             ASSERT_TRUE(std::ranges::any_of(right, [](const Hit& hit) { return hit.face_id < POISON; }));
             for (const std::size_t device : usable) {
-                const auto session = backend.open(device, kernel, data, {});
                 const std::uint32_t ulps = allowed_ulps(device);
-                const auto hits = traced_given(*session, set, quads);
-                if (ulps == 0 || !set.any_hit) {
-                    EXPECT_EQ(different_rays(hits, right, ulps), 0u) << name_of(kernel) << ' ' << name_of(kind);
+                for (const Schedule schedule : schedules(kernel)) {
+                    KernelId scheduled = kernel;
+                    scheduled.schedule = schedule;
+                    const auto session = backend.open(device, scheduled, data, {});
+                    const auto hits = traced_given(*session, set, quads);
+                    if (ulps == 0 || !set.any_hit) {
+                        EXPECT_EQ(different_rays(hits, right, ulps), 0u)
+                            << name_of(kernel) << ' ' << name_of(schedule) << ' ' << name_of(kind);
+                    }
+                    for (std::size_t i = 0; i < hits.size(); ++i)
+                        ASSERT_EQ(hits[i].face_id < POISON, right[i].face_id < POISON) << name_of(kernel) << ' ' << i;
                 }
-                for (std::size_t i = 0; i < hits.size(); ++i)
-                    ASSERT_EQ(hits[i].face_id < POISON, right[i].face_id < POISON) << name_of(kernel) << ' ' << i;
             }
+        }
+    }
+}
+
+TEST_P(GivenRays, of_walks_hit_what_openmp_hits_in_each_schedule)
+{
+    const RaySet set = make_rays(RayKind::diffuse, cubes.source());
+    for (const std::size_t device : usable)
+        for (const Schedule schedule : schedules({.task = Task::rays})) {
+            const auto session = backend.open(device, {.schedule = schedule, .task = Task::rays},
+                                              {&cubes.scene.mesh, &cubes.packed}, {});
+            EXPECT_EQ(different_rays(traced_given(*session, set, given_quads(set, cubes.packed)), cubes.answers(set),
+                                     allowed_ulps(device)),
+                      0u)
+                << backend.devices()[device].name << ' ' << name_of(schedule);
+        }
+}
+
+TEST_P(GivenRays, of_a_tree_that_fills_the_stack_hit_what_openmp_hits)
+{
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const FullStacks full(layout);
+        const SceneData data{&full.mesh, &full.packed};
+        const auto quads = given_quads_offset(full.rays, full.mesh);
+        const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::rays), data, {.threads = 2});
+        const auto right = traced_given(*on_host, full.rays, quads);
+        EXPECT_GT(std::ranges::count_if(right, [](const Hit& hit) { return hit.face_id < 20; }), 50)
+            << "of the triangles that wait longest";
+        for (const std::size_t device : usable) {
+            const auto session = backend.open(device, bvh_kernel(layout, Task::rays), data, {});
+            EXPECT_EQ(different_rays(traced_given(*session, full.rays, quads), right, allowed_ulps(device)), 0u)
+                << backend.devices()[device].name << ' ' << name_of(layout);
         }
     }
 }

@@ -33,6 +33,7 @@ TEST_P(Devices, have_the_kernels_of_the_cdt_and_no_others)
 {
     EXPECT_TRUE(backend.has_kernel({.layout = Layout::tet96, .math = MathMode::fast}));
     EXPECT_EQ(backend.has_kernel({.schedule = Schedule::persistent}), GetParam().is_persistent);
+    EXPECT_EQ(backend.has_kernel({.schedule = Schedule::persistent, .task = Task::rays}), GetParam().is_persistent);
     EXPECT_TRUE(backend.has_kernel({.method = Method::ms06, .task = Task::search}));
     EXPECT_FALSE(backend.has_kernel({.schedule = Schedule::persistent, .task = Task::search}));
     EXPECT_FALSE(backend.has_kernel({.structure = Structure::bvh, .layout = Layout::embree}));

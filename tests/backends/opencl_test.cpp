@@ -3,6 +3,9 @@
 #include "backends/opencl/backend.h"
 #include "backends/opencl/device.h"
 #include "backends/opencl/errors.h"
+#include "backends/opencl/session.h"
+#include "core/device/given_quads.h"
+#include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/temporary_folder.h"
 
@@ -33,6 +36,32 @@ TEST_F(Opencl, a_second_session_finds_its_program_in_the_cache)
         EXPECT_EQ(different_rays(traced(*second, job), openmp_hits(rays, job), 3), 0u);
         EXPECT_FALSE(backend.open(device, {.math = MathMode::fast}, rays.data(), options)->setup_times().compile_cached)
             << "another math mode is another program";
+    }
+}
+
+TEST_F(Opencl, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
+{
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const KernelId kernel{
+            .structure = Structure::bvh, .method = Method::single, .layout = layout, .task = Task::rays};
+        const FullStacks full(layout);
+        const auto quads = given_quads_offset(full.rays, full.mesh);
+        const TraceJob job = given_job(full.rays.rays.size(), 0, false);
+        const auto on_host = openmp_backend().open(0, kernel, {&full.mesh, &full.packed}, {.threads = 2});
+        on_host->set_rays(quads);
+        const auto right = traced(*on_host, job);
+        for (opencl::FoundDevice found : opencl::find_devices())
+            for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})
+                for (const unsigned tile_height : {4u, 8u}) {
+                    if (!found.facts.usable) continue;
+                    found.stack_top = stack_top;
+                    opencl::OpenclSession session(std::make_shared<opencl::Context>(found, 0), kernel, full.packed,
+                                                  {.tile_height = tile_height});
+                    session.set_rays(quads);
+                    EXPECT_EQ(different_rays(traced(session, job), right, 3), 0u)
+                        << found.facts.name << ' ' << name_of(layout) << ' ' << stack_top << " entries, tile height "
+                        << tile_height;
+                }
     }
 }
 

@@ -162,13 +162,15 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
 INSTANTIATE_TEST_SUITE_P(each, PackCwbvhOf, testing::ValuesIn(meshes_to_pack()),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow)
+TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow_and_say_so)
 {
-    const TriangleMesh mesh = nested_groups(2, 40, 20);
+    const TriangleMesh mesh = nested_in_turn(5, 20, 1000);
     const Bvh bvh = build_bvh(mesh).bvh;
     ASSERT_GT(levels_of(make_wide(with_single_leaves(mesh, bvh), Collapse::cheapest)), CWBVH_STACK);
-    const CwbvhReader read(pack_bvh(mesh, bvh, Layout::cwbvh), mesh);
-    EXPECT_LE(read.most_waiting, CWBVH_STACK);
+    const PackedScene packed = pack_bvh(mesh, bvh, Layout::cwbvh);
+    EXPECT_NE(packed.fall_back.find("room for 40"), std::string::npos) << packed.fall_back;
+    EXPECT_LE(CwbvhReader(packed, mesh).most_waiting, CWBVH_STACK);
+    EXPECT_EQ(make_bvh_scene(nested_groups(2, 40, 20), Layout::cwbvh).fall_back, "");
 }
 
 TEST(PackCwbvh, nodes_of_a_surface_are_nearly_full)

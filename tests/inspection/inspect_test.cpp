@@ -40,10 +40,10 @@ std::string name_of(const json& program)
            program["layout"].get<std::string>() + " " + program["entry"].get<std::string>();
 }
 
-/// The main entry of a walk: primary rays from outside, one tile a group.
-bool is_main_walk(const json& program)
+/// The main entry of a kernel: primary rays from outside, one tile a group.
+bool is_main(const json& program)
 {
-    return program["structure"] == "cdt" && program["entry"] == "outside" && program["schedule"] == "tiles";
+    return program["entry"] == "outside" && program["schedule"] == "tiles";
 }
 
 /// "radv-22.3", "nvcc-13.0".
@@ -108,7 +108,7 @@ void expect_known_figures(const json& programs)
     const json known = exceptions_of(compiler);
     json found = json::object();
     for (const json& program : programs)
-        if (is_main_walk(program) && !is_as_wanted(program)) found[name_of(program)] = figures_of(program);
+        if (is_main(program) && !is_as_wanted(program)) found[name_of(program)] = figures_of(program);
     if (known.is_null())
         GTEST_SKIP() << "nothing is known of " << compiler << "; tests/expected/inspect-" << compiler
                      << ".json would be\n"
@@ -122,24 +122,25 @@ void expect_known_figures(const json& programs)
 
 } // namespace
 
-TEST_F(Inspect, walks_of_amd_targets_decide_nothing_by_fused_operations_and_keep_half_of_the_occupancy)
+TEST_F(Inspect, programs_of_amd_targets_decide_nothing_by_fused_operations_and_keep_half_of_the_occupancy)
 {
     for (const char* const target : {"gfx1100", "gfx906"}) {
         const json programs = inspected(fmt::format(
-            "--target {} --method maria,project,single --layout tet80,half32,bvh2 --entry outside", target));
+            "--target {} --method maria,project,single --layout tet80,half32,bvh2,cwbvh --entry outside", target));
         ASSERT_FALSE(programs.empty());
         if (programs.front()["status"] == "skipped") GTEST_SKIP() << programs.front()["reason"];
-        EXPECT_EQ(programs.size(), 4u) << "maria and project on tet80, project on half32, bvh2";
+        EXPECT_EQ(programs.size(), 5u) << "maria and project on tet80, project on half32, two BVHs";
         expect_exact(programs);
         expect_known_figures(programs);
     }
 }
 
-TEST_F(Inspect, walks_of_nvidia_targets_decide_nothing_by_fused_operations_and_keep_half_of_the_occupancy)
+TEST_F(Inspect, programs_of_nvidia_targets_decide_nothing_by_fused_operations_and_keep_half_of_the_occupancy)
 {
-    const json programs = inspected("--target sm_90 --method project --layout half32 --entry outside");
+    const json programs =
+        inspected("--target sm_90 --method project,single --layout half32,bvh2,cwbvh --entry outside");
     if (!programs.empty() && programs.front()["status"] == "skipped") GTEST_SKIP() << programs.front()["reason"];
-    EXPECT_EQ(programs.size(), 2u) << "tiles and persistent";
+    EXPECT_EQ(programs.size(), 6u) << "tiles and persistent";
     expect_exact(programs);
     expect_known_figures(programs);
 }

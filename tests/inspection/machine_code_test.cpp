@@ -136,8 +136,9 @@ TEST(MachineCode, ptxas_words_are_taken_apart_by_entry)
 
 TEST(MachineCode, resident_warps_are_those_of_nvidias_occupancy_calculator)
 {
-    const auto warps = [](unsigned capability, std::uint64_t registers, std::uint64_t block) {
-        return resident_warps(capability, registers, block)->resident;
+    const auto warps = [](unsigned capability, std::uint64_t registers, std::uint64_t block,
+                          std::uint64_t shared_bytes = 0) {
+        return resident_warps(capability, registers, block, shared_bytes)->resident;
     };
     EXPECT_EQ(warps(90, 32, 64), 64u);
     EXPECT_EQ(warps(90, 33, 64), 48u) << "40 registers are allocated";
@@ -145,7 +146,10 @@ TEST(MachineCode, resident_warps_are_those_of_nvidias_occupancy_calculator)
     EXPECT_EQ(warps(90, 255, 128), 8u);
     EXPECT_EQ(warps(75, 64, 64), 32u) << "all that it holds";
     EXPECT_EQ(warps(86, 32, 64), 32u) << "16 blocks of 2 warps, of 48";
-    EXPECT_FALSE(resident_warps(42, 32, 64));
+    EXPECT_EQ(warps(75, 64, 64, 3072), 32u);
+    EXPECT_EQ(warps(75, 64, 64, 8192), 16u) << "8 blocks of 8 KiB, of 64";
+    EXPECT_EQ(warps(90, 32, 64, 7168), 56u) << "28 blocks of 7 KiB and 1, of 228";
+    EXPECT_FALSE(resident_warps(42, 32, 64, 0));
 }
 
 TEST(MachineCode, targets_are_amds_or_nvidias_by_their_names)

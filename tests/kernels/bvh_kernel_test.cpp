@@ -4,6 +4,7 @@
 #include "core/bvh/balanced_bvh.h"
 #include "core/pack/pack_bvh.h"
 #include "tests/support/bvh_kernels.h"
+#include "tests/support/bvh_meshes.h"
 #include "tests/support/random.h"
 
 #include <gtest/gtest.h>
@@ -56,6 +57,14 @@ Words bits_of(const bvh::Hit& hit)
 struct Trees {
     explicit Trees(TriangleMesh of)
         : mesh(std::move(of)), split(build_bvh(mesh, 1).bvh),
+          balanced(build_balanced_bvh(mesh)), packed{pack_bvh(mesh, split, Layout::bvh2),
+                                                     pack_bvh(mesh, balanced, Layout::bvh2),
+                                                     pack_bvh(mesh, split, Layout::cwbvh),
+                                                     pack_bvh(mesh, balanced, Layout::cwbvh)}
+    {
+    }
+    explicit Trees(const DeepTree& tree)
+        : mesh(tree.mesh), split(tree.bvh),
           balanced(build_balanced_bvh(mesh)), packed{pack_bvh(mesh, split, Layout::bvh2),
                                                      pack_bvh(mesh, balanced, Layout::bvh2),
                                                      pack_bvh(mesh, split, Layout::cwbvh),
@@ -290,6 +299,33 @@ TEST_P(Meshes, a_device_that_flushes_denormals_gives_the_same_bits)
 #endif
 
 INSTANTIATE_TEST_SUITE_P(each, Meshes, testing::Range(0, 4));
+
+TEST(BvhKernel, a_tree_that_fills_the_stack_gives_the_nearest_of_all_triangles)
+{
+    const Trees trees(DeepTree{BVH2_STACK});
+    Random random(17);
+    int hits_of_lowest = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Ray ray = ray_to({random.between(-0.25f, 0.25f), random.between(-0.25f, 0.25f), 1},
+                               {random.between(-0.5f, 0.5f), random.between(-0.5f, 0.5f), -0.75f});
+        ASSERT_NO_FATAL_FAILURE(expect_same_everywhere(trees, ray));
+        hits_of_lowest += trees.trace(0, ray).face_id == 0;
+    }
+    EXPECT_GT(hits_of_lowest, 100) << "which wait longest";
+}
+
+TEST(BvhKernel, a_deep_tree_of_the_heuristic_gives_the_nearest_of_all_triangles)
+{
+    TriangleMesh mesh = nested_groups(1, 32, 20);
+    for (Float3& vertex : mesh.vertices)
+        vertex = snap_to_grid(vertex);
+    const Trees trees(mesh);
+    ASSERT_GT(depth_of(trees.split), 20u);
+    Random random(18);
+    for (int i = 0; i < 1000; ++i) // from the side of the smallest groups, so that the larger ones wait
+        ASSERT_NO_FATAL_FAILURE(
+            expect_same_everywhere(trees, ray_to(snap_to_grid(random.point(-0.25f, 0)), point_of(trees, random))));
+}
 
 TEST(BvhKernel, no_ray_from_inside_gets_out_through_a_vertex_or_an_edge)
 {

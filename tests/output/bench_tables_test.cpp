@@ -180,6 +180,17 @@ TEST_F(BenchTables, a_row_tells_its_schedule_in_csv_and_json)
     EXPECT_TRUE(table.rows()[1][place] == Cell("tiles"));
 }
 
+TEST_F(BenchTables, a_row_whose_tree_is_a_fall_back_says_so_in_json_and_in_its_status)
+{
+    Packed packed;
+    result_.run.rows[0].packed = &packed;
+    EXPECT_FALSE(row_json(RowFacts(result_.run.rows[0])).contains("fall_back")) << "of the best tree";
+    EXPECT_FALSE(contains(rate_table("bunny", result_).text(), "fall-back tree"));
+    packed.fall_back = "it is too deep";
+    EXPECT_EQ(row_json(RowFacts(result_.run.rows[0])).at("fall_back"), "it is too deep");
+    EXPECT_TRUE(contains(rate_table("bunny", result_).text(), "fall-back tree"));
+}
+
 TEST_F(BenchTables, a_row_without_an_answer_has_no_empty_group_in_json)
 {
     result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};

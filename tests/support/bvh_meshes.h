@@ -57,6 +57,34 @@ inline TriangleMesh nested_groups(int halvings, std::uint32_t groups, std::uint3
     return mesh;
 }
 
+/// The same in x, then within the last group in y, and within the last of those in z: the deepest trees by the
+/// heuristic that we know how to provoke.
+inline TriangleMesh nested_in_turn(int halvings, std::uint32_t triangles, std::uint32_t heap)
+{
+    Random random(5);
+    TriangleMesh mesh;
+    Float3 size = {1, 1, 1};
+    const auto add_group = [&](int axis, std::uint32_t count) {
+        const auto point = [&] {
+            Float3 p;
+            for (int i = 0; i < 3; ++i)
+                p[i] = size[i] * (i == axis ? random.between(0.5f, 1) : random.unit());
+            return p;
+        };
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Float3 a = point(), b = point(), c = point();
+            add_triangle(mesh, a, b, c);
+        }
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        for (int group = 0; group < 120 / halvings; ++group) {
+            add_group(axis, triangles);
+            size[axis] = std::ldexp(size[axis], -halvings);
+        }
+    add_group(3, heap);
+    return mesh;
+}
+
 /// Eight small triangles at the corners of a cube, in the order of x, then y, then z; the low corner first.
 inline TriangleMesh cube_corners()
 {
@@ -80,5 +108,31 @@ inline Bvh chain(std::uint32_t depth, const Box& box)
     bvh.references.resize(depth + 1);
     return bvh;
 }
+
+/// A tree and its mesh: `depth` levels, each with a leaf of one triangle that lies lower, in z, than all that follow. A
+/// ray from above meets the boxes of all, so that as many leaves wait on its stack. Most triangles are slivers across
+/// their boxes, which it misses; the lowest is large.
+struct DeepTree {
+    TriangleMesh mesh;
+    Bvh bvh;
+
+    explicit DeepTree(std::uint32_t depth)
+    {
+        add_triangle(mesh, {-0.75f, -0.75f, -0.75f}, {0.75f, -0.75f, -0.75f}, {-0.75f, 0.75f, -0.75f});
+        for (std::uint32_t i = 1; i <= depth; ++i) {
+            const float z = -0.75f + 0x1p-7f * static_cast<float>(i);
+            add_triangle(mesh, {-0.5f, -0.5f, z}, {0.5f, 0.5f, z}, {0.5f, 0.5f - 0x1p-5f, z});
+        }
+        for (std::uint32_t i = 0; i < depth; ++i) {
+            bvh.nodes.push_back({{}, {2 * i + 1, 2 * i + 2}, 0, 0});
+            bvh.nodes.push_back({triangle_box(mesh, i), {}, i, 1});
+        }
+        bvh.nodes.push_back({triangle_box(mesh, depth), {}, depth, 1});
+        for (std::uint32_t i = 0; i <= depth; ++i)
+            bvh.references.push_back(i);
+        for (std::uint32_t i = depth; i-- > 0;)
+            bvh.nodes[2 * i].box = merged(bvh.nodes[2 * i + 1].box, bvh.nodes[2 * i + 2].box);
+    }
+};
 
 } // namespace tetrace::test

@@ -2,9 +2,12 @@
 
 #include "backends/embree/bvh_builder.h"
 #include "core/pack/pack_bvh.h"
+#include "core/rays/ray_set.h"
+#include "kernels/layouts/layout.h"
 #include "scenes/procedural.h"
 #include "tests/support/bvh_meshes.h"
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <numeric>
@@ -33,6 +36,56 @@ struct MeshRow {
             {"same_triangles", [] { return identical_triangles(500); }},
             {"deep", [] { return nested_groups(2, 30, 300); }}};
 }
+
+/// A mesh, its BVH, and rays that fill their stacks: of bvh2 to the last entry, of cwbvh beyond the entries that GPUs
+/// keep in a group's memory.
+struct FullStacks {
+    TriangleMesh mesh;
+    PackedScene packed;
+    RaySet rays;
+
+    explicit FullStacks(Layout layout)
+    {
+        rays.kind = RayKind::random;
+        rays.width = TILE_WIDTH;
+        layout == Layout::bvh2 ? make_chain() : make_nest();
+    }
+
+private:
+    static constexpr std::uint32_t ray_count = 64 * TILE_WIDTH;
+
+    void make_chain()
+    {
+        const DeepTree deep(BVH2_STACK);
+        mesh = deep.mesh;
+        packed = pack_bvh(mesh, deep.bvh, Layout::bvh2);
+        Random random(19);
+        for (std::uint32_t i = 0; i < ray_count; ++i)
+            add_ray({coarse(random.between(-0.25f, 0.25f)), coarse(random.between(-0.25f, 0.25f)), 1},
+                    {coarse(random.between(-0.5f, 0.5f)), coarse(random.between(-0.5f, 0.5f)), -0.75f});
+    }
+
+    // From the side of the smallest groups, so that the larger ones wait.
+    void make_nest()
+    {
+        mesh = nested_groups(1, 32, 20);
+        for (Float3& vertex : mesh.vertices)
+            vertex = snap_to_grid(vertex);
+        packed = make_bvh_scene(mesh, Layout::cwbvh);
+        Random random(20);
+        for (std::uint32_t i = 0; i < ray_count; ++i)
+            add_ray({coarse(random.between(-0.125f, 0)), coarse(random.between(-0.125f, 0)), -0.0625f},
+                    {coarse(random.between(0.5f, 1)), coarse(random.unit()), coarse(random.unit())});
+    }
+
+    static float coarse(float x) { return std::floor(x * 1024) / 1024; }
+
+    void add_ray(Float3 from, Float3 to)
+    {
+        const auto number = static_cast<std::uint32_t>(rays.rays.size());
+        rays.rays.push_back({from, {to.x - from.x, to.y - from.y, to.z - from.z}, NO_END, NO_LINK, FREE_FACE, number});
+    }
+};
 
 /// 0, 1, ..., count - 1.
 [[nodiscard]] inline std::vector<std::uint32_t> counted_up_to(std::size_t count)

@@ -52,14 +52,15 @@ const vk::raii::Device& device_of(const FoundDevice& found)
 }
 
 /// As sessions compile it for a GPU: each array in one storage buffer.
-ProgramId program_of(const std::optional<KernelId>& kernel, bool starts_outside)
+ProgramId program_of(const FoundDevice& found, const std::optional<KernelId>& kernel, bool starts_outside)
 {
     if (!kernel) return {.name = "empty"};
     ProgramId id{.name = shader_name(*kernel),
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_of({}),
-                 .starts_outside = starts_outside};
+                 .starts_outside = starts_outside,
+                 .stack_top = found.stack_top};
     for (const SceneArray& array : scene_arrays(kernel->layout))
         if (std::ranges::find(id.bindings, array.binding) == id.bindings.end()) id.bindings.push_back(array.binding);
     if (kernel->task != Task::trace) id.bindings.push_back(RAYS_BINDING);
@@ -107,7 +108,7 @@ std::string code_text(const vk::raii::Device& device, const vk::PipelineExecutab
 
 CompiledCode compiled_code(const FoundDevice& found, const std::optional<KernelId>& kernel, bool starts_outside)
 {
-    const ProgramId id = program_of(kernel, starts_outside);
+    const ProgramId id = program_of(found, kernel, starts_outside);
     try {
         const vk::raii::Device& device = device_of(found);
         const auto set_layout = make_set_layout(device, id);
