@@ -133,7 +133,7 @@ private:
     }
     static void reset_signals()
     {
-        for (const int signal : {SIGINT, SIGTERM, SIGPIPE})
+        for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ})
             ::signal(signal, SIG_DFL);
         sigset_t none;
         sigemptyset(&none);

@@ -28,8 +28,8 @@ struct CompiledKernel {
 /// its `steps` the number of triangles tested; all else is as in compiled_kernels(). Never timed.
 [[nodiscard]] const std::vector<CompiledKernel>& counting_kernels();
 
-/// Those of schedule native, compiled for x86-64-v3 (host_has_fused_multiply() says whether they run); all else is as in
-/// compiled_kernels().
+/// Those of schedule native, compiled for x86-64-v3 (host_has_fused_multiply() says whether they run); all else is as
+/// in compiled_kernels().
 [[nodiscard]] const std::vector<CompiledKernel>& native_kernels();
 
 /// The function of a kernel in such a list, for any schedule; null if the list has none.

@@ -109,18 +109,25 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s)
         Entry entry{&row};
         if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
         if (!is_alive(row)) continue;
-        const auto views = static_cast<double>(row.scene->views().size());
-        const double pass_s = entry.view_s * views;
-        // A sample of several passes has one more, which is launched alone.
-        const double passes = pass_s > 0 && pass_s < sample_s ? sample_s / pass_s + 2 : 1;
-        entry.views_left = views + 1 + views + passes * views * std::min(samples, fewest_samples);
+        entry.views = static_cast<double>(row.scene->views().size());
+        entry.views_left = entry.views + 1 + entry.views;
+        entry.samples = std::min(samples, fewest_samples);
+        entry.sample_s = sample_s;
         entries_.push_back(entry);
-        if (scenes.insert(row.scene).second) views_to_judge_ += views;
+        if (scenes.insert(row.scene).second) views_to_judge_ += entry.views;
     }
     for (Entry& entry : entries_)
         entry.is_reference = std::ranges::any_of(
             entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
     fit(left_s());
+}
+
+/// A sample of several passes has one more, which is launched alone, and up to one more than it needs.
+double Budget::Entry::need_s() const
+{
+    const double pass_s = view_s * views;
+    const double each_s = pass_s < sample_s ? std::min(sample_s + 2 * pass_s, (most_passes + 1) * pass_s) : pass_s;
+    return views_left * view_s + samples * each_s;
 }
 
 void Budget::traced(const RowRun& row, std::size_t views, double seconds)

@@ -9,6 +9,9 @@
 
 namespace tetrace {
 
+/// Passes of a sample: a launch of Vulkan's lists them all.
+inline constexpr std::uint32_t most_passes = 4096;
+
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
 /// more, a warm-up pass, and fewest_samples samples. Where the rows need more than is left, the slowest end as
 /// skipped; their text gives their cost and the --budget that runs them. The others get all the time that they need,
@@ -48,10 +51,11 @@ private:
         RowRun* row = nullptr;
         bool is_reference = false; ///< others are compared with it
         double view_s = 0;         ///< expected
-        double views_left = 0;     ///< total that the row still needs
+        double views_left = 0;     ///< to verify and to warm up
+        double views = 0, samples = 0, sample_s = 0;
         double seen_s = 0, seen_views = 0;
 
-        [[nodiscard]] double need_s() const { return views_left * view_s; }
+        [[nodiscard]] double need_s() const;
     };
 
     [[nodiscard]] double judging_s() const

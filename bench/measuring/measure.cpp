@@ -283,7 +283,7 @@ void check_rows_after(std::vector<RowRun>& rows)
 
 std::uint32_t passes_for(double sample_s, double pass_s)
 {
-    constexpr double most = 4096; // a launch of Vulkan's lists them all
+    constexpr double most = most_passes;
     return pass_s > 0 ? static_cast<std::uint32_t>(std::clamp(std::ceil(sample_s / pass_s), 1.0, most)) : 1;
 }
 
@@ -309,6 +309,8 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     Pulses pulses(rows, host ? host : host_pulse(resolved_threads(options)), budget.clock());
     Monitors monitors(find_monitor);
     Sweep sweep{&budget, &pulses, &monitors, options.sample_s, 0, static_cast<double>(timed) * result.samples};
+    for (const RowRun& row : rows)
+        if (is_timed(row)) (void)monitors.of(row); // starting one takes a second: not while a GPU waits for its sample
     std::ostringstream json;
     const auto display = make_display(flags, json, groups.size());
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, groups.size());

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -53,7 +55,7 @@ private:
         if (!std::filesystem::exists(path_, ignored)) reject("there is no such file", ErrorKind::missing);
         if (!std::filesystem::is_regular_file(path_, ignored)) reject("it is no file");
         const std::optional<std::string> bytes = file_bytes(path_, largest_file + 1);
-        if (!bytes) reject("it cannot be read");
+        if (!bytes) reject(fmt::format("{}; check its rights and its disk", std::strerror(errno)));
         if (bytes->size() > largest_file) reject("it is larger than 16 MiB");
         try {
             return json::parse(*bytes);

@@ -168,7 +168,8 @@ std::vector<OptionRow> row_options()
         {"Rows", "--schedule", "NAME",
          "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
-         "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, project "
+         "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, "
+         "project "
          "on half32, and BVHs. Embree has a schedule of its own. Default: tiles and packets.",
          selecting, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
@@ -242,11 +243,11 @@ std::vector<OptionRow> judging_options()
          "5 give no interval, neither here nor in 'compare'. Default: 10.",
          bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--sample-time", "TIME",
-         "A sample lasts at least this long on its device (seconds, or a number followed by s, m or h), or 4096 "
+         "A sample lasts at least this long on its device (seconds, or a number followed by s; a minute at most), or "
+         "4096 "
          "passes: a GPU traces all views in less than a millisecond, before its clocks have settled. Passes follow "
          "each other without the host, and a rate is that of a pass. 0: a sample is one pass. Default: 0.1.",
-         bit(Verb::bench), false,
-         [](Options& o, const std::string& v) { o.sample_s = v == "0" ? 0 : parse_seconds("--sample-time", v); }},
+         bit(Verb::bench), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--budget", "TIME",

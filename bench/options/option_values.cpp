@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
 #include <set>
 
 namespace tetrace {
@@ -118,7 +119,10 @@ std::uint64_t parse_count(const std::string& option, const std::string& text, st
     return value;
 }
 
-double parse_seconds(const std::string& option, const std::string& text)
+namespace {
+
+/// Empty where the text is no time of 0 or more.
+std::optional<double> read_seconds(const std::string& text)
 {
     std::string_view digits = text;
     double unit = 1;
@@ -127,9 +131,25 @@ double parse_seconds(const std::string& option, const std::string& text)
         digits.remove_suffix(1);
     }
     double value = 0;
-    if (!read_whole(digits, value) || !std::isfinite(value) || value <= 0)
-        reject_value(option, text, "a positive number of seconds, or a number followed by s, m or h");
+    if (!read_whole(digits, value) || !std::isfinite(value) || value < 0) return std::nullopt;
     return value * unit;
+}
+
+} // namespace
+
+double parse_seconds(const std::string& option, const std::string& text)
+{
+    const std::optional<double> seconds = read_seconds(text);
+    if (!seconds || *seconds == 0)
+        reject_value(option, text, "a positive number of seconds, or a number followed by s, m or h");
+    return *seconds;
+}
+
+double parse_sample_time(const std::string& text)
+{
+    const std::optional<double> seconds = read_seconds(text);
+    if (!seconds || *seconds > 60) reject_value("--sample-time", text, "0 to 60 seconds");
+    return *seconds;
 }
 
 double parse_percent(const std::string& option, const std::string& text)

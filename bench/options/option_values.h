@@ -51,6 +51,9 @@ template <class T>
 /// Seconds, positive and finite: "90", "1.5", "10m", "2h". Throws Error{usage}.
 [[nodiscard]] double parse_seconds(const std::string& option, const std::string& text);
 
+/// Seconds that a sample lasts at least, 0 to 60: a driver has minutes for a call. Throws Error{usage}.
+[[nodiscard]] double parse_sample_time(const std::string& text);
+
 /// A percentage from 0 to 100: "3", "2.5" or "3%". Throws Error{usage}.
 [[nodiscard]] double parse_percent(const std::string& option, const std::string& text);
 

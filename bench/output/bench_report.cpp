@@ -75,7 +75,8 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowRun>
 const char* const rate_columns =
     "x openmp (x cuda and so on): rate over that of the same kernel with openmp, on a GPU with cuda, on the same "
     "hardware; medians, with their 95 % interval. x single: rate over that of Embree's single rays. of copy: what a "
-    "step loads, times steps, over the copy bandwidth of the row's device. spread: interquartile range over median, "
+    "step loads, times steps, over the bandwidth of copies, on the row's device, in the level of memory that holds the "
+    "scene. spread: interquartile range over median, "
     "noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 times its "
     "fastest, or others used more than a tenth of the processors.";
 

@@ -304,7 +304,7 @@ std::vector<RowField> time_fields()
          recorded("count", optional, "of the structure and its scene data on the device"),
          times("size", "MB", 1, megabytes), report("size", "MB", 1, megabytes)},
         {"", "gpu", [](const RowRun& row) { return row.gpu ? gpu_json(*row.gpu) : json(); },
-         recorded("gpu", optional, "what it told in the middle of the samples: medians")},
+         recorded("gpu", optional, "what it told during the samples: medians")},
         {"", "samples", [](const RowRun& row) { return row.samples_s.size(); }, csv("samples")},
         {"", "status", status_text, rates({.title = "status", .rank = 0})},
     };

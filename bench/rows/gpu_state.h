@@ -16,7 +16,7 @@ struct GpuState {
 
 /// What the GPU of a row told while the row's samples were taken.
 struct GpuReadings {
-    std::vector<GpuState> states; ///< one a sample that was kept, in the middle of it
+    std::vector<GpuState> states; ///< one a sample that was kept, while its last view was traced
     std::uint32_t dropped = 0;    ///< samples that were taken again, since the GPU was throttled
     std::string reasons;          ///< each once, of dropped samples and of those that had to be kept
 

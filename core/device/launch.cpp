@@ -117,7 +117,7 @@ void Launches::start_pass(const LaunchParams& image, const Enqueue& enqueue, con
 void Launches::took(std::uint32_t tiles, std::uint32_t passes, double seconds)
 {
     const std::uint64_t all = std::uint64_t{tiles} * passes;
-    size_.took(static_cast<std::uint32_t>(std::min<std::uint64_t>(all, no_limit)), seconds);
+    size_.took(static_cast<std::uint32_t>(std::min<std::uint64_t>(all, LaunchSize::no_limit)), seconds);
     seconds_ += seconds;
 }
 

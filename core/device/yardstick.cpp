@@ -1,5 +1,6 @@
 #include "core/device/yardstick.h"
 
+#include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
 #include <algorithm>
@@ -49,6 +50,7 @@ std::uint64_t copied_bytes(std::uint64_t memory_bytes, std::uint64_t max_buffer_
 
 Yardstick measure_copies(std::uint64_t bytes, const CopyTask& copy)
 {
+    if (bytes == 0) throw Error(ErrorKind::unsupported, "measuring the device: no buffer may be as large as a word");
     Yardstick measured;
     std::size_t sizes = 0;
     for (std::uint64_t each = mebibyte / 2; each < bytes && sizes + 1 < measured.copies.size(); each *= 4)

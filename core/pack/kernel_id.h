@@ -38,13 +38,12 @@ enum class RayOrder { tiles, morton, shuffled };
 template <>
 inline constexpr auto enum_names<RayOrder> = names_up_to<RayOrder::shuffled>("tiles", "morton", "shuffled");
 /// How rays are assigned to work items: one ray per item and one tile per group; or items that stay and fetch rays
-/// until none is left (Aila, Laine, Karras 2012); or packets with as many rays as a processor's vectors have lanes. Or, as
-/// tiles, by code for instructions that not every processor has, as that of packets is: packets over `native` compares
-/// the two ways to trace, and `native` over `tiles` the instruction sets.
+/// until none is left (Aila, Laine, Karras 2012); or packets with as many rays as a processor's vectors have lanes. Or,
+/// as tiles, by code for instructions that not every processor has, as that of packets is: packets over `native`
+/// compares the two ways to trace, and `native` over `tiles` the instruction sets.
 enum class Schedule { tiles, persistent, packets, native };
 template <>
-inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::native>("tiles", "persistent", "packets",
-                                                                                    "native");
+inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::native>("tiles", "persistent", "packets", "native");
 /// Whether only processors have the schedule.
 [[nodiscard]] constexpr bool is_for_processors(Schedule schedule)
 {

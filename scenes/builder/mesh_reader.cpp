@@ -1,13 +1,14 @@
 #include "scenes/builder/mesh_reader.h"
 
+#include "core/base/file_bytes.h"
 #include "core/base/hash.h"
 #include "scenes/builder/mesh_source.h"
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <optional>
 #include <span>
+#include <utility>
 
 namespace tetrace {
 namespace {
@@ -19,11 +20,11 @@ std::string read_bytes(const std::filesystem::path& path)
         throw Error(ErrorKind::missing, "reading " + path.string() + ": there is no such file; check the path");
     if (std::filesystem::is_directory(path, ignored))
         throw Error(ErrorKind::invalid_input, "reading " + path.string() + ": it is a folder; name a mesh file");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(ErrorKind::missing, "reading " + path.string() + ": " + std::strerror(errno));
-    std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (file.bad()) throw Error(ErrorKind::missing, "reading " + path.string() + ": the device reports an error");
-    return bytes;
+    std::optional<std::string> bytes = file_bytes(path);
+    if (!bytes)
+        throw Error(ErrorKind::missing,
+                    "reading " + path.string() + ": " + std::strerror(errno) + "; check its rights and its disk");
+    return std::move(*bytes);
 }
 
 // Some editors put UTF-8's mark before text. A binary STL may begin with any bytes, and its offsets count from them.

@@ -93,6 +93,12 @@ void require_plain(const MeshSource& source, const tinygltf::Model& model)
             source.fail("header", fmt::format("it uses the extension {}, which is not read", extension),
                         export_plainly);
     }
+    // A reader has to refuse what it does not know; these say nothing of where triangles are, or only of their numbers.
+    for (const std::string& extension : model.extensionsRequired)
+        if (extension != "KHR_mesh_quantization" && extension != "KHR_lights_punctual" &&
+            !extension.starts_with("KHR_materials_") && !extension.starts_with("KHR_texture_"))
+            source.fail("header", fmt::format("it requires the extension {}, which is not read", extension),
+                        export_plainly);
 }
 
 // An element of a list that an index of the file names; throws where there is none.

@@ -31,10 +31,8 @@ public:
     /// A cube, by its place along each axis.
     using Cell = std::array<std::int32_t, 3>;
 
-    /// resolution: 2 to most_resolution.
+    /// resolution: 2 to 563; links of 30 bits name no more tets.
     explicit CubeGrid(std::uint32_t resolution) : n_(static_cast<std::int32_t>(resolution)) {}
-    /// Links of 30 bits name no more tets.
-    static constexpr std::uint32_t most_resolution = 563;
 
     /// A scene whose occlusive faces are those between cubes that are solid and cubes that are not, wound outwards.
     /// is_solid: asked only of cubes of the grid. Reproducible bit for bit. The domain's divisions are the resolution
@@ -42,8 +40,7 @@ public:
     [[nodiscard]] Scene make(const std::string& name, const std::function<bool(const Cell&)>& is_solid);
 
 private:
-    /// Line i in units of 2^-20: 2^21 i / n - 2^20, rounded.
-    /// The place of line i of n even ones, in units of 2^-20.
+    /// The place of line i of n even ones in units of 2^-20: 2^21 i / n - 2^20, rounded.
     [[nodiscard]] static std::int32_t place(std::int32_t i, std::int32_t n)
     {
         return ((1 << 21) * i + n / 2) / n - (1 << 20);

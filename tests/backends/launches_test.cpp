@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -74,6 +75,23 @@ TEST(Launches, cover_each_tile_of_an_image_once_and_in_order)
     };
     launches.start(image, 1, enqueue, [] {});
     EXPECT_EQ(next_tile, tile_count(image));
+}
+
+TEST(Launches, of_many_short_passes_soon_have_as_many_together_as_take_a_second)
+{
+    Launches launches(8);
+    const LaunchParams image = params_of(300, 200);
+    std::uint32_t passes_in_all = 0, most = 0;
+    const auto enqueue = [&](const LaunchParams&, std::uint32_t tiles, std::uint32_t passes) {
+        passes_in_all += tiles == tile_count(image) ? passes : 0;
+        most = std::max(most, passes);
+        launches.took(tiles, passes, 1e-5 * passes * tiles / tile_count(image));
+    };
+    launches.start(image, 1, enqueue, [] {});
+    passes_in_all = 0;
+    launches.start(image, 4000, enqueue, [] {});
+    EXPECT_EQ(passes_in_all, 4000u);
+    EXPECT_GT(most, 1000u) << "of 10 us each";
 }
 
 TEST(Launches, ask_for_times_after_each_of_the_first_image_only)

@@ -131,10 +131,12 @@ TEST_F(MachineFaults, second_run_of_a_journal_is_refused_and_the_first_goes_on)
 TEST_F(MachineFaults, two_runs_into_one_file_leave_the_whole_result_of_one)
 {
     const std::string bench = "bench --method maria,stp --samples 3 --sample-time 0 --out b.json";
-    std::thread other([&] { (void)verb(bench, "exec"); });
+    Ended theirs;
+    std::thread other([&] { theirs = verb(bench, "exec"); });
     const Ended ours = verb(bench);
     other.join();
     EXPECT_EQ(ours.code, 0) << ours.errors;
+    EXPECT_EQ(theirs.code, 0) << theirs.errors;
     EXPECT_EQ(answers("b.json").size(), 2u);
     EXPECT_FALSE(has_temporary_files());
 }

@@ -2,6 +2,7 @@
 #include "tests/support/builder_meshes.h"
 #include "tests/support/program_fixture.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -76,11 +77,42 @@ TEST_F(Meshes, repaired_surfaces_are_traced_right_on_every_structure)
 
 TEST_F(Meshes, results_name_the_file_s_triangles)
 {
-    write("cubes.off", joined(box({0, 0, 0}, {1, 1, 1}), box({0.5f, 0.25f, 0.375f}, {1.5f, 1.25f, 1.375f})));
-    const Ended ended = run("trace --scene cubes.off --repair --backend openmp --method maria --layout tet80 --size 64 "
-                            "--pixel 32,32 --out a.json");
-    ASSERT_EQ(ended.code, 0) << ended.errors;
-    const auto device = nlohmann::json::parse(file("a.json"))["tetrace"]["trace"]["devices"][0];
-    EXPECT_LT(device["hit"]["face_id"], 24);
-    EXPECT_EQ(device["steps"].back()["beyond"], fmt::format("triangle {}", device["hit"]["face_id"].get<int>()));
+    // Two folded squares that cross; a piece's number would be another triangle's, or none's.
+    const TriangleMesh mesh = {{{0, 0, 0},
+                                {1, 0, 0},
+                                {1, 1, 0.125f},
+                                {0, 1, 0},
+                                {0.25f, 0.25f, -0.5f},
+                                {0.75f, 0.25f, -0.5f},
+                                {0.5f, 0.75f, 0.5f},
+                                {0.5f, 0.5f, 0.75f}},
+                               {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+    write("folds.off", mesh);
+    std::set<std::size_t> seen;
+    for (const char* const pixel : {"32,32", "28,26", "36,26", "30,20", "34,38"}) {
+        const Ended ended = run(std::string("trace --scene folds.off --repair --backend openmp --method maria --layout "
+                                            "tet80 --size 64 --out a.json --pixel ") +
+                                pixel);
+        ASSERT_EQ(ended.code, 0) << ended.errors;
+        const auto trace = nlohmann::json::parse(file("a.json"))["tetrace"]["trace"];
+        const auto device = trace["devices"][0];
+        const auto face = device["hit"]["face_id"].get<std::size_t>();
+        ASSERT_LT(face, mesh.triangles.size());
+        seen.insert(face);
+        EXPECT_EQ(device["steps"].back()["beyond"], fmt::format("triangle {}", face));
+        const auto [a, b, c] = mesh.triangles[face];
+        const Double3 v0 = to_double(mesh.vertices[a]), edge_1 = to_double(mesh.vertices[b]) - v0,
+                      edge_2 = to_double(mesh.vertices[c]) - v0;
+        const auto vector = [&](const char* key) {
+            return Double3{trace[key][0].get<double>(), trace[key][1].get<double>(), trace[key][2].get<double>()};
+        };
+        // The ray meets that triangle of the file, at the same t: the scene is as large as the file's mesh.
+        const Double3 direction = vector("direction"), offset = vector("origin") - v0, p = cross(direction, edge_2),
+                      q = cross(offset, edge_1);
+        const double determinant = dot(edge_1, p), u = dot(offset, p) / determinant,
+                     v = dot(direction, q) / determinant;
+        EXPECT_NEAR(dot(edge_2, q) / determinant, device["hit"]["t"].get<double>(), 1e-5) << pixel;
+        EXPECT_GT(std::min({u, v, 1 - u - v}), -1e-5) << pixel;
+    }
+    EXPECT_EQ(seen.size(), 2u);
 }

@@ -221,6 +221,18 @@ TEST_F(BudgetOfRows, that_not_even_those_fit_ends_the_run_with_a_message)
     EXPECT_TRUE(contains(error, "use --budget "));
 }
 
+TEST_F(BudgetOfRows, a_fast_rows_samples_take_their_own_time_however_slow_its_first_passes_were)
+{
+    rows_.reserve(1);
+    add_row(Layout::tet80, 1e-3);
+    Budget limit = budget_of(10); // five samples of a second, and their last passes
+    limit.plan(rows_, 10, 1.0);
+    EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
+    limit.traced(rows_[0], 2, 0.04); // 20 times as long
+    limit.review_timed();
+    EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
+}
+
 TEST_F(BudgetOfRows, a_row_that_is_wrong_stays_wrong)
 {
     rows_.reserve(2);
