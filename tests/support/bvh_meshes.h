@@ -109,9 +109,10 @@ inline Bvh chain(std::uint32_t depth, const Box& box)
     return bvh;
 }
 
-/// A tree and its mesh: `depth` levels, each with a leaf of one triangle that lies lower, in z, than all that follow. A
-/// ray from above meets the boxes of all, so that as many leaves wait on its stack. Most triangles are slivers across
-/// their boxes, which it misses; the lowest is large.
+/// A tree and its mesh: `depth` levels, each with a leaf of one triangle that lies lower, in z, than all that follow.
+/// All have the same box but for z: a ray from above enters all, so that as many leaves wait on its stack. Each
+/// triangle lies in another of 8 x 8 cells, the lowest in all of them: whether a ray finds its triangle depends on one
+/// entry.
 struct DeepTree {
     TriangleMesh mesh;
     Bvh bvh;
@@ -120,19 +121,24 @@ struct DeepTree {
     {
         add_triangle(mesh, {-0.75f, -0.75f, -0.75f}, {0.75f, -0.75f, -0.75f}, {-0.75f, 0.75f, -0.75f});
         for (std::uint32_t i = 1; i <= depth; ++i) {
-            const float z = -0.75f + 0x1p-7f * static_cast<float>(i);
-            add_triangle(mesh, {-0.5f, -0.5f, z}, {0.5f, 0.5f, z}, {0.5f, 0.5f - 0x1p-5f, z});
+            const float x = static_cast<float>(i % 8) * 0.125f - 0.5f,
+                        y = static_cast<float>(i / 8 % 8) * 0.125f - 0.5f;
+            add_triangle(mesh, {x, y, height(i)}, {x + 0.125f, y, height(i)}, {x, y + 0.125f, height(i)});
         }
         for (std::uint32_t i = 0; i < depth; ++i) {
             bvh.nodes.push_back({{}, {2 * i + 1, 2 * i + 2}, 0, 0});
-            bvh.nodes.push_back({triangle_box(mesh, i), {}, i, 1});
+            bvh.nodes.push_back({box(i), {}, i, 1});
         }
-        bvh.nodes.push_back({triangle_box(mesh, depth), {}, depth, 1});
+        bvh.nodes.push_back({box(depth), {}, depth, 1});
         for (std::uint32_t i = 0; i <= depth; ++i)
             bvh.references.push_back(i);
         for (std::uint32_t i = depth; i-- > 0;)
             bvh.nodes[2 * i].box = merged(bvh.nodes[2 * i + 1].box, bvh.nodes[2 * i + 2].box);
     }
+
+private:
+    static float height(std::uint32_t i) { return -0.75f + 0x1p-7f * static_cast<float>(i); }
+    static Box box(std::uint32_t i) { return {{-0.75f, -0.75f, height(i)}, {0.75f, 0.75f, height(i)}}; }
 };
 
 } // namespace tetrace::test
