@@ -82,7 +82,7 @@ struct KernelId {
 /// Whether the kernel has packets; its schedule is ignored. Only one walk is written for packets, in exact mode.
 [[nodiscard]] bool has_packets(const KernelId& kernel);
 
-/// The kernels for a task, in the same order; for exit searches there is no schedule persistent.
+/// The kernels for a task, in the same order; exit searches have schedule tiles alone.
 [[nodiscard]] std::vector<KernelId> kernels_of(Task task);
 
 /// The structure that a layout packs.
