@@ -177,6 +177,9 @@ TEST(Lattice, has_as_many_solid_cubes_as_stop_a_line_after_half_its_length)
 
 TEST(Lattice, has_squares_of_several_cubes_where_there_are_more_than_128)
 {
+#if defined(__SANITIZE_ADDRESS__)
+    GTEST_SKIP() << "takes two minutes here; smaller lattices do not";
+#endif
     const Scene scene = make_lattice(129);
     EXPECT_EQ(scene.domain.divisions, 65u);
     EXPECT_EQ(scene.domain.lines[0].size(), 66u);
