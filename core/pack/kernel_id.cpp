@@ -88,8 +88,7 @@ std::vector<KernelId> kernels_of(Task task)
     std::vector<KernelId> kernels;
     for (KernelId kernel : all_kernels()) {
         kernel.task = task;
-        if (has_task(kernel) && (task != Task::search || kernel.schedule == Schedule::tiles))
-            kernels.push_back(kernel);
+        if (has_task(kernel) && (task != Task::search || kernel.schedule == Schedule::tiles)) kernels.push_back(kernel);
     }
     return kernels;
 }
