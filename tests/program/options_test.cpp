@@ -245,6 +245,10 @@ TEST(Options, devices_schedules_tiles_and_buffer_limits_are_read)
     for (const char* const bad : {"0", "5", "32", "08", "all"})
         EXPECT_TRUE(contains(rejection({"bench", "--packet-lanes", bad}), "4, 8 or 16")) << bad;
     EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent, packets or native"));
+    EXPECT_TRUE(contains(rejection({"bench", "--sample-time", "61"}), "0 to 60 seconds"));
+    EXPECT_TRUE(contains(rejection({"bench", "--sample-time", "2m"}), "0 to 60 seconds"));
+    EXPECT_EQ(parse_options({"bench", "--sample-time", "0.0"}).sample_s, 0);
+    EXPECT_EQ(parse_options({"bench", "--sample-time", "1m"}).sample_s, 60);
 }
 
 TEST(Options, files_stand_between_options_wherever_they_are_given)
