@@ -46,8 +46,6 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
     setup_.compile_s = program_.compile_s;
     setup_.compile_cached = program_.cached;
     upload(scene);
-    if (schedule_ != Schedule::persistent) return;
-    counter_ = Memory(device_.context, sizeof(std::uint32_t), "the counter of persistent threads");
 }
 
 CudaSession::~CudaSession()
@@ -121,16 +119,12 @@ void CudaSession::launch(const TraceJob& job)
         [this] { finish_launch(); });
 }
 
-/// Persistent threads count tiles down: their counter is filled before each pass, which is no part of its time.
 void CudaSession::start_launch(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
 {
-    const bool is_persistent = schedule_ == Schedule::persistent;
-    for (std::uint32_t pass = 0; pass < (is_persistent ? passes : 1); ++pass) {
-        finish_launch(); // for the previous launch: there is only one stopwatch
-        launched_passes_ = is_persistent ? 1 : passes;
-        is_persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
-        launched_tiles_ = tiles;
-    }
+    finish_launch(); // the previous one: there is only one stopwatch
+    launched_passes_ = passes;
+    schedule_ == Schedule::persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
+    launched_tiles_ = tiles;
 }
 
 void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
@@ -147,16 +141,29 @@ void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
 
 void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t tiles)
 {
+    clear_counters();
     LaunchParams launch = params;
-    Address output = output_.address(), counter = counter_.address(), rays = rays_.address();
+    Address output = output_.address(), counter = counters_.address(), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles, &rays}; // the last one is of task rays
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
-    device_.context.check(device_.driver().fill_words(counter, 0, 1, device_.stream.get()), "clearing the counter");
     timer_.start(device_.stream.get());
-    device_.launch(entry_.function, std::min(blocks, entry_.resident_blocks), persistent_block_threads, parameters,
-                   stack_bytes_ * persistent_block_threads);
+    for (std::uint32_t pass = 0; pass < launched_passes_; ++pass, counter += sizeof(std::uint32_t))
+        device_.launch(entry_.function, std::min(blocks, entry_.resident_blocks), persistent_block_threads, parameters,
+                       stack_bytes_ * persistent_block_threads);
     timer_.stop(device_.stream.get());
+}
+
+/// Each pass has a counter of its own: they are cleared together, which is no part of the passes' time.
+void CudaSession::clear_counters()
+{
+    const std::size_t bytes = launched_passes_ * sizeof(std::uint32_t);
+    if (counters_.bytes() < bytes) {
+        counters_ = {};
+        counters_ = Memory(device_.context, bytes, "the counters of persistent threads");
+    }
+    device_.context.check(device_.driver().fill_words(counters_.address(), 0, launched_passes_, device_.stream.get()),
+                          "clearing the counters");
 }
 
 void CudaSession::finish_launch()

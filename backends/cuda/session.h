@@ -29,6 +29,7 @@ private:
     void start_launch(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
     void launch_tiles(const LaunchParams& params, std::uint32_t tiles);
     void launch_persistent(const LaunchParams& params, std::uint32_t tiles);
+    void clear_counters();
     /// A kernel's entry point.
     struct Entry {
         FunctionHandle function;
@@ -48,7 +49,8 @@ private:
     std::vector<Address>
         scene_; ///< the kernels' argument: SceneView of kernels/language/scene_view_cuda.h, word for word
     std::uint32_t divisions_;
-    Memory output_, counter_, rays_;
+    Memory output_, rays_;
+    Memory counters_; ///< of persistent threads: the tiles that each pass has taken
     EventTimer timer_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
