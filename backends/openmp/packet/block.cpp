@@ -143,13 +143,14 @@ void trace_block(const PacketJob& job, Packets& block)
 }
 
 // Collects the packets of a square of pixels by halving it down to squares of 8, without squares that see nothing of
-// the domain.
+// the domain. is_doubtful: whether some of it may see nothing.
 template <uint size>
-void collect(const PacketJob& job, uint x, uint y, Packets& block)
+void collect(const PacketJob& job, uint x, uint y, Packets& block, bool is_doubtful)
 {
     if (x >= job.width || y >= job.height) return;
     const Square square = square_at(job, x, y, size);
-    if (misses_domain(job, square)) {
+    const Sight sight = is_doubtful ? sight_of(job, square) : Sight::all;
+    if (sight == Sight::none) {
         write_misses(job, square.x, square.y, square.x_end, square.y_end, NO_TET, 0);
     } else if constexpr (size <= 8) {
         for (uint row = square.y; row < square.y_end; row += packet_height)
@@ -160,7 +161,7 @@ void collect(const PacketJob& job, uint x, uint y, Packets& block)
     } else {
         constexpr uint half = size / 2;
         for (uint i = 0; i < 4; ++i)
-            collect<half>(job, x + i % 2 * half, y + i / 2 * half, block);
+            collect<half>(job, x + i % 2 * half, y + i / 2 * half, block, sight == Sight::doubtful);
     }
 }
 
@@ -182,6 +183,6 @@ extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const 
 {
     Packets block;
     block.count = 0;
-    collect<tetrace::openmp::packet_block_size>(job, x, y, block);
+    collect<tetrace::openmp::packet_block_size>(job, x, y, block, true);
     trace_block(job, block);
 }

@@ -48,42 +48,21 @@ LANE_FN Square square_at(const PacketJob& job, uint x, uint y, uint size)
     return square;
 }
 
-// Far more than rounding can move a ray, or the place where it meets a side of the domain (docs/spec/packets.md, K11).
-constexpr double doubt = 0x1p-14;
+// Where the rays of a square are: all of them pass the domain, all are on the inner side of each edge of its outline,
+// or neither is certain.
+enum class Sight { none, all, doubtful };
 
-// The side of all rays of the square at the line from p to q, both seen from the origin: 1, -1, or 0 if in doubt.
-LANE_FN int side_of_all(const Square& square, Place p, Place q)
+[[maybe_unused]] Sight sight_of(const PacketJob& job, const Square& square)
 {
-    const Place normal = cross(p, q);
-    const double side = dot(square.centre, normal);
-    const double spread = __builtin_fabs(dot(square.half_x, normal)) + __builtin_fabs(dot(square.half_y, normal)) +
-                          doubt * size_of(square.centre) * size_of(p) * size_of(q);
-    return side > spread ? 1 : side < -spread ? -1 : 0;
-}
-
-[[maybe_unused]] bool misses_domain(const PacketJob& job, const Square& square)
-{
-    const uint n = job.divisions;
-    const auto edge = [&](uint axis, uint end) { return job.lines[axis * (n + 1) + (end != 0 ? n : 0)]; };
-    for (uint axis = 0; axis < 3; ++axis)
-        for (uint which = 0; which < 4; ++which) { // an edge along `axis`, at these ends of the two other axes
-            const uint a = axis == 2 ? 0 : axis + 1, b = axis == 0 ? 2 : axis - 1;
-            const uint end_a = which & 1u, end_b = which >> 1;
-            const auto is_seen = [&](uint of, uint end) {
-                return end != 0 ? job.origin[of] > edge(of, end) : job.origin[of] < edge(of, end);
-            };
-            if (is_seen(a, end_a) == is_seen(b, end_b)) continue; // not part of the outline
-            float from[3], to[3], opposite[3];
-            from[axis] = opposite[axis] = edge(axis, 0) - job.origin[axis];
-            to[axis] = edge(axis, 1) - job.origin[axis];
-            from[a] = to[a] = edge(a, end_a) - job.origin[a];
-            from[b] = to[b] = edge(b, end_b) - job.origin[b];
-            opposite[a] = edge(a, 1 - end_a) - job.origin[a];
-            opposite[b] = edge(b, 1 - end_b) - job.origin[b];
-            const Place p = place_of(from), q = place_of(to);
-            const int side = side_of_all(square, p, q);
-            const double inner = dot(place_of(opposite), cross(p, q));
-            if ((side > 0 && inner < 0) || (side < 0 && inner > 0)) return true;
-        }
-    return false;
+    Sight sight = Sight::all;
+    const double size = size_of(square.centre);
+    for (uint i = 0; i < job.outline_edges; ++i) {
+        const Place normal = {job.outline[i].normal[0], job.outline[i].normal[1], job.outline[i].normal[2]};
+        const double side = dot(square.centre, normal);
+        const double spread = __builtin_fabs(dot(square.half_x, normal)) + __builtin_fabs(dot(square.half_y, normal)) +
+                              job.outline[i].doubt * size;
+        if (side < -spread) return Sight::none;
+        if (side <= spread) sight = Sight::doubtful;
+    }
+    return sight;
 }
