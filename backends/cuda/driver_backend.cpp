@@ -16,7 +16,7 @@ constexpr unsigned probe_block_threads = 64;
 bool has_entry(const KernelId& kernel)
 {
     const bool has_schedule =
-        kernel.task == Task::search ? kernel.schedule == Schedule::tiles : !is_for_processors(kernel.schedule);
+        kernel.task == Task::search ? kernel.schedule == Schedule::tiles : is_portable(kernel.schedule);
     return has_schedule && has_task(kernel);
 }
 

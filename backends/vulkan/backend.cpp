@@ -25,8 +25,8 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return kernel.schedule == Schedule::tiles &&
-               find_kernel(vulkan::embedded_kernels(), vulkan::shader_name(kernel)) != nullptr;
+        const bool has_schedule = kernel.schedule == Schedule::tiles || kernel.schedule == Schedule::pipeline;
+        return has_schedule && find_kernel(vulkan::embedded_kernels(), vulkan::shader_name(kernel)) != nullptr;
     }
 
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
@@ -34,7 +34,7 @@ public:
         if (!has_kernel(kernel)) return "vulkan has no kernel " + name_of(kernel);
         const std::string& reason = devices().at(device).reason;
         if (!reason.empty() || kernel.layout != Layout::rt) return reason;
-        return found().devices[device].ray_queries.reason;
+        return found().devices[device].ray_tracing.why_not(vulkan::tracer_of(kernel));
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,

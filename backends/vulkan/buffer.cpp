@@ -21,6 +21,7 @@ vk::BufferUsageFlags usage_of(Place place)
         return Usage::eAccelerationStructureBuildInputReadOnlyKHR | Usage::eShaderDeviceAddress | Usage::eTransferDst;
     case Place::structure: return Usage::eAccelerationStructureStorageKHR | Usage::eShaderDeviceAddress;
     case Place::scratch: return Usage::eStorageBuffer | Usage::eShaderDeviceAddress;
+    case Place::table: return Usage::eShaderBindingTableKHR | Usage::eShaderDeviceAddress | Usage::eTransferDst;
     case Place::device: break;
     }
     return Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eTransferSrc | Usage::eTransferDst;
@@ -83,9 +84,9 @@ void copy_and_wait(const Context& context, const Buffer& from, const Buffer& to,
 {
     const vk::raii::CommandBuffer commands = context.make_commands();
     commands.begin({});
-    record_barrier(commands);
+    record_barrier(context, commands);
     commands.copyBuffer(from.handle(), to.handle(), region);
-    record_barrier(commands);
+    record_barrier(context, commands);
     commands.end();
     context.submit(commands);
     context.finish();

@@ -12,9 +12,10 @@ enum class Place {
     device,    ///< the device's own memory: kernels and transfers use it
     upload,    ///< the host writes, transfers read
     read_back, ///< transfers write, the host reads through its caches
-    geometry,  ///< of the device, by address: what a BVH is built from; this and the next two need Uses::ray_queries
+    geometry,  ///< of the device, by address: what a BVH is built from; this and the next three need a RayTracer
     structure, ///< of the device: a BVH built by the driver
-    scratch    ///< of the device, by address: scratch memory for building one
+    scratch,   ///< of the device, by address: scratch memory for building one
+    table      ///< of the device, by address: a pipeline's shader table
 };
 
 /// A buffer with memory of its own.

@@ -18,37 +18,39 @@ vk::raii::PhysicalDevice physical_device(const FoundDevice& found)
     return {instance().handle(), found.handle};
 }
 
-vk::raii::Device make_device(const FoundDevice& found, Uses uses)
+vk::raii::Device make_device(const FoundDevice& found, std::optional<RayTracer> tracer)
 {
     const std::array priorities = {1.0f};
     const auto queue =
         vk::DeviceQueueCreateInfo{}.setQueueFamilyIndex(*found.limits.queue_family).setQueuePriorities(priorities);
     std::vector<const char*> extensions;
     if (found.tells_cache_hits) extensions.push_back(VK_EXT_PIPELINE_CREATION_FEEDBACK_EXTENSION_NAME);
-    const RayQueryFeatures features = ray_query_features();
     auto info = vk::DeviceCreateInfo{}.setQueueCreateInfos(queue);
-    if (uses == Uses::ray_queries) {
-        extensions.insert(extensions.end(), ray_query_extensions.begin(), ray_query_extensions.end());
-        info.setPNext(&features.get<vk::PhysicalDeviceFeatures2>());
-    }
+    if (!tracer) return {physical_device(found), info.setPEnabledExtensionNames(extensions)};
+    const auto theirs = ray_extensions(*tracer);
+    extensions.insert(extensions.end(), theirs.begin(), theirs.end());
+    const RayFeatures features = ray_features(*tracer);
+    info.setPNext(&features.get<vk::PhysicalDeviceFeatures2>());
     return {physical_device(found), info.setPEnabledExtensionNames(extensions)};
 }
 
-std::shared_ptr<vk::raii::Device> device_of(const FoundDevice& found, Uses uses)
+std::shared_ptr<vk::raii::Device> device_of(const FoundDevice& found, std::optional<RayTracer> tracer)
 {
     static std::mutex mutex;
-    static std::map<std::pair<VkPhysicalDevice, Uses>, std::weak_ptr<vk::raii::Device>> newest;
+    static std::map<std::pair<VkPhysicalDevice, std::optional<RayTracer>>, std::weak_ptr<vk::raii::Device>> newest;
     const std::lock_guard lock(mutex);
-    return made_or_shared(newest[{found.handle, uses}], [&] { return make_device(found, uses); });
+    return made_or_shared(newest[{found.handle, tracer}], [&] { return make_device(found, tracer); });
 }
 
 } // namespace
 
-Context::Context(const FoundDevice& found, Uses uses) : found_(found)
+Context::Context(const FoundDevice& found, std::optional<RayTracer> tracer)
+    : found_(found), shader_stage_(tracer == RayTracer::pipeline ? vk::PipelineStageFlagBits::eRayTracingShaderKHR
+                                                                 : vk::PipelineStageFlagBits::eComputeShader)
 {
     if (!found.facts.usable) throw Error(ErrorKind::missing, found.facts.reason);
     run("opening the device", 0, [&] {
-        device_ = device_of(found, uses);
+        device_ = device_of(found, tracer);
         queue_ = device_->getQueue(*found.limits.queue_family, 0);
         pool_ = device_->createCommandPool(vk::CommandPoolCreateInfo{}
                                                .setQueueFamilyIndex(*found.limits.queue_family)
@@ -116,7 +118,7 @@ void record_end_time(const vk::raii::CommandBuffer& commands, const vk::raii::Qu
     commands.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *times, 1);
 }
 
-void record_barrier(const vk::raii::CommandBuffer& commands)
+void record_barrier(const Context& context, const vk::raii::CommandBuffer& commands)
 {
     using Access = vk::AccessFlagBits;
     using Stage = vk::PipelineStageFlagBits;
@@ -124,8 +126,8 @@ void record_barrier(const vk::raii::CommandBuffer& commands)
                              .setSrcAccessMask(Access::eShaderWrite | Access::eTransferWrite)
                              .setDstAccessMask(Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
                                                Access::eTransferWrite | Access::eHostRead);
-    commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer,
-                             Stage::eComputeShader | Stage::eTransfer | Stage::eHost, {}, barrier, {}, {});
+    const vk::PipelineStageFlags stages = context.shader_stage() | Stage::eTransfer;
+    commands.pipelineBarrier(stages, stages | Stage::eHost, {}, barrier, {}, {});
 }
 
 } // namespace tetrace::vulkan

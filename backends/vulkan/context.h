@@ -5,12 +5,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tetrace::vulkan {
-
-/// What a context is opened for: features beyond compute are enabled only for sessions that need them.
-enum class Uses { compute, ray_queries };
 
 /// What make() makes. Where the driver refuses to make one more, the newest that is still in use: NVIDIA's driver makes
 /// 63 devices a process, and rows may be more.
@@ -34,13 +32,18 @@ template <class Handle, class Make>
 /// see made_or_shared(). Contexts of one physical device are used by one thread at a time.
 class Context {
 public:
-    /// Throws Error where the driver fails. uses: ray_queries only if found.ray_queries has no reason against it.
-    explicit Context(const FoundDevice& found, Uses uses = Uses::compute);
+    /// Throws Error where the driver fails. tracer: how rays are traced through a BVH of the driver's, if they are;
+    /// found.ray_tracing has no reason against it. Features beyond compute are enabled only for sessions that need
+    /// them.
+    explicit Context(const FoundDevice& found, std::optional<RayTracer> tracer = {});
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }
     [[nodiscard]] const Device& facts() const { return found_.facts; }
     [[nodiscard]] const vk::raii::Device& device() const { return *device_; }
     [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
+
+    /// Where its kernels run: barriers wait for it.
+    [[nodiscard]] vk::PipelineStageFlagBits shader_stage() const { return shader_stage_; }
 
     [[nodiscard]] vk::PhysicalDeviceMemoryProperties memory() const;
 
@@ -76,6 +79,7 @@ public:
 
 private:
     FoundDevice found_;
+    vk::PipelineStageFlagBits shader_stage_;
     std::shared_ptr<vk::raii::Device> device_;
     vk::raii::Queue queue_{nullptr};
     vk::raii::CommandPool pool_{nullptr};
@@ -95,6 +99,6 @@ void record_begin_time(const vk::raii::CommandBuffer& commands, const vk::raii::
 void record_end_time(const vk::raii::CommandBuffer& commands, const vk::raii::QueryPool& times);
 
 /// Makes what earlier transfers and kernels wrote visible to later transfers, kernels and the host.
-void record_barrier(const vk::raii::CommandBuffer& commands);
+void record_barrier(const Context& context, const vk::raii::CommandBuffer& commands);
 
 } // namespace tetrace::vulkan

@@ -142,7 +142,7 @@ FoundDevice found_device(const vk::raii::PhysicalDevice& device)
     facts.timer_period_s = 1e-9 * static_cast<double>(properties.limits.timestampPeriod);
     if (properties.apiVersion >= VK_API_VERSION_1_1) {
         describe(device, found);
-        found.ray_queries = ray_queries_of(device);
+        found.ray_tracing = ray_tracing_of(device);
     }
     facts.id = id_of(facts);
     facts.reason = why_not_usable(found.limits);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "backends/vulkan/rt/ray_queries.h"
+#include "backends/vulkan/rt/ray_tracing.h"
 #include "core/device/backend.h"
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct FoundDevice {
     Device facts;
     VkPhysicalDevice handle = nullptr;
     Limits limits;
-    RayQueries ray_queries;
+    RayTracing ray_tracing;
     bool tells_cache_hits = false; ///< VK_EXT_pipeline_creation_feedback
     bool reads_texels = false;     ///< reads texel buffers faster than storage buffers
     bool selects_minima = false;   ///< selects the smaller of two numbers faster than its minimum does

@@ -28,7 +28,7 @@ std::vector<std::uint32_t> run_probe(const Context& context, MathMode math, std:
         commands.begin({});
         program.record(commands);
         commands.dispatch((static_cast<std::uint32_t>(operations.size()) + group_items - 1) / group_items, 1, 1);
-        record_barrier(commands);
+        record_barrier(context, commands);
         commands.end();
         context.submit(commands);
         context.finish();

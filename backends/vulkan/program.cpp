@@ -8,11 +8,41 @@ namespace tetrace::vulkan {
 
 namespace {
 
-std::uint64_t key_of(const FoundDevice& device, const ProgramId& id, std::span<const std::byte> code)
+using ShaderStage = vk::ShaderStageFlagBits;
+
+const EmbeddedKernel& module_of(const ProgramId& id, std::string_view name)
 {
-    return hash_bytes(code, hash_of(device.build_key + ";" + std::to_string(id.tile_height) +
-                                    (id.starts_outside ? ";outside" : "") + (id.selects_minima ? ";selects" : "") +
-                                    (id.stack_top != 0 ? ";stack " + std::to_string(id.stack_top) : "")));
+    const EmbeddedKernel* const kernel = find_kernel(id.kernels, name);
+    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + std::string(name));
+    return *kernel;
+}
+
+struct ShaderId {
+    ShaderStage stage;
+    std::string name;
+};
+
+/// In the order of the pipeline's stages. The first one has the buffers.
+std::vector<ShaderId> shaders_of(const ProgramId& id)
+{
+    if (!id.is_ray_pipeline) return {{ShaderStage::eCompute, id.name}};
+    return {
+        {ShaderStage::eRaygenKHR, id.name}, {ShaderStage::eMissKHR, rt_miss}, {ShaderStage::eClosestHitKHR, rt_hit}};
+}
+
+ShaderStage first_stage(const ProgramId& id)
+{
+    return shaders_of(id).front().stage;
+}
+
+std::uint64_t key_of(const FoundDevice& device, const ProgramId& id)
+{
+    std::uint64_t key = hash_of(device.build_key + ";" + std::to_string(id.tile_height) +
+                                (id.starts_outside ? ";outside" : "") + (id.selects_minima ? ";selects" : "") +
+                                (id.stack_top != 0 ? ";stack " + std::to_string(id.stack_top) : ""));
+    for (const ShaderId& shader : shaders_of(id))
+        key = hash_bytes(module_of(id, shader.name).bytes, key);
+    return key;
 }
 
 vk::raii::PipelineCache make_cache(const Context& context, const ProgramCache& cache, std::uint64_t key)
@@ -39,7 +69,7 @@ std::vector<vk::DescriptorSetLayoutBinding> bindings_of(const ProgramId& id)
                                .setBinding(binding)
                                .setDescriptorType(type)
                                .setDescriptorCount(1)
-                               .setStageFlags(vk::ShaderStageFlagBits::eCompute));
+                               .setStageFlags(first_stage(id)));
     };
     for (const std::uint32_t binding : id.bindings)
         add(binding, vk::DescriptorType::eStorageBuffer);
@@ -49,11 +79,58 @@ std::vector<vk::DescriptorSetLayoutBinding> bindings_of(const ProgramId& id)
     return bindings;
 }
 
-const EmbeddedKernel& module_of(const ProgramId& id)
+/// The stages of a pipeline that is being made: their modules and constants.
+class Stages {
+public:
+    Stages(const vk::raii::Device& device, const ProgramId& id)
+        : values_{id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE, id.selects_minima ? VK_TRUE : VK_FALSE,
+                  id.stack_top}
+    {
+        for (std::uint32_t i = 0; i < entries_.size(); ++i)
+            entries_[i].setConstantID(i).setOffset(i * sizeof(values_[0])).setSize(sizeof(values_[0]));
+        constants_.setMapEntries(entries_).setDataSize(sizeof(values_)).setPData(values_.data());
+        for (const ShaderId& shader : shaders_of(id))
+            add(device, shader.stage, module_of(id, shader.name), id.tile_height != 0);
+    }
+    Stages(const Stages&) = delete;
+    Stages& operator=(const Stages&) = delete;
+
+    /// Valid while this lives.
+    [[nodiscard]] const std::vector<vk::PipelineShaderStageCreateInfo>& infos() const { return infos_; }
+
+private:
+    void add(const vk::raii::Device& device, ShaderStage stage, const EmbeddedKernel& kernel, bool has_constants)
+    {
+        // Embedded bytes are aligned for words.
+        modules_.push_back(
+            device.createShaderModule(vk::ShaderModuleCreateInfo{}
+                                          .setCodeSize(kernel.bytes.size())
+                                          .setPCode(reinterpret_cast<const std::uint32_t*>(kernel.bytes.data()))));
+        infos_.push_back(
+            vk::PipelineShaderStageCreateInfo{}.setStage(stage).setModule(*modules_.back()).setPName("main"));
+        if (has_constants) infos_.back().setPSpecializationInfo(&constants_);
+    }
+
+    std::array<std::uint32_t, 4> values_;
+    std::array<vk::SpecializationMapEntry, 4> entries_;
+    vk::SpecializationInfo constants_;
+    std::vector<vk::raii::ShaderModule> modules_;
+    std::vector<vk::PipelineShaderStageCreateInfo> infos_;
+};
+
+/// A group for each of the three stages, as ShaderTable has them.
+vk::raii::Pipeline compile_rays(const vk::raii::Device& device, const ProgramId& id,
+                                const vk::raii::PipelineLayout& layout, const vk::raii::PipelineCache& cache,
+                                vk::RayTracingPipelineCreateInfoKHR info)
 {
-    const EmbeddedKernel* const kernel = find_kernel(id.kernels, id.name);
-    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + id.name);
-    return *kernel;
+    using Type = vk::RayTracingShaderGroupTypeKHR;
+    constexpr std::uint32_t none = VK_SHADER_UNUSED_KHR;
+    const std::array groups = {vk::RayTracingShaderGroupCreateInfoKHR(Type::eGeneral, 0, none, none, none),
+                               vk::RayTracingShaderGroupCreateInfoKHR(Type::eGeneral, 1, none, none, none),
+                               vk::RayTracingShaderGroupCreateInfoKHR(Type::eTrianglesHitGroup, none, 2, none, none)};
+    const Stages stages(device, id);
+    info.setStages(stages.infos()).setGroups(groups).setMaxPipelineRayRecursionDepth(1).setLayout(*layout);
+    return device.createRayTracingPipelineKHR(nullptr, cache, info);
 }
 
 } // namespace
@@ -68,8 +145,7 @@ vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, co
                                               const vk::raii::DescriptorSetLayout& set_layout)
 {
     const std::array sets = {*set_layout};
-    const auto push =
-        vk::PushConstantRange{}.setStageFlags(vk::ShaderStageFlagBits::eCompute).setSize(id.push_constant_bytes);
+    const auto push = vk::PushConstantRange{}.setStageFlags(first_stage(id)).setSize(id.push_constant_bytes);
     auto info = vk::PipelineLayoutCreateInfo{}.setSetLayouts(sets);
     if (id.push_constant_bytes != 0) info.setPushConstantRanges(push);
     return device.createPipelineLayout(info);
@@ -78,25 +154,8 @@ vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, co
 vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id, const vk::raii::PipelineLayout& layout,
                            vk::Optional<const vk::raii::PipelineCache> cache, vk::ComputePipelineCreateInfo info)
 {
-    const EmbeddedKernel& kernel = module_of(id);
-    // Embedded bytes are aligned for words.
-    const vk::raii::ShaderModule module =
-        device.createShaderModule(vk::ShaderModuleCreateInfo{}
-                                      .setCodeSize(kernel.bytes.size())
-                                      .setPCode(reinterpret_cast<const std::uint32_t*>(kernel.bytes.data())));
-    const std::array<std::uint32_t, 4> values = {id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE,
-                                                 id.selects_minima ? VK_TRUE : VK_FALSE, id.stack_top};
-    std::array<vk::SpecializationMapEntry, values.size()> entries;
-    for (std::uint32_t i = 0; i < entries.size(); ++i)
-        entries[i].setConstantID(i).setOffset(i * sizeof(values[0])).setSize(sizeof(values[0]));
-    const auto constants =
-        vk::SpecializationInfo{}.setMapEntries(entries).setDataSize(sizeof(values)).setPData(values.data());
-    auto stage = vk::PipelineShaderStageCreateInfo{}
-                     .setStage(vk::ShaderStageFlagBits::eCompute)
-                     .setModule(*module)
-                     .setPName("main");
-    if (id.tile_height != 0) stage.setPSpecializationInfo(&constants);
-    return device.createComputePipeline(cache, info.setStage(stage).setLayout(*layout));
+    const Stages stages(device, id);
+    return device.createComputePipeline(cache, info.setStage(stages.infos().front()).setLayout(*layout));
 }
 
 Program::Program(const Context& context, const ProgramId& id, const ProgramCache& cache)
@@ -127,18 +186,22 @@ void Program::make_layout(const Context& context, const ProgramId& id)
 
 void Program::make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache)
 {
-    vk::PipelineCreationFeedback feedback, stage_feedback;
+    vk::PipelineCreationFeedback feedback;
+    std::vector<vk::PipelineCreationFeedback> stage_feedbacks(shaders_of(id).size());
     auto feedbacks = vk::PipelineCreationFeedbackCreateInfo{}
                          .setPPipelineCreationFeedback(&feedback)
-                         .setPipelineStageCreationFeedbackCount(1)
-                         .setPPipelineStageCreationFeedbacks(&stage_feedback);
-    vk::ComputePipelineCreateInfo info;
-    if (context.found().tells_cache_hits) info.setPNext(&feedbacks);
-    const std::uint64_t key = key_of(context.found(), id, module_of(id).bytes);
+                         .setPipelineStageCreationFeedbacks(stage_feedbacks);
+    const void* const next = context.found().tells_cache_hits ? &feedbacks : nullptr;
+    const std::uint64_t key = key_of(context.found(), id);
     const vk::raii::PipelineCache pipelines = make_cache(context, cache, key);
-    pipeline_ = compile(context.device(), id, layout_, pipelines, info);
+    pipeline_ = id.is_ray_pipeline
+                    ? compile_rays(context.device(), id, layout_, pipelines,
+                                   vk::RayTracingPipelineCreateInfoKHR{}.setPNext(next))
+                    : compile(context.device(), id, layout_, pipelines, vk::ComputePipelineCreateInfo{}.setPNext(next));
     is_cached_ = is_hit(feedback);
     if (!is_cached_) cache.keep(key, pipelines.getData());
+    if (id.is_ray_pipeline) table_.emplace(context, pipeline_);
+    group_items_ = TILE_WIDTH * id.tile_height;
 }
 
 void Program::bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const
@@ -181,8 +244,22 @@ void Program::bind_structure(const Context& context, std::uint32_t binding,
 
 void Program::record(const vk::raii::CommandBuffer& commands) const
 {
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
-    if (*set_) commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, *set_, {});
+    commands.bindPipeline(bind_point(), *pipeline_);
+    if (*set_) commands.bindDescriptorSets(bind_point(), *layout_, 0, *set_, {});
+}
+
+void Program::push(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const
+{
+    const ShaderStage stage = table_ ? ShaderStage::eRaygenKHR : ShaderStage::eCompute;
+    commands.pushConstants<LaunchParams>(*layout_, stage, 0, params);
+}
+
+void Program::dispatch(const vk::raii::CommandBuffer& commands, std::uint32_t x, std::uint32_t y, std::uint32_t z) const
+{
+    if (table_)
+        table_->record_launch(commands, x * group_items_, y, z);
+    else
+        commands.dispatch(x, y, z);
 }
 
 } // namespace tetrace::vulkan

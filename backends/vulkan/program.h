@@ -2,6 +2,8 @@
 
 #include "backends/vulkan/buffer.h"
 #include "backends/vulkan/kernels.h"
+#include "backends/vulkan/rt/shader_table.h"
+#include "core/device/launch.h"
 #include "core/device/program_cache.h"
 
 #include <cstdint>
@@ -26,6 +28,7 @@ struct ProgramId {
     std::optional<std::uint32_t> structure = {}; ///< binding of a BVH that the driver has built
     std::uint32_t push_constant_bytes = 0;       ///< 0: none
     unsigned tile_height = 0;                    ///< the height of its work groups; 0: as the module says
+    bool is_ray_pipeline = false;                ///< the name is that of its ray generation shader
     bool starts_outside = false;                 ///< no ray starts in a tet
     bool selects_minima = false;                 ///< as FoundDevice has it
     std::uint32_t stack_top = 0;                 ///< as FoundDevice has it
@@ -36,19 +39,19 @@ struct ProgramId {
 [[nodiscard]] vk::raii::DescriptorSetLayout make_set_layout(const vk::raii::Device& device, const ProgramId& id);
 [[nodiscard]] vk::raii::PipelineLayout make_pipeline_layout(const vk::raii::Device& device, const ProgramId& id,
                                                             const vk::raii::DescriptorSetLayout& set_layout);
-/// info: flags and further structures; stage and layout are set here. Throws Error{internal} where id names no program.
+/// id: of a compute shader. info: flags and further structures; stage and layout are set here. Throws Error{internal}
+/// where id names no program.
 [[nodiscard]] vk::raii::Pipeline compile(const vk::raii::Device& device, const ProgramId& id,
                                          const vk::raii::PipelineLayout& layout,
                                          vk::Optional<const vk::raii::PipelineCache> cache,
                                          vk::ComputePipelineCreateInfo info);
 
-/// A compute pipeline with its buffers.
+/// A pipeline with its buffers: of a compute shader, or of ray tracing.
 class Program {
 public:
     /// Throws Error{internal} where the driver cannot compile it.
     Program(const Context& context, const ProgramId& id, const ProgramCache& cache);
 
-    [[nodiscard]] const vk::raii::PipelineLayout& layout() const { return layout_; }
     /// Whether the driver did not need to compile; false if it does not say.
     [[nodiscard]] bool is_cached() const { return is_cached_; }
     /// Every binding needs a buffer before record() is called; not while commands that use the program run.
@@ -59,8 +62,16 @@ public:
     void bind_structure(const Context& context, std::uint32_t binding, vk::AccelerationStructureKHR structure) const;
     /// Records that the program and its buffers are what a dispatch runs.
     void record(const vk::raii::CommandBuffer& commands) const;
+    /// Records the parameters of what is dispatched next.
+    void push(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const;
+    /// Records so many work groups; of a ray-tracing pipeline, which has none, the invocations of so many.
+    void dispatch(const vk::raii::CommandBuffer& commands, std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
 
 private:
+    [[nodiscard]] vk::PipelineBindPoint bind_point() const
+    {
+        return table_ ? vk::PipelineBindPoint::eRayTracingKHR : vk::PipelineBindPoint::eCompute;
+    }
     void make_layout(const Context& context, const ProgramId& id);
     void make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache);
 
@@ -70,6 +81,8 @@ private:
     vk::raii::DescriptorSet set_{nullptr};                // null where there are no bindings
     std::map<std::uint32_t, vk::raii::BufferView> views_; // by binding
     vk::raii::Pipeline pipeline_{nullptr};
+    std::optional<ShaderTable> table_; // of ray-tracing pipelines
+    std::uint32_t group_items_ = 0;    // of one that is a tile
     bool is_cached_ = false;
 };
 

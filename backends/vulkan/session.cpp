@@ -48,6 +48,15 @@ constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as in rt/ke
 
 constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
 
+/// Of a dispatch, or of a launch of a pipeline.
+std::uint32_t most_tiles(const FoundDevice& found, const KernelId& kernel, unsigned tile_height)
+{
+    const std::uint32_t groups = found.limits.groups;
+    if (tracer_of(kernel) == RayTracer::queries) return groups;
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(groups, found.ray_tracing.most_rays / (TILE_WIDTH * tile_height)));
+}
+
 void require_variant(const KernelId& kernel, const TetParts& parts)
 {
     if (kernel.task != Task::trace && parts.count > 1)
@@ -75,9 +84,9 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
                              const SessionOptions& options)
-    : context_(found, Uses::ray_queries), max_buffer_bytes_(largest_buffer(found.facts, options)),
+    : context_(found, tracer_of(kernel)), max_buffer_bytes_(largest_buffer(found.facts, options)),
       tile_height_(tile_height_of(options)), kernel_(kernel), program_cache_(options.program_cache),
-      launches_(tile_height_, found.limits.groups)
+      launches_(tile_height_, most_tiles(found, kernel, tile_height_))
 {
     acceleration_.emplace(context_, mesh);
     bytes_ = acceleration_->bytes();
@@ -136,6 +145,7 @@ void VulkanSession::make_program()
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_,
+                 .is_ray_pipeline = kernel_.schedule == Schedule::pipeline,
                  .starts_outside = starts_outside_,
                  .selects_minima = context_.found().selects_minima,
                  .stack_top = context_.found().stack_top};
@@ -218,16 +228,16 @@ void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std
     commands.begin({});
     if (params.first_tile == 0) { // in the kernel's own commands, so that the validation layers see both
         commands.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
-        record_barrier(commands);
+        record_barrier(context_, commands);
     }
     program_->record(commands);
     record_begin_time(commands, times);
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        if (pass > 0) record_barrier(commands); // else passes may run at once
+        if (pass > 0) record_barrier(context_, commands); // else passes may run at once
         record_dispatches(commands, params, tiles);
     }
     record_end_time(commands, times);
-    record_barrier(commands);
+    record_barrier(context_, commands);
     commands.end();
     context_.submit(commands);
     enqueued_.push_back({tiles, passes});
@@ -239,8 +249,8 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
     const auto record = [&](std::uint32_t run, std::uint32_t runs, std::uint32_t shares) {
         const std::uint32_t count = run * runs * shares;
         if (count == 0) return;
-        commands.pushConstants<LaunchParams>(*program_->layout(), vk::ShaderStageFlagBits::eCompute, 0, params);
-        commands.dispatch(run, runs, shares);
+        program_->push(commands, params);
+        program_->dispatch(commands, run, runs, shares);
         params.first_tile += count;
         tiles -= count;
     };

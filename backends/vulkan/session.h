@@ -16,7 +16,7 @@ public:
     /// Throws Error{unsupported} with both numbers where a limit or the memory is too small.
     VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                   const SessionOptions& options);
-    /// For kernels of layout rt; the device has ray queries.
+    /// For kernels of layout rt; the device has the kernel's RayTracer.
     VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
                   const SessionOptions& options);
     ~VulkanSession() override;

@@ -15,7 +15,7 @@ Yardstick measured_copies(const Context& context, std::uint64_t bytes)
     commands.begin({});
     commands.fillBuffer(from.handle(), 0, VK_WHOLE_SIZE, 1); // touched before they are timed
     commands.fillBuffer(to.handle(), 0, VK_WHOLE_SIZE, 2);
-    record_barrier(commands);
+    record_barrier(context, commands);
     commands.end();
     context.submit(commands);
     context.finish();
@@ -23,7 +23,7 @@ Yardstick measured_copies(const Context& context, std::uint64_t bytes)
         commands.begin({});
         record_begin_time(commands, times);
         for (unsigned time = 0; time < count; ++time) {
-            if (time > 0) record_barrier(commands); // else several may run at once
+            if (time > 0) record_barrier(context, commands); // else several may run at once
             commands.copyBuffer(from.handle(), to.handle(), vk::BufferCopy{}.setSize(each));
         }
         record_end_time(commands, times);

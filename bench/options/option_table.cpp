@@ -120,8 +120,8 @@ std::vector<OptionRow> row_options()
     return {
         {"Rows", "--structure", "NAME",
          "Keep the rows of this structure: cdt or bvh. Default: both. 'check' leaves out the rows of Embree's and a "
-         "driver's own BVHs unless --structure, --method, --layout, --backend, --filter or '--require embree' is "
-         "given.",
+         "driver's own BVHs unless --structure, --method, --layout, --backend, --filter, '--schedule pipeline' or "
+         "'--require embree' is given.",
          selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
@@ -132,7 +132,7 @@ std::vector<OptionRow> row_options()
          append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet20 or tet16 (cdt with project), bvh2 or "
-         "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its ray queries). "
+         "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its own rays). "
          "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
          "where rt is named here or in a filter.",
          reproducing | selecting | bit(Verb::dump), true,
@@ -169,8 +169,9 @@ std::vector<OptionRow> row_options()
          "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
          "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, "
-         "project "
-         "on half32, and BVHs. Embree has a schedule of its own. Default: tiles and packets.",
+         "project on half32, and BVHs; 'pipeline', of rt alone, through Vulkan's ray-tracing pipelines instead of ray "
+         "queries. Embree has a schedule of its own. Default: tiles and packets; pipeline where a driver has no ray "
+         "queries.",
          selecting, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match of a regular expression (RE2's): 'tet96.*openmp'. Default: all.",

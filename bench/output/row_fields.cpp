@@ -159,7 +159,7 @@ std::vector<RowField> identity_fields()
         {"", "order", named(&RowKey::order),
          recorded(R"({ "enum": ["hilbert", "reached", "input"] })", required, "of the tets in memory"), csv("order")},
         {"", "schedule", in(&RowKey::kernel, named(&KernelId::schedule)),
-         recorded(R"({ "enum": ["tiles", "persistent", "packets", "native"] })", optional,
+         recorded(R"({ "enum": ["tiles", "persistent", "packets", "native", "pipeline"] })", optional,
                   "how rays come to work items; results from before this key have it in the row's name"),
          csv("schedule")},
         {"", "status", status_name, recorded("status", required), csv("status")},

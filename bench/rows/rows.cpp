@@ -13,9 +13,15 @@ namespace tetrace {
 namespace {
 
 template <class T>
+bool has(const std::vector<T>& list, const T& value)
+{
+    return std::ranges::find(list, value) != list.end();
+}
+
+template <class T>
 bool wanted(const std::vector<T>& list, const T& value)
 {
-    return list.empty() || std::ranges::find(list, value) != list.end();
+    return list.empty() || has(list, value);
 }
 
 /// Where no method is named, the kernel list says which methods represent all: two of the cdt, the paper's and the
@@ -54,7 +60,7 @@ bool wanted_kernel(const Options& options, const KernelId& kernel)
 bool is_named(const Options& options, const Backend& backend)
 {
     for (const auto* list : {&options.backends, &options.required})
-        if (std::ranges::find(*list, backend.name()) != list->end()) return true;
+        if (has(*list, backend.name())) return true;
     return false;
 }
 
@@ -94,23 +100,39 @@ std::vector<std::size_t> devices_with_rows(const Options& options, const Backend
     return indices;
 }
 
-/// Whether --layout, --filter or --benchmark_filter names the layout rt.
+/// Whether --layout, --filter or --benchmark_filter names the layout rt, or --schedule the one that it alone has.
 bool names_rt(const Options& options)
 {
     static const NameFilter word("layout rt", "\\brt\\b");
     const auto names_it = [](const std::string& filter) { return word.keeps(filter); };
     const auto& flags = options.benchmark_flags;
-    return !options.layouts.empty() || names_it(options.filter) ||
+    return !options.layouts.empty() || has(options.schedules, Schedule::pipeline) || names_it(options.filter) ||
            std::ranges::any_of(flags, [&](const std::string& flag) {
                return flag.rfind("--benchmark_filter=", 0) == 0 && names_it(flag);
            });
+}
+
+/// What traces rays of layout rt on a device: what --schedule names, and else ray queries (tiles), or a pipeline where
+/// the driver has no ray queries.
+bool wanted_tracer(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
+{
+    const auto can = [&](KernelId other, Schedule schedule) {
+        other.schedule = schedule;
+        return backend.why_not(device, other).empty();
+    };
+    if (has(options.schedules, Schedule::tiles) || has(options.schedules, Schedule::pipeline))
+        return has(options.schedules, kernel.schedule);
+    const bool takes_pipeline = !can(kernel, Schedule::tiles) && can(kernel, Schedule::pipeline);
+    return kernel.schedule == (takes_pipeline ? Schedule::pipeline : Schedule::tiles);
 }
 
 /// Rows of layout rt are selected by default only on real GPUs that support it. An emulated device takes a hundred
 /// times as long for them as for its other rows.
 bool wanted_there(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
 {
-    if (kernel.layout != Layout::rt || names_rt(options)) return true;
+    if (kernel.layout != Layout::rt) return true;
+    if (!wanted_tracer(options, backend, device, kernel)) return false;
+    if (names_rt(options)) return true;
     return backend.devices()[device].kind != DeviceKind::emulated && backend.why_not(device, kernel).empty();
 }
 

@@ -70,7 +70,8 @@ Options with_default_layouts(Options options)
     const auto& required = options.required;
     const bool asked = !options.structures.empty() || !options.methods.empty() || !options.layouts.empty() ||
                        !options.backends.empty() || !options.filter.empty() ||
-                       std::ranges::find(required, "embree") != required.end();
+                       std::ranges::find(required, "embree") != required.end() ||
+                       std::ranges::find(options.schedules, Schedule::pipeline) != options.schedules.end();
     if (asked) return options;
     for (const KernelId& kernel : all_kernels())
         if (is_portable(kernel)) options.layouts.push_back(kernel.layout);

@@ -26,7 +26,8 @@ const std::vector<KernelRow>& kernel_rows()
 {
     constexpr unsigned trace = bit(Task::trace), rays = bit(Task::rays), search = bit(Task::search);
     constexpr unsigned tiles = bit(Schedule::tiles), persistent = bit(Schedule::persistent),
-                       packets = bit(Schedule::packets), native = bit(Schedule::native);
+                       packets = bit(Schedule::packets), native = bit(Schedule::native),
+                       pipeline = bit(Schedule::pipeline);
     constexpr bool robust = true, fallible = false, by_default = true, on_request = false;
     static const std::vector<KernelRow> rows = {
 #define KERNEL(method, layout, ...) {Method::method, Layout::layout, __VA_ARGS__},
@@ -51,12 +52,12 @@ KernelRow row_of(const KernelId& kernel)
 bool has_math(const KernelId& kernel)
 {
     if (!is_portable(kernel)) return kernel.math == MathMode::fast;
-    return kernel.math == MathMode::exact || !is_for_processors(kernel.schedule);
+    return kernel.math == MathMode::exact || is_portable(kernel.schedule);
 }
 
 void add_kernels(std::vector<KernelId>& kernels, Structure structure, bool portable)
 {
-    for (const Schedule schedule : {Schedule::tiles, Schedule::persistent, Schedule::packets, Schedule::native})
+    for (const Schedule schedule : values_of<Schedule>())
         for (const MathMode math : {MathMode::exact, MathMode::fast})
             for (const KernelRow& row : kernel_rows()) {
                 const KernelId kernel{structure_of(row.layout), row.method, row.layout, math, schedule};

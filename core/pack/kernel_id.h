@@ -40,14 +40,16 @@ inline constexpr auto enum_names<RayOrder> = names_up_to<RayOrder::shuffled>("ti
 /// How rays are assigned to work items: one ray per item and one tile per group; or items that stay and fetch rays
 /// until none is left (Aila, Laine, Karras 2012); or packets with as many rays as a processor's vectors have lanes. Or,
 /// as tiles, by code for instructions that not every processor has, as that of packets is: packets over `native`
-/// compares the two ways to trace, and `native` over `tiles` the instruction sets.
-enum class Schedule { tiles, persistent, packets, native };
+/// compares the two ways to trace, and `native` over `tiles` the instruction sets. Or, for a BVH of a GPU's driver
+/// (rt), as the driver's ray-tracing pipeline assigns them.
+enum class Schedule { tiles, persistent, packets, native, pipeline };
 template <>
-inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::native>("tiles", "persistent", "packets", "native");
-/// Whether only processors have the schedule.
-[[nodiscard]] constexpr bool is_for_processors(Schedule schedule)
+inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("tiles", "persistent", "packets", "native",
+                                                                             "pipeline");
+/// Whether the schedule is one of kernels/: tiles and persistent are written once for all languages.
+[[nodiscard]] constexpr bool is_portable(Schedule schedule)
 {
-    return schedule == Schedule::packets || schedule == Schedule::native;
+    return schedule == Schedule::tiles || schedule == Schedule::persistent;
 }
 /// What a kernel does: it traces the primary rays of an image, traces given rays, or searches the exit face of a single
 /// tet for each given ray.

@@ -180,7 +180,7 @@ TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_sa
 {
     std::size_t checked = 0;
     for (const EmbeddedKernel& kernel : vulkan::embedded_kernels()) {
-        if (!is_drivers(kernel.name)) continue;
+        if (!is_drivers(kernel.name) || kernel.name == vulkan::rt_miss || kernel.name == vulkan::rt_hit) continue;
         const Module module(kernel.bytes);
         std::map<std::string, Array> arrays = {{"output_words", {OUTPUT_BINDING, 4, true}}};
         if (takes_rays(kernel.name)) arrays["rays"] = {RAYS_BINDING, sizeof(Quad), false};
@@ -191,7 +191,18 @@ TEST(Spirv, what_traces_by_a_drivers_bvh_gets_the_same_launches_and_makes_the_sa
         EXPECT_EQ(module.contractible_operations(), 0u) << kernel.name;
         ++checked;
     }
-    EXPECT_EQ(checked, 2u);
+    EXPECT_EQ(checked, 4u) << "by ray queries and through a pipeline, for both tasks";
+}
+
+TEST(Spirv, what_a_pipeline_runs_for_misses_and_hits_reads_no_buffer_and_computes_nothing)
+{
+    for (const char* const name : {vulkan::rt_miss, vulkan::rt_hit}) {
+        const EmbeddedKernel* const kernel = find_kernel(vulkan::embedded_kernels(), name);
+        ASSERT_NE(kernel, nullptr) << name;
+        const Module module(kernel->bytes);
+        EXPECT_TRUE(module.arrays().empty() && module.push_constants().empty()) << name;
+        EXPECT_EQ(module.rounding_operations(), 0u) << name;
+    }
 }
 
 TEST(Spirv, vectors_of_three_and_quads_read_as_words_would_be_found)

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -23,13 +24,22 @@ namespace {
 /// Before the instance is made: in all builds, not only in debug ones.
 [[maybe_unused]] const int validation_is_on = ::setenv("TETRACE_VULKAN_VALIDATION", "1", 1);
 
-KernelId rt_kernel(Task task)
+constexpr std::array tracers = {vulkan::RayTracer::queries, vulkan::RayTracer::pipeline};
+
+KernelId rt_kernel(vulkan::RayTracer tracer, Task task)
 {
     return {.structure = Structure::bvh,
             .method = Method::single,
             .layout = Layout::rt,
             .math = MathMode::fast,
+            .schedule = tracer == vulkan::RayTracer::pipeline ? Schedule::pipeline : Schedule::tiles,
             .task = task};
+}
+
+std::vector<std::string> extensions_of(vulkan::RayTracer tracer)
+{
+    const auto names = vulkan::ray_extensions(tracer);
+    return {names.begin(), names.end()};
 }
 
 std::vector<Hit> traced(Session& session, const TraceJob& job)
@@ -45,27 +55,38 @@ std::vector<Hit> answers(Session& session, const RaySet& set, const TriangleMesh
     return traced(session, given_job(set.rays.size(), 1, set.any_hit));
 }
 
-/// Runs a case's body on each device that has ray queries; visibly skipped where none has.
-class VulkanRt : public ::testing::Test {
+/// Runs a case's body on each device that has the tracer; visibly skipped where none has.
+class VulkanRt : public ::testing::TestWithParam<vulkan::RayTracer> {
 protected:
     void SetUp() override
     {
         std::string reasons;
         for (std::size_t i = 0; i < backend.devices().size(); ++i) {
-            const std::string reason = backend.why_not(i, rt_kernel(Task::trace));
+            const std::string reason = backend.why_not(i, kernel(Task::trace));
             if (reason.empty()) able.push_back(i);
             reasons += reason;
         }
         if (able.empty()) GTEST_SKIP() << reasons;
     }
-    std::unique_ptr<Session> open(std::size_t device, const GivenScene& given, Task task)
+    static KernelId kernel(Task task) { return rt_kernel(GetParam(), task); }
+    std::unique_ptr<Session> open(std::size_t device, const GivenScene& given, Task task,
+                                  const SessionOptions& options = {})
     {
-        return backend.open(device, rt_kernel(task), {&given.scene.mesh, nullptr}, {});
+        return backend.open(device, kernel(task), {&given.scene.mesh, nullptr}, options);
     }
 
     Backend& backend = vulkan_backend();
     std::vector<std::size_t> able;
 };
+
+/// Those of rays that meet two triangles at an edge may differ.
+std::size_t different_triangles(const std::vector<Hit>& some, const std::vector<Hit>& others)
+{
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < some.size(); ++i)
+        count += some[i].face_id == others[i].face_id ? 0 : 1;
+    return count;
+}
 
 /// What may be wrong: drivers promise that no ray slips between triangles, not which one an edge's ray meets, nor how
 /// precise t, u and v are.
@@ -80,37 +101,70 @@ void expect_right(const Verdicts& verdicts, std::size_t rays, const std::string&
 
 } // namespace
 
-TEST(VulkanRayQueries, are_had_where_no_extension_is_missing_and_else_the_reason_names_what_is)
+TEST(RayTracers, are_had_where_no_extension_is_missing)
 {
-    std::vector<std::string> extensions(vulkan::ray_query_extensions.begin(), vulkan::ray_query_extensions.end());
-    EXPECT_EQ(vulkan::why_no_ray_queries(extensions, false), "");
-    std::erase(extensions, "VK_KHR_ray_query");
-    const std::string gpu = vulkan::why_no_ray_queries(extensions, false);
-    EXPECT_TRUE(contains(gpu, "lacks VK_KHR_ray_query;") && contains(gpu, "GPU")) << gpu;
-    const std::string emulated = vulkan::why_no_ray_queries({}, true);
-    EXPECT_TRUE(contains(emulated, "VK_KHR_acceleration_structure, VK_KHR_ray_query,")) << emulated;
-    EXPECT_TRUE(contains(emulated, "mesa-vulkan-drivers")) << "what brings it: " << emulated;
+    using vulkan::RayTracer;
+    const std::vector<std::string> queries = extensions_of(RayTracer::queries),
+                                   pipeline = extensions_of(RayTracer::pipeline);
+    std::vector<std::string> both = queries;
+    both.emplace_back("VK_KHR_ray_tracing_pipeline");
+    for (const bool is_emulated : {false, true}) {
+        EXPECT_EQ(vulkan::why_no_tracer(RayTracer::queries, queries, is_emulated), "");
+        EXPECT_EQ(vulkan::why_no_tracer(RayTracer::pipeline, pipeline, is_emulated), "");
+        for (const RayTracer tracer : tracers)
+            EXPECT_EQ(vulkan::why_no_tracer(tracer, both, is_emulated), "");
+        EXPECT_EQ(vulkan::why_no_tracer(RayTracer::queries, pipeline, is_emulated),
+                  "the driver lacks VK_KHR_ray_query; it has VK_KHR_ray_tracing_pipeline: take --schedule pipeline");
+        EXPECT_EQ(vulkan::why_no_tracer(RayTracer::pipeline, queries, is_emulated),
+                  "the driver lacks VK_KHR_ray_tracing_pipeline; it has VK_KHR_ray_query: take --schedule tiles");
+    }
 }
 
-TEST(VulkanRayQueries, every_build_has_the_kernels_and_a_device_without_them_refuses_with_its_reason)
+TEST(RayTracers, that_are_missing_have_a_reason_that_names_all_that_is_and_what_brings_it)
+{
+    using vulkan::RayTracer;
+    std::vector<std::string> neither = extensions_of(RayTracer::queries);
+    std::erase(neither, "VK_KHR_ray_query");
+    const std::string gpu = vulkan::why_no_tracer(RayTracer::queries, neither, false);
+    EXPECT_TRUE(contains(gpu, "lacks VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline;") && contains(gpu, "GPU")) << gpu;
+    EXPECT_TRUE(
+        contains(vulkan::why_no_tracer(RayTracer::pipeline, neither, false), "lacks VK_KHR_ray_tracing_pipeline;"));
+    const std::string emulated = vulkan::why_no_tracer(RayTracer::queries, {}, true);
+    EXPECT_TRUE(contains(emulated, "VK_KHR_acceleration_structure, VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline, "))
+        << emulated;
+    EXPECT_TRUE(contains(emulated, "mesa-vulkan-drivers")) << "what brings it: " << emulated;
+    std::vector<std::string> partial = extensions_of(RayTracer::pipeline);
+    std::erase(partial, "VK_KHR_deferred_host_operations");
+    EXPECT_TRUE(contains(vulkan::why_no_tracer(RayTracer::pipeline, partial, false),
+                         "lacks VK_KHR_deferred_host_operations; GPUs"));
+}
+
+TEST(RayTracers, have_kernels_in_every_build_and_a_device_without_them_refuses_with_its_reason)
 {
     Backend& backend = vulkan_backend();
     const TriangleMesh mesh = make_cubes(2).mesh;
-    for (const Task task : {Task::trace, Task::rays}) {
-        const KernelId kernel = rt_kernel(task);
-        EXPECT_TRUE(backend.has_kernel(kernel));
-        for (std::size_t i = 0; i < backend.devices().size(); ++i) {
-            const std::string reason = backend.why_not(i, kernel);
-            if (reason.empty() || !backend.devices()[i].usable) continue;
-            EXPECT_TRUE(contains(reason, "VK_KHR_")) << reason;
-            const std::string refused = error_of([&] { (void)backend.open(i, kernel, {&mesh, nullptr}, {}); });
-            EXPECT_EQ(refused, "unsupported: " + reason);
+    for (const vulkan::RayTracer tracer : tracers)
+        for (const Task task : {Task::trace, Task::rays}) {
+            const KernelId kernel = rt_kernel(tracer, task);
+            EXPECT_EQ(vulkan::tracer_of(kernel), tracer);
+            EXPECT_TRUE(backend.has_kernel(kernel));
+            for (std::size_t i = 0; i < backend.devices().size(); ++i) {
+                const std::string reason = backend.why_not(i, kernel);
+                if (reason.empty() || !backend.devices()[i].usable) continue;
+                EXPECT_TRUE(contains(reason, "VK_KHR_")) << reason;
+                const std::string refused = error_of([&] { (void)backend.open(i, kernel, {&mesh, nullptr}, {}); });
+                EXPECT_EQ(refused, "unsupported: " + reason);
+            }
         }
-    }
-    EXPECT_FALSE(backend.has_kernel(rt_kernel(Task::search)));
+    KernelId other = rt_kernel(vulkan::RayTracer::queries, Task::search);
+    EXPECT_FALSE(backend.has_kernel(other));
+    other.task = Task::trace;
+    other.schedule = Schedule::persistent;
+    EXPECT_FALSE(backend.has_kernel(other));
+    EXPECT_FALSE(backend.has_kernel({.schedule = Schedule::pipeline})) << "no kernel of ours";
 }
 
-TEST_F(VulkanRt, primary_hits_are_the_oracles_from_outside_and_inside)
+TEST_P(VulkanRt, primary_hits_are_the_oracles_from_outside_and_inside)
 {
     for (const std::size_t device : able)
         for (const bool inside : {false, true}) {
@@ -123,7 +177,7 @@ TEST_F(VulkanRt, primary_hits_are_the_oracles_from_outside_and_inside)
         }
 }
 
-TEST_F(VulkanRt, given_rays_of_every_kind_are_answered_as_the_oracle_does)
+TEST_P(VulkanRt, given_rays_of_every_kind_are_answered_as_the_oracle_does)
 {
     const GivenScene given(64, true);
     for (const std::size_t device : able) {
@@ -137,7 +191,7 @@ TEST_F(VulkanRt, given_rays_of_every_kind_are_answered_as_the_oracle_does)
     }
 }
 
-TEST_F(VulkanRt, rays_end_where_they_are_told_to_and_any_hit_tells_whether_there_is_one)
+TEST_P(VulkanRt, rays_end_where_they_are_told_to_and_any_hit_tells_whether_there_is_one)
 {
     const GivenScene given(64, true);
     RaySet set = make_rays(RayKind::diffuse, given.source());
@@ -162,7 +216,7 @@ TEST_F(VulkanRt, rays_end_where_they_are_told_to_and_any_hit_tells_whether_there
     }
 }
 
-TEST_F(VulkanRt, sessions_tell_what_the_driver_built_and_how_long_it_took)
+TEST_P(VulkanRt, sessions_tell_what_the_driver_built_and_how_long_it_took)
 {
     const GivenScene small(8, false, 3), large(8, false, 9);
     for (const std::size_t device : able) {
@@ -173,29 +227,73 @@ TEST_F(VulkanRt, sessions_tell_what_the_driver_built_and_how_long_it_took)
     }
 }
 
-TEST_F(VulkanRt, hits_are_the_same_where_the_host_does_not_see_the_devices_memory)
+TEST_P(VulkanRt, hits_are_the_same_where_the_host_does_not_see_the_devices_memory)
 {
     const GivenScene given(32);
     for (vulkan::FoundDevice found : vulkan::find_devices()) {
-        if (!found.ray_queries.reason.empty()) continue;
+        if (!found.ray_tracing.why_not(GetParam()).empty()) continue;
         std::vector<std::vector<Hit>> hits;
         for (const bool stages : {false, true}) {
             found.always_stages = stages;
-            vulkan::VulkanSession session(found, rt_kernel(Task::trace), given.scene.mesh, {});
+            vulkan::VulkanSession session(found, kernel(Task::trace), given.scene.mesh, {});
             hits.push_back(traced(session, given.job));
         }
         EXPECT_EQ(hits[1], hits[0]);
     }
 }
 
-TEST_F(VulkanRt, more_triangles_than_a_structure_holds_are_refused_with_both_numbers)
+TEST_P(VulkanRt, more_triangles_than_a_structure_holds_are_refused_with_both_numbers)
 {
     const TriangleMesh mesh = make_cubes(3).mesh;
     for (vulkan::FoundDevice found : vulkan::find_devices()) {
-        if (!found.ray_queries.reason.empty()) continue;
-        found.ray_queries.most_triangles = 7;
-        const std::string refused = error_of([&] { vulkan::VulkanSession(found, rt_kernel(Task::trace), mesh, {}); });
+        if (!found.ray_tracing.why_not(GetParam()).empty()) continue;
+        found.ray_tracing.most_triangles = 7;
+        const std::string refused = error_of([&] { vulkan::VulkanSession(found, kernel(Task::trace), mesh, {}); });
         EXPECT_TRUE(refused.starts_with("unsupported: ")) << refused;
         EXPECT_TRUE(contains(refused, std::to_string(mesh.triangles.size())) && contains(refused, " 7")) << refused;
     }
+}
+
+TEST_P(VulkanRt, an_image_in_launches_of_few_rays_and_tiles_of_any_height_have_the_same_hits)
+{
+    const GivenScene given(61, false);
+    for (vulkan::FoundDevice found : vulkan::find_devices()) {
+        if (!found.ray_tracing.why_not(GetParam()).empty()) continue;
+        vulkan::VulkanSession whole(found, kernel(Task::trace), given.scene.mesh, {});
+        const auto hits = traced(whole, given.job);
+        found.limits.groups = 7;
+        found.ray_tracing.most_rays = 5 * TILE_WIDTH * 8;
+        for (const unsigned height : {4u, 8u}) {
+            vulkan::VulkanSession cut(found, kernel(Task::trace), given.scene.mesh, {.tile_height = height});
+            EXPECT_EQ(traced(cut, given.job), hits) << height;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(By, VulkanRt, ::testing::ValuesIn(tracers), [](const auto& tested) {
+    return std::string(tested.param == vulkan::RayTracer::queries ? "ray_queries" : "a_pipeline");
+});
+
+TEST(RayTracers, meet_the_same_triangles_where_a_device_has_both)
+{
+    const GivenScene given(61, true);
+    const RaySet set = make_rays(RayKind::diffuse, given.source());
+    Backend& backend = vulkan_backend();
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < backend.devices().size(); ++i) {
+        std::vector<std::vector<Hit>> images, answered;
+        for (const vulkan::RayTracer tracer : tracers) {
+            if (!backend.why_not(i, rt_kernel(tracer, Task::trace)).empty()) continue;
+            const auto open = [&](Task task) {
+                return backend.open(i, rt_kernel(tracer, task), {&given.scene.mesh, nullptr}, {});
+            };
+            images.push_back(traced(*open(Task::trace), given.job));
+            answered.push_back(answers(*open(Task::rays), set, given.scene.mesh));
+        }
+        if (images.size() < tracers.size()) continue;
+        EXPECT_LE(different_triangles(images[0], images[1]), images[0].size() / 1000);
+        EXPECT_LE(different_triangles(answered[0], answered[1]), answered[0].size() / 1000);
+        ++compared;
+    }
+    if (compared == 0) GTEST_SKIP() << "no device has both";
 }

@@ -26,6 +26,17 @@ protected:
         return text.substr(0, text.find('\n'));
     }
 
+    /// Runs the command of a file of SPIR-V.
+    void expect_command_makes(const std::string& name) const
+    {
+        const std::string spirv = out(name), command = command_for(name);
+        ASSERT_GT(spirv.size(), 300u) << name;
+        ASSERT_TRUE(command.starts_with("glslangValidator ")) << command;
+        const std::string shell = "cd '" + (folder_.path() / "out").string() + "' && rm " + name + " && " + command;
+        ASSERT_EQ(std::system((shell + " > /dev/null").c_str()), 0) << command;
+        EXPECT_TRUE(out(name) == spirv) << command << " makes other bytes";
+    }
+
     Ended ended_;
 };
 
@@ -55,14 +66,19 @@ TEST_F(Dump, of_vulkan_is_glsl_whose_command_makes_the_very_bytes_of_its_spirv)
     EXPECT_FALSE(contains(out("maria_tet80.comp"), "\n#include"));
     if (!is_installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
     for (const std::string name :
-         {"maria_tet80_exact_trace.spv", "maria_tet80_exact_search_texels.spv", "maria_tet80_exact_trace_parts.spv"}) {
-        const std::string spirv = out(name), command = command_for(name);
-        ASSERT_GT(spirv.size(), 1000u) << name;
-        ASSERT_TRUE(command.starts_with("glslangValidator ")) << command;
-        const std::string shell = "cd '" + (folder_.path() / "out").string() + "' && rm " + name + " && " + command;
-        ASSERT_EQ(std::system((shell + " > /dev/null").c_str()), 0) << command;
-        EXPECT_TRUE(out(name) == spirv) << command << " makes other bytes";
-    }
+         {"maria_tet80_exact_trace.spv", "maria_tet80_exact_search_texels.spv", "maria_tet80_exact_trace_parts.spv"})
+        expect_command_makes(name);
+}
+
+TEST_F(Dump, of_a_drivers_bvh_on_vulkan_is_the_glsl_of_ray_queries_and_of_each_stage_of_a_pipeline)
+{
+    if (!dumps("vulkan", "--layout rt")) GTEST_SKIP() << ended_.errors;
+    EXPECT_TRUE(contains(out("single_rt.comp"), "rayQueryEXT"));
+    EXPECT_TRUE(contains(out("single_rt.rgen"), "traceRayEXT"));
+    if (!is_installed("glslangValidator")) GTEST_SKIP() << "glslangValidator is not installed";
+    for (const std::string name : {"single_rt_fast_rays.spv", "single_rt_fast_rays_pipeline.spv",
+                                   "single_rt_fast_miss.spv", "single_rt_fast_hit.spv"})
+        expect_command_makes(name);
 }
 
 TEST_F(Dump, of_cuda_is_a_source_and_the_command_that_makes_ptx)

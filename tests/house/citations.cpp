@@ -16,8 +16,8 @@ const std::string tests_of_claim = "\n*Tests*:"; // the paragraph of a claim tha
 
 bool is_text(const fs::path& file)
 {
-    static const std::set<std::string> endings = {".h",  ".cpp", ".cu",    ".cl", ".comp", ".inc",
-                                                  ".in", ".md",  ".cmake", ".py", ".sh",   ".txt"};
+    static const std::set<std::string> endings = {".h",     ".cpp",  ".cu", ".cl", ".comp",  ".inc", ".rgen", ".rmiss",
+                                                  ".rchit", ".glsl", ".in", ".md", ".cmake", ".py",  ".sh",   ".txt"};
     return endings.contains(file.extension().string()) || file.filename() == "Makefile";
 }
 

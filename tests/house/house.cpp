@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 
 bool is_source(const fs::path& file)
 {
-    static const std::set<std::string> endings = {".h", ".cpp", ".cu", ".cl", ".comp", ".inc", ".in"};
+    static const std::set<std::string> endings = {".h",     ".cpp",   ".cu",   ".cl",  ".comp", ".rgen",
+                                                  ".rmiss", ".rchit", ".glsl", ".inc", ".in"};
     return endings.contains(file.extension().string());
 }
 

@@ -244,7 +244,7 @@ TEST(Options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_EQ(parse_options({"check", "--packet-lanes", "8"}).packet_lanes, 8u);
     for (const char* const bad : {"0", "5", "32", "08", "all"})
         EXPECT_TRUE(contains(rejection({"bench", "--packet-lanes", bad}), "4, 8 or 16")) << bad;
-    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "tiles, persistent, packets or native"));
+    EXPECT_TRUE(contains(rejection({"bench", "--schedule", "dynamic"}), "persistent, packets, native or pipeline"));
     EXPECT_TRUE(contains(rejection({"bench", "--sample-time", "61"}), "0 to 60 seconds"));
     EXPECT_TRUE(contains(rejection({"bench", "--sample-time", "2m"}), "0 to 60 seconds"));
     EXPECT_EQ(parse_options({"bench", "--sample-time", "0.0"}).sample_s, 0);

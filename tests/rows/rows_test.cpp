@@ -58,16 +58,24 @@ Device device_named(const char* name, DeviceKind kind, bool usable = true)
     return device;
 }
 
-/// A backend whose kernels trace by the driver's own BVH, on its device number 1 alone.
+/// A backend whose kernels trace by the driver's own BVH: on device 1 by each schedule, on device 2 through a pipeline
+/// alone, on device 0 not at all.
 class Drivers : public OldHost {
 public:
-    explicit Drivers(DeviceKind kind = DeviceKind::gpu) : OldHost({device_named("a", kind), device_named("b", kind)}) {}
-    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
-    [[nodiscard]] std::string why_not(std::size_t device, const KernelId&) const override
+    explicit Drivers(DeviceKind kind = DeviceKind::gpu)
+        : OldHost({device_named("a", kind), device_named("b", kind), device_named("c", kind)})
     {
-        return device == 1 ? "" : "no extension";
+    }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return kernel.layout == Layout::rt; }
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
+    {
+        const bool has_it = device == 1 || (device == 2 && kernel.schedule == Schedule::pipeline);
+        return has_it ? "" : "no extension";
     }
 };
+
+const std::string by_queries = "bvh/single/rt/s/primary/math:fast/api:old",
+                  by_pipeline = "bvh/single/rt/s/primary/math:fast/schedule:pipeline/api:old";
 
 Options with_required(const char* backend)
 {
@@ -147,14 +155,33 @@ TEST(Rows, of_a_drivers_bvh_are_those_of_devices_that_have_it_unless_they_are_as
 {
     Drivers drivers;
     const auto names_with = [&](const std::vector<std::string>& arguments) { return names_on(drivers, arguments); };
-    const std::string without = "bvh/single/rt/s/primary/math:fast/api:old", with = without + ":1";
-    EXPECT_EQ(names_with({}), std::vector{with});
-    EXPECT_EQ(names_with({"--math", "exact", "--schedule", "persistent"}), std::vector{with});
-    EXPECT_EQ(names_with({"--layout", "bvh2,rt"}), (std::vector{without, with}));
-    EXPECT_EQ(names_with({"--filter", "/rt/"}), (std::vector{without, with}));
+    const std::vector with = {by_queries + ":1", by_pipeline + ":2"};
+    const std::vector all = {by_queries, by_queries + ":1", by_pipeline + ":2"};
+    EXPECT_EQ(names_with({}), with);
+    EXPECT_EQ(names_with({"--math", "exact", "--schedule", "persistent"}), with);
+    EXPECT_EQ(names_with({"--layout", "bvh2,rt"}), all);
+    EXPECT_EQ(names_with({"--filter", "/rt/"}), all);
     EXPECT_THROW((void)names_with({"--layout", "bvh2"}), Error);
-    const KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = Layout::rt};
+    KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = Layout::rt};
     EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt");
+    kernel.schedule = Schedule::pipeline;
+    EXPECT_EQ(kernel_title({"s", "old", kernel}), "bvh rt pipeline");
+}
+
+TEST(Rows, of_a_drivers_bvh_are_traced_by_ray_queries_unless_the_schedule_says_or_the_driver_has_a_pipeline_alone)
+{
+    Drivers drivers;
+    const std::vector queries = {by_queries, by_queries + ":1", by_queries + ":2"};
+    const std::vector pipelines = {by_pipeline, by_pipeline + ":1", by_pipeline + ":2"};
+    EXPECT_EQ(names_on(drivers, {"--schedule", "tiles", "--layout", "rt"}), queries) << "asked for, and refused where";
+    EXPECT_EQ(names_on(drivers, {"--schedule", "pipeline"}), pipelines) << "no other layout has it";
+    std::vector both = queries;
+    both.insert(both.end(), pipelines.begin(), pipelines.end());
+    EXPECT_EQ(names_on(drivers, {"--schedule", "tiles,pipeline"}), both);
+    EXPECT_EQ(names_on(drivers, {"--schedule", "packets", "--layout", "rt"}),
+              (std::vector{by_queries, by_queries + ":1", by_pipeline + ":2"}))
+        << "no schedule of rt";
+    EXPECT_EQ(names_on(drivers, {"--schedule", "tiles"}), std::vector{by_queries + ":1"}) << "by default, what runs";
 }
 
 TEST(Rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
@@ -162,12 +189,12 @@ TEST(Rows, of_an_emulated_drivers_bvh_are_those_that_are_asked_for_by_name)
     Drivers drivers(DeviceKind::emulated);
     for (const auto& unnamed : {std::vector<std::string>{}, {"--filter", "api:old"}, {"--filter", "start|/s/"}})
         EXPECT_THROW((void)names_on(drivers, unnamed), Error);
-    const std::string on_0 = "bvh/single/rt/s/primary/math:fast/api:old", on_1 = on_0 + ":1";
     for (const auto& named : {std::vector<std::string>{"--layout", "rt"},
                               {"--layout", "bvh2,rt"},
                               {"--filter", "bvh/single/(rt|bvh2)/"},
                               {"--benchmark_filter=rt/"}})
-        EXPECT_EQ(names_on(drivers, named), (std::vector{on_0, on_1}));
+        EXPECT_EQ(names_on(drivers, named), (std::vector{by_queries, by_queries + ":1", by_pipeline + ":2"}));
+    EXPECT_EQ(names_on(drivers, {"--schedule", "pipeline", "--device", "old:1"}), std::vector{by_pipeline + ":1"});
 }
 
 TEST(Rows, persistent_threads_are_rows_where_they_are_asked_for)

@@ -32,7 +32,7 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
         commands.begin({});
         program.record(commands);
         commands.dispatch(1, 1, 1);
-        record_barrier(commands);
+        record_barrier(context, commands);
         commands.end();
         context.submit(commands);
         context.finish();

@@ -14,19 +14,19 @@ using Access = vk::AccessFlagBits;
 using Stage = vk::PipelineStageFlagBits;
 
 /// Makes earlier copies and builds visible to later builds and kernels.
-void record_build_barrier(const vk::raii::CommandBuffer& commands)
+void record_build_barrier(const Context& context, const vk::raii::CommandBuffer& commands)
 {
     const auto barrier = vk::MemoryBarrier{}
                              .setSrcAccessMask(Access::eTransferWrite | Access::eAccelerationStructureWriteKHR)
                              .setDstAccessMask(Access::eShaderRead | Access::eAccelerationStructureReadKHR |
                                                Access::eAccelerationStructureWriteKHR);
     commands.pipelineBarrier(Stage::eTransfer | Stage::eAccelerationStructureBuildKHR,
-                             Stage::eAccelerationStructureBuildKHR | Stage::eComputeShader, {}, barrier, {}, {});
+                             Stage::eAccelerationStructureBuildKHR | context.shader_stage(), {}, barrier, {}, {});
 }
 
 void require_triangles_fit(const Context& context, const TriangleMesh& mesh)
 {
-    const std::uint64_t most = context.found().ray_queries.most_triangles;
+    const std::uint64_t most = context.found().ray_tracing.most_triangles;
     if (mesh.triangles.size() <= most) return;
     throw Error(ErrorKind::unsupported, "the mesh has " + std::to_string(mesh.triangles.size()) +
                                             " triangles, a structure of '" + context.facts().name + "' " +
@@ -74,11 +74,11 @@ void Acceleration::run_timed(const Record& record)
     const vk::raii::QueryPool times = context_->make_timestamps();
     const vk::raii::CommandBuffer commands = context_->make_commands();
     commands.begin({});
-    record_build_barrier(commands);
+    record_build_barrier(*context_, commands);
     record_begin_time(commands, times);
     record(commands);
     record_end_time(commands, times);
-    record_build_barrier(commands);
+    record_build_barrier(*context_, commands);
     commands.end();
     context_->submit(commands);
     context_->finish();
@@ -101,7 +101,7 @@ Acceleration::Level Acceleration::build(LevelType type, const vk::AccelerationSt
     const auto sizes = context_->device().getAccelerationStructureBuildSizesKHR(
         vk::AccelerationStructureBuildTypeKHR::eDevice, info, count);
     Level level = make_level(type, sizes.accelerationStructureSize);
-    const std::uint64_t alignment = context_->found().ray_queries.scratch_alignment;
+    const std::uint64_t alignment = context_->found().ray_tracing.scratch_alignment;
     const Buffer scratch(*context_, sizes.buildScratchSize + alignment, Place::scratch);
     const vk::DeviceAddress aligned = (scratch.address(*context_) + alignment - 1) / alignment * alignment;
     info.setDstAccelerationStructure(*level.handle)

@@ -1,4 +1,5 @@
-// rt/: what Vulkan drivers bring for ray tracing: their own BVHs, and ray queries through them.
+// rt/: what Vulkan drivers bring for ray tracing: their own BVHs, and ray queries and pipelines that trace through
+// them.
 #pragma once
 
 #include "backends/vulkan/buffer.h"
@@ -12,7 +13,7 @@ namespace tetrace::vulkan {
 /// and a top level with one instance of it, without a transformation.
 class Acceleration {
 public:
-    /// context: of Uses::ray_queries. Throws Error{unsupported} with both numbers where the device's structures hold
+    /// context: with a RayTracer. Throws Error{unsupported} with both numbers where the device's structures hold
     /// fewer triangles, or its memory is too small.
     Acceleration(const Context& context, const TriangleMesh& mesh);
 
