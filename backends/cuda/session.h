@@ -50,7 +50,7 @@ private:
         scene_; ///< the kernels' argument: SceneView of kernels/language/scene_view_cuda.h, word for word
     std::uint32_t divisions_;
     Memory output_, rays_;
-    Memory counters_; ///< of persistent threads: the tiles that each pass has taken
+    Memory counters_; ///< of persistent threads: the rays that each pass has taken
     EventTimer timer_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;

@@ -41,6 +41,30 @@ TEST_P(Devices, give_the_same_hits_after_several_passes_in_either_schedule)
         }
 }
 
+// A pass that does nothing, for example because a counter of tiles is used up, leaves the hits of the first one.
+TEST_P(Devices, take_longer_for_more_passes_in_either_schedule)
+{
+    const DeviceRays rays(make_cubes(4), Layout::tet80);
+    TraceJob job = rays.from_outside(96, 96);
+    for (const std::size_t device : usable)
+        for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
+            const KernelId kernel{.schedule = schedule};
+            if (!backend.why_not(device, kernel).empty()) continue;
+            const auto session = backend.open(device, kernel, rays.data(), {});
+            (void)traced(*session, job); // the first image is launched in steps
+            const auto least_seconds = [&](std::uint32_t passes) {
+                job.passes = passes;
+                double least = 1e9;
+                for (int i = 0; i < 5; ++i) {
+                    session->launch(job);
+                    least = std::min(least, session->wait());
+                }
+                return least;
+            };
+            EXPECT_GT(least_seconds(16), 4 * least_seconds(1)) << name_of(schedule) << ": 16 times the work";
+        }
+}
+
 TEST_P(Devices, give_whole_hits_before_anybody_waits)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);

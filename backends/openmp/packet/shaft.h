@@ -55,7 +55,7 @@ enum class Sight { none, all, doubtful };
 [[maybe_unused]] Sight sight_of(const PacketJob& job, const Square& square)
 {
     Sight sight = Sight::all;
-    const double size = size_of(square.centre);
+    const double size = size_of(square.centre) + size_of(square.half_x) + size_of(square.half_y); // of any of its rays
     for (uint i = 0; i < job.outline_edges; ++i) {
         const Place normal = {job.outline[i].normal[0], job.outline[i].normal[1], job.outline[i].normal[2]};
         const double side = dot(square.centre, normal);
