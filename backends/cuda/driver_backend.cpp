@@ -15,9 +15,7 @@ constexpr unsigned probe_block_threads = 64;
 /// Whether a kernel's text, if there is one, has an entry for its task and schedule (kernel.cu).
 bool has_entry(const KernelId& kernel)
 {
-    const bool has_schedule =
-        kernel.task == Task::search ? kernel.schedule == Schedule::tiles : is_portable(kernel.schedule);
-    return has_schedule && has_task(kernel);
+    return is_common(kernel.schedule) && has_task(kernel);
 }
 
 ProgramId probe_program(MathMode math)

@@ -24,9 +24,7 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        const bool has_schedule =
-            kernel.task == Task::search ? kernel.schedule == Schedule::tiles : is_portable(kernel.schedule);
-        return has_schedule && has_task(kernel) &&
+        return is_common(kernel.schedule) && has_task(kernel) &&
                find_kernel(opencl::embedded_kernels(), opencl::source_name(kernel)) != nullptr;
     }
 

@@ -1,5 +1,7 @@
 #include "backends/openmp/outline.h"
 
+#include "core/base/vec.h"
+
 #include <array>
 #include <cmath>
 
@@ -7,18 +9,14 @@ namespace tetrace::openmp {
 
 namespace {
 
-using Place = std::array<double, 3>; // seen from the camera
-
 /// Far more than rounding can move a ray, or the place where it meets a side of the domain (docs/spec/packets.md, K11).
 constexpr double doubt = 0x1p-14;
 
-Place cross(const Place& a, const Place& b)
+using Place = std::array<double, 3>; // seen from the camera, by axis
+
+Double3 to_double(const Place& a)
 {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Place& a, const Place& b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return {a[0], a[1], a[2]};
 }
 double size_of(const Place& a)
 {
@@ -28,9 +26,9 @@ double size_of(const Place& a)
 /// The edge from p to q, which has the place `inside` on its inner side.
 OutlineEdge edge_between(const Place& p, const Place& q, const Place& inside)
 {
-    const Place normal = cross(p, q);
-    const double turn = dot(inside, normal) < 0 ? -1 : 1;
-    return {{turn * normal[0], turn * normal[1], turn * normal[2]}, doubt * size_of(p) * size_of(q)};
+    const Double3 across = cross(to_double(p), to_double(q));
+    const Double3 normal = across * (dot(to_double(inside), across) < 0 ? -1.0 : 1.0);
+    return {{normal.x, normal.y, normal.z}, doubt * size_of(p) * size_of(q)};
 }
 
 } // namespace

@@ -193,7 +193,7 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
     const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_, as_hits(output).data()};
     PacketJob packets = packet_job(scene_, records_.get(), job, rays);
     packets.has_ends = rays_end_;
-    set_outline(packets);
+    if (task_ == Task::trace) set_outline(packets);
     const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
     const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
     std::uint32_t next_ray = 0;

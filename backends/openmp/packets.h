@@ -7,7 +7,7 @@ namespace tetrace::openmp {
 /// An edge of the domain's outline as a camera sees it.
 struct OutlineEdge {
     double normal[3]; ///< of the plane through the camera and the edge; the domain is where it points to
-    double doubt;     ///< times a direction's size: nearer to the plane it is in doubt on which side the direction is
+    double doubt;     ///< a direction u is in doubt where |normal . u| <= doubt * |u|, with |u| its sum of magnitudes
 };
 
 /// The arguments of a packet kernel (packet/block.cpp): only pointers and numbers. The kernel is compiled for

@@ -44,7 +44,7 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
 /// read the same data; with 16, BVHs lose 3 %, because a thread gets the same few columns in all rows.
 constexpr std::uint32_t tiles_of_run = 4;
 
-constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as in rt/kernel.comp
+constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as in rt/item.glsl
 
 constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
 

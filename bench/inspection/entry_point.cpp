@@ -19,8 +19,7 @@ void add_entries(std::vector<EntryPoint>& points, const KernelId& kernel)
     for (const auto& [task, entry] : {std::pair{Task::rays, Entry::rays}, std::pair{Task::search, Entry::search}}) {
         KernelId other = kernel;
         other.task = task;
-        if (has_task(other) && (task == Task::rays || kernel.schedule == Schedule::tiles))
-            points.push_back({other, entry});
+        if (has_task(other)) points.push_back({other, entry});
     }
 }
 

@@ -112,8 +112,8 @@ bool names_rt(const Options& options)
            });
 }
 
-/// What traces rays of layout rt on a device: what --schedule names, and else ray queries (tiles), or a pipeline where
-/// the driver has no ray queries.
+/// What traces rays of layout rt on a device: what --schedule names, if that is tiles or pipeline, and else ray queries
+/// (tiles), or a pipeline where the driver has no ray queries.
 bool wanted_tracer(const Options& options, const Backend& backend, std::size_t device, const KernelId& kernel)
 {
     const auto can = [&](KernelId other, Schedule schedule) {

@@ -50,8 +50,8 @@ struct RowKey {
 
 /// The rows that the options select, scene after scene; rows of one scene in the order of kernels, backends and
 /// devices.
-/// - Math mode and schedule do not select among Embree's rows and drivers' (rt), but for what traces rt: ray queries
-/// (tiles) or a pipeline; order selects only among those of the cdt.
+/// - Math mode does not select among the rows of Embree and of drivers (rt), nor schedule among Embree's; order selects
+/// only among those of the cdt.
 /// - Defaults: exact, tiles and (except in `reproduce`) packets, and hilbert. Without methods, of the cdt only maria
 /// and project on half32.
 /// - Kinds of rays other than primary have rows of the kernels that take rays.
@@ -59,9 +59,10 @@ struct RowKey {
 /// --require names it.
 /// - A kernel that a backend has and a device cannot run still gets a row, which ends as unsupported.
 /// - Layout rt has rows by default only on real GPUs that run it, and elsewhere where --layout, a filter or schedule
-/// pipeline names it. Without a schedule it has one row, of schedule pipeline only where a device has no ray queries.
-/// Throws Error{missing} where a text of --device means no usable device, listing those that there are; Error{usage}
-/// where nothing is selected: it names the options, and what there would be without them.
+/// pipeline names it. Of schedules, tiles (ray queries) and pipeline select among them. Where neither is given, a
+/// device has one row: ray queries, or a pipeline if it has only that. Throws Error{missing} where a text of --device
+/// means no usable device, listing those that there are; Error{usage} where nothing is selected: it names the options,
+/// and what there would be without them.
 [[nodiscard]] std::vector<RowKey> select_rows(const Options& options, const std::vector<std::string>& scene_labels,
                                               const std::vector<Backend*>& backends = all_backends());
 

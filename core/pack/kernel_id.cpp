@@ -52,7 +52,7 @@ KernelRow row_of(const KernelId& kernel)
 bool has_math(const KernelId& kernel)
 {
     if (!is_portable(kernel)) return kernel.math == MathMode::fast;
-    return kernel.math == MathMode::exact || is_portable(kernel.schedule);
+    return kernel.math == MathMode::exact || is_common(kernel.schedule);
 }
 
 void add_kernels(std::vector<KernelId>& kernels, Structure structure, bool portable)
@@ -89,7 +89,7 @@ std::vector<KernelId> kernels_of(Task task)
     std::vector<KernelId> kernels;
     for (KernelId kernel : all_kernels()) {
         kernel.task = task;
-        if (has_task(kernel) && (task != Task::search || kernel.schedule == Schedule::tiles)) kernels.push_back(kernel);
+        if (has_task(kernel)) kernels.push_back(kernel);
     }
     return kernels;
 }
@@ -101,6 +101,7 @@ bool has_packets(const KernelId& kernel)
 
 bool has_task(const KernelId& kernel)
 {
+    if (kernel.task == Task::search && kernel.schedule != Schedule::tiles) return false;
     return (row_of(kernel).tasks & bit(kernel.task)) != 0;
 }
 

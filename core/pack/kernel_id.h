@@ -46,8 +46,8 @@ enum class Schedule { tiles, persistent, packets, native, pipeline };
 template <>
 inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("tiles", "persistent", "packets", "native",
                                                                              "pipeline");
-/// Whether the schedule is one of kernels/: tiles and persistent are written once for all languages.
-[[nodiscard]] constexpr bool is_portable(Schedule schedule)
+/// Whether every backend may have the schedule: tiles and persistent are written once for all languages.
+[[nodiscard]] constexpr bool is_common(Schedule schedule)
 {
     return schedule == Schedule::tiles || schedule == Schedule::persistent;
 }
@@ -78,13 +78,13 @@ struct KernelId {
 /// the CDT, then of our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the list has the kernel with that task, in any math mode and schedule.
+/// Whether the list has the kernel with that task, in any math mode; exit searches have schedule tiles alone.
 [[nodiscard]] bool has_task(const KernelId& kernel);
 
 /// Whether the kernel has packets; its schedule is ignored. Only one walk is written for packets, in exact mode.
 [[nodiscard]] bool has_packets(const KernelId& kernel);
 
-/// The kernels for a task, in the same order; exit searches have schedule tiles alone.
+/// The kernels for a task, in the same order.
 [[nodiscard]] std::vector<KernelId> kernels_of(Task task);
 
 /// The structure that a layout packs.

@@ -68,7 +68,7 @@ TEST_F(Native, is_of_openmp_alone_and_of_exact_mode)
 {
     KernelId kernel{.method = Method::project, .layout = Layout::half32, .schedule = Schedule::native};
     EXPECT_TRUE(openmp_backend().has_kernel(kernel));
-    EXPECT_FALSE(is_portable(kernel.schedule));
+    EXPECT_FALSE(is_common(kernel.schedule));
     kernel.math = MathMode::fast;
     EXPECT_FALSE(openmp_backend().has_kernel(kernel));
     kernel = {.method = Method::stp, .schedule = Schedule::native};

@@ -143,7 +143,7 @@ void trace_block(const PacketJob& job, Packets& block)
 }
 
 // Collects the packets of a square of pixels by halving it down to squares of 8, without squares that see nothing of
-// the domain. is_doubtful: whether some of it may see nothing.
+// the domain. is_doubtful: false where all of its rays surely see the domain.
 template <uint size>
 void collect(const PacketJob& job, uint x, uint y, Packets& block, bool is_doubtful)
 {

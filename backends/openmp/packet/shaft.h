@@ -1,5 +1,6 @@
-// Finds squares of pixels whose rays all miss the domain: an edge of the domain's outline has all of them on its outer
-// side. In double precision; a square in doubt is traced.
+// Where all rays of a square of pixels are, from the planes through the camera and the edges of the domain's outline:
+// outside one of them (they miss the domain), inside all of them, or in doubt. In double precision; a square in doubt
+// is traced.
 struct Place {
     double x, y, z;
 };
@@ -48,8 +49,8 @@ LANE_FN Square square_at(const PacketJob& job, uint x, uint y, uint size)
     return square;
 }
 
-// Where the rays of a square are: all of them pass the domain, all are on the inner side of each edge of its outline,
-// or neither is certain.
+// What the rays of a square see of the domain: none of them anything, all of them something, or it is in doubt. A wrong
+// `all` would cost time only.
 enum class Sight { none, all, doubtful };
 
 [[maybe_unused]] Sight sight_of(const PacketJob& job, const Square& square)
