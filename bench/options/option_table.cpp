@@ -170,8 +170,8 @@ std::vector<OptionRow> row_options()
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
          "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, "
          "project on half32, and BVHs; 'pipeline', of rt alone, through Vulkan's ray-tracing pipelines instead of ray "
-         "queries. Embree has a schedule of its own. Default: tiles and packets; for rt, pipeline where a driver has no "
-         "ray queries.",
+         "queries. Embree has a schedule of its own. Default: tiles and packets; for rt, pipeline where a driver "
+         "has no ray queries.",
          selecting, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
          "Keep the rows whose names contain a match of a regular expression (RE2's): 'tet96.*openmp'. Default: all.",
