@@ -70,6 +70,9 @@ macro(tetrace_kernel_parts kernel)
   endif()
   set(headers METHOD=kernels/methods/${method}.h STRUCTURE=${walks}/structure_${family}.h
     ARRAYS=${layouts}/${family}_arrays.h LAYOUT=${layouts}/${layout}.h)
+  if(structure STREQUAL bvh)
+    list(APPEND headers LOOP=${layouts}/${layout}_loop.h)
+  endif()
   list(TRANSFORM headers REPLACE "(.*)=(.*)" "KERNEL_\\1_HEADER=\"\\2\"" OUTPUT_VARIABLE definitions)
 endmacro()
 

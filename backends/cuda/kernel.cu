@@ -46,11 +46,50 @@ KERNEL_FN void trace_tiles(SceneView scene, LaunchParams launch, uint* output)
     trace_pixel(scene, launch, launch.first_tile + blockIdx.x, threadIdx.x, output);
 }
 
-// As many blocks as the device holds at once. Their warps stay: each fetches the next warp-full of rays from a counter,
-// which is 0 at first, until none of the `tiles` is left. Returns the number of the calling thread's ray.
+// Schedule persistent: as many blocks of whole warps as the device holds at once. Their warps stay, and fetch rays by
+// number, one tile's after another's, from a counter, which is 0 at first, until none of the `tiles` is left.
+#ifdef REFILLS_LANES
+// The rays of a launch by number: those of an image, or given ones.
+struct Rays {
+    LaunchParams launch;
+    uint tiles;
+    uint* output;
+    const uint4* given; // or null
+
+    __device__ uint items() const { return tiles * (TILE_WIDTH * launch.tile_height); }
+    __device__ Pixel pixel(uint item) const
+    {
+        uint tile_items = TILE_WIDTH * launch.tile_height;
+        return pixel_of(launch, launch.first_tile + item / tile_items, item % tile_items);
+    }
+    __device__ bool has(uint item) const { return item < items() && is_in_image(launch, pixel(item)); }
+    __device__ uint4 quad(uint item, uint number) const
+    {
+        return __ldg(given + number * ray_count(launch) + ray_index(pixel(item)));
+    }
+    __device__ Ray ray(uint item) const
+    {
+        if (given != nullptr) return given_ray(quad(item, 0u), quad(item, 1u));
+        return primary_ray(launch.trace, pixel(item).x, pixel(item).y);
+    }
+    __device__ real end(uint item) const { return given == nullptr ? real(NO_END) : as_real(quad(item, 1u).w); }
+    __device__ void write(uint item, Hit hit) const { write_hit(hit, output_word(launch, pixel(item)), output); }
+};
+
+KERNEL_FN void trace_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles)
+{
+    trace_refilled(scene, launch.trace, Rays{launch, tiles, output, nullptr}, counter);
+}
+
+KERNEL_FN void trace_given_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles,
+                                      const uint4* __restrict__ rays)
+{
+    trace_refilled(scene, launch.trace, Rays{launch, tiles, output, rays}, counter);
+}
+#else
+// Fetches the next warp-full of rays. Returns the number of the calling thread's ray.
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
-// addendum for Kepler, with Karras, 2012. Blocks are of whole warps, and a tile is one or two warps: either all lanes
-// of a warp get a ray, or none.
+// addendum for Kepler, with Karras, 2012. A tile is one or two warps: either all lanes of a warp get a ray, or none.
 KERNEL_FN uint fetch_item(uint* counter)
 {
     uint lane = threadIdx.x % warpSize;
@@ -65,6 +104,17 @@ KERNEL_FN void trace_persistent(SceneView scene, LaunchParams launch, uint* outp
     for (uint item = fetch_item(counter); item < tiles * tile_items; item = fetch_item(counter))
         trace_pixel(scene, launch, launch.first_tile + item / tile_items, item % tile_items, output);
 }
+
+#ifdef TAKES_RAYS
+KERNEL_FN void trace_given_persistent(SceneView scene, LaunchParams launch, uint* output, uint* counter, uint tiles,
+                                      const uint4* __restrict__ rays)
+{
+    uint tile_items = TILE_WIDTH * launch.tile_height;
+    for (uint item = fetch_item(counter); item < tiles * tile_items; item = fetch_item(counter))
+        trace_given_pixel(scene, launch, launch.first_tile + item / tile_items, item % tile_items, output, rays);
+}
+#endif
+#endif
 
 // Rays from outside have entries of their own: with both kinds in one, either waits for the other's registers.
 KERNEL_FN LaunchParams from_outside(LaunchParams launch)
@@ -109,9 +159,7 @@ extern "C" __global__ void ENTRY(rays_persistent_, KERNEL_NAME)(SceneView scene,
                                                                 uint* counter, uint tiles,
                                                                 const uint4* __restrict__ rays)
 {
-    uint tile_items = TILE_WIDTH * launch.tile_height;
-    for (uint item = fetch_item(counter); item < tiles * tile_items; item = fetch_item(counter))
-        trace_given_pixel(scene, launch, launch.first_tile + item / tile_items, item % tile_items, output, rays);
+    trace_given_persistent(scene, launch, output, counter, tiles, rays);
 }
 #endif
 

@@ -107,3 +107,8 @@ inline std::uint32_t __shfl_sync(std::uint32_t, std::uint32_t value, int)
 {
     return value;
 }
+
+inline std::uint32_t __ballot_sync(std::uint32_t, bool vote)
+{
+    return vote ? 1 : 0;
+}

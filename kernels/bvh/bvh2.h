@@ -20,47 +20,25 @@ KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, ui
     return near <= with_slack(far) ? near : NEVER;
 }
 
+// A traversal is text, not functions, because kernels have no pointers to its stack: trace_ray() has it, and so have
+// lanes that go on with another ray (refill_cuda.h). The loop's body is bvh2_loop.h.
+// Entries of the stack: children with their depths; BVH2_END; an entry that is written but not kept.
+#define TRAVERSAL_ENTRIES (BVH2_STACK + 2u)
+// type: of the variables; empty where they are declared already.
+#define TRAVERSAL_AT_ROOT(type)                                                                                        \
+    SET_ENTRY(scene, stack, 0u, BVH2_END, as_bits(real(0.0f)))                                                         \
+    type waiting = 1u;                                                                                                 \
+    type child = 0u;
+#define TRAVERSAL_GOES_ON (child != BVH2_END)
+
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    STACK(stack, BVH2_STACK + 2u); // children with their depths; BVH2_END; an entry that is written but not kept
-    SET_ENTRY(scene, stack, 0u, BVH2_END, as_bits(real(0.0f)))
-    uint waiting = 1u;
-    uint child = 0u;
+    STACK(stack, TRAVERSAL_ENTRIES);
+    TRAVERSAL_AT_ROOT(uint)
     do {
-        if ((child & BVH2_LEAF) == 0u) {
-            do {
-                COUNT_NODE();
-                uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_QUADS * child);
-                uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 1u);
-                uint4 z = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 2u);
-                uint4 children = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 3u);
-                real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
-                real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
-                bool b_first = b < a;
-                // BVH2_LEAF alone is an empty leaf: the ray enters neither box.
-                child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x;
-                uint later = b_first ? children.x : children.y;
-                SET_ENTRY(scene, stack, waiting, later, as_bits(maximum(a, b)))
-                waiting += maximum(a, b) < NEVER ? 1u : 0u;
-            } while ((child & BVH2_LEAF) == 0u);
-        }
-        if (child != BVH2_END) {
-            uint at = (child & ~BVH2_LEAF) >> 4u;
-            uint behind = at + (child & 15u);
-            if (at < behind) {
-                do {
-                    nearest = nearer_triangle(scene, frame, nearest, at);
-                    ++at;
-                } while (at < behind);
-            }
-            do {
-                --waiting;
-            } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.depth));
-            uint next = FIRST_OF_ENTRY(scene, stack, waiting);
-            child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH2_END : next;
-        }
-    } while (child != BVH2_END);
+#include "kernels/bvh/bvh2_loop.h"
+    } while (TRAVERSAL_GOES_ON);
     return hit_of(scene, ray, nearest);
 }

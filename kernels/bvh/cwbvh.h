@@ -72,45 +72,24 @@ KERNEL_FN uint turn_of(RayFrame frame)
            (frame.inverse.z < real(0.0f) ? 0u : 1u);
 }
 
+// A traversal is text, as that of bvh2.h; the loop's body is cwbvh_loop.h.
+#define TRAVERSAL_ENTRIES CWBVH_STACK
+// hits: at first the root; bits 0 to 7 mark the slots of a group that are inner children.
+#define TRAVERSAL_AT_ROOT(type)                                                                                        \
+    type turn = turn_of(frame);                                                                                        \
+    type waiting = 0u;                                                                                                 \
+    type base = 0u;                                                                                                    \
+    type hits = 0x80000000u;
+#define TRAVERSAL_GOES_ON (hits > 0x00FFFFFFu)
+
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    uint turn = turn_of(frame);
-    STACK(stack, CWBVH_STACK);
-    uint waiting = 0u;
-    uint base = 0u;
-    uint hits = 0x80000000u; // the root; bits 0 to 7 mark the slots of a group that are inner children
-    while (hits > 0x00FFFFFFu) {
-        uint bit = highest_bit(hits);
-        hits ^= 1u << bit;
-        uint slot = (bit & 7u) ^ turn;
-        uint node = base + bit_count(hits & ((1u << slot) - 1u));
-        if (hits > 0x00FFFFFFu) {
-            SET_ENTRY(scene, stack, waiting, base, hits)
-            ++waiting;
-        }
-        COUNT_NODE();
-        uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node);
-        uint4 r1 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 1u);
-        uint4 r2 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 2u);
-        uint4 r3 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 3u);
-        uint4 r4 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 4u);
-        uint node_hits = hits_of_node(frame, nearest.depth, turn, r0, r1, r2, r3, r4);
-        uint triangles = node_hits & ~CWBVH_INNER_HITS;
-        while (triangles != 0u) {
-            uint triangle = highest_bit(triangles);
-            triangles ^= 1u << triangle;
-            nearest = nearer_triangle(scene, frame, nearest, r1.y + triangle);
-        }
-        base = r1.x;
-        hits = (node_hits & CWBVH_INNER_HITS) | r0.w >> 24u;
-        if (hits <= 0x00FFFFFFu && waiting != 0u) {
-            --waiting;
-            base = FIRST_OF_ENTRY(scene, stack, waiting);
-            hits = SECOND_OF_ENTRY(scene, stack, waiting);
-        }
-        if (params.any_hit != 0u && nearest.triangle != NO_HIT) hits = 0u;
+    STACK(stack, TRAVERSAL_ENTRIES);
+    TRAVERSAL_AT_ROOT(uint)
+    while (TRAVERSAL_GOES_ON) {
+#include "kernels/bvh/cwbvh_loop.h"
     }
     return hit_of(scene, ray, nearest);
 }

@@ -15,3 +15,7 @@ KERNEL_FN Hit trace_given(SceneView scene, TraceParams params, uint4 direction, 
 {
     return trace_ray(scene, params, given_ray(direction, origin), as_real(origin.w));
 }
+
+#ifdef LANES_VOTE
+#include "kernels/bvh/refill_cuda.h"
+#endif

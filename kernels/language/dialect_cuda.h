@@ -5,6 +5,9 @@
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})
 
+// The lanes of a warp see each other's votes.
+#define LANES_VOTE
+
 typedef unsigned int uint;
 typedef float real;
 

@@ -2,6 +2,7 @@
 // image, camera and number of buffers.
 #include "core/device/scene_buffers.h"
 #include "tests/backends/each_device.h"
+#include "tests/support/bvh_scene.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
@@ -32,10 +33,10 @@ protected:
             all.push_back({job, openmp_hits(rays, job)});
         return all;
     }
-    void expect_hits(std::size_t device, const KernelId& kernel, const DeviceRays& rays,
+    void expect_hits(std::size_t device, const KernelId& kernel, const SceneData& data,
                      const std::vector<Expected>& all, const SessionOptions& options)
     {
-        const auto session = backend.open(device, kernel, rays.data(), options);
+        const auto session = backend.open(device, kernel, data, options);
         for (const Expected& right : all)
             EXPECT_EQ(wrong_rays(device, traced(*session, right.job), right.hits), 0u)
                 << backend.devices()[device].name << ' ' << name_of(kernel) << ' ' << name_of(kernel.schedule) << ' '
@@ -56,8 +57,29 @@ TEST_P(Devices, find_openmps_hits_for_each_layout_schedule_and_tile)
         for (const std::size_t device : usable)
             for (const Schedule schedule : schedules())
                 for (const unsigned tile_height : {0u, 4u, 8u})
-                    expect_hits(device, {.layout = layout, .schedule = schedule}, rays, all,
+                    expect_hits(device, {.layout = layout, .schedule = schedule}, rays.data(), all,
                                 {.threads = 2, .tile_height = tile_height});
+    }
+}
+
+TEST_P(Devices, find_openmps_hits_of_bvhs_for_each_schedule_and_tile)
+{
+    const Scene scene = make_cubes(8);
+    const DeviceRays rays(scene, Layout::tet80);
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const PackedScene packed = make_bvh_scene(scene.mesh, layout);
+        const SceneData data{&scene.mesh, &packed};
+        KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = layout};
+        const auto on_host = openmp_backend().open(0, kernel, data, {.threads = 2});
+        std::vector<Expected> all;
+        for (const TraceJob& job : {rays.from_outside(61, 35), rays.from_outside(5, 90, 3), rays.from_outside(1, 1)})
+            all.push_back({job, traced(*on_host, job)});
+        for (const std::size_t device : usable)
+            for (const Schedule schedule : schedules())
+                for (const unsigned tile_height : {4u, 8u}) {
+                    kernel.schedule = schedule;
+                    expect_hits(device, kernel, data, all, {.threads = 2, .tile_height = tile_height});
+                }
     }
 }
 
@@ -72,7 +94,7 @@ TEST_P(Devices, find_openmps_hits_with_the_tets_in_parts_or_refuse_to_cut_them)
             const SessionOptions options{.max_buffer_bytes = limit};
             for (const std::size_t device : usable) {
                 if (GetParam().cuts_tets)
-                    expect_hits(device, {.layout = layout}, rays, all, options);
+                    expect_hits(device, {.layout = layout}, rays.data(), all, options);
                 else
                     EXPECT_TRUE(error_of([&] {
                                     (void)backend.open(device, {.layout = layout}, rays.data(), options);
@@ -88,7 +110,7 @@ TEST_P(Devices, find_openmps_hits_for_an_image_of_many_launches)
     const auto all = expected(rays, {rays.from_outside(401, 390), rays.from_outside(401, 390, 0)});
     for (const std::size_t device : usable)
         for (const Schedule schedule : schedules())
-            expect_hits(device, {.layout = Layout::tet96, .schedule = schedule}, rays, all, {.threads = 1});
+            expect_hits(device, {.layout = Layout::tet96, .schedule = schedule}, rays.data(), all, {.threads = 1});
 }
 
 TEST_P(Devices, find_the_same_faces_in_fast_mode_but_for_rays_on_edges)

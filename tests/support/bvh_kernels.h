@@ -29,6 +29,9 @@ namespace tetrace::test::bvh {
 namespace bvh2 {
 #include "kernels/bvh/bvh2.h"
 }
+#undef TRAVERSAL_ENTRIES
+#undef TRAVERSAL_AT_ROOT
+#undef TRAVERSAL_GOES_ON
 namespace cwbvh {
 #include "kernels/bvh/cwbvh.h"
 }

@@ -1,0 +1,59 @@
+// Persistent warps whose lanes fetch rays for themselves: where few of a warp's lanes still have a ray, the others
+// write their hits and begin new rays, in the middle of the few's traversals.
+//
+// Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
+// addendum with Karras, 2012, in whose released kernel for Kepler few are less than 20 of 32. There lanes vote that are
+// in the loop; here all lanes of a warp stay in it, because where lanes are scheduled independently (since Volta) a
+// vote waits for those alone that it names.
+#define REFILLS_LANES
+
+#define WHOLE_WARP 0xFFFFFFFFu
+#define ENOUGH_LANES ((5u * warpSize + 7u) / 8u) // 20 of 32
+#define NO_ITEM 0xFFFFFFFFu
+
+// Takes as many numbers from the counter as there are bits in lanes. Returns the first, to the whole warp.
+KERNEL_FN uint fetch_items(uint lanes, uint* counter)
+{
+    uint first = 0u;
+    if (threadIdx.x % warpSize == 0u) first = atomicAdd(counter, bit_count(lanes));
+    return __shfl_sync(WHOLE_WARP, first, 0);
+}
+
+// Traces rays until none is left. Rays: those of a launch by number, as backends/cuda/kernel.cu has them. counter: 0 at
+// first.
+template <class Rays>
+KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& rays, uint* counter)
+{
+    uint item = NO_ITEM; // the lane's ray, whose hit is not written yet
+    bool goes_on = false;
+    bool any_left = true; // of the rays that no lane has
+    RayFrame frame = {};
+    Nearest nearest = {};
+    STACK(stack, TRAVERSAL_ENTRIES);
+    TRAVERSAL_AT_ROOT(uint)
+    for (;;) {
+        uint ended = __ballot_sync(WHOLE_WARP, !goes_on);
+        if (warpSize - bit_count(ended) < (any_left ? ENOUGH_LANES : 1u)) {
+            if (!goes_on && item != NO_ITEM) rays.write(item, hit_of(scene, rays.ray(item), nearest));
+            if (!any_left) return;
+            uint first = fetch_items(ended, counter);
+            any_left = first + bit_count(ended) < rays.items();
+            if (!goes_on) {
+                item = first + bit_count(ended & ((1u << threadIdx.x % warpSize) - 1u));
+                goes_on = rays.has(item);
+                if (goes_on) {
+                    Ray ray = rays.ray(item);
+                    frame = frame_of(ray);
+                    nearest = nothing_before(ray, rays.end(item));
+                    TRAVERSAL_AT_ROOT()
+                } else {
+                    item = NO_ITEM;
+                }
+            }
+        }
+        if (goes_on) {
+#include KERNEL_LOOP_HEADER
+            goes_on = TRAVERSAL_GOES_ON;
+        }
+    }
+}
