@@ -24,7 +24,8 @@ vk::BufferUsageFlags usage_of(Place place)
     case Place::table: return Usage::eShaderBindingTableKHR | Usage::eShaderDeviceAddress | Usage::eTransferDst;
     case Place::device: break;
     }
-    return Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+    return Usage::eStorageBuffer | Usage::eUniformTexelBuffer | Usage::eIndirectBuffer | Usage::eTransferSrc |
+           Usage::eTransferDst;
 }
 
 bool has_address(Place place)

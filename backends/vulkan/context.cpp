@@ -122,12 +122,13 @@ void record_barrier(const Context& context, const vk::raii::CommandBuffer& comma
 {
     using Access = vk::AccessFlagBits;
     using Stage = vk::PipelineStageFlagBits;
-    const auto barrier = vk::MemoryBarrier{}
-                             .setSrcAccessMask(Access::eShaderWrite | Access::eTransferWrite)
-                             .setDstAccessMask(Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
-                                               Access::eTransferWrite | Access::eHostRead);
+    const auto barrier =
+        vk::MemoryBarrier{}
+            .setSrcAccessMask(Access::eShaderWrite | Access::eTransferWrite)
+            .setDstAccessMask(Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead |
+                              Access::eTransferWrite | Access::eIndirectCommandRead | Access::eHostRead);
     const vk::PipelineStageFlags stages = context.shader_stage() | Stage::eTransfer;
-    commands.pipelineBarrier(stages, stages | Stage::eHost, {}, barrier, {}, {});
+    commands.pipelineBarrier(stages, stages | Stage::eDrawIndirect | Stage::eHost, {}, barrier, {}, {});
 }
 
 } // namespace tetrace::vulkan

@@ -1,11 +1,20 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS or SEARCH: the task.
+// RAYS or SEARCH: the task. LEAVES_TIES: rays at ties are left to the program with TRACES_LEFT, which traces those
+// alone.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
 #ifndef SCENE_IN_TEXELS // which is for emulated devices: their shared memory is memory as any other (kernels/stack.h)
 layout(constant_id = 3) const uint stack_top = 0u;
 #define STACK_TOP stack_top
+#endif
+#ifdef LEAVES_TIES
+#define LEAVES_SOME
+#endif
+#if defined(LEAVES_TIES) || defined(TRACES_LEFT)
+#define OUTPUT_ACCESS // the list behind the output is read too
+#else
+#define OUTPUT_ACCESS writeonly
 #endif
 #define GROUP_ITEMS (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
 #include "kernels/language/dialect_glsl.h"
@@ -25,7 +34,7 @@ layout(push_constant) uniform Launch
 {
     LaunchParams launch;
 };
-layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
+layout(std430, set = 0, binding = OUTPUT_BINDING) OUTPUT_ACCESS buffer Output
 {
     uint output_words[];
 };
@@ -52,12 +61,60 @@ uint tile_of_group()
     return launch.first_tile + run * gl_NumWorkGroups.x + gl_WorkGroupID.x;
 }
 
+SceneView scene_view()
+{
+    return SceneView(launch.divisions, launch.part_log2);
+}
+
+#ifdef TRACE
+Hit trace_pixel(Pixel pixel)
+{
+    TraceParams params = launch.trace;
+    params.start_tet = starts_outside ? NO_TET : params.start_tet;
+    return trace(scene_view(), params, primary_ray(params, pixel.x, pixel.y));
+}
+#endif
+
+#ifndef SEARCH
+void write_hit(Hit hit, uint word)
+{
+    output_words[word] = hit.face_id;
+    output_words[word + 1u] = hit.tet;
+    output_words[word + 2u] = as_bits(hit.t);
+    output_words[word + 3u] = as_bits(hit.u);
+    output_words[word + 4u] = as_bits(hit.v);
+    output_words[word + 5u] = hit.steps;
+}
+#endif
+
+#ifdef LEAVES_SOME
+void leave(Pixel pixel)
+{
+    uint first = left_word(launch);
+    uint place = atomicAdd(output_words[first + 3u], 1u);
+    if (place % GROUP_ITEMS == 0u) atomicAdd(output_words[first], 1u);
+    output_words[first + LEFT_WORDS + place] = pixel.y * launch.trace.width + pixel.x;
+}
+#endif
+
+#ifdef TRACES_LEFT
+void main()
+{
+    uint place = gl_WorkGroupID.x * GROUP_ITEMS + gl_LocalInvocationIndex;
+    if (place >= output_words[left_word(launch) + 3u]) return;
+    uint number = output_words[left_word(launch) + LEFT_WORDS + place];
+    Pixel pixel;
+    pixel.x = number % launch.trace.width;
+    pixel.y = number / launch.trace.width;
+    write_hit(trace_pixel(pixel), output_word(launch, pixel));
+}
+#else
 void main()
 {
     Pixel pixel = pixel_of(launch, tile_of_group(), gl_LocalInvocationIndex);
     if (!is_in_image(launch, pixel)) return;
-    SceneView scene = SceneView(launch.divisions, launch.part_log2);
 #ifdef SEARCH
+    SceneView scene = scene_view();
     uint ray = ray_index(pixel);
     uint count = ray_count(launch);
     output_words[GUARD_WORDS + ray] =
@@ -65,18 +122,14 @@ void main()
 #else
 #ifdef RAYS
     uint ray = ray_index(pixel);
-    Hit hit = trace_given(scene, launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
+    Hit hit = trace_given(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
 #else
-    TraceParams params = launch.trace;
-    params.start_tet = starts_outside ? NO_TET : params.start_tet;
-    Hit hit = trace(scene, params, primary_ray(params, pixel.x, pixel.y));
+    Hit hit = trace_pixel(pixel);
+#ifdef LEAVES_SOME
+    if (hit.face_id == LEFT) leave(pixel);
 #endif
-    uint word = output_word(launch, pixel);
-    output_words[word] = hit.face_id;
-    output_words[word + 1u] = hit.tet;
-    output_words[word + 2u] = as_bits(hit.t);
-    output_words[word + 3u] = as_bits(hit.u);
-    output_words[word + 4u] = as_bits(hit.v);
-    output_words[word + 5u] = hit.steps;
+#endif
+    write_hit(hit, output_word(launch, pixel));
 #endif
 }
+#endif

@@ -5,6 +5,7 @@
 #include "core/device/open_checks.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tetrace::vulkan {
 
@@ -134,14 +135,14 @@ void VulkanSession::compile_starts_inside()
     take_times(); // for launches that still run the old program
     starts_outside_ = false;
     compile();
-    if (output_words_ != 0) program_->bind(context_, OUTPUT_BINDING, output_);
+    if (output_words_ != 0) bind_output();
 }
 
 void VulkanSession::make_program()
 {
     const bool takes_rays = kernel_.task != Task::trace;
     const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
-    ProgramId id{.name = shader_name(kernel_) + variant,
+    ProgramId id{.name = {}, // see below
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_,
@@ -157,21 +158,26 @@ void VulkanSession::make_program()
     if (takes_rays && !in_texels_) id.bindings.push_back(RAYS_BINDING);
     for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
-    program_.emplace(context_, id, ProgramCache(program_cache_));
-    setup_.compile_cached = program_->is_cached();
-    bind_scene();
+    programs_.clear();
+    for (const char* part : leaves_ties() ? std::vector{"_leaves_texels", "_left_texels"} : std::vector{variant}) {
+        id.name = shader_name(kernel_) + part;
+        programs_.emplace_back(context_, id, ProgramCache(program_cache_));
+    }
+    setup_.compile_cached = std::ranges::all_of(programs_, &Program::is_cached);
+    for (Program& program : programs_)
+        bind_scene(program);
 }
 
-void VulkanSession::bind_scene()
+void VulkanSession::bind_scene(Program& program)
 {
-    if (acceleration_) program_->bind_structure(context_, structure_binding, acceleration_->handle());
+    if (acceleration_) program.bind_structure(context_, structure_binding, acceleration_->handle());
     for (const TexelBinding& texels : in_texels_ ? texel_bindings(kernel_.layout) : std::vector<TexelBinding>{})
-        program_->bind_texels(context_, texels, arrays_[texels.binding % FIRST_QUADS_BINDING]);
+        program.bind_texels(context_, texels, arrays_[texels.binding % FIRST_QUADS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)
-        program_->bind(context_, binding, arrays_[binding]);
+        program.bind(context_, binding, arrays_[binding]);
     for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part) // those beyond the last are never read
-        program_->bind(context_, SECOND_PART_BINDING - 1 + part,
-                       part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
+        program.bind(context_, SECOND_PART_BINDING - 1 + part,
+                     part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
 }
 
 void VulkanSession::set_rays(std::span<const Quad> quads)
@@ -192,17 +198,24 @@ void VulkanSession::set_rays(std::span<const Quad> quads)
 void VulkanSession::bind_rays(Buffer rays)
 {
     if (in_texels_)
-        program_->bind_texels(context_, rays_as_texels, rays);
+        programs_.front().bind_texels(context_, rays_as_texels, rays);
     else
-        program_->bind(context_, RAYS_BINDING, rays);
+        programs_.front().bind(context_, RAYS_BINDING, rays);
     rays_ = std::move(rays);
+}
+
+void VulkanSession::bind_output() const
+{
+    for (const Program& program : programs_)
+        program.bind(context_, OUTPUT_BINDING, output_);
 }
 
 void VulkanSession::resize_output(std::size_t words)
 {
     if (words == output_words_) return;
-    require_output_fits(words, max_buffer_bytes_);
-    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    const std::size_t left_words = leaves_ties() ? LEFT_WORDS + words / HIT_WORDS : 0;
+    require_output_fits(words + left_words, max_buffer_bytes_);
+    const std::uint64_t bytes = (words + left_words) * sizeof(std::uint32_t);
     output_ = Buffer(); // the old ones are freed first: both may not fit
     staging_ = Buffer();
     output_words_ = 0;
@@ -210,7 +223,7 @@ void VulkanSession::resize_output(std::size_t words)
         output_ = Buffer(context_, bytes, Place::device);
         if (needs_staging(output_)) staging_ = Buffer(context_, bytes, Place::read_back);
     });
-    program_->bind(context_, OUTPUT_BINDING, output_);
+    bind_output();
     output_words_ = words;
 }
 
@@ -230,11 +243,13 @@ void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std
         commands.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
         record_barrier(context_, commands);
     }
-    program_->record(commands);
     record_begin_time(commands, times);
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         if (pass > 0) record_barrier(context_, commands); // else passes may run at once
+        if (leaves_ties()) record_none_left(commands);
+        programs_.front().record(commands);
         record_dispatches(commands, params, tiles);
+        if (leaves_ties()) record_left(commands, params);
     }
     record_end_time(commands, times);
     record_barrier(context_, commands);
@@ -249,8 +264,8 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
     const auto record = [&](std::uint32_t run, std::uint32_t runs, std::uint32_t shares) {
         const std::uint32_t count = run * runs * shares;
         if (count == 0) return;
-        program_->push(commands, params);
-        program_->dispatch(commands, run, runs, shares);
+        programs_.front().push(commands, params);
+        programs_.front().dispatch(commands, run, runs, shares);
         params.first_tile += count;
         tiles -= count;
     };
@@ -259,6 +274,21 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
         record(1, tiles / shares, shares);
     }
     record(tiles, 1, 1);
+}
+
+void VulkanSession::record_none_left(const vk::raii::CommandBuffer& commands) const
+{
+    constexpr std::array<std::uint32_t, LEFT_WORDS> none = {0, 1, 1, 0};
+    commands.updateBuffer<std::uint32_t>(output_.handle(), output_bytes(), none);
+    record_barrier(context_, commands);
+}
+
+void VulkanSession::record_left(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const
+{
+    record_barrier(context_, commands);
+    programs_.back().record(commands);
+    programs_.back().push(commands, params);
+    commands.dispatchIndirect(output_.handle(), output_bytes());
 }
 
 void VulkanSession::launch(const TraceJob& job)

@@ -34,12 +34,18 @@ private:
 
     void make_scene_buffers(const PackedScene& scene);
     void make_program();
+    /// Whether rays that meet ties are left to a program of their own.
+    [[nodiscard]] bool leaves_ties() const
+    {
+        return in_texels_ && starts_outside_ && kernel_.method == Method::project && kernel_.task == Task::trace;
+    }
     /// Adds to the times of the session's set-up.
     void compile();
     /// For the first job whose rays start in a tet.
     void compile_starts_inside();
-    void bind_scene();
+    void bind_scene(Program& program);
     void bind_rays(Buffer rays);
+    void bind_output() const;
     void resize_output(std::size_t words);
     [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
     /// Command buffer and timestamps number `index` of a launch, made when first asked for.
@@ -49,6 +55,10 @@ private:
     /// Records the dispatches of that many tiles, such that each of the device's threads gets tiles from all over the
     /// image.
     void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
+    /// What follows the output in its buffer (LEFT_WORDS of layout.h) says which rays are left: none yet.
+    void record_none_left(const vk::raii::CommandBuffer& commands) const;
+    /// Records the program that traces the rays which programs_.front() has left.
+    void record_left(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const;
     /// Waits for enqueued work, and counts its times.
     void take_times();
 
@@ -69,7 +79,7 @@ private:
     std::optional<Acceleration> acceleration_;
     Buffer rays_, output_, staging_;
     std::size_t output_words_ = 0;
-    std::optional<Program> program_;
+    std::vector<Program> programs_; ///< the kernel, and where it leaves ties the one that traces those rays
 
     struct Chunk {
         vk::raii::CommandBuffer commands{nullptr};

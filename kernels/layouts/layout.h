@@ -8,6 +8,7 @@
 #define NO_HIT 0xFFFFFFFFu // the ray left the domain, or never met it
 #define LOST 0xFFFFFFFEu   // the walk found no exit face, or reached its cap of steps: always a failure
 #define POISON 0xFFFFFFFDu // nothing was written: outputs are filled with this before a launch
+#define LEFT 0xFFFFFFFCu   // a ray at a tie that the next launch traces, where kernels leave ties; never the answer
 
 // A launch's output: guard words, six words per hit row after row, guard words; filled with POISON before the launch.
 #define HIT_WORDS 6u
@@ -25,6 +26,9 @@
 #define STEPS_BEFORE_DOUBT 4096u
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.
 #define TILE_WIDTH 8u
+// Where kernels leave ties, these words follow an image's output: the groups of the launch that traces what is left, as
+// an indirect dispatch has them, 3 words; how many rays are left; and their pixels, row after row.
+#define LEFT_WORDS 4u
 
 // Operations of the self-test, see probe.h.
 #define PROBE_COPY 0u

@@ -9,8 +9,8 @@ KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
     return face;
 }
 
-// The link of a boundary face; NO_LINK for NO_ENTRY.
+// The link of a boundary face; NO_LINK for NO_ENTRY, and for a ray that is left.
 KERNEL_FN uint entry_link(SceneView scene, uint index)
 {
-    return index == NO_ENTRY ? NO_LINK : FETCH(scene, entry_links, index);
+    return index >= LEFT ? NO_LINK : FETCH(scene, entry_links, index);
 }

@@ -7,6 +7,12 @@
 #define COUNT_SEARCH(where)
 #endif
 
+// For a device that executes rare work whether a ray needs it or not: true where a ray that meets a tie, or is in none
+// of its square's faces, is left to a launch of the whole kernel (docs/spec/devices.md, W9). Its hit is LEFT.
+#ifndef LEAVES_TIES
+#define LEAVES_TIES false
+#endif
+
 // The vertex at which a product with `factors` is the smallest (or, with them negated, the largest) of all that lie in
 // a box: rounding is monotone, so no vertex in the box has a smaller one.
 KERNEL_FN Vec3 least_corner(DomainBox box, Vec3 factors)
@@ -85,7 +91,7 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
     return square_at(scene, entry, i, j);
 }
 
-// The number of the boundary face by which the ray enters, or NO_ENTRY where it misses the domain. Float products
+// The number of the boundary face by which the ray enters, NO_ENTRY where it misses the domain, or LEFT. Float products
 // decide nearly all cases. Ties are decided after the loop, since some devices execute a conditional block even if no
 // lane needs it.
 KERNEL_FN uint entry_index(SceneView scene, Ray ray)
@@ -105,6 +111,7 @@ KERNEL_FN uint entry_index(SceneView scene, Ray ray)
         }
         if (held == HELD_OR_TIE || index + 1u == last) break;
     }
+    if (LEAVES_TIES) return found == NO_ENTRY ? LEFT : found;
     if (found == NO_ENTRY) return entry_anywhere(scene, ray, first, last);
     return found;
 }

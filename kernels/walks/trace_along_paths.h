@@ -6,8 +6,9 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     uint face = 0u;
     uint start = FREE_FACE;
     if (tet == NO_TET) {
-        uint entry = entry_link(scene, entry_index(scene, ray));
-        if (entry == NO_LINK) return make_no_hit(NO_HIT, NO_TET, 0u);
+        uint index = entry_index(scene, ray);
+        uint entry = entry_link(scene, index);
+        if (entry == NO_LINK) return make_no_hit(index == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
         tet = entry >> 2u;
         face = FACE_AT_ENTRY(scene, tet, entry & 3u, ray);
         start = FROM_OUTSIDE;

@@ -31,7 +31,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
                 triangle = face_triangle(scene, tet, face & 3u);
                 ++steps;
             }
-            if (face < TIE_AT) break;
+            if (LEAVES_TIES || face < TIE_AT) break;
             face = exit_face(scene, tet, face & 3u, ray);
             link = face_link(scene, tet, face);
             triangle = face_triangle(scene, tet, face);
@@ -50,6 +50,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
             steps = 1u;
         }
     }
+    if (LEAVES_TIES && face >= TIE_AT) return make_no_hit(LEFT, tet, steps);
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     return hit_at_end(scene, params, ray, tet, face, steps, end);
 }

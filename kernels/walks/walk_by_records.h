@@ -15,16 +15,18 @@ KERNEL_FN uint record_of_corner(uint link, uint index)
     return (link & ~3u) | corner(link & 3u, index);
 }
 
+// Instead of an exit that is not yet known. It ends the loop as the end of a walk does; no triangle has this number.
+#define EXIT_AT_TIE (LEFT - 1u)
+
 // The state of a walk: the current face, and what is behind it.
 STRUCT(Walker)
 {
     Carried p0;
     Carried p1;
     Carried p2;
-    uint turn;     // corner i of the previous record's entry face is the carried vertex (i + turn) % 3
-    uint exit;     // of that record
-    uint before;   // the exit that led to that record
-    uint replaced; // the carried vertex that its apex replaced, or UNDECIDED: then `exit` is not yet known
+    uint turn;   // corner i of the previous record's entry face is the carried vertex (i + turn) % 3
+    uint exit;   // of that record, or EXIT_AT_TIE
+    uint before; // the exit that led to that record
     uint steps;
 };
 
@@ -43,8 +45,8 @@ KERNEL_FN Walker with_apex(Walker at, Carried apex, uint4 exits, uint replaced)
     next.p1 = replaced == 1u ? apex : at.p1;
     next.p2 = replaced == 2u ? apex : at.p2;
     uint index = replaced < at.turn ? replaced + 3u - at.turn : replaced - at.turn;
-    next.exit = index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
-    next.replaced = replaced;
+    uint exit = index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
+    next.exit = replaced == UNDECIDED ? EXIT_AT_TIE : exit;
     return next;
 }
 
@@ -90,7 +92,6 @@ KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint
     at.turn = 0u;
     at.exit = exit;
     at.before = tet << 4u;
-    at.replaced = 0u;
     at.steps = steps;
     return at;
 }
@@ -117,9 +118,9 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
             for (;;) {
                 for (;;) {
                     at = next_face(scene, ray, shear, at);
-                    if (at.replaced == UNDECIDED || !goes_on(at, pause, is_endless, reach)) break;
+                    if (!goes_on(at, pause, is_endless, reach)) break;
                 }
-                if (at.replaced != UNDECIDED) break;
+                if (LEAVES_TIES || at.exit != EXIT_AT_TIE) break;
                 at = face_at_tie(scene, ray, shear, at);
                 if (!goes_on(at, pause, is_endless, reach)) break;
             }
@@ -137,7 +138,8 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     }
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     tet = at.before >> 4u;
-    if (at.exit == NO_LINK) return make_no_hit(NO_HIT, tet, at.steps);
+    if (at.exit == NO_LINK || (LEAVES_TIES && at.exit == EXIT_AT_TIE))
+        return make_no_hit(at.exit == NO_LINK ? NO_HIT : LEFT, tet, at.steps);
     if ((at.exit & 3u) == HALF32_END) return hit_on(scene, ray, at.exit >> 2u, tet, at.steps, end);
     return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);
 }

@@ -210,6 +210,8 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
                     if (gate.behind >= OCCLUSIVE || steps >= pause) break;
                 }
                 if (gate.behind >= OCCLUSIVE || steps >= pause) break;
+                if (LEAVES_TIES) gate.behind = LEFT;
+                if (LEAVES_TIES) break;
                 gate = next_gate(scene, ray, shear, gate);
                 ++steps;
                 if (gate.behind >= OCCLUSIVE || steps >= pause) break;
@@ -226,7 +228,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
         }
     }
     if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
-    if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);
+    if (gate.behind >= LEFT) return make_no_hit(gate.behind == NO_LINK ? NO_HIT : LEFT, gate.tet, steps);
     if (gate.behind < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);
     uint face = (gate.behind ^ OCCLUSIVE) >> 1u;
     return hit_on(scene, ray, FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * face), gate.tet, steps, real(NO_END));
@@ -237,7 +239,7 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     Shear shear = shear_of(ray);
     if (params.start_tet == NO_TET) {
         uint entry = entry_index(scene, ray);
-        if (entry == NO_ENTRY) return make_no_hit(NO_HIT, NO_TET, 0u);
+        if (entry >= LEFT) return make_no_hit(entry == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
         return walk(scene, params, ray, shear, entry_gate(scene, ray, shear, entry), 0u, true);
     }
     uint face = face_left_by(ray, position_of(scene, params.start_v0), position_of(scene, params.start_v1),

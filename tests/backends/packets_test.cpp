@@ -44,17 +44,6 @@ std::vector<Hit> traced_given(Session& session, const std::vector<Quad>& quads, 
     return traced(session, job);
 }
 
-/// On the lines of a regular grid: rays pass its vertices and edges, and more than one in ten meets a tie.
-TraceJob along_lines(std::uint32_t width, std::uint32_t height, Float3 origin)
-{
-    TraceJob job;
-    job.view = {origin, {-1, -1, -2}, {0.125f, 0, 0}, {0, 0.125f, 0}};
-    job.width = width;
-    job.height = height;
-    job.max_steps = 10'000;
-    return job;
-}
-
 /// Of each width, skipped where it is missing.
 class Packets : public PacketWidths {
 protected:

@@ -8,6 +8,7 @@
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"
+#include "tests/support/hard_scenes.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace tetrace;
@@ -81,6 +82,29 @@ TEST_F(Vulkan, hits_are_openmps_whether_the_scene_is_read_as_texels_or_from_stor
             vulkan::VulkanSession session(found, {.layout = layout}, rays.packed(), {});
             const TraceJob job = rays.from_outside(61, 35);
             EXPECT_EQ(different_rays(traced(session, job), openmp_hits(rays, job), 3), 0u);
+        }
+    }
+}
+
+TEST_F(Vulkan, rays_left_at_ties_get_openmps_hits)
+{
+    const auto lines = even_lines(8, 1);
+    const Scene grid = grid_of({lines, lines, lines});
+    for (const Layout layout : {Layout::half32, Layout::tet80, Layout::tet96, Layout::tet20, Layout::tet16}) {
+        const DeviceRays rays(grid, layout);
+        const KernelId kernel{.method = Method::project, .layout = layout};
+        const auto on_host = openmp_backend().open(0, kernel, rays.data(), {.threads = 2});
+        for (vulkan::FoundDevice found : vulkan::find_devices()) {
+            if (!found.facts.usable) continue;
+            found.reads_texels = true; // the programs that leave ties
+            vulkan::VulkanSession session(found, kernel, rays.packed(), {});
+            // More than a group of them in an image, none, then more again; at last from inside, where none is left.
+            std::vector<TraceJob> jobs = {along_lines(17, 17, {0.25f, 0, 3}), rays.from_outside(7, 3),
+                                          along_lines(50, 41, {0, 0, 4}), rays.from_inside(20, 20)};
+            jobs[2].passes = 3;
+            for (const TraceJob& job : jobs)
+                EXPECT_EQ(different_rays(traced(session, job), traced(*on_host, job), 3), 0u)
+                    << name_of(layout) << ' ' << job.width << 'x' << job.height;
         }
     }
 }

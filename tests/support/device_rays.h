@@ -83,6 +83,17 @@ private:
             rays.from_outside(200, 1), rays.from_outside(5, 90, 3), rays.from_outside(64, 64, 2)};
 }
 
+/// On the lines of a regular grid: rays pass its vertices and edges, and more than one in ten meets a tie.
+[[nodiscard]] inline TraceJob along_lines(std::uint32_t width, std::uint32_t height, Float3 origin)
+{
+    TraceJob job;
+    job.view = {origin, {-1, -1, -2}, {0.125f, 0, 0}, {0, 0.125f, 0}};
+    job.width = width;
+    job.height = height;
+    job.max_steps = 10'000;
+    return job;
+}
+
 /// The hits of one launch.
 [[nodiscard]] inline std::vector<Hit> traced(Session& session, const TraceJob& job)
 {

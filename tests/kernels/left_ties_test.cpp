@@ -1,0 +1,108 @@
+// Kernels that leave ties, each walk's own source: they leave the rays that meet one, and no hit of another ray
+// changes.
+#include "core/pack/packed_scene.h"
+#include "tests/support/device_rays.h"
+#include "tests/support/hard_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#define LEAVES_TIES true
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
+#define KERNEL_METHOD_HEADER "kernels/methods/project.h"
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet80.h"
+namespace leaves_tet80 {
+#include "kernels/kernel_cpp.h"
+}
+#undef FACE_AT_ENTRY
+#undef KERNEL_LAYOUT_HEADER
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
+namespace leaves_half32 {
+#include "kernels/kernel_cpp.h"
+}
+#undef HAS_RECORDS
+#undef KERNEL_LAYOUT_HEADER
+#undef KERNEL_STRUCTURE_HEADER
+#undef KERNEL_ARRAYS_HEADER
+
+#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_compact.h"
+#define KERNEL_ARRAYS_HEADER "kernels/layouts/compact_arrays.h"
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet20.h"
+namespace leaves_tet20 {
+#include "kernels/kernel_cpp.h"
+}
+
+struct Count {
+    std::size_t left = 0, differing = 0;
+};
+
+/// How many rays a walk leaves, and of how many others the hit is not that of the whole kernel.
+template <class Trace>
+Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const Trace& trace)
+{
+    const DeviceRays rays(scene, layout);
+    const KernelId whole{.method = Method::project, .layout = layout};
+    const auto hits = traced(*openmp_backend().open(0, whole, rays.data(), {.threads = 2}), job);
+    Count count;
+    for (std::uint32_t i = 0; i < hits.size(); ++i) {
+        const auto hit = std::bit_cast<Hit>(trace(rays.packed(), job, i % job.width, i / job.width));
+        if (hit.face_id == LEFT)
+            ++count.left;
+        else if (different_rays({hit}, {hits[i]}, 0) != 0)
+            ++count.differing;
+    }
+    return count;
+}
+
+#define TRACE_OF(walk)                                                                                                 \
+    [](const PackedScene& packed, const TraceJob& job, std::uint32_t x, std::uint32_t y) {                             \
+        const auto params = walk::params_of(job);                                                                      \
+        return walk::trace(walk::view_of(packed), params, walk::primary_ray(params, x, y));                            \
+    }
+
+void expect_left_at_ties_alone(Layout layout, const auto& trace)
+{
+    const auto lines = even_lines(8, 1);
+    const Scene grid = grid_of({lines, lines, lines});
+    const TraceJob at_ties = along_lines(17, 17, {0.25f, 0, 3});
+    const Count many = count_left(layout, at_ties, grid, trace);
+    EXPECT_GT(many.left, 17 * 17 / 10);
+    EXPECT_LT(many.left, 17 * 17);
+    EXPECT_EQ(many.differing, 0u);
+
+    const Scene cubes = make_cubes(8);
+    const Count few = count_left(layout, DeviceRays(cubes, layout).from_outside(61, 35), cubes, trace);
+    EXPECT_LT(few.left, 3u);
+    EXPECT_EQ(few.differing, 0u);
+}
+
+} // namespace
+
+TEST(LeftTies, are_those_of_walks_that_read_corners_from_tets)
+{
+    expect_left_at_ties_alone(Layout::tet80, TRACE_OF(leaves_tet80));
+}
+
+TEST(LeftTies, are_those_of_walks_that_carry_vertices_through_records)
+{
+    expect_left_at_ties_alone(Layout::half32, TRACE_OF(leaves_half32));
+}
+
+TEST(LeftTies, are_those_of_walks_through_compact_tets)
+{
+    expect_left_at_ties_alone(Layout::tet20, TRACE_OF(leaves_tet20));
+}
