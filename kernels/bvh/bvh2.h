@@ -24,7 +24,8 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    STACK(stack, BVH2_STACK + 2u); // children with their depths; BVH2_END; an entry that is written but not kept
+    STACK(stack, STACK_ENTRIES(BVH2_STACK +
+                               2u)); // children with their depths; BVH2_END; an entry that is written but not kept
     SET_ENTRY(scene, stack, 0u, BVH2_END, as_bits(real(0.0f)))
     uint waiting = 1u;
     uint child = 0u;

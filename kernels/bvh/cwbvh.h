@@ -77,7 +77,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
     uint turn = turn_of(frame);
-    STACK(stack, CWBVH_STACK);
+    STACK(stack, STACK_ENTRIES(CWBVH_STACK));
     uint waiting = 0u;
     uint base = 0u;
     uint hits = 0x80000000u; // the root; bits 0 to 7 mark the slots of a group that are inner children
