@@ -3,6 +3,10 @@
 // memory, through GROUP_WORDS and GROUP_WORD of the dialect, and the others in the ray's own. Most rays need few, and
 // an array that is indexed takes a GPU's registers or its memory. Source: Ylitie, Karras, Laine, "Efficient Incoherent
 // Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, whose stacks begin in shared memory.
+// STACK_ENTRIES(most), where a program knows how many entries the rays of its scene touch; else the most of any scene.
+#ifndef STACK_ENTRIES
+#define STACK_ENTRIES(most) (most)
+#endif
 #ifdef STACK_TOP
 GROUP_WORDS(STACK_TOP* STACK_ENTRY_WORDS)
 // One array: RADV keeps arrays of up to 256 bytes in registers.

@@ -4,9 +4,12 @@
 // alone.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
-#ifndef SCENE_IN_TEXELS // which is for emulated devices: their shared memory is memory as any other (kernels/stack.h)
+#ifndef SCENE_IN_TEXELS
 layout(constant_id = 3) const uint stack_top = 0u;
 #define STACK_TOP stack_top
+#else // for emulated devices: shared memory is memory as any other, and large arrays cost time (docs/spec/bvhs.md, B3)
+layout(constant_id = 4) const uint stack_entries = 0u;
+#define STACK_ENTRIES(most) (stack_entries == 0u ? (most) : stack_entries)
 #endif
 #ifdef LEAVES_TIES
 #define LEAVES_SOME

@@ -39,7 +39,8 @@ std::uint64_t key_of(const FoundDevice& device, const ProgramId& id)
 {
     std::uint64_t key = hash_of(device.build_key + ";" + std::to_string(id.tile_height) +
                                 (id.starts_outside ? ";outside" : "") + (id.selects_minima ? ";selects" : "") +
-                                (id.stack_top != 0 ? ";stack " + std::to_string(id.stack_top) : ""));
+                                (id.stack_top != 0 ? ";stack " + std::to_string(id.stack_top) : "") +
+                                (id.stack_entries != 0 ? ";entries " + std::to_string(id.stack_entries) : ""));
     for (const ShaderId& shader : shaders_of(id))
         key = hash_bytes(module_of(id, shader.name).bytes, key);
     return key;
@@ -84,7 +85,7 @@ class Stages {
 public:
     Stages(const vk::raii::Device& device, const ProgramId& id)
         : values_{id.tile_height, id.starts_outside ? VK_TRUE : VK_FALSE, id.selects_minima ? VK_TRUE : VK_FALSE,
-                  id.stack_top}
+                  id.stack_top, id.stack_entries}
     {
         for (std::uint32_t i = 0; i < entries_.size(); ++i)
             entries_[i].setConstantID(i).setOffset(i * sizeof(values_[0])).setSize(sizeof(values_[0]));
@@ -111,8 +112,8 @@ private:
         if (has_constants) infos_.back().setPSpecializationInfo(&constants_);
     }
 
-    std::array<std::uint32_t, 4> values_;
-    std::array<vk::SpecializationMapEntry, 4> entries_;
+    std::array<std::uint32_t, 5> values_;
+    std::array<vk::SpecializationMapEntry, 5> entries_;
     vk::SpecializationInfo constants_;
     std::vector<vk::raii::ShaderModule> modules_;
     std::vector<vk::PipelineShaderStageCreateInfo> infos_;

@@ -32,6 +32,7 @@ struct ProgramId {
     bool starts_outside = false;                 ///< no ray starts in a tet
     bool selects_minima = false;                 ///< as FoundDevice has it
     std::uint32_t stack_top = 0;                 ///< as FoundDevice has it
+    std::uint32_t stack_entries = 0;             ///< of a ray's stack, where the scene is read as texels; 0: the most
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 

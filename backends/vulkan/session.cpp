@@ -41,6 +41,14 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
     return std::ranges::all_of(scene_buffers(scene), fits);
 }
 
+/// What the program's arrays hold, for rays that touch so many entries. In steps, so that few programs are compiled and
+/// cached.
+std::uint32_t array_entries(std::uint32_t stack_entries)
+{
+    constexpr std::uint32_t step = 4;
+    return (stack_entries + step - 1) / step * step;
+}
+
 /// How many adjacent tiles one thread of an emulated device gets. With 1, walks lose 2 %, because neighbouring tiles
 /// read the same data; with 16, BVHs lose 3 %, because a thread gets the same few columns in all rows.
 constexpr std::uint32_t tiles_of_run = 4;
@@ -73,7 +81,8 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
       program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, parts_)),
-      divisions_(scene.divisions), launches_(tile_height_, found.limits.groups)
+      stack_entries_(in_texels_ ? array_entries(scene.stack_entries) : 0), divisions_(scene.divisions),
+      launches_(tile_height_, found.limits.groups)
 {
     require_storage_buffers(found, scene, parts_);
     require_variant(kernel, parts_);
@@ -149,7 +158,8 @@ void VulkanSession::make_program()
                  .is_ray_pipeline = kernel_.schedule == Schedule::pipeline,
                  .starts_outside = starts_outside_,
                  .selects_minima = context_.found().selects_minima,
-                 .stack_top = context_.found().stack_top};
+                 .stack_top = context_.found().stack_top,
+                 .stack_entries = stack_entries_};
     if (in_texels_) id.texels = texel_bindings(kernel_.layout);
     if (acceleration_) id.structure = structure_binding;
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)

@@ -45,11 +45,11 @@ void each_number(Device& device, const Visit& visit)
 template <class Visit>
 void each_array(PackedScene& scene, const Visit& visit)
 {
-    auto& [layout, tet_count, divisions, tets, triangles, lines, entry_ranges, entry_links, vertices, entry_faces,
-           occlusive_faces, nodes, leaf_triangles, packed_of_mesh, number_of_vertex, last_neighbours, fall_back] =
-        scene;
-    static_cast<void>(
-        std::tie(layout, tet_count, divisions, packed_of_mesh, number_of_vertex, last_neighbours, fall_back));
+    auto& [layout, tet_count, divisions, stack_entries, tets, triangles, lines, entry_ranges, entry_links, vertices,
+           entry_faces, occlusive_faces, nodes, leaf_triangles, packed_of_mesh, number_of_vertex, last_neighbours,
+           fall_back] = scene;
+    static_cast<void>(std::tie(layout, tet_count, divisions, stack_entries, packed_of_mesh, number_of_vertex,
+                               last_neighbours, fall_back));
     for (std::vector<Quad>* array : {&tets, &triangles, &vertices, &entry_faces, &nodes, &leaf_triangles})
         visit(*array);
     for (std::vector<std::uint32_t>* array : {&lines, &entry_ranges, &entry_links, &occlusive_faces})
@@ -167,6 +167,7 @@ SharedMemory put_scene(ByteWriter& to, const KernelId& kernel, const SceneData& 
     to.put(scene.packed->layout);
     to.put(scene.packed->tet_count);
     to.put(scene.packed->divisions);
+    to.put(scene.packed->stack_entries);
     return put_arrays(to, *scene.packed);
 }
 
@@ -181,6 +182,7 @@ SentScene get_scene(ByteReader& from, Descriptor memory)
     scene.packed.layout = from.get<Layout>();
     scene.packed.tet_count = from.get<std::uint32_t>();
     scene.packed.divisions = from.get<std::uint32_t>();
+    scene.packed.stack_entries = from.get<std::uint32_t>();
     get_arrays(from, std::move(memory), scene.packed);
     return scene;
 }

@@ -2,6 +2,7 @@
 
 #include "kernels/layouts/layout.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace tetrace {
@@ -83,9 +84,11 @@ private:
 
 PackedScene pack_bvh2(const TriangleMesh& mesh, const Bvh& bvh)
 {
-    if (const auto depth = depth_of(bvh); depth > BVH2_STACK)
-        refuse_to_pack(Layout::bvh2, depth, "children would wait on a ray's stack", BVH2_STACK);
-    return Bvh2Packer(mesh, bvh).pack();
+    const auto depth = depth_of(bvh);
+    if (depth > BVH2_STACK) refuse_to_pack(Layout::bvh2, depth, "children would wait on a ray's stack", BVH2_STACK);
+    PackedScene packed = Bvh2Packer(mesh, bvh).pack();
+    packed.stack_entries = 1 + std::max(depth, 1u); // BVH2_END; a packed root has two children even if it was a leaf
+    return packed;
 }
 
 } // namespace tetrace

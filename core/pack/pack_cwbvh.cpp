@@ -81,13 +81,15 @@ public:
     PackedScene pack()
     {
         packed_.nodes.resize(CWBVH_NODE_QUADS);
-        pack_node(wide_.nodes.front(), 0);
+        packed_.stack_entries = 1; // an array has one
+        pack_node(wide_.nodes.front(), 0, 0);
         return std::move(packed_);
     }
 
 private:
     // Children of a node are stored together; their subtrees follow, one child after the other.
-    void pack_node(const WideNode& wide, std::uint32_t index)
+    // waiting: nodes above this one of whose hits some may wait on a ray's stack.
+    void pack_node(const WideNode& wide, std::uint32_t index, std::uint32_t waiting)
     {
         Box box;
         for (const auto& child : wide)
@@ -103,10 +105,12 @@ private:
         set_leaves(node, children);
         packed_.nodes.resize(packed_.nodes.size() + std::size_t{inner} * CWBVH_NODE_QUADS);
         node.append_to(packed_.nodes, std::size_t{index} * CWBVH_NODE_QUADS);
+        if (inner > 1) ++waiting;
+        packed_.stack_entries = std::max(packed_.stack_entries, waiting);
 
         std::uint32_t next = first_child;
         for (const auto* child : children)
-            if (child != nullptr && child->count == 0) pack_node(wide_.nodes[child->node], next++);
+            if (child != nullptr && child->count == 0) pack_node(wide_.nodes[child->node], next++, waiting);
     }
 
     static std::uint32_t set_inner(CwbvhNode& node, const SlottedChildren& children)

@@ -32,6 +32,7 @@ struct PackedScene {
     Layout layout = Layout::tet80;
     std::uint32_t tet_count = 0;
     std::uint32_t divisions = 1;
+    std::uint32_t stack_entries = 0; ///< of a BVH: a ray touches no more; 0: as many as kernels have
 
     std::vector<Quad> tets;           ///< TET80_QUADS or TET96_QUADS a tet, or HALF32_QUADS for each of its faces
     std::vector<Quad> triangles;      ///< TRIANGLE_QUADS an input triangle

@@ -35,7 +35,7 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
-    STACK(stack, TRAVERSAL_ENTRIES);
+    STACK(stack, STACK_ENTRIES(TRAVERSAL_ENTRIES));
     TRAVERSAL_AT_ROOT(uint)
     do {
 #include "kernels/bvh/bvh2_loop.h"

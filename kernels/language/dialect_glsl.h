@@ -1,7 +1,7 @@
 // The kernels' language as GLSL 4.50 for Vulkan; include it before kernel.h or probe.h.
 // Macros from outside: MATH_FAST where the compiler may contract; SELECTS_MINIMA, an expression, true where comparing
 // and selecting is faster than the built-in minimum (the two differ only for NaNs, which never occur); STACK_TOP, a
-// constant, and GROUP_ITEMS, the invocations of a work group: see kernels/stack.h.
+// constant, GROUP_ITEMS, the invocations of a work group, and STACK_ENTRIES: see kernels/stack.h.
 #include "kernels/layouts/layout.h"
 
 #ifndef SELECTS_MINIMA

@@ -195,6 +195,56 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups
     }
 }
 
+// As packing found, and the most: both without a top in the group's memory.
+TEST_F(Vulkan, hits_of_bvhs_are_openmps_with_stacks_as_large_as_the_tree_needs)
+{
+    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+        const KernelId kernel = bvh_kernel(layout, Task::rays);
+        const FullStacks full(layout);
+        const auto quads = given_quads_offset(full.rays, full.mesh);
+        const TraceJob job = given_job(full.rays.rays.size(), 0, false);
+        const auto on_host = openmp_backend().open(0, kernel, {&full.mesh, &full.packed}, {.threads = 2});
+        on_host->set_rays(quads);
+        const auto right = traced(*on_host, job);
+        for (vulkan::FoundDevice found : vulkan::find_devices())
+            for (const std::uint32_t entries : {full.packed.stack_entries, 0u}) {
+                if (!found.facts.usable) continue;
+                found.reads_texels = true;
+                PackedScene packed = full.packed;
+                packed.stack_entries = entries;
+                vulkan::VulkanSession session(found, kernel, packed, {});
+                session.set_rays(quads);
+                EXPECT_EQ(different_rays(traced(session, job), right, 3), 0u)
+                    << found.facts.name << ' ' << name_of(layout) << ' ' << entries << " entries";
+            }
+    }
+}
+
+TEST_F(Vulkan, trees_of_about_one_depth_share_a_program)
+{
+    const auto programs = [](const std::filesystem::path& folder) {
+        return std::distance(std::filesystem::directory_iterator(folder), {});
+    };
+    for (vulkan::FoundDevice found : vulkan::find_devices()) {
+        if (!found.facts.usable) continue;
+        const TemporaryFolder folder;
+        const auto programs_after = [&](std::uint32_t depth) {
+            const DeepTree tree(depth);
+            const vulkan::VulkanSession session(found, bvh_kernel(Layout::bvh2, Task::trace),
+                                                pack_bvh(tree.mesh, tree.bvh, Layout::bvh2),
+                                                {.program_cache = folder / "programs"});
+            return programs(folder / "programs");
+        };
+        found.reads_texels = true;
+        EXPECT_EQ(programs_after(4), 1) << "5 entries";
+        EXPECT_EQ(programs_after(7), 1) << "8 entries";
+        EXPECT_EQ(programs_after(8), 2) << "9 entries";
+        found.reads_texels = false;
+        EXPECT_EQ(programs_after(4), 3);
+        EXPECT_EQ(programs_after(8), 3) << "arrays in a GPU's registers are not sized";
+    }
+}
+
 TEST_F(Vulkan, what_the_validation_layers_say_fails_the_next_call)
 {
     if (!vulkan::instance().validates())

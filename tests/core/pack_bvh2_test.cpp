@@ -103,6 +103,7 @@ TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
     EXPECT_EQ(read.node_order, counted_up_to(packed.nodes.size() / BVH2_NODE_QUADS)) << "depth first, larger first";
     EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS));
     EXPECT_LE(read.most_waiting, BVH2_STACK);
+    EXPECT_EQ(packed.stack_entries, read.most_waiting + 1) << "BVH2_END and those";
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }

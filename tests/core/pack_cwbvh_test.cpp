@@ -155,6 +155,7 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
     EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS))
         << "in the order of their leaves";
     EXPECT_LE(read.most_waiting, CWBVH_STACK);
+    EXPECT_EQ(packed.stack_entries, std::max(read.most_waiting, 1u));
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
@@ -169,7 +170,9 @@ TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow_and_say_so)
     ASSERT_GT(levels_of(make_wide(with_single_leaves(mesh, bvh), Collapse::cheapest)), CWBVH_STACK);
     const PackedScene packed = pack_bvh(mesh, bvh, Layout::cwbvh);
     EXPECT_NE(packed.fall_back.find("room for 40"), std::string::npos) << packed.fall_back;
-    EXPECT_LE(CwbvhReader(packed, mesh).most_waiting, CWBVH_STACK);
+    const CwbvhReader read(packed, mesh);
+    EXPECT_LE(read.most_waiting, CWBVH_STACK);
+    EXPECT_EQ(packed.stack_entries, read.most_waiting);
     EXPECT_EQ(make_bvh_scene(nested_groups(2, 40, 20), Layout::cwbvh).fall_back, "");
 }
 

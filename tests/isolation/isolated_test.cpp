@@ -29,6 +29,7 @@ PackedScene some_scene(std::uint32_t seed)
     scene.layout = Layout::tet96;
     scene.tet_count = seed + 3;
     scene.divisions = 8;
+    scene.stack_entries = seed + 1;
     scene.tets = some_quads(seed + 20);
     scene.triangles = some_quads(5);
     scene.lines = {1, 2, seed};

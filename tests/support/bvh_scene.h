@@ -37,8 +37,8 @@ struct MeshRow {
             {"deep", [] { return nested_groups(2, 30, 300); }}};
 }
 
-/// A mesh, its BVH, and rays that fill their stacks: of bvh2 to the last entry, of cwbvh beyond the entries that GPUs
-/// keep in a group's memory.
+/// A mesh, its BVH, and rays that fill their stacks: to the last entry that the tree needs, beyond the entries that
+/// GPUs keep in a group's memory.
 struct FullStacks {
     TriangleMesh mesh;
     PackedScene packed;
@@ -65,7 +65,8 @@ private:
                     {coarse(random.between(-0.5f, 0.5f)), coarse(random.between(-0.5f, 0.5f)), -0.75f});
     }
 
-    // From the side of the smallest groups, so that the larger ones wait.
+    // From the side of the smallest groups, so that the larger ones wait: rays that reach those, and rays through the
+    // point that the groups shrink towards, which enter the boxes of all and end at a small one.
     void make_nest()
     {
         mesh = nested_groups(1, 32, 20);
@@ -76,6 +77,11 @@ private:
         for (std::uint32_t i = 0; i < ray_count; ++i)
             add_ray({coarse(random.between(-0.125f, 0)), coarse(random.between(-0.125f, 0)), -0.0625f},
                     {coarse(random.between(0.5f, 1)), coarse(random.unit()), coarse(random.unit())});
+        for (std::uint32_t i = 0; i < ray_count / 2; ++i) {
+            const Float3 to = {coarse(random.between(0.5f, 1)), coarse(random.between(0, 0.5f)),
+                               coarse(random.between(0, 0.5f))};
+            add_ray({to.x / -8, to.y / -8, to.z / -8}, to);
+        }
     }
 
     static float coarse(float x) { return std::floor(x * 1024) / 1024; }
