@@ -44,12 +44,6 @@ KERNEL_FN uint output_word(LaunchParams launch, Pixel pixel)
     return GUARD_WORDS + HIT_WORDS * (pixel.y * launch.trace.width + pixel.x);
 }
 
-// The first word behind an image's output: of the rays that are left, where kernels leave ties (LEFT_WORDS).
-KERNEL_FN uint left_word(LaunchParams launch)
-{
-    return 2u * GUARD_WORDS + HIT_WORDS * launch.trace.width * launch.trace.height;
-}
-
 // Number of an item's ray where rays are given. The image is then one tile wide.
 KERNEL_FN uint ray_index(Pixel pixel)
 {

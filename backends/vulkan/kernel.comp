@@ -1,7 +1,7 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS or SEARCH: the task. LEAVES_TIES: rays at ties are left to the program with TRACES_LEFT, which traces those
-// alone.
+// RAYS or SEARCH: the task. With TRACE, LEAVES_RAYS: rays at ties are left to the program with TRACES_LEFT, which
+// traces those alone.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
 #ifndef SCENE_IN_TEXELS
@@ -11,13 +11,8 @@ layout(constant_id = 3) const uint stack_top = 0u;
 layout(constant_id = 4) const uint stack_entries = 0u;
 #define STACK_ENTRIES(most) (stack_entries == 0u ? (most) : stack_entries)
 #endif
-#ifdef LEAVES_TIES
-#define LEAVES_SOME
-#endif
-#if defined(LEAVES_TIES) || defined(TRACES_LEFT)
-#define OUTPUT_ACCESS // the list behind the output is read too
-#else
-#define OUTPUT_ACCESS writeonly
+#ifdef LEAVES_RAYS
+#define LEAVES_TIES true
 #endif
 #define GROUP_ITEMS (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
 #include "kernels/language/dialect_glsl.h"
@@ -37,10 +32,16 @@ layout(push_constant) uniform Launch
 {
     LaunchParams launch;
 };
-layout(std430, set = 0, binding = OUTPUT_BINDING) OUTPUT_ACCESS buffer Output
+layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
 {
     uint output_words[];
 };
+#if defined(LEAVES_RAYS) || defined(TRACES_LEFT)
+layout(std430, set = 0, binding = LEFT_BINDING) buffer Left
+{
+    uint left_words[];
+};
+#endif
 
 #ifndef TRACE
 #ifdef SCENE_IN_TEXELS
@@ -90,13 +91,12 @@ void write_hit(Hit hit, uint word)
 }
 #endif
 
-#ifdef LEAVES_SOME
+#ifdef LEAVES_RAYS
 void leave(Pixel pixel)
 {
-    uint first = left_word(launch);
-    uint place = atomicAdd(output_words[first + 3u], 1u);
-    if (place % GROUP_ITEMS == 0u) atomicAdd(output_words[first], 1u);
-    output_words[first + LEFT_WORDS + place] = pixel.y * launch.trace.width + pixel.x;
+    uint place = atomicAdd(left_words[LEFT_COUNT], 1u);
+    if (place % GROUP_ITEMS == 0u) atomicAdd(left_words[0], 1u);
+    left_words[LEFT_PIXELS + place] = pixel.y * launch.trace.width + pixel.x;
 }
 #endif
 
@@ -104,8 +104,8 @@ void leave(Pixel pixel)
 void main()
 {
     uint place = gl_WorkGroupID.x * GROUP_ITEMS + gl_LocalInvocationIndex;
-    if (place >= output_words[left_word(launch) + 3u]) return;
-    uint number = output_words[left_word(launch) + LEFT_WORDS + place];
+    if (place >= left_words[LEFT_COUNT]) return;
+    uint number = left_words[LEFT_PIXELS + place];
     Pixel pixel;
     pixel.x = number % launch.trace.width;
     pixel.y = number / launch.trace.width;
@@ -128,7 +128,7 @@ void main()
     Hit hit = trace_given(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
 #else
     Hit hit = trace_pixel(pixel);
-#ifdef LEAVES_SOME
+#ifdef LEAVES_RAYS
     if (hit.face_id == LEFT) leave(pixel);
 #endif
 #endif

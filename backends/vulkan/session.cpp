@@ -151,7 +151,7 @@ void VulkanSession::make_program()
 {
     const bool takes_rays = kernel_.task != Task::trace;
     const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
-    ProgramId id{.name = {}, // see below
+    ProgramId id{.name = shader_name(kernel_) + variant,
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
                  .tile_height = tile_height_,
@@ -169,10 +169,15 @@ void VulkanSession::make_program()
     for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
     programs_.clear();
-    for (const char* part : leaves_ties() ? std::vector{"_leaves_texels", "_left_texels"} : std::vector{variant}) {
-        id.name = shader_name(kernel_) + part;
-        programs_.emplace_back(context_, id, ProgramCache(program_cache_));
+    const auto add = [&] { programs_.emplace_back(context_, id, ProgramCache(program_cache_)); };
+    const std::string leaves = shader_name(kernel_) + "_leaves_texels";
+    if (in_texels_ && starts_outside_ && find_kernel(embedded_kernels(), leaves) != nullptr) {
+        id.bindings.push_back(LEFT_BINDING);
+        id.name = leaves;
+        add();
+        id.name = shader_name(kernel_) + "_left_texels";
     }
+    add();
     setup_.compile_cached = std::ranges::all_of(programs_, &Program::is_cached);
     for (Program& program : programs_)
         bind_scene(program);
@@ -216,20 +221,24 @@ void VulkanSession::bind_rays(Buffer rays)
 
 void VulkanSession::bind_output() const
 {
-    for (const Program& program : programs_)
+    for (const Program& program : programs_) {
         program.bind(context_, OUTPUT_BINDING, output_);
+        if (leaves_rays()) program.bind(context_, LEFT_BINDING, left_);
+    }
 }
 
 void VulkanSession::resize_output(std::size_t words)
 {
     if (words == output_words_) return;
-    const std::size_t left_words = leaves_ties() ? LEFT_WORDS + words / HIT_WORDS : 0;
-    require_output_fits(words + left_words, max_buffer_bytes_);
-    const std::uint64_t bytes = (words + left_words) * sizeof(std::uint32_t);
+    require_output_fits(words, max_buffer_bytes_);
+    const std::uint64_t bytes = words * sizeof(std::uint32_t);
+    const std::uint64_t left_bytes = leaves_rays() ? LEFT_PIXELS * sizeof(std::uint32_t) + bytes / HIT_WORDS : 0;
     output_ = Buffer(); // the old ones are freed first: both may not fit
     staging_ = Buffer();
+    left_ = Buffer();
     output_words_ = 0;
-    context_.run("making the output", bytes_ + bytes, [&] {
+    context_.run("making the output", bytes_ + bytes + left_bytes, [&] {
+        if (left_bytes != 0) left_ = Buffer(context_, left_bytes, Place::device);
         output_ = Buffer(context_, bytes, Place::device);
         if (needs_staging(output_)) staging_ = Buffer(context_, bytes, Place::read_back);
     });
@@ -256,10 +265,10 @@ void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std
     record_begin_time(commands, times);
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         if (pass > 0) record_barrier(context_, commands); // else passes may run at once
-        if (leaves_ties()) record_none_left(commands);
+        if (leaves_rays()) record_none_left(commands);
         programs_.front().record(commands);
         record_dispatches(commands, params, tiles);
-        if (leaves_ties()) record_left(commands, params);
+        if (leaves_rays()) record_left(commands, params);
     }
     record_end_time(commands, times);
     record_barrier(context_, commands);
@@ -288,8 +297,8 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
 
 void VulkanSession::record_none_left(const vk::raii::CommandBuffer& commands) const
 {
-    constexpr std::array<std::uint32_t, LEFT_WORDS> none = {0, 1, 1, 0};
-    commands.updateBuffer<std::uint32_t>(output_.handle(), output_bytes(), none);
+    constexpr std::array<std::uint32_t, LEFT_PIXELS> none = {0, 1, 1, 0};
+    commands.updateBuffer<std::uint32_t>(left_.handle(), 0, none);
     record_barrier(context_, commands);
 }
 
@@ -298,7 +307,7 @@ void VulkanSession::record_left(const vk::raii::CommandBuffer& commands, const L
     record_barrier(context_, commands);
     programs_.back().record(commands);
     programs_.back().push(commands, params);
-    commands.dispatchIndirect(output_.handle(), output_bytes());
+    commands.dispatchIndirect(left_.handle(), 0);
 }
 
 void VulkanSession::launch(const TraceJob& job)

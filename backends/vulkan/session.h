@@ -10,7 +10,7 @@
 
 namespace tetrace::vulkan {
 
-/// One packed scene in the buffers of one device, or the driver's own BVH of a mesh, and one pipeline that reads it.
+/// One packed scene in the buffers of one device, or the driver's own BVH of a mesh, and its programs.
 class VulkanSession : public Session {
 public:
     /// Throws Error{unsupported} with both numbers where a limit or the memory is too small.
@@ -34,11 +34,8 @@ private:
 
     void make_scene_buffers(const PackedScene& scene);
     void make_program();
-    /// Whether rays that meet ties are left to a program of their own.
-    [[nodiscard]] bool leaves_ties() const
-    {
-        return in_texels_ && starts_outside_ && kernel_.method == Method::project && kernel_.task == Task::trace;
-    }
+    /// Whether rays that meet ties are left to a program of their own (docs/spec/devices.md, W9).
+    [[nodiscard]] bool leaves_rays() const { return programs_.size() > 1; }
     /// Adds to the times of the session's set-up.
     void compile();
     /// For the first job whose rays start in a tet.
@@ -55,7 +52,7 @@ private:
     /// Records the dispatches of that many tiles, such that each of the device's threads gets tiles from all over the
     /// image.
     void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
-    /// What follows the output in its buffer (LEFT_WORDS of layout.h) says which rays are left: none yet.
+    /// Records that no ray is left yet.
     void record_none_left(const vk::raii::CommandBuffer& commands) const;
     /// Records the program that traces the rays which programs_.front() has left.
     void record_left(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const;
@@ -79,6 +76,7 @@ private:
     std::vector<Buffer> more_parts_; ///< of the tets, from the second on
     std::optional<Acceleration> acceleration_;
     Buffer rays_, output_, staging_;
+    Buffer left_; ///< the list of rays that programs_.front() leaves: LEFT_COUNT and LEFT_PIXELS of layout.h
     std::size_t output_words_ = 0;
     std::vector<Program> programs_; ///< the kernel, and where it leaves ties the one that traces those rays
 

@@ -46,7 +46,7 @@ enum class Schedule { tiles, persistent, packets, native, pipeline };
 template <>
 inline constexpr auto enum_names<Schedule> = names_up_to<Schedule::pipeline>("tiles", "persistent", "packets", "native",
                                                                              "pipeline");
-/// Whether every backend may have the schedule: tiles and persistent are written once for all languages.
+/// Whether more than one backend has the schedule.
 [[nodiscard]] constexpr bool is_common(Schedule schedule)
 {
     return schedule == Schedule::tiles || schedule == Schedule::persistent;

@@ -8,7 +8,7 @@
 #define NO_HIT 0xFFFFFFFFu // the ray left the domain, or never met it
 #define LOST 0xFFFFFFFEu   // the walk found no exit face, or reached its cap of steps: always a failure
 #define POISON 0xFFFFFFFDu // nothing was written: outputs are filled with this before a launch
-#define LEFT 0xFFFFFFFCu   // a ray at a tie that the next launch traces, where kernels leave ties; never the answer
+#define LEFT POISON        // of a ray at a tie, where kernels leave ties: until another program has traced it
 
 // A launch's output: guard words, six words per hit row after row, guard words; filled with POISON before the launch.
 #define HIT_WORDS 6u
@@ -26,9 +26,10 @@
 #define STEPS_BEFORE_DOUBT 4096u
 // A tile of an image is a work group: this many pixels wide, 4 or 8 high.
 #define TILE_WIDTH 8u
-// Where kernels leave ties, these words follow an image's output: the groups of the launch that traces what is left, as
-// an indirect dispatch has them, 3 words; how many rays are left; and their pixels, row after row.
-#define LEFT_WORDS 4u
+// Where kernels leave ties, the list of rays that are left: the groups of the program that traces them, 3 words as an
+// indirect dispatch has them; how many rays there are; and their pixels, numbered row after row.
+#define LEFT_COUNT 3u
+#define LEFT_PIXELS 4u
 
 // Operations of the self-test, see probe.h.
 #define PROBE_COPY 0u
@@ -56,6 +57,7 @@
 #define SECOND_PART_BINDING 9u
 #define MAX_TET_PARTS 8u
 #define RAYS_BINDING (SECOND_PART_BINDING + MAX_TET_PARTS - 1u)
+#define LEFT_BINDING (RAYS_BINDING + 1u)
 #define FIRST_QUADS_BINDING 32u // of quads, where words and quads of one array have separate bindings
 
 // tet80: quads of 16 bytes. 12 floats (vertex major), then 4 faces of 8 bytes {link, input triangle}.
@@ -74,7 +76,7 @@
 #define HALF32_QUADS 2u // of a record; a tet has four
 #define HALF32_END 3u
 #define HALF32_MAX_TETS 0x0FFFFFFFu
-#define HALF32_MAX_TRIANGLES 0x3FFFFFFFu
+#define HALF32_MAX_TRIANGLES 0x3FFFFFFEu // the next number is that of EXIT_AT_TIE in walk_by_records.h
 // tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
 #define TET20_WORDS 5u
 // tet16: a quad: tet20's words without the last, and each neighbour xor that last one.

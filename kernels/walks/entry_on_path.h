@@ -8,7 +8,7 @@
 #endif
 
 // For a device that executes rare work whether a ray needs it or not: true where a ray that meets a tie, or is in none
-// of its square's faces, is left to a launch of the whole kernel (docs/spec/devices.md, W9). Its hit is LEFT.
+// of its square's faces, is left to a program with the whole kernel (docs/spec/devices.md, W9). Its hit is LEFT.
 #ifndef LEAVES_TIES
 #define LEAVES_TIES false
 #endif

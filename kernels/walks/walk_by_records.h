@@ -16,7 +16,7 @@ KERNEL_FN uint record_of_corner(uint link, uint index)
 }
 
 // Instead of an exit that is not yet known. It ends the loop as the end of a walk does; no triangle has this number.
-#define EXIT_AT_TIE (LEFT - 1u)
+#define EXIT_AT_TIE ((HALF32_MAX_TRIANGLES << 2u) | HALF32_END)
 
 // The state of a walk: the current face, and what is behind it.
 STRUCT(Walker)

@@ -227,8 +227,9 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
             steps = 1u;
         }
     }
+    if (LEAVES_TIES && gate.behind == LEFT) return make_no_hit(LEFT, gate.tet, steps);
     if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
-    if (gate.behind >= LEFT) return make_no_hit(gate.behind == NO_LINK ? NO_HIT : LEFT, gate.tet, steps);
+    if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);
     if (gate.behind < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);
     uint face = (gate.behind ^ OCCLUSIVE) >> 1u;
     return hit_on(scene, ray, FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * face), gate.tet, steps, real(NO_END));

@@ -100,7 +100,8 @@ TEST_F(Vulkan, rays_left_at_ties_get_openmps_hits)
             vulkan::VulkanSession session(found, kernel, rays.packed(), {});
             // More than a group of them in an image, none, then more again; at last from inside, where none is left.
             std::vector<TraceJob> jobs = {along_lines(17, 17, {0.25f, 0, 3}), rays.from_outside(7, 3),
-                                          along_lines(50, 41, {0, 0, 4}), rays.from_inside(20, 20)};
+                                          between_lines(50, 41), along_lines(50, 41, {0, 0, 4}),
+                                          rays.from_inside(20, 20)};
             jobs[2].passes = 3;
             for (const TraceJob& job : jobs)
                 EXPECT_EQ(different_rays(traced(session, job), traced(*on_host, job), 3), 0u)

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #define LEAVES_TIES true
@@ -47,10 +48,11 @@ namespace leaves_tet20 {
 }
 
 struct Count {
-    std::size_t left = 0, differing = 0;
+    std::size_t left = 0, left_at_entry = 0, differing = 0;
 };
 
-/// How many rays a walk leaves, and of how many others the hit is not that of the whole kernel.
+/// How many rays are left, and of how many others the hit is not that of the whole kernel.
+/// trace: returns a pixel's hit, and whether its ray is left before its walk begins.
 template <class Trace>
 Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const Trace& trace)
 {
@@ -59,7 +61,8 @@ Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const T
     const auto hits = traced(*openmp_backend().open(0, whole, rays.data(), {.threads = 2}), job);
     Count count;
     for (std::uint32_t i = 0; i < hits.size(); ++i) {
-        const auto hit = std::bit_cast<Hit>(trace(rays.packed(), job, i % job.width, i / job.width));
+        const auto [hit, is_left_at_entry] = trace(rays.packed(), job, i % job.width, i / job.width);
+        count.left_at_entry += is_left_at_entry ? 1 : 0;
         if (hit.face_id == LEFT)
             ++count.left;
         else if (different_rays({hit}, {hits[i]}, 0) != 0)
@@ -70,19 +73,26 @@ Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const T
 
 #define TRACE_OF(walk)                                                                                                 \
     [](const PackedScene& packed, const TraceJob& job, std::uint32_t x, std::uint32_t y) {                             \
+        const auto view = walk::view_of(packed);                                                                       \
         const auto params = walk::params_of(job);                                                                      \
-        return walk::trace(walk::view_of(packed), params, walk::primary_ray(params, x, y));                            \
+        const auto ray = walk::primary_ray(params, x, y);                                                              \
+        return std::pair(std::bit_cast<Hit>(walk::trace(view, params, ray)), walk::entry_index(view, ray) == LEFT);    \
     }
 
 void expect_left_at_ties_alone(Layout layout, const auto& trace)
 {
     const auto lines = even_lines(8, 1);
     const Scene grid = grid_of({lines, lines, lines});
-    const TraceJob at_ties = along_lines(17, 17, {0.25f, 0, 3});
-    const Count many = count_left(layout, at_ties, grid, trace);
-    EXPECT_GT(many.left, 17 * 17 / 10);
-    EXPECT_LT(many.left, 17 * 17);
-    EXPECT_EQ(many.differing, 0u);
+    const Count at_entry = count_left(layout, along_lines(17, 17, {0.25f, 0, 3}), grid, trace);
+    EXPECT_GT(at_entry.left_at_entry, 17 * 17 / 10);
+    EXPECT_LT(at_entry.left, 17 * 17);
+    EXPECT_EQ(at_entry.differing, 0u);
+
+    const Count in_walks = count_left(layout, between_lines(50, 41), grid, trace);
+    EXPECT_EQ(in_walks.left_at_entry, 0u);
+    EXPECT_GT(in_walks.left, 100u);
+    EXPECT_LT(in_walks.left, 50 * 41);
+    EXPECT_EQ(in_walks.differing, 0u);
 
     const Scene cubes = make_cubes(8);
     const Count few = count_left(layout, DeviceRays(cubes, layout).from_outside(61, 35), cubes, trace);

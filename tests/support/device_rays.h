@@ -94,6 +94,12 @@ private:
     return job;
 }
 
+/// Rays that enter the same grid of 8 cubes a side between its lines, and meet ties at edges inside it.
+[[nodiscard]] inline TraceJob between_lines(std::uint32_t width, std::uint32_t height)
+{
+    return along_lines(width, height, {0.03125f, 0.0625f, 3});
+}
+
 /// The hits of one launch.
 [[nodiscard]] inline std::vector<Hit> traced(Session& session, const TraceJob& job)
 {

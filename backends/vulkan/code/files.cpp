@@ -39,7 +39,7 @@ std::string command_of(const std::string& spirv, const std::string& source, cons
     }
     if (variant.ends_with("_parts")) command += " -DTETS_IN_PARTS";
     if (variant.ends_with("_texels")) command += " -DSCENE_IN_TEXELS";
-    if (variant.ends_with("_leaves_texels")) command += " -DLEAVES_TIES=true";
+    if (variant.ends_with("_leaves_texels")) command += " -DLEAVES_RAYS";
     if (variant.ends_with("_left_texels")) command += " -DTRACES_LEFT";
     return command + " -o " + spirv + " " + source;
 }
@@ -58,7 +58,9 @@ std::string what_of(const std::string& variant)
     if (variant.ends_with("_left_texels")) text += "; traces the rays that another program has left";
     if (variant.ends_with("_pipeline")) text += ", made for a ray-tracing pipeline (--schedule pipeline)";
     return text + ", as the driver gets it; constants: 0, a tile's height (8); 1, whether all rays start outside; 2, "
-                  "whether a select is faster than a minimum";
+                  "whether a select is faster than a minimum; 3, the entries of a stack in a group's memory; 4, all "
+                  "entries of a "
+                  "stack (0: the most)";
 }
 
 } // namespace
