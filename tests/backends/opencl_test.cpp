@@ -7,6 +7,7 @@
 #include "core/device/given_quads.h"
 #include "tests/support/bvh_scene.h"
 #include "tests/support/device_rays.h"
+#include "tests/support/stack_case.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace tetrace;
@@ -42,25 +43,16 @@ TEST_F(Opencl, a_second_session_finds_its_program_in_the_cache)
 TEST_F(Opencl, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
 {
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const KernelId kernel{
-            .structure = Structure::bvh, .method = Method::single, .layout = layout, .task = Task::rays};
-        const FullStacks full(layout);
-        const auto quads = given_quads_offset(full.rays, full.mesh);
-        const TraceJob job = given_job(full.rays.rays.size(), 0, false);
-        const auto on_host = openmp_backend().open(0, kernel, {&full.mesh, &full.packed}, {.threads = 2});
-        on_host->set_rays(quads);
-        const auto right = traced(*on_host, job);
+        const StackCase stacks(layout);
         for (opencl::FoundDevice found : opencl::find_devices())
             for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})
                 for (const unsigned tile_height : {4u, 8u}) {
                     if (!found.facts.usable) continue;
                     found.stack_top = stack_top;
-                    opencl::OpenclSession session(std::make_shared<opencl::Context>(found, 0), kernel, full.packed,
-                                                  {.tile_height = tile_height});
-                    session.set_rays(quads);
-                    EXPECT_EQ(different_rays(traced(session, job), right, 3), 0u)
-                        << found.facts.name << ' ' << name_of(layout) << ' ' << stack_top << " entries, tile height "
-                        << tile_height;
+                    opencl::OpenclSession session(std::make_shared<opencl::Context>(found, 0), stacks.kernel,
+                                                  stacks.full.packed, {.tile_height = tile_height});
+                    EXPECT_EQ(stacks.wrong_rays(session), 0u) << found.facts.name << ' ' << name_of(layout) << ' '
+                                                              << stack_top << " entries, tile height " << tile_height;
                 }
     }
 }

@@ -9,6 +9,7 @@
 #include "tests/support/device_rays.h"
 #include "tests/support/given_scene.h"
 #include "tests/support/hard_scenes.h"
+#include "tests/support/stack_case.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace tetrace;
@@ -173,25 +174,17 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
 TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
 {
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const KernelId kernel{
-            .structure = Structure::bvh, .method = Method::single, .layout = layout, .task = Task::rays};
-        const FullStacks full(layout);
-        const auto quads = given_quads_offset(full.rays, full.mesh);
-        const TraceJob job = given_job(full.rays.rays.size(), 0, false);
-        const auto on_host = openmp_backend().open(0, kernel, {&full.mesh, &full.packed}, {.threads = 2});
-        on_host->set_rays(quads);
-        const auto right = traced(*on_host, job);
+        const StackCase stacks(layout);
         for (vulkan::FoundDevice found : vulkan::find_devices())
             for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})
                 for (const unsigned tile_height : {4u, 8u}) {
                     if (!found.facts.usable) continue;
                     found.reads_texels = false; // modules that read texels have no STACK_TOP
                     found.stack_top = stack_top;
-                    vulkan::VulkanSession session(found, kernel, full.packed, {.tile_height = tile_height});
-                    session.set_rays(quads);
-                    EXPECT_EQ(different_rays(traced(session, job), right, 3), 0u)
-                        << found.facts.name << ' ' << name_of(layout) << ' ' << stack_top << " entries, tile height "
-                        << tile_height;
+                    vulkan::VulkanSession session(found, stacks.kernel, stacks.full.packed,
+                                                  {.tile_height = tile_height});
+                    EXPECT_EQ(stacks.wrong_rays(session), 0u) << found.facts.name << ' ' << name_of(layout) << ' '
+                                                              << stack_top << " entries, tile height " << tile_height;
                 }
     }
 }
@@ -200,22 +193,15 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups
 TEST_F(Vulkan, hits_of_bvhs_are_openmps_with_stacks_as_large_as_the_tree_needs)
 {
     for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
-        const KernelId kernel = bvh_kernel(layout, Task::rays);
-        const FullStacks full(layout);
-        const auto quads = given_quads_offset(full.rays, full.mesh);
-        const TraceJob job = given_job(full.rays.rays.size(), 0, false);
-        const auto on_host = openmp_backend().open(0, kernel, {&full.mesh, &full.packed}, {.threads = 2});
-        on_host->set_rays(quads);
-        const auto right = traced(*on_host, job);
+        const StackCase stacks(layout);
         for (vulkan::FoundDevice found : vulkan::find_devices())
-            for (const std::uint32_t entries : {full.packed.stack_entries, 0u}) {
+            for (const std::uint32_t entries : {stacks.full.packed.stack_entries, 0u}) {
                 if (!found.facts.usable) continue;
                 found.reads_texels = true;
-                PackedScene packed = full.packed;
+                PackedScene packed = stacks.full.packed;
                 packed.stack_entries = entries;
-                vulkan::VulkanSession session(found, kernel, packed, {});
-                session.set_rays(quads);
-                EXPECT_EQ(different_rays(traced(session, job), right, 3), 0u)
+                vulkan::VulkanSession session(found, stacks.kernel, packed, {});
+                EXPECT_EQ(stacks.wrong_rays(session), 0u)
                     << found.facts.name << ' ' << name_of(layout) << ' ' << entries << " entries";
             }
     }
