@@ -52,8 +52,23 @@ KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, ui
     return hits;
 }
 
-KERNEL_FN uint hits_of_node(RayFrame frame, real limit, uint turn, uint4 r0, uint4 r1, uint4 r2, uint4 r3, uint4 r4)
+// A node as a ray meets it.
+STRUCT(Visit)
 {
+    uint hits;
+    uint inner;     // bit i: the child in slot i is inner
+    uint children;  // number of the first inner child
+    uint triangles; // number of the first leaf triangle
+};
+
+KERNEL_FN Visit visit_of(SceneView scene, RayFrame frame, real limit, uint turn, uint node)
+{
+    COUNT_NODE();
+    uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node);
+    uint4 r1 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 1u);
+    uint4 r2 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 2u);
+    uint4 r3 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 3u);
+    uint4 r4 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node + 4u);
     GridFrame grid = grid_frame(frame, r0);
     bool down_x = frame.inverse.x < real(0.0f);
     bool down_y = frame.inverse.y < real(0.0f);
@@ -62,7 +77,12 @@ KERNEL_FN uint hits_of_node(RayFrame frame, real limit, uint turn, uint4 r0, uin
                               down_x ? r2.x : r3.z, down_y ? r2.z : r4.x, down_z ? r3.x : r4.z);
     uint last = hits_of_four(grid, limit, turn, r1.w, down_x ? r3.w : r2.y, down_y ? r4.y : r2.w, down_z ? r4.w : r3.y,
                              down_x ? r2.y : r3.w, down_y ? r2.w : r4.y, down_z ? r3.y : r4.w);
-    return first | last;
+    Visit visit;
+    visit.hits = first | last;
+    visit.inner = r0.w >> 24u;
+    visit.children = r1.x;
+    visit.triangles = r1.y;
+    return visit;
 }
 
 // The octant that the ray comes from: x is bit 2, y bit 1, z bit 0.
@@ -81,6 +101,19 @@ KERNEL_FN uint turn_of(RayFrame frame)
     type base = 0u;                                                                                                    \
     type hits = 0x80000000u;
 #define TRAVERSAL_GOES_ON (hits > 0x00FFFFFFu)
+#ifdef LANES_VOTE
+// A group of triangles may be put off onto entries below this one, so that there is room for all nodes on a path.
+#define CWBVH_PUT_OFF 8u
+#define TOGETHER_ENTRIES (CWBVH_STACK + CWBVH_PUT_OFF)
+#define TOGETHER_GOES_ON (hits != 0u)
+#ifndef PUTS_TRIANGLES_OFF // a test asks what it saves
+#define PUTS_TRIANGLES_OFF true
+#endif
+#endif
+#define TEST_NEXT_TRIANGLE(first)                                                                                      \
+    uint triangle = highest_bit(triangles);                                                                            \
+    triangles ^= 1u << triangle;                                                                                       \
+    nearest = nearer_triangle(scene, frame, nearest, (first) + triangle);
 
 KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {

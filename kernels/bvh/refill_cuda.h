@@ -8,14 +8,22 @@
 #define REFILLS_LANES
 
 #define WHOLE_WARP 0xFFFFFFFFu
+#ifndef ENOUGH_LANES                             // a test has fewer
 #define ENOUGH_LANES ((5u * warpSize + 7u) / 8u) // 20 of 32
+#endif
 #define NO_ITEM 0xFFFFFFFFu
 
-// Takes as many numbers from the counter as there are bits in lanes. Returns the first, to the whole warp.
-KERNEL_FN uint fetch_items(uint lanes, uint* counter)
+// What a layout has instead if its lanes go through the loop together.
+#ifndef TOGETHER_ENTRIES
+#define TOGETHER_ENTRIES TRAVERSAL_ENTRIES
+#define TOGETHER_GOES_ON TRAVERSAL_GOES_ON
+#endif
+
+// Takes so many numbers from the counter. Returns the first, to the whole warp.
+KERNEL_FN uint fetch_items(uint count, uint* counter)
 {
     uint first = 0u;
-    if (threadIdx.x % warpSize == 0u) first = atomicAdd(counter, bit_count(lanes));
+    if (threadIdx.x % warpSize == 0u) first = atomicAdd(counter, count);
     return __shfl_sync(WHOLE_WARP, first, 0);
 }
 
@@ -29,17 +37,18 @@ KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& r
     bool any_left = true; // of the rays that no lane has
     RayFrame frame = {};
     Nearest nearest = {};
-    STACK(stack, TRAVERSAL_ENTRIES);
+    STACK(stack, TOGETHER_ENTRIES);
     TRAVERSAL_AT_ROOT(uint)
     for (;;) {
-        uint ended = __ballot_sync(WHOLE_WARP, !goes_on);
-        if (warpSize - bit_count(ended) < (any_left ? ENOUGH_LANES : 1u)) {
+        uint going = __ballot_sync(WHOLE_WARP, goes_on);
+        if (bit_count(going) < (any_left ? ENOUGH_LANES : 1u)) {
             if (!goes_on && item != NO_ITEM) rays.write(item, hit_of(scene, rays.ray(item), nearest));
             if (!any_left) return;
-            uint first = fetch_items(ended, counter);
-            any_left = first + bit_count(ended) < rays.items();
+            uint first = fetch_items(warpSize - bit_count(going), counter);
+            any_left = first + warpSize - bit_count(going) < rays.items();
             if (!goes_on) {
-                item = first + bit_count(ended & ((1u << threadIdx.x % warpSize) - 1u));
+                uint lane = threadIdx.x % warpSize;
+                item = first + lane - bit_count(going & ((1u << lane) - 1u));
                 goes_on = rays.has(item);
                 if (goes_on) {
                     Ray ray = rays.ray(item);
@@ -50,10 +59,11 @@ KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& r
                     item = NO_ITEM;
                 }
             }
+            going = __ballot_sync(WHOLE_WARP, goes_on);
         }
         if (goes_on) {
 #include KERNEL_LOOP_HEADER
-            goes_on = TRAVERSAL_GOES_ON;
+            goes_on = TOGETHER_GOES_ON;
         }
     }
 }

@@ -85,15 +85,12 @@ KERNEL_FN bool is_left(Projected p, Projected q)
     return plus > minus;
 }
 
-// Whether a line enters by a face with these corners, in the order of faces.h, as far as float products tell.
+// Whether a ray enters by a face with these corners, in the order of faces.h, as far as float products tell.
 #define HELD 0u
 #define NOT_HELD 1u
 #define HELD_OR_TIE 2u
-KERNEL_FN uint roughly_held(Ray ray, Shear shear, Vec3 a, Vec3 b, Vec3 c)
+KERNEL_FN uint roughly_held(Sheared p0, Sheared p1, Sheared p2)
 {
-    Sheared p0 = sheared(shear, sub3(a, ray.origin));
-    Sheared p1 = sheared(shear, sub3(b, ray.origin));
-    Sheared p2 = sheared(shear, sub3(c, ray.origin));
     PRECISE real plus_01 = p0.x * p1.y;
     PRECISE real minus_01 = p0.y * p1.x;
     PRECISE real plus_12 = p1.x * p2.y;

@@ -26,6 +26,15 @@ KERNEL_FN Carried carried(Ray ray, Shear shear, uint4 vertex)
     return result;
 }
 
+// A corner of the face by which a ray enters, which has no end.
+KERNEL_FN Carried carried_from(Sheared corner)
+{
+    Carried result;
+    result.seen = corner;
+    result.along = real(0.0f);
+    return result;
+}
+
 // is_left() of signs.h, where ranks tell the order.
 KERNEL_FN bool ranked_is_left(Sheared p, uint p_rank, Sheared q, uint q_rank)
 {

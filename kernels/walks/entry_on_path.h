@@ -13,6 +13,11 @@
 #define LEAVES_TIES false
 #endif
 
+// For a device on which it costs more to keep the corners of the face that a ray enters by than to load them again.
+#ifndef LOADS_ENTRANCE_AGAIN
+#define LOADS_ENTRANCE_AGAIN false
+#endif
+
 // The vertex at which a product with `factors` is the smallest (or, with them negated, the largest) of all that lie in
 // a box: rounding is monotone, so no vertex in the box has a smaller one.
 KERNEL_FN Vec3 least_corner(DomainBox box, Vec3 factors)
@@ -91,27 +96,59 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
     return square_at(scene, entry, i, j);
 }
 
-// The number of the boundary face by which the ray enters, NO_ENTRY where it misses the domain, or LEFT. Float products
-// decide nearly all cases. Ties are decided after the loop, since some devices execute a conditional block even if no
-// lane needs it.
-KERNEL_FN uint entry_index(SceneView scene, Ray ray)
+// The boundary face by which a ray enters. The ray has seen its corners: a walk that carries them need not load them
+// again.
+STRUCT(Entrance)
+{
+    uint index; // the face's number; NO_ENTRY where the ray misses the domain, or LEFT
+    Sheared p0; // its corners, in the order of faces.h; only if it has a number
+    Sheared p1;
+    Sheared p2;
+};
+
+KERNEL_FN Entrance entrance_by(SceneView scene, Ray ray, Shear shear, uint index)
+{
+    EntryFace face = entry_face(scene, index);
+    Entrance entrance;
+    entrance.index = index;
+    entrance.p0 = sheared(shear, sub3(face.a, ray.origin));
+    entrance.p1 = sheared(shear, sub3(face.b, ray.origin));
+    entrance.p2 = sheared(shear, sub3(face.c, ray.origin));
+    return entrance;
+}
+
+KERNEL_FN Entrance no_entrance(uint why)
+{
+    Entrance entrance;
+    entrance.index = why;
+    entrance.p0.x = real(0.0f);
+    entrance.p0.y = real(0.0f);
+    entrance.p1 = entrance.p0;
+    entrance.p2 = entrance.p0;
+    return entrance;
+}
+
+// Where the ray enters. Float products decide nearly all cases. Ties are decided after the loop, since some devices
+// execute a conditional block even if no lane needs it.
+KERNEL_FN Entrance entrance_of(SceneView scene, Ray ray, Shear shear)
 {
     uint square = entry_square(scene, ray);
-    if (square == 6u * scene.divisions * scene.divisions) return NO_ENTRY;
+    if (square == 6u * scene.divisions * scene.divisions) return no_entrance(NO_ENTRY);
     uint first = FETCH(scene, entry_ranges, square);
     uint last = FETCH(scene, entry_ranges, square + 1u);
-    Shear shear = shear_of(ray);
-    uint found = NO_ENTRY;
+    Entrance entrance = no_entrance(NO_ENTRY);
     for (uint index = first;; ++index) {
-        EntryFace face = entry_face(scene, index);
-        uint held = roughly_held(ray, shear, face.a, face.b, face.c);
+        Entrance next = entrance_by(scene, ray, shear, index);
+        uint held = roughly_held(next.p0, next.p1, next.p2);
         if (held == HELD) {
-            found = index;
+            entrance = next;
             break;
         }
         if (held == HELD_OR_TIE || index + 1u == last) break;
     }
-    if (LEAVES_TIES) return found == NO_ENTRY ? LEFT : found;
-    if (found == NO_ENTRY) return entry_anywhere(scene, ray, first, last);
-    return found;
+    if (entrance.index != NO_ENTRY && !LOADS_ENTRANCE_AGAIN) return entrance;
+    if (entrance.index == NO_ENTRY && LEAVES_TIES) return no_entrance(LEFT);
+    uint found = entrance.index;
+    if (found == NO_ENTRY) found = entry_anywhere(scene, ray, first, last);
+    return found == NO_ENTRY ? no_entrance(NO_ENTRY) : entrance_by(scene, ray, shear, found);
 }

@@ -3,21 +3,38 @@
 // Ties are rare, and steps without one pay nothing for them, even on devices that execute a conditional block although
 // no lane needs it.
 
-// From a tet and the face by which the ray leaves it to the ray's hit. end: the largest ray parameter of a hit; NO_END
+// How a walk begins.
+#define Beginning Exit
+
+// By a boundary face, the one that the link names.
+#define BEGINNING_AT(scene, ray, link, entrance)                                                                       \
+    beginning_in((link) >> 2u, rough_exit_face(scene, (link) >> 2u, (link)&3u, ray))
+
+// In a tet that the ray leaves by `face`, or by NO_EXIT.
+#define BEGINNING_IN(scene, ray, shear, tet, face) beginning_in(tet, face)
+KERNEL_FN Beginning beginning_in(uint tet, uint face)
+{
+    Beginning first;
+    first.tet = tet;
+    first.face = face;
+    return first;
+}
+
+// From its beginning to the ray's hit. end: the largest ray parameter of a hit; NO_END
 // for a ray without an end. start: the triangle that a ray from inside starts on, or FREE_FACE; FROM_OUTSIDE for a ray
-// from outside. A ray from inside begins with exit_ahead() if first_face is NO_EXIT, and again if its walk goes in
+// from outside. A ray from inside begins with exit_ahead() if its first face is NO_EXIT, and again if its walk goes in
 // circles, which it asks once, after STEPS_BEFORE_DOUBT steps.
 // Only the loops' own variables are used after the loops; everything else is loaded again, because some compilers lose
 // it.
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint first_face, uint start, real end)
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first, uint start, real end)
 {
     bool is_endless = end >= real(NO_END);
-    bool has_exit = start == FROM_OUTSIDE || first_face != NO_EXIT;
-    uint own = has_exit ? (first_tet << 2u) | first_face : NO_LINK;
+    bool has_exit = start == FROM_OUTSIDE || first.face != NO_EXIT;
+    uint own = has_exit ? (first.tet << 2u) | first.face : NO_LINK;
     bool may_begin_anew = start != FROM_OUTSIDE;
     uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
-    uint tet = first_tet;
-    uint face = has_exit ? first_face : 0u;
+    uint tet = first.tet;
+    uint face = has_exit ? first.face : 0u;
     uint link = has_exit ? link_beyond(scene, tet, face) : NO_LINK;
     uint triangle = face_triangle(scene, tet, face & 3u);
     uint steps = 1u;
@@ -54,5 +71,3 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
     return hit_at_end(scene, params, ray, tet, face, steps, end);
 }
-
-#define FACE_AT_ENTRY(scene, tet, entry, ray) rough_exit_face(scene, tet, entry, ray)

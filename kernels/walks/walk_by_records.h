@@ -81,14 +81,13 @@ KERNEL_FN Walker face_at_tie(SceneView scene, Ray ray, Shear shear, Walker at)
     return with_apex(at, apex, record_exits(scene, record), replaced);
 }
 
-// The walk at an exit of `tet`, after it has left `steps` tets.
-KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint exit, uint steps)
+// A walk at an exit of `tet`, after it has left `steps` tets.
+KERNEL_FN Walker walker_with(Carried p0, Carried p1, Carried p2, uint tet, uint exit, uint steps)
 {
-    uint first = (exit & 3u) == HALF32_END ? tet << 2u : exit >> 2u;
     Walker at;
-    at.p0 = carried(ray, shear, record_apex(scene, record_of_corner(first, 0u)));
-    at.p1 = carried(ray, shear, record_apex(scene, record_of_corner(first, 1u)));
-    at.p2 = carried(ray, shear, record_apex(scene, record_of_corner(first, 2u)));
+    at.p0 = p0;
+    at.p1 = p1;
+    at.p2 = p2;
     at.turn = 0u;
     at.exit = exit;
     at.before = tet << 4u;
@@ -96,24 +95,58 @@ KERNEL_FN Walker walker_at(SceneView scene, Ray ray, Shear shear, uint tet, uint
     return at;
 }
 
-// From a face of a tet to the ray's hit. face: the ray leaves the tet by it, or enters by it if start is FROM_OUTSIDE.
-// start, end and the use of exit_ahead(): as in walk_along_paths.h. Loops test at their end, and ties are decided after
-// the inner loop: some devices execute a conditional block even if no lane needs it (docs/spec/devices.md, W1).
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet, uint face, uint start, real end)
+// The walk at the face by which it leaves a tet, its first.
+KERNEL_FN Walker walker_leaving(SceneView scene, Ray ray, Shear shear, uint tet, uint face)
 {
+    uint exit = first_exit(scene, tet, face);
+    uint record = (exit & 3u) == HALF32_END ? tet << 2u : exit >> 2u;
+    return walker_with(carried(ray, shear, record_apex(scene, record_of_corner(record, 0u))),
+                       carried(ray, shear, record_apex(scene, record_of_corner(record, 1u))),
+                       carried(ray, shear, record_apex(scene, record_of_corner(record, 2u))), tet, exit, 1u);
+}
+
+// How a walk begins.
+STRUCT(Beginning)
+{
+    Walker at;
+    uint own; // the face by which the ray leaves its first tet, as tet << 2 | face; NO_LINK where there is none
+};
+
+// By a boundary face, the one that the link names.
+#define BEGINNING_AT(scene, ray, link, entrance) beginning_at(link, entrance)
+KERNEL_FN Beginning beginning_at(uint link, Entrance entrance)
+{
+    Beginning first;
+    first.at = walker_with(carried_from(entrance.p0), carried_from(entrance.p1), carried_from(entrance.p2), link >> 2u,
+                           link << 2u, 0u);
+    first.own = link;
+    return first;
+}
+
+// In a tet that the ray leaves by `face`, or by NO_EXIT.
+#define BEGINNING_IN(scene, ray, shear, tet, face) beginning_in(scene, ray, shear, tet, face)
+KERNEL_FN Beginning beginning_in(SceneView scene, Ray ray, Shear shear, uint tet, uint face)
+{
+    Beginning first;
+    first.at = walker_leaving(scene, ray, shear, tet, face & 3u);
+    first.own = (tet << 2u) | face;
+    if (face == NO_EXIT) first.at.exit = NO_LINK;
+    if (face == NO_EXIT) first.own = NO_LINK;
+    return first;
+}
+
+// From its beginning to the ray's hit. start, end and the use of exit_ahead(): as in walk_along_paths.h. Loops test at
+// their end, and ties are decided after the inner loop: some devices execute a conditional block even if no lane needs
+// it (docs/spec/devices.md, W1).
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first, uint start, real end)
+{
+    Shear shear = shear_of(ray);
     bool is_endless = end >= real(NO_END);
     PRECISE real reach = end * dot3(ray.direction, ray.direction);
-    Shear shear = shear_of(ray);
     bool may_begin_anew = start != FROM_OUTSIDE;
     uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
-    uint own = face == NO_EXIT ? NO_LINK : (first_tet << 2u) | face;
-    uint tet = first_tet;
-    uint exit = own << 2u;
-    if (may_begin_anew) exit = own == NO_LINK ? NO_LINK : first_exit(scene, tet, face);
-    uint steps = may_begin_anew ? 1u : 0u;
-    Walker at;
+    Walker at = first.at;
     for (;;) {
-        at = walker_at(scene, ray, shear, tet, exit, steps);
         if (goes_on(at, pause, is_endless, reach)) {
             for (;;) {
                 for (;;) {
@@ -126,22 +159,18 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, uint first_tet,
             }
         }
         bool is_paused = (at.exit & 3u) != HALF32_END && at.steps >= pause;
-        if (!may_begin_anew || (own != NO_LINK && !is_paused)) break;
-        uint ahead = exit_ahead(scene, params, ray, start, own);
+        if (!may_begin_anew || (first.own != NO_LINK && !is_paused)) break;
+        uint ahead = exit_ahead(scene, params, ray, start, first.own);
         pause = params.max_steps;
         may_begin_anew = false;
-        bool stays = ahead == own && own != NO_LINK;
-        tet = stays ? at.before >> 4u : ahead >> 2u;
-        if (!stays && ahead == NO_LINK) break;
-        exit = stays ? at.exit & ~3u : first_exit(scene, tet, ahead & 3u);
-        steps = stays ? at.steps : 1u;
+        if (ahead == NO_LINK) at.steps = 0u;
+        if (ahead == NO_LINK) break;
+        if (ahead != first.own) at = walker_leaving(scene, ray, shear, ahead >> 2u, ahead & 3u);
     }
-    if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
-    tet = at.before >> 4u;
+    if (at.steps == 0u) return make_no_hit(NO_HIT, NO_TET, 0u);
+    uint tet = at.before >> 4u;
     if (at.exit == NO_LINK || (LEAVES_TIES && at.exit == EXIT_AT_TIE))
         return make_no_hit(at.exit == NO_LINK ? NO_HIT : LEFT, tet, at.steps);
     if ((at.exit & 3u) == HALF32_END) return hit_on(scene, ray, at.exit >> 2u, tet, at.steps, end);
     return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);
 }
-
-#define FACE_AT_ENTRY(scene, tet, entry, ray) (entry)

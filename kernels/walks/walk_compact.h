@@ -116,12 +116,20 @@ KERNEL_FN Gate gate_of(SceneView scene, Ray ray, Shear shear, uint v0, uint v1, 
     return gate;
 }
 
-// The boundary face of that number, from outside.
-KERNEL_FN Gate entry_gate(SceneView scene, Ray ray, Shear shear, uint entry)
+// A boundary face, from outside.
+KERNEL_FN Gate entered_gate(SceneView scene, Entrance entrance)
 {
-    uint4 quad = FETCH(scene, entry_faces, entry);
-    Gate gate = gate_of(scene, ray, shear, quad.x, quad.y, quad.z);
+    uint4 quad = FETCH(scene, entry_faces, entrance.index);
+    Gate gate;
+    gate.p0 = carried_from(entrance.p0);
+    gate.p1 = carried_from(entrance.p1);
+    gate.p2 = carried_from(entrance.p2);
+    gate.v0 = quad.x;
+    gate.v1 = quad.y;
+    gate.v2 = quad.z;
+    gate.tet = NO_TET;
     gate.behind = quad.w;
+    gate.before = NO_LINK;
     return gate;
 }
 
@@ -170,7 +178,7 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint doubted)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
-    Gate gate = entry_gate(scene, ray, shear, entry == NO_ENTRY ? 0u : entry);
+    Gate gate = entered_gate(scene, entrance_by(scene, ray, shear, entry == NO_ENTRY ? 0u : entry));
     Gate found = gate;
     bool done = entry == NO_ENTRY;
     bool ahead = false;
@@ -239,9 +247,9 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
     Shear shear = shear_of(ray);
     if (params.start_tet == NO_TET) {
-        uint entry = entry_index(scene, ray);
-        if (entry >= LEFT) return make_no_hit(entry == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
-        return walk(scene, params, ray, shear, entry_gate(scene, ray, shear, entry), 0u, true);
+        Entrance entrance = entrance_of(scene, ray, shear);
+        if (entrance.index >= LEFT) return make_no_hit(entrance.index == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
+        return walk(scene, params, ray, shear, entered_gate(scene, entrance), 0u, true);
     }
     uint face = face_left_by(ray, position_of(scene, params.start_v0), position_of(scene, params.start_v1),
                              position_of(scene, params.start_v2), position_of(scene, params.start_v3));

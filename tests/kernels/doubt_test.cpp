@@ -33,7 +33,9 @@ namespace maria_tet80 {
 namespace project_tet80 {
 #include "kernels/kernel_cpp.h"
 }
-#undef FACE_AT_ENTRY
+#undef Beginning
+#undef BEGINNING_AT
+#undef BEGINNING_IN
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
 namespace project_half32 {

@@ -29,7 +29,9 @@ namespace {
 namespace leaves_tet80 {
 #include "kernels/kernel_cpp.h"
 }
-#undef FACE_AT_ENTRY
+#undef Beginning
+#undef BEGINNING_AT
+#undef BEGINNING_IN
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
 namespace leaves_half32 {
@@ -76,7 +78,8 @@ Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const T
         const auto view = walk::view_of(packed);                                                                       \
         const auto params = walk::params_of(job);                                                                      \
         const auto ray = walk::primary_ray(params, x, y);                                                              \
-        return std::pair(std::bit_cast<Hit>(walk::trace(view, params, ray)), walk::entry_index(view, ray) == LEFT);    \
+        return std::pair(std::bit_cast<Hit>(walk::trace(view, params, ray)),                                           \
+                         walk::entrance_of(view, ray, walk::shear_of(ray)).index == LEFT);                             \
     }
 
 void expect_left_at_ties_alone(Layout layout, const auto& trace)
