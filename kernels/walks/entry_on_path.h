@@ -13,11 +13,6 @@
 #define LEAVES_TIES false
 #endif
 
-// For a device on which it costs more to keep the corners of the face that a ray enters by than to load them again.
-#ifndef LOADS_ENTRANCE_AGAIN
-#define LOADS_ENTRANCE_AGAIN false
-#endif
-
 // The vertex at which a product with `factors` is the smallest (or, with them negated, the largest) of all that lie in
 // a box: rounding is monotone, so no vertex in the box has a smaller one.
 KERNEL_FN Vec3 least_corner(DomainBox box, Vec3 factors)
@@ -146,9 +141,8 @@ KERNEL_FN Entrance entrance_of(SceneView scene, Ray ray, Shear shear)
         }
         if (held == HELD_OR_TIE || index + 1u == last) break;
     }
-    if (entrance.index != NO_ENTRY && !LOADS_ENTRANCE_AGAIN) return entrance;
-    if (entrance.index == NO_ENTRY && LEAVES_TIES) return no_entrance(LEFT);
-    uint found = entrance.index;
-    if (found == NO_ENTRY) found = entry_anywhere(scene, ray, first, last);
+    if (entrance.index != NO_ENTRY) return entrance;
+    if (LEAVES_TIES) return no_entrance(LEFT);
+    uint found = entry_anywhere(scene, ray, first, last);
     return found == NO_ENTRY ? no_entrance(NO_ENTRY) : entrance_by(scene, ray, shear, found);
 }
