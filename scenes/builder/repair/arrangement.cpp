@@ -3,7 +3,8 @@
 #include "core/base/exact.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
 #include <CGAL/intersections.h>
 
 #include <array>
@@ -13,11 +14,13 @@
 namespace tetrace {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Number = Kernel::FT;
-using Point = Kernel::Point_3;
-using Corners = std::array<Point, 3>;
-using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Default, CGAL::Exact_intersections_tag>;
+using ExactKernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+using Number = ExactKernel::FT;
+using ExactPoint = ExactKernel::Point_3;
+using Segment = ExactKernel::Segment_3;
+using Triangle = ExactKernel::Triangle_3;
+using Corners = std::array<ExactPoint, 3>;
+using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<ExactKernel, CGAL::Default, CGAL::Exact_intersections_tag>;
 using FlatPoint = Delaunay::Point;
 
 // std's from CGAL 6 on, boost's before.
@@ -31,21 +34,20 @@ const Shape* held_shape(const Variant& variant)
 }
 
 // The corners of what two triangles share, in order: one of a point, two of a segment, else those of a polygon.
-std::vector<Point> shared_corners(const Corners& a, const Corners& b)
+std::vector<ExactPoint> shared_corners(const Corners& a, const Corners& b)
 {
-    const auto shared = CGAL::intersection(Kernel::Triangle_3(a[0], a[1], a[2]), Kernel::Triangle_3(b[0], b[1], b[2]));
+    const auto shared = CGAL::intersection(Triangle(a[0], a[1], a[2]), Triangle(b[0], b[1], b[2]));
     if (!shared) return {};
-    if (const auto* point = held_shape<Point>(*shared)) return {*point};
-    if (const auto* segment = held_shape<Kernel::Segment_3>(*shared)) return {segment->source(), segment->target()};
-    if (const auto* triangle = held_shape<Kernel::Triangle_3>(*shared))
+    if (const auto* point = held_shape<ExactPoint>(*shared)) return {*point};
+    if (const auto* segment = held_shape<Segment>(*shared)) return {segment->source(), segment->target()};
+    if (const auto* triangle = held_shape<Triangle>(*shared))
         return {triangle->vertex(0), triangle->vertex(1), triangle->vertex(2)};
-    return *held_shape<std::vector<Point>>(*shared);
+    return *held_shape<std::vector<ExactPoint>>(*shared);
 }
 
-// The same float for the same number, however it was computed: an interval round it would depend on that.
 float rounded(const Number& number)
 {
-    return snap_to_grid(static_cast<float>(CGAL::to_double(CGAL::exact(number))));
+    return snap_to_grid(static_cast<float>(CGAL::to_double(number)));
 }
 
 // A triangle's plane, seen along the axis that its normal leans to most.
@@ -58,7 +60,7 @@ public:
             if (size(axis) > size(along_)) along_ = axis;
     }
 
-    [[nodiscard]] FlatPoint flat(const Point& point) const { return {point[across(1)], point[across(2)]}; }
+    [[nodiscard]] FlatPoint flat(const ExactPoint& point) const { return {point[across(1)], point[across(2)]}; }
     // The point of the plane there.
     [[nodiscard]] Float3 lifted(const FlatPoint& at) const
     {
@@ -76,7 +78,7 @@ private:
     [[nodiscard]] int across(int step) const { return (along_ + step) % 3; }
     [[nodiscard]] Number normal(int axis) const { return axis == 0 ? plane_.a() : axis == 1 ? plane_.b() : plane_.c(); }
 
-    Kernel::Plane_3 plane_;
+    ExactKernel::Plane_3 plane_;
     int along_ = 0;
 };
 
@@ -86,10 +88,10 @@ public:
     explicit CutTriangle(const Corners& corners) : plane_(corners) { add({corners.begin(), corners.end()}); }
 
     // Corners as of shared_corners().
-    void add(const std::vector<Point>& corners)
+    void add(const std::vector<ExactPoint>& corners)
     {
         std::vector<FlatPoint> flat;
-        for (const Point& corner : corners)
+        for (const ExactPoint& corner : corners)
             flat.push_back(plane_.flat(corner));
         if (flat.size() == 1) delaunay_.insert(flat.front());
         if (flat.size() == 2) delaunay_.insert_constraint(flat[0], flat[1]);
@@ -117,7 +119,7 @@ Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle)
     Corners corners;
     for (std::size_t i = 0; i < 3; ++i) {
         const Double3 v = to_double(mesh.vertices[mesh.triangles[triangle][i]]);
-        corners[i] = Point(v.x, v.y, v.z);
+        corners[i] = ExactPoint(v.x, v.y, v.z);
     }
     return corners;
 }
@@ -130,7 +132,7 @@ std::map<std::uint32_t, CutTriangle> cut(const TriangleMesh& mesh, std::span<con
     };
     for (const auto& [first, second] : pairs) {
         const Corners a = corners_of(mesh, first), b = corners_of(mesh, second);
-        const std::vector<Point> shared = shared_corners(a, b);
+        const std::vector<ExactPoint> shared = shared_corners(a, b);
         triangle_of(first, a).add(shared);
         triangle_of(second, b).add(shared);
     }
