@@ -5,7 +5,6 @@ STRUCT(Shear)
 {
     Vec3 across;  // a point's products with these are its x and y in the plane times 2^20: no product of two
     Vec3 upwards; // such coordinates is denormal
-    Vec3 along;   // and its product with this is its depth times 2^40
 };
 
 KERNEL_FN uint deepest_axis(Vec3 direction)
@@ -45,11 +44,9 @@ KERNEL_FN Shear shear_along(Vec3 direction)
     PRECISE real x = component(direction, axis_x) * real(-1048576.0f);
     PRECISE real y = component(direction, axis_y) * real(-1048576.0f);
     PRECISE real z = deepest * real(1048576.0f);
-    real along = deepest < zero ? real(-1099511627776.0f) : real(1099511627776.0f);
     Shear shear;
     shear.across = turned_to(VEC3(z, zero, x), axis);
     shear.upwards = turned_to(VEC3(zero, z, y), axis);
-    shear.along = turned_to(VEC3(zero, zero, along), axis);
     return shear;
 }
 

@@ -4,6 +4,8 @@
 // kernel is compiled once per layout and math mode, and their names must not collide.
 // Include <bit>, <cassert>, <cstddef>, <cstdint>, <cmath> and core/device/backend.h before it.
 #define KERNEL_FN [[maybe_unused, gnu::always_inline]] inline
+// What few rays need is a call, so that all others have the registers.
+#define RARE_FN [[maybe_unused, gnu::noinline, gnu::cold]] inline
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})

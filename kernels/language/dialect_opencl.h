@@ -12,6 +12,7 @@
 #else
 #define KERNEL_FN static inline __attribute__((always_inline))
 #endif
+#define RARE_FN KERNEL_FN
 #define PRECISE // contraction is switched off for the whole program
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \

@@ -25,7 +25,6 @@ KERNEL_FN Shear shear_of(Ray ray)
     Shear turned;
     turned.across = shear.upwards;
     turned.upwards = shear.across;
-    turned.along = shear.along;
     return turned;
 }
 
@@ -143,6 +142,12 @@ KERNEL_FN bool is_face_ahead(Ray ray, Vec3 a, Vec3 b, Vec3 c)
     Vec3 v0 = sub3(is_lowest ? c : low, ray.origin);
     Vec3 v1 = sub3(is_lowest ? low : (is_highest ? high : c), ray.origin);
     Vec3 v2 = sub3(is_highest ? c : high, ray.origin);
+    uint axis = deepest_axis(ray.direction);
+    bool is_towards = component(ray.direction, axis) > real(0.0f);
+    real along = is_towards ? real(1099511627776.0f) : real(-1099511627776.0f); // 2^40: no product below is denormal
+    PRECISE real depth_0 = component(v0, axis) * along;
+    PRECISE real depth_1 = component(v1, axis) * along;
+    PRECISE real depth_2 = component(v2, axis) * along;
     Sheared p0 = sheared(shear, v0);
     Sheared p1 = sheared(shear, v1);
     Sheared p2 = sheared(shear, v2);
@@ -154,6 +159,6 @@ KERNEL_FN bool is_face_ahead(Ray ray, Vec3 a, Vec3 b, Vec3 c)
     u = is_edge_on ? real(1.0f) : u;
     v = is_edge_on ? real(1.0f) : v;
     w = is_edge_on ? real(1.0f) : w;
-    PRECISE real weighted = u * dot3(v0, shear.along) + v * dot3(v1, shear.along) + w * dot3(v2, shear.along);
+    PRECISE real weighted = u * depth_0 + v * depth_1 + w * depth_2;
     return determinant < real(0.0f) ? weighted < real(0.0f) : weighted > real(0.0f);
 }

@@ -48,7 +48,7 @@ KERNEL_FN DomainBox side_box(SceneView scene, uint side)
 // The number of the first boundary face by which the ray enters, or NO_ENTRY. Faces first to last - 1, those of the
 // square, are tested first; then those of each side that the ray may enter by. A GPU would wait for the one ray that
 // tests all sides.
-KERNEL_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
+RARE_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
 {
     COUNT_SEARCH(0);
     Shear shear = shear_of(ray);

@@ -13,7 +13,7 @@
 // followed to its end. `doubted` is returned if it is on the path, or if the end is too far: only a walk in a circle
 // begins anew. This is tested here because a separate loop would be slow on devices that execute a conditional block
 // even if no lane needs it.
-KERNEL_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint doubted)
+RARE_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint doubted)
 {
     COUNT_SEARCH(1);
     uint link = entry_link(scene, entry_anywhere(scene, ray, 0u, 0u));

@@ -58,14 +58,12 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first
         uint exit = exit_ahead(scene, params, ray, start, own);
         pause = params.max_steps;
         may_begin_anew = false;
-        if (exit != own || own == NO_LINK) {
-            tet = exit >> 2u;
-            if (exit == NO_LINK) break;
-            face = exit & 3u;
-            link = face_link(scene, tet, face);
-            triangle = face_triangle(scene, tet, face);
-            steps = 1u;
-        }
+        tet = exit >> 2u;
+        if (exit == NO_LINK) break;
+        face = exit & 3u;
+        link = face_link(scene, tet, face);
+        triangle = face_triangle(scene, tet, face);
+        steps = 1u;
     }
     if (LEAVES_TIES && face >= TIE_AT) return make_no_hit(LEFT, tet, steps);
     if (tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);

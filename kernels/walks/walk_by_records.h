@@ -165,7 +165,7 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first
         may_begin_anew = false;
         if (ahead == NO_LINK) at.steps = 0u;
         if (ahead == NO_LINK) break;
-        if (ahead != first.own) at = walker_leaving(scene, ray, shear, ahead >> 2u, ahead & 3u);
+        at = walker_leaving(scene, ray, shear, ahead >> 2u, ahead & 3u);
     }
     if (at.steps == 0u) return make_no_hit(NO_HIT, NO_TET, 0u);
     uint tet = at.before >> 4u;

@@ -174,29 +174,39 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 
 // The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET where the ray has
 // no path. doubted: the first tet of a walk that may be in a circle, or NO_TET. The result's tet is `doubted` if that
-// is on the path, or if the path's end is too far.
-KERNEL_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint doubted)
+// is on the path, or if the path's end is too far. If neither, the path is followed once more, to the face that is
+// wanted: to keep it would cost all other rays a GPU's registers.
+RARE_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint doubted)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
     Gate gate = entered_gate(scene, entrance_by(scene, ray, shear, entry == NO_ENTRY ? 0u : entry));
-    Gate found = gate;
-    bool done = entry == NO_ENTRY;
+    uint in_doubt = doubted;
+    uint wanted = 0u; // its number of steps
     bool ahead = false;
-    for (uint steps = 0u; !done && steps < params.max_steps; ++steps) {
+    bool done = entry == NO_ENTRY;
+    uint steps = 0u;
+    while (!done && steps < params.max_steps) {
         gate = next_gate(scene, ray, shear, opened(scene, gate));
-        if (!ahead) found = gate;
+        ++steps;
+        if (!ahead) wanted = steps;
         ahead = ahead || is_gate_ahead(scene, ray, gate);
-        done = gate.behind == NO_LINK || gate.tet == doubted || (ahead && doubted == NO_TET);
+        bool is_end = gate.behind == NO_LINK;
+        done = is_end || gate.tet == in_doubt || (ahead && in_doubt == NO_TET && steps == wanted);
+        if (is_end && in_doubt != NO_TET && gate.tet != in_doubt && steps != wanted) {
+            gate = entered_gate(scene, entrance_by(scene, ray, shear, entry));
+            in_doubt = NO_TET;
+            steps = 0u;
+            done = false;
+        }
     }
-    if (doubted != NO_TET && (gate.tet == doubted || !done)) found.tet = doubted;
-    return found;
+    if (in_doubt != NO_TET && !done) gate.tet = in_doubt;
+    return gate;
 }
 
-// From a face by which the ray leaves a tet to the ray's hit. first_steps: the number of tets left before. has_exit:
-// for a ray that starts in a tet, whether a face of that tet holds the ray. Loops test at their end, and ties are
+// From a face by which the ray leaves a tet to the ray's hit. own: for a ray that starts in a tet, the face of that tet
+// that holds the ray, or NO_EXIT. first_steps: the number of tets left before. Loops test at their end, and ties are
 // decided after the inner loop, as in walk_by_records.h. gate_ahead() is used as exit_ahead() in walk_along_paths.h.
-KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps,
-                   bool has_exit)
+KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps, uint own)
 {
     Gate gate = first;
     uint steps = first_steps;
@@ -225,15 +235,13 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
                 if (gate.behind >= OCCLUSIVE || steps >= pause) break;
             }
         }
-        if (!may_begin_anew || (has_exit && gate.behind >= OCCLUSIVE)) break;
-        Gate ahead = gate_ahead(scene, params, ray, shear, has_exit ? params.start_tet : NO_TET);
+        if (!may_begin_anew || (own != NO_EXIT && gate.behind >= OCCLUSIVE)) break;
+        gate = gate_ahead(scene, params, ray, shear, own == NO_EXIT ? NO_TET : params.start_tet);
+        if (gate.tet == NO_TET) break;
+        if (gate.tet == params.start_tet) gate = start_gate(scene, params, ray, shear, own);
+        steps = 1u;
         pause = params.max_steps;
         may_begin_anew = false;
-        if (ahead.tet != params.start_tet) {
-            gate = ahead;
-            if (gate.tet == NO_TET) break;
-            steps = 1u;
-        }
     }
     if (LEAVES_TIES && gate.behind == LEFT) return make_no_hit(LEFT, gate.tet, steps);
     if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
@@ -249,11 +257,11 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     if (params.start_tet == NO_TET) {
         Entrance entrance = entrance_of(scene, ray, shear);
         if (entrance.index >= LEFT) return make_no_hit(entrance.index == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
-        return walk(scene, params, ray, shear, entered_gate(scene, entrance), 0u, true);
+        return walk(scene, params, ray, shear, entered_gate(scene, entrance), 0u, 0u);
     }
     uint face = face_left_by(ray, position_of(scene, params.start_v0), position_of(scene, params.start_v1),
                              position_of(scene, params.start_v2), position_of(scene, params.start_v3));
     Gate gate = start_gate(scene, params, ray, shear, face & 3u);
     if (face == NO_EXIT) gate.behind = NO_LINK;
-    return walk(scene, params, ray, shear, gate, 1u, face != NO_EXIT);
+    return walk(scene, params, ray, shear, gate, 1u, face);
 }
