@@ -11,8 +11,9 @@
 // If the triangle has no face on the path, and for FREE_FACE, it is the first face crossed in front of the origin, else
 // the path's last face. doubted: the first exit of a walk that may be in a circle, or NO_LINK. The path is then
 // followed to its end. `doubted` is returned if it is on the path, or if the end is too far: only a walk in a circle
-// begins anew. This is tested here because a separate loop would be slow on devices that execute a conditional block
-// even if no lane needs it.
+// begins elsewhere; others are made once more, because to keep one until then would cost all rays a GPU's registers
+// (docs/spec/project.md, P15). This is tested here because a separate loop would be slow on devices that execute a
+// conditional block even if no lane needs it.
 RARE_FN uint exit_ahead(SceneView scene, TraceParams params, Ray ray, uint start, uint doubted)
 {
     COUNT_SEARCH(1);

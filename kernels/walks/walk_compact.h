@@ -175,7 +175,7 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
 // The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET where the ray has
 // no path. doubted: the first tet of a walk that may be in a circle, or NO_TET. The result's tet is `doubted` if that
 // is on the path, or if the path's end is too far. If neither, the path is followed once more, to the face that is
-// wanted: to keep it would cost all other rays a GPU's registers.
+// wanted: nothing is kept, as in path.h.
 RARE_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shear, uint doubted)
 {
     uint entry = entry_anywhere(scene, ray, 0u, 0u);
