@@ -2,6 +2,8 @@
 JOBS ?= $(shell nproc)
 TETRACE = build/release/bin/tetrace
 comma := ,
+# What the first table compares: a layout of tets and one of a BVH.
+first_layouts = half32,bvh2
 # QUICK=1: one scene, small images, under a minute once all is built.
 scenes = $(if $(QUICK),--scene bunny)
 
@@ -46,10 +48,10 @@ bench:
 
 first:
 	@scripts/install-packages build
-	cmake --preset release -G Ninja -DBUILD_TESTING=OFF -DTETRACE_COMPILES=by_default
+	cmake --preset release -G Ninja -DBUILD_TESTING=OFF -DTETRACE_COMPILES=$(first_layouts)
 	cmake --build --preset release -j $(JOBS) --target tetrace-first
 	@echo "A first table, of one scene in small images. Then the rest is built, and all of it measured."
-	build/release/bin/tetrace-first bench --scene bunny --layout half32,bvh2,embree --size 256 --budget 40s
+	build/release/bin/tetrace-first bench --scene bunny --layout $(first_layouts),embree --size 256 --budget 40s
 
 bundle: build
 	cmake --preset release -DTETRACE_CUDA_CODE=all

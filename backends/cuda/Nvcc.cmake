@@ -17,7 +17,7 @@ elseif(TETRACE_CUDA_CODE STREQUAL "here")
   string(REGEX MATCHALL "[0-9]+\\.[0-9]" wanted "${gpus}")
   string(REPLACE "." "" wanted "${wanted}")
   list(REMOVE_DUPLICATES wanted)
-  if((failed OR NOT wanted) AND TETRACE_COMPILES STREQUAL "by_default") # no row would run it
+  if((failed OR NOT wanted) AND NOT TETRACE_COMPILES STREQUAL "all") # no row would run it
     set(TETRACE_NVCC_VERSION "")
     return()
   elseif(failed OR NOT wanted)

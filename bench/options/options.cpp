@@ -1,5 +1,6 @@
 #include "bench/options/options.h"
 
+#include "bench/options/help.h"
 #include "bench/options/option_table.h"
 #include "bench/options/option_values.h"
 

@@ -1,13 +1,13 @@
 #include "scenes/builder/mesh_source.h"
 
-// In place of read_gltf.cpp where tinygltf is not installed.
+// In place of read_gltf.cpp where tinygltf is not installed, and for a first table.
 
 namespace tetrace {
 
 void read_gltf(MeshSource& source)
 {
     source.fail("name", "this tetrace-builder was built without tinygltf, and does not read glTF",
-                "install libtinygltf-dev and build it again, or export the mesh as PLY");
+                "install libtinygltf-dev and build all of tetrace (`make build`), or export the mesh as PLY");
 }
 
 } // namespace tetrace
