@@ -2,6 +2,7 @@
 
 #include "scenes/procedural.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace tetrace;

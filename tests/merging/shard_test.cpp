@@ -4,6 +4,7 @@
 #include "scenes/file_lock.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <numeric>
