@@ -2,6 +2,8 @@
 // layout and method, see kernel.h.
 #include "kernels/language/dialect_cpp.h"
 
+#include "kernels/language/vector.h"
+
 #include "kernels/language/scene_view_cpp.h"
 
 #include "kernels/kernel.h"

@@ -8,6 +8,7 @@ STRUCT(LaunchParams)
     uint first_tile;  // row after row of tiles
     uint tile_height; // 4 or 8
     uint part_log2;   // tets in several buffers: each but the last has 2^part_log2 bytes
+    DomainBox domain; // here, since a load from the array of lines costs some devices as much as a step
 };
 
 STRUCT(Pixel)

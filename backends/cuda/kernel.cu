@@ -5,6 +5,8 @@
 
 #include "kernels/language/dialect_cuda.h"
 
+#include "kernels/language/vector.h"
+
 #include "kernels/language/scene_view_cuda.h"
 
 #include "kernels/kernel.h"

@@ -5,6 +5,8 @@
 #include "core/device/scene_buffers.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 namespace tetrace::cuda {
 
@@ -39,7 +41,7 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
       inside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt
                   ? entry(device, entry_name("inside", kernel))
                   : outside_),
-      divisions_(scene.divisions), timer_(device_.context), tile_height_(tile_height), threads_(options.threads),
+      domain_(domain_of(scene)), timer_(device_.context), tile_height_(tile_height), threads_(options.threads),
       max_buffer_bytes_(options.max_buffer_bytes), launches_(tile_height), bytes_(scene.bytes())
 {
     require_arrays_fit(scene, max_buffer_bytes_);
@@ -81,7 +83,10 @@ void CudaSession::upload(const PackedScene& scene)
     setup_.upload_s = watch.seconds();
     for (const SceneArray& array : scene_arrays(scene.layout))
         scene_.push_back(arrays_[array.binding].address());
-    scene_.push_back(divisions_); // in the low half of the last eight bytes, as a little-endian host has it
+    std::array<std::uint64_t, 4> domain{}; // SceneView ends in the same words; the kernels' compiler pads to 8 bytes
+    static_assert(sizeof(domain_) <= sizeof(domain));
+    std::memcpy(domain.data(), &domain_, sizeof(domain_));
+    scene_.insert(scene_.end(), domain.begin(), domain.end());
 }
 
 void CudaSession::set_rays(std::span<const Quad> quads)
@@ -112,7 +117,7 @@ void CudaSession::launch(const TraceJob& job)
     entry_ = job.start_tet == NO_TET ? outside_ : inside_;
     launched_tiles_ = 0;
     launches_.start(
-        launch_params(job, divisions_, tile_height_, TetParts{}.log2_bytes), job.passes,
+        launch_params(job, domain_, tile_height_, TetParts{}.log2_bytes), job.passes,
         [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
             start_launch(params, tiles, passes);
         },

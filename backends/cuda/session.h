@@ -48,7 +48,7 @@ private:
     std::vector<Memory> arrays_; ///< by binding
     std::vector<Address>
         scene_; ///< the kernels' argument: SceneView of kernels/language/scene_view_cuda.h, word for word
-    std::uint32_t divisions_;
+    PackedDomain domain_;
     Memory output_, rays_;
     Memory counters_; ///< of persistent threads: the rays that each pass has taken
     EventTimer timer_;

@@ -44,7 +44,7 @@ OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& k
     : context_(std::move(context)), kernel_id_(kernel), cache_(options.program_cache),
       starts_outside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt),
       tile_height_(tile_height_of(options)), max_buffer_bytes_(largest_buffer(context_->facts(), options)),
-      divisions_(scene.divisions), parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
+      domain_(domain_of(scene)), parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
       launches_(tile_height_)
 {
     run("making a queue", 0, [&] { queue_ = context_->make_queue(); });
@@ -189,7 +189,7 @@ void OpenclSession::launch(const TraceJob& job)
         enqueued_.clear();
         queue_.enqueueFillBuffer(output_, POISON, 0, output_bytes());
         launches_.start(
-            launch_params(job, divisions_, tile_height_, parts_.log2_bytes), job.passes,
+            launch_params(job, domain_, tile_height_, parts_.log2_bytes), job.passes,
             [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
                 enqueue(params, tiles, passes);
             },

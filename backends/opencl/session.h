@@ -53,7 +53,7 @@ private:
     bool starts_outside_; ///< the program has no start in a tet: registers that it would need slow a GPU
     unsigned tile_height_;
     std::uint64_t max_buffer_bytes_;
-    std::uint32_t divisions_;
+    PackedDomain domain_;
     TetParts parts_;
     std::uint64_t scene_bytes_ = 0;
     SetupTimes times_;

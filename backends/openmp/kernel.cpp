@@ -43,7 +43,7 @@ void for_pixels(const tetrace::PackedScene& packed, const tetrace::TraceJob& job
                 unsigned tile_height, const Work& work)
 {
     const SceneView scene = view_of(packed);
-    const tetrace::LaunchParams image = launch_params(job, packed.divisions, tile_height, 0);
+    const tetrace::LaunchParams image = launch_params(job, tetrace::domain_of(packed), tile_height, 0);
     const auto launch = std::bit_cast<LaunchParams>(image);
     const uint tiles = tetrace::tile_count(image);
 #pragma omp parallel num_threads(static_cast <int>(threads))

@@ -19,6 +19,8 @@ layout(constant_id = 4) const uint stack_entries = 0u;
 
 layout(local_size_x = TILE_WIDTH, local_size_y_id = 0) in; // constant 0 is the tile's height
 
+#include "kernels/language/vector.h"
+
 #ifdef SCENE_IN_TEXELS
 #include "kernels/language/scene_view_texels_glsl.h"
 #else
@@ -67,7 +69,7 @@ uint tile_of_group()
 
 SceneView scene_view()
 {
-    return SceneView(launch.divisions, launch.part_log2);
+    return SceneView(launch.divisions, launch.domain, launch.part_log2);
 }
 
 #ifdef TRACE

@@ -81,7 +81,7 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
     : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
       program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, parts_)),
-      stack_entries_(in_texels_ ? array_entries(scene.stack_entries) : 0), divisions_(scene.divisions),
+      stack_entries_(in_texels_ ? array_entries(scene.stack_entries) : 0), domain_(domain_of(scene)),
       launches_(tile_height_, found.limits.groups)
 {
     require_storage_buffers(found, scene, parts_);
@@ -317,7 +317,7 @@ void VulkanSession::launch(const TraceJob& job)
         if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
         resize_output(output_words(job, kernel_.task));
         launches_.start(
-            launch_params(job, divisions_, tile_height_, parts_.log2_bytes), job.passes,
+            launch_params(job, domain_, tile_height_, parts_.log2_bytes), job.passes,
             [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
                 enqueue(params, tiles, passes);
             },

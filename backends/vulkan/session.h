@@ -68,7 +68,7 @@ private:
     bool starts_outside_ = true;      ///< all rays so far start outside: the program has no other start
     bool in_texels_ = false;          ///< the scene's arrays are read as texels
     std::uint32_t stack_entries_ = 0; ///< as ProgramId has it
-    std::uint32_t divisions_ = 0;
+    PackedDomain domain_;
     std::uint64_t bytes_ = 0;
     SetupTimes setup_;
 

@@ -18,10 +18,11 @@ constexpr std::uint32_t most_targets = 10; // of all passes of a launch: a secon
 
 } // namespace
 
-LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height, unsigned part_log2)
+LaunchParams launch_params(const TraceJob& job, const PackedDomain& domain, unsigned tile_height, unsigned part_log2)
 {
-    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width, job.height,  job.start_tet,
-            job.max_steps,   job.any_hit,     job.start,       divisions,       0,         tile_height, part_log2};
+    return {job.view.origin, job.view.corner, job.view.step_x, job.view.step_y, job.width,        job.height,
+            job.start_tet,   job.max_steps,   job.any_hit,     job.start,       domain.divisions, 0,
+            tile_height,     part_log2,       domain.low,      domain.high};
 }
 
 std::uint32_t tile_count(const LaunchParams& image)

@@ -13,11 +13,13 @@ struct LaunchParams {
     std::uint32_t width, height, start_tet, max_steps, any_hit;
     StartTet start;
     std::uint32_t divisions, first_tile, tile_height, part_log2;
+    Float3 domain_low, domain_high;
 };
-static_assert(sizeof(LaunchParams) == 104, "every backend reads LaunchParams; see kernels/launch.h");
+static_assert(sizeof(LaunchParams) == 128, "every backend reads LaunchParams, see kernels/launch.h; Vulkan promises "
+                                           "push constants of no more");
 
 /// The params of a job's first launch.
-[[nodiscard]] LaunchParams launch_params(const TraceJob& job, std::uint32_t divisions, unsigned tile_height,
+[[nodiscard]] LaunchParams launch_params(const TraceJob& job, const PackedDomain& domain, unsigned tile_height,
                                          unsigned part_log2);
 
 /// Tiles of an image, row after row.

@@ -100,6 +100,18 @@ std::size_t PackedScene::bytes() const
            (lines.size() + entry_ranges.size() + entry_links.size() + occlusive_faces.size()) * sizeof(std::uint32_t);
 }
 
+PackedDomain domain_of(const PackedScene& scene)
+{
+    PackedDomain domain{scene.divisions, {}, {}};
+    if (scene.lines.empty()) return domain;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        const std::size_t first = axis * (std::size_t{scene.divisions} + 1);
+        domain.low[static_cast<int>(axis)] = std::bit_cast<float>(scene.lines.at(first));
+        domain.high[static_cast<int>(axis)] = std::bit_cast<float>(scene.lines.at(first + scene.divisions));
+    }
+    return domain;
+}
+
 PackedScene pack(const Scene& scene, Layout layout, TetOrder order)
 {
     const LayoutTraits& traits = traits_of(layout);

@@ -55,6 +55,15 @@ struct PackedScene {
     [[nodiscard]] std::size_t bytes() const; ///< of all arrays that are copied to a device
 };
 
+/// The domain's box and its squares along a side, which kernels are told beside the arrays.
+struct PackedDomain {
+    std::uint32_t divisions = 1;
+    Float3 low, high;
+};
+
+/// Of packed tets; the box of a BVH is all zero.
+[[nodiscard]] PackedDomain domain_of(const PackedScene& scene);
+
 /// Packs a scene's tets.
 /// scene: valid (see find_defect), with at most as many tets as the layout's traits allow (traits.h). layout: of tets.
 /// Throws Error{unsupported} naming both numbers where the scene has more.

@@ -9,7 +9,7 @@
 #define PRECISE // contraction is switched off by the compiler's flags
 #define STRUCT(name) struct name
 #define VEC3(x, y, z) (Vec3{(x), (y), (z)})
-#define FETCH(scene, array, index) (assert((index) < (scene).array##_size), (scene).array[(index)])
+#define FETCH(scene, array, index) (assert((index) < (scene).array##_size()), (scene).array()[(index)])
 
 using uint = std::uint32_t;
 using uint4 = tetrace::Quad;
@@ -22,7 +22,16 @@ KERNEL_FN real as_real(uint bits)
 {
     return real(std::bit_cast<float>(bits));
 }
-#ifndef KERNEL_REAL_HAS_NO_BITS
+#ifdef KERNEL_REAL_HAS_NO_BITS
+KERNEL_FN real magnitude(real value)
+{
+    return value < real(0.0f) ? -value : value;
+}
+#else
+KERNEL_FN real magnitude(real value)
+{
+    return std::fabs(value);
+}
 KERNEL_FN uint as_bits(real value)
 {
     return std::bit_cast<uint>(value);

@@ -31,6 +31,10 @@ KERNEL_FN real square_root(real value)
 {
     return sqrtf(value);
 }
+KERNEL_FN real magnitude(real value)
+{
+    return fabsf(value);
+}
 KERNEL_FN real to_real(uint value)
 {
     return __uint2float_rn(value);

@@ -30,6 +30,10 @@ KERNEL_FN uint as_bits(real value)
 {
     return floatBitsToUint(value);
 }
+KERNEL_FN real magnitude(real value)
+{
+    return abs(value);
+}
 KERNEL_FN real to_real(uint value)
 {
     return real(value);

@@ -32,6 +32,10 @@ KERNEL_FN uint as_bits(real value)
 {
     return as_uint(value);
 }
+KERNEL_FN real magnitude(real value)
+{
+    return fabs(value);
+}
 KERNEL_FN real to_real(uint value)
 {
     return (real)value;

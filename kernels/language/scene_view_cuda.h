@@ -8,4 +8,5 @@ STRUCT(SceneView)
 #include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
     uint divisions;
+    DomainBox domain;
 };

@@ -11,6 +11,7 @@
 STRUCT(SceneView)
 {
     uint divisions;
+    DomainBox domain;
     uint part_log2; // tets in several buffers: log2 of the bytes of each but the last
 };
 

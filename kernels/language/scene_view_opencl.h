@@ -10,6 +10,7 @@ STRUCT(SceneView)
 #include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
     uint divisions;
+    DomainBox domain;
 #ifdef STACK_TOP
     __local uint* group_words; // kernels/stack.h
 #endif

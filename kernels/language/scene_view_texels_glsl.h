@@ -17,5 +17,6 @@
 STRUCT(SceneView)
 {
     uint divisions;
+    DomainBox domain;
     uint part_log2; // tets do not come in parts here
 };

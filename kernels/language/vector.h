@@ -6,6 +6,12 @@ STRUCT(Vec3)
     real z;
 };
 
+STRUCT(DomainBox)
+{
+    Vec3 low;
+    Vec3 high;
+};
+
 KERNEL_FN Vec3 sub3(Vec3 a, Vec3 b)
 {
     PRECISE real x = a.x - b.x;
@@ -31,11 +37,6 @@ KERNEL_FN Vec3 cross3(Vec3 a, Vec3 b)
 KERNEL_FN real component(Vec3 a, uint axis)
 {
     return axis == 0u ? a.x : axis == 1u ? a.y : a.z;
-}
-
-KERNEL_FN real magnitude(real a)
-{
-    return a < real(0.0f) ? -a : a;
 }
 
 KERNEL_FN Vec3 magnitudes(Vec3 a)

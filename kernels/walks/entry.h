@@ -20,21 +20,6 @@ KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
     return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
 }
 
-STRUCT(DomainBox)
-{
-    Vec3 low;
-    Vec3 high;
-};
-
-KERNEL_FN DomainBox domain_box(SceneView scene)
-{
-    uint n = scene.divisions;
-    DomainBox box;
-    box.low = VEC3(domain_line(scene, 0u, 0u), domain_line(scene, 1u, 0u), domain_line(scene, 2u, 0u));
-    box.high = VEC3(domain_line(scene, 0u, n), domain_line(scene, 1u, n), domain_line(scene, 2u, n));
-    return box;
-}
-
 // The two axes other than this one, in cyclic order.
 KERNEL_FN uint first_axis(uint across)
 {

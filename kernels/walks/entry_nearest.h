@@ -18,7 +18,7 @@ KERNEL_FN uint line_passed(SceneView scene, SideCrossing at)
 // The square of the box by which the ray enters, or 6 divisions^2 where it misses the box.
 KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 {
-    Entry entry = entry_of(domain_box(scene), ray);
+    Entry entry = entry_of(scene.domain, ray);
     if (entry.side == 6u) return 6u * scene.divisions * scene.divisions;
     return square_at(scene, entry, line_passed(scene, entry.a), line_passed(scene, entry.b));
 }

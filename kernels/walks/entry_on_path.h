@@ -33,7 +33,7 @@ KERNEL_FN bool sees_on_one_side(DomainBox box, Ray ray, Vec3 factors)
 // The box of all vertices on a side.
 KERNEL_FN DomainBox side_box(SceneView scene, uint side)
 {
-    DomainBox box = domain_box(scene);
+    DomainBox box = scene.domain;
     uint across = side >> 1u;
     Vec3 plane = (side & 1u) == 1u ? box.high : box.low;
     Vec3 low = VEC3(across == 0u ? plane.x : box.low.x, across == 1u ? plane.y : box.low.y,
@@ -84,7 +84,7 @@ KERNEL_FN uint line_near(uint divisions, SideCrossing at)
 // A square of the box at which the ray enters, or 6 divisions^2 where it misses the box.
 KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 {
-    Entry entry = entry_of(domain_box(scene), ray);
+    Entry entry = entry_of(scene.domain, ray);
     if (entry.side == 6u) return 6u * scene.divisions * scene.divisions;
     uint i = line_near(scene.divisions, entry.a);
     uint j = line_near(scene.divisions, entry.b);

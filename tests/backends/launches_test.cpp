@@ -16,7 +16,7 @@ LaunchParams params_of(std::uint32_t width, std::uint32_t height)
     TraceJob job;
     job.width = width;
     job.height = height;
-    return launch_params(job, 8, 8, 31);
+    return launch_params(job, {.divisions = 8, .low = {}, .high = {}}, 8, 31);
 }
 
 } // namespace
@@ -160,11 +160,13 @@ TEST(LaunchParams, carry_the_job_word_for_word)
     job.height = 9;
     job.start_tet = 3;
     job.max_steps = 100;
-    const LaunchParams params = launch_params(job, 6, 4, 20);
+    const LaunchParams params = launch_params(job, {.divisions = 6, .low = {-1, 0, 0}, .high = {0, 0, 2}}, 4, 20);
     EXPECT_EQ(params.step_y.z, 5);
     EXPECT_EQ(params.width, 17u);
     EXPECT_EQ(params.start_tet, 3u);
     EXPECT_EQ(params.divisions, 6u);
+    EXPECT_EQ(params.domain_low, (Float3{-1, 0, 0}));
+    EXPECT_EQ(params.domain_high, (Float3{0, 0, 2}));
     EXPECT_EQ(params.tile_height, 4u);
     EXPECT_EQ(params.part_log2, 20u);
     EXPECT_EQ(tile_count(params), 3u * 3u);

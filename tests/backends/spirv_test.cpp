@@ -92,17 +92,17 @@ std::vector<Member> expected_push_constants()
     std::vector<Member> members;
     const auto add_vector = [&](const std::string& name, std::size_t offset) {
         for (const std::string axis : {"x", "y", "z"}) {
-            members.push_back({"launch.trace." + name + "." + axis, static_cast<std::uint32_t>(offset), "float"});
+            members.push_back({"launch." + name + "." + axis, static_cast<std::uint32_t>(offset), "float"});
             offset += sizeof(float);
         }
     };
     const auto add = [&](const std::string& path, std::size_t offset) {
         members.push_back({"launch." + path, static_cast<std::uint32_t>(offset), "uint"});
     };
-    add_vector("origin", offsetof(LaunchParams, origin));
-    add_vector("corner", offsetof(LaunchParams, corner));
-    add_vector("step_x", offsetof(LaunchParams, step_x));
-    add_vector("step_y", offsetof(LaunchParams, step_y));
+    add_vector("trace.origin", offsetof(LaunchParams, origin));
+    add_vector("trace.corner", offsetof(LaunchParams, corner));
+    add_vector("trace.step_x", offsetof(LaunchParams, step_x));
+    add_vector("trace.step_y", offsetof(LaunchParams, step_y));
     add("trace.width", offsetof(LaunchParams, width));
     add("trace.height", offsetof(LaunchParams, height));
     add("trace.start_tet", offsetof(LaunchParams, start_tet));
@@ -115,6 +115,8 @@ std::vector<Member> expected_push_constants()
     add("first_tile", offsetof(LaunchParams, first_tile));
     add("tile_height", offsetof(LaunchParams, tile_height));
     add("part_log2", offsetof(LaunchParams, part_log2));
+    add_vector("domain.low", offsetof(LaunchParams, domain_low));
+    add_vector("domain.high", offsetof(LaunchParams, domain_high));
     return members;
 }
 

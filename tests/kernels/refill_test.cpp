@@ -98,7 +98,8 @@ protected:
         if (!rays.empty()) on_host->set_rays(rays);
         for (const unsigned tile_height : {4u, 8u}) {
             std::vector<std::uint32_t> output(output_words(job, task), POISON);
-            const LaunchParams params = launch_params(job, scene.packed->divisions, tile_height, TetParts{}.log2_bytes);
+            const LaunchParams params =
+                launch_params(job, domain_of(*scene.packed), tile_height, TetParts{}.log2_bytes);
             const WarpCounts counts = GetParam().trace_by_warps({*scene.packed, params, rays, output});
             EXPECT_GT(counts.refills, 10u) << "lanes were refilled";
             EXPECT_EQ(different_rays(hits_in(output), traced(*on_host, job), 0), 0u) << tile_height;
@@ -115,7 +116,7 @@ protected:
         const TraceJob job = given_job(set.rays.size(), 1, false);
         const std::vector<Quad> rays = given_quads_offset(set, cubes.scene.mesh);
         std::vector<std::uint32_t> output(output_words(job, Task::rays), POISON);
-        const LaunchParams params = launch_params(job, packed.divisions, 4, TetParts{}.log2_bytes);
+        const LaunchParams params = launch_params(job, domain_of(packed), 4, TetParts{}.log2_bytes);
         return GetParam().trace_by_warps({packed, params, rays, output, 1, patience}).visits;
     }
 

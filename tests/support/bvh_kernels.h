@@ -16,9 +16,9 @@ namespace tetrace::test::bvh {
 
 #include "kernels/language/dialect_cpp.h"
 
-#include "kernels/language/scene_view_cpp.h"
-
 #include "kernels/language/vector.h"
+
+#include "kernels/language/scene_view_cpp.h"
 
 #include "kernels/ray.h"
 
