@@ -1,7 +1,7 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS and
-// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP,
-// where stacks begin in local memory.
+// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP, where
+// stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/vector.h"
@@ -39,17 +39,15 @@ KERNEL_FN void run_item(SceneView scene, LaunchParams launch, uint tile, __globa
 
 // Traces the tiles from launch.first_tile to end_tile - 1. counter: the next tile that no group has taken, for schedule
 // persistent. session.cpp sets the arguments in this order.
-__kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image(const LaunchParams launch,
-                                                                                 const uint end_tile,
-                                                                                 __global uint* restrict output,
-                                                                                 __global uint* restrict counter,
-                                                                                 __global const uint4* restrict rays
+__kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image(
+    const LaunchParams launch, const uint end_tile, __global uint* restrict output, __global uint* restrict counter,
+    __global const uint4* restrict rays
 #define SCENE_ARRAY(element, name, member, binding) , __global const element* restrict name
 #include KERNEL_ARRAYS_HEADER
 #undef SCENE_ARRAY
 #ifdef TETS_IN_PARTS
 #define PART_ARGUMENT(number) , __global const uint4* restrict part_##number
-                                                                                     MORE_TET_PARTS(PART_ARGUMENT)
+    MORE_TET_PARTS(PART_ARGUMENT)
 #endif
 )
 {
@@ -71,8 +69,8 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
 
 #ifdef PERSISTENT
     // A group stays, and its first item fetches the group's next tile, until none is left (Aila, Laine, Karras 2012).
-    // Two words in turn: while some items still read one of them, the next tile goes to the other. One barrier is
-    // enough: the first item writes a word again only after a barrier that all items reach when they have read it.
+    // Two words in turn: while some items still read one of them, the next tile goes to the other. One barrier is enough:
+    // the first item writes a word again only after a barrier that all items reach when they have read it.
     __local uint fetched[2];
     for (uint turn = 0u;; turn ^= 1u) {
         if (get_local_id(0) == 0u) fetched[turn] = atomic_inc(counter);
