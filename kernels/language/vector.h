@@ -6,6 +6,7 @@ STRUCT(Vec3)
     real z;
 };
 
+// The box that the tets fill.
 STRUCT(DomainBox)
 {
     Vec3 low;

@@ -14,12 +14,6 @@ STRUCT(EntryFace)
     Vec3 c;
 };
 
-// Place in the array of the domain's line `index` along `axis`.
-KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
-{
-    return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
-}
-
 // The two axes other than this one, in cyclic order.
 KERNEL_FN uint first_axis(uint across)
 {

@@ -1,5 +1,11 @@
 // The boundary face by which a ray enters the domain, for walks by links.
 
+// The place of the domain's line `index` along `axis`.
+KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
+{
+    return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
+}
+
 KERNEL_FN bool is_beyond_line(SceneView scene, SideCrossing at, uint index)
 {
     PRECISE real product = (domain_line(scene, at.axis, index) - at.origin) * at.slope;
