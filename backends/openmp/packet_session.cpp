@@ -1,5 +1,6 @@
 #include "backends/openmp/packet_session.h"
 
+#include "backends/openmp/hit_tile.h"
 #include "backends/openmp/outline.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
@@ -33,7 +34,6 @@ struct Rays {
     scalar::SceneView scene;
     scalar::TraceParams params;
     std::span<const Quad> given;
-    Hit* hits;
 
     [[nodiscard]] const Quad& direction(std::uint32_t number) const { return given[number]; }
     [[nodiscard]] const Quad& origin(std::uint32_t number) const
@@ -42,19 +42,28 @@ struct Rays {
     }
 };
 
-void trace_pixel(const void* context, std::uint32_t number)
+const Rays& rays_of(const PacketJob& job)
 {
-    const Rays& rays = *static_cast<const Rays*>(context);
-    const std::uint32_t width = rays.params.width;
-    rays.hits[number] = std::bit_cast<Hit>(
-        scalar::trace(rays.scene, rays.params, scalar::primary_ray(rays.params, number % width, number / width)));
+    return *static_cast<const Rays*>(job.context);
 }
 
-void trace_given(const void* context, std::uint32_t number)
+void write_hit(const PacketJob& job, std::uint32_t number, const scalar::Hit& hit)
 {
-    const Rays& rays = *static_cast<const Rays*>(context);
-    rays.hits[number] =
-        std::bit_cast<Hit>(scalar::trace_given(rays.scene, rays.params, rays.direction(number), rays.origin(number)));
+    static_assert(sizeof(hit) == HIT_WORDS * sizeof(std::uint32_t));
+    std::memcpy(job.hits + std::size_t{HIT_WORDS} * number, &hit, sizeof(hit));
+}
+
+void trace_pixel(const PacketJob& job, std::uint32_t number)
+{
+    const Rays& rays = rays_of(job);
+    const std::uint32_t x = job.block_x + number % packet_block_size, y = job.block_y + number / packet_block_size;
+    write_hit(job, number, scalar::trace(rays.scene, rays.params, scalar::primary_ray(rays.params, x, y)));
+}
+
+void trace_given(const PacketJob& job, std::uint32_t number)
+{
+    const Rays& rays = rays_of(job);
+    write_hit(job, number, scalar::trace_given(rays.scene, rays.params, rays.direction(number), rays.origin(number)));
 }
 
 std::vector<PacketKernel> kernels_of_host()
@@ -127,7 +136,6 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
         result.directions = reinterpret_cast<const std::uint32_t*>(&rays.direction(0));
         result.origins = reinterpret_cast<const std::uint32_t*>(&rays.origin(0));
     }
-    result.hits = reinterpret_cast<std::uint32_t*>(rays.hits);
     result.trace_one = rays.given.empty() ? trace_pixel : trace_given;
     result.context = &rays;
     return result;
@@ -144,6 +152,22 @@ void on_threads(unsigned threads, const Work& work)
         std::fesetenv(FE_DFL_ENV);
         work();
         std::fesetenv(&environment);
+    }
+}
+
+// The share of an image's blocks of the thread that calls it.
+void trace_blocks(const PacketKernel& kernel, PacketJob job, std::span<Hit> hits)
+{
+    const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
+    const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
+    HitTile tile(hits, job.width, job.height);
+    job.hits = reinterpret_cast<std::uint32_t*>(tile.hits().data());
+#pragma omp for schedule(dynamic, 1)
+    for (std::uint32_t block = 0; block < blocks; ++block) {
+        job.block_x = block % across * packet_block_size;
+        job.block_y = block / across * packet_block_size;
+        kernel.block(job);
+        tile.store(job.block_x, job.block_y);
     }
 }
 
@@ -184,29 +208,27 @@ SetupTimes PacketSession::setup_times() const
 void PacketSession::set_rays(std::span<const Quad> quads)
 {
     rays_.assign(quads.begin(), quads.end());
-    const auto origins = quads.subspan(quads.size() / GIVEN_RAY_QUADS);
+    const auto directions = quads.first(quads.size() / GIVEN_RAY_QUADS), origins = quads.subspan(directions.size());
+    rays_start_outside_ = std::ranges::any_of(directions, [](const Quad& quad) { return quad.w == NO_LINK; });
     rays_end_ = std::ranges::any_of(origins, [](const Quad& quad) { return std::bit_cast<float>(quad.w) < NO_END; });
 }
 
 void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
 {
-    const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_, as_hits(output).data()};
+    const Rays rays{scalar::view_of(scene_), scalar::params_of(job), rays_};
     PacketJob packets = packet_job(scene_, records_.get(), job, rays);
     packets.has_ends = rays_end_;
+    packets.starts_outside = rays_start_outside_;
     if (task_ == Task::trace) set_outline(packets);
-    const std::uint32_t across = (job.width + packet_block_size - 1) / packet_block_size;
-    const std::uint32_t blocks = across * ((job.height + packet_block_size - 1) / packet_block_size);
+    packets.hits = output.data();
     std::uint32_t next_ray = 0;
     packets.ray_count = job.width * job.height;
     packets.next_ray = &next_ray;
     on_threads(threads_, [&] {
-        if (task_ == Task::rays) {
+        if (task_ == Task::rays)
             kernel_.rays(packets);
-            return;
-        }
-#pragma omp for schedule(dynamic, 1)
-        for (std::uint32_t block = 0; block < blocks; ++block)
-            kernel_.trace(packets, block % across * packet_block_size, block / across * packet_block_size);
+        else
+            trace_blocks(kernel_, packets, as_hits(output));
     });
 }
 

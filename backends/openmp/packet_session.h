@@ -11,8 +11,8 @@ namespace tetrace::openmp {
 /// A width that packets are compiled for, and their kernel.
 struct PacketKernel {
     unsigned lanes;
-    TraceBlock* trace;
-    TraceRays* rays;
+    TracePackets* block;
+    TracePackets* rays;
 };
 /// The widths that this build has and this processor runs, the widest first; never empty.
 [[nodiscard]] const std::vector<PacketKernel>& packet_kernels();
@@ -43,6 +43,7 @@ private:
     double copy_s_ = 0;
     std::vector<Quad> rays_;
     bool rays_end_ = false;                        ///< any of them
+    bool rays_start_outside_ = false;              ///< any of them
     std::unique_ptr<std::uint32_t, Free> records_; ///< aligned so that no record crosses a cache line, on huge pages
 };
 

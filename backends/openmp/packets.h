@@ -23,28 +23,29 @@ struct PacketJob {
     OutlineEdge outline[6];                           ///< of the domain, from the origin (outline.h)
     std::uint32_t outline_edges;                      ///< 4 or 6; 0 if the origin is inside
     std::uint32_t width, height, start_tet, max_steps;
+    std::uint32_t block_x, block_y;  ///< the first pixel of the block to trace, unless rays are given
     const std::uint32_t* directions; ///< quads of given rays, null if there are none: {direction, link}
     const std::uint32_t* origins;    ///< {origin, end}
     bool has_ends;                   ///< whether any of them ends
+    bool starts_outside;             ///< whether any of them starts outside the domain
     std::uint32_t ray_count;         ///< number of given rays
     std::uint32_t* next_ray;         ///< the first ray that no thread has taken
-    std::uint32_t* hits;             ///< HIT_WORDS a ray: pixels row after row, or rays in their order
-    /// Traces the ray of that number with the scalar kernel, and writes its hit.
-    void (*trace_one)(const void* context, std::uint32_t number);
+    std::uint32_t* hits;             ///< HIT_WORDS a ray: of the block, its pixels row after row, or of all given rays
+    /// Traces the ray of that number among these with the scalar kernel, and writes its hit.
+    void (*trace_one)(const PacketJob& job, std::uint32_t number);
     const void* context;
 };
 
-/// Pixels along the side of a block, which one call traces; pixels outside the image are left out.
+/// Pixels along the side of a block, which one call traces. What it writes for pixels outside the image has no meaning.
 inline constexpr std::uint32_t packet_block_size = 32;
 
-/// Traces the block of pixels whose first one is (x, y), in packets of that many lanes: 16 need AVX-512 (F, BW, DQ,
-/// VL), 8 need AVX2, and 4 need no more than the whole program.
-using TraceBlock = void(const PacketJob& job, std::uint32_t x, std::uint32_t y);
-extern "C" TraceBlock tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
-
+/// Traces in packets of that many lanes: 16 need AVX-512 (F, BW, DQ, VL), 8 need AVX2, and 4 need no more than the
+/// whole program.
+using TracePackets = void(const PacketJob& job);
+/// Traces the job's block of pixels.
+extern "C" TracePackets tetrace_trace_block_4, tetrace_trace_block_8, tetrace_trace_block_16;
 /// The work of each thread for given rays: traces rays until none is left; a lane takes a new ray when its ray has
 /// ended.
-using TraceRays = void(const PacketJob& job);
-extern "C" TraceRays tetrace_trace_rays_4, tetrace_trace_rays_8, tetrace_trace_rays_16;
+extern "C" TracePackets tetrace_trace_rays_4, tetrace_trace_rays_8, tetrace_trace_rays_16;
 
 } // namespace tetrace::openmp

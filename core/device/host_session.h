@@ -2,6 +2,8 @@
 
 #include "core/device/backend.h"
 
+#include <boost/align/aligned_allocator.hpp>
+
 #include <vector>
 
 namespace tetrace {
@@ -20,7 +22,8 @@ private:
     virtual void run(const TraceJob& job, std::span<std::uint32_t> output) = 0;
 
     Task task_;
-    std::vector<std::uint32_t> output_;
+    /// The first hit, behind the guard, begins a cache line as the first guard does.
+    std::vector<std::uint32_t, boost::alignment::aligned_allocator<std::uint32_t, 64>> output_;
     double kernel_s_ = 0;
 };
 

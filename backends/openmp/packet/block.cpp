@@ -31,7 +31,7 @@ using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/given.h"
 
-constexpr uint packets_at_once = 4;
+constexpr uint most_in_turns = 8; // packets: enough that what one of them prefetches is there when its turn comes
 
 // Steps that packets do not count: the one out of the tet in which all rays start.
 LANE_FN uint steps_before(const PacketJob& job)
@@ -39,27 +39,36 @@ LANE_FN uint steps_before(const PacketJob& job)
     return job.start_tet == NO_TET ? 0 : 1;
 }
 
-// Lanes with one deepest axis, from several packets of a block; packets are given by their numbers.
-template <int z, uint count>
-[[gnu::noinline]] void trace_lanes(const PacketJob& job, const Packets& block, const uint* numbers, Packet* packets,
-                                   const ByAxis* lanes)
+// Packets that walk in turns. numbers: of the packets in their block.
+struct Group {
+    uint count;
+    uint numbers[most_in_turns];
+    Packet packets[most_in_turns];
+    ByAxis lanes[most_in_turns];
+};
+
+// The group's lanes with one deepest axis.
+template <int z>
+[[gnu::noinline]] void trace_lanes(const PacketJob& job, const Packets& block, Group& group)
 {
-    Walk<z> walks[count];
-    for (uint i = 0; i < count; ++i) {
+    Walk<z> walks[most_in_turns];
+    Packet* const packets = group.packets;
+    for (uint i = 0; i < group.count; ++i) {
+        const uint lanes = group.lanes[i].of[z], number = group.numbers[i];
         walks[i].shear = shear_of<z>(packets[i].direction);
         walks[i].turn = walks[i].record = Words{};
         for (Seen& seen : walks[i].carried)
             seen = Seen{Floats{}, Floats{}};
         walks[i].live = 0;
-        if (lanes[i].of[z] == 0) continue;
-        if (block.record[numbers[i]] != NO_LINK)
-            go_on_from(job, packets[i], walks[i], lanes[i].of[z], front_of(block, numbers[i]));
+        if (lanes == 0) continue;
+        if (block.record[number] != NO_LINK)
+            go_on_from(job, packets[i], walks[i], lanes, front_of(block, number));
         else if (job.start_tet == NO_TET)
-            enter_domain(job, packets[i], walks[i], lanes[i].of[z]);
+            enter_domain(job, packets[i], walks[i], lanes);
         else
-            leave_start(job, packets[i], walks[i], lanes[i].of[z]);
+            leave_start(job, packets[i], walks[i], lanes);
     }
-    walk_on<z, count>(job, packets, walks, steps_before(job));
+    walk_on(job, packets, walks, group.count, steps_before(job));
 }
 
 // Writes the hits of a packet; rays that took too many steps in a beam are left to the scalar kernel.
@@ -70,39 +79,35 @@ LANE_FN void write_counted_hits(const PacketJob& job, Packet& packet)
     write_hits(job, packet, packet.lanes);
 }
 
-// Traces packets of a block, given by their numbers, from where their beams stopped.
-template <uint count>
-void trace_packets(const PacketJob& job, const Packets& block, const uint* numbers)
+// Traces a group's packets from where their beams stopped.
+void trace_group(const PacketJob& job, const Packets& block, Group& group)
 {
-    Packet packets[count];
-    ByAxis lanes[count];
     uint any[3] = {};
-    for (uint i = 0; i < count; ++i) {
-        const uint number = numbers[i];
-        make_rays(job, block.x[number], block.y[number], packets[i]);
-        if (block.record[number] != NO_LINK) packets[i].steps = all(block.steps[number] - steps_before(job));
-        lanes[i] = by_deepest_axis(packets[i]);
+    for (uint i = 0; i < group.count; ++i) {
+        const uint number = group.numbers[i];
+        Packet& packet = group.packets[i];
+        make_rays(job, block.x[number], block.y[number], packet);
+        if (block.record[number] != NO_LINK) packet.steps = all(block.steps[number] - steps_before(job));
+        group.lanes[i] = by_deepest_axis(packet);
         for (uint axis = 0; axis < 3; ++axis)
-            any[axis] |= lanes[i].of[axis];
+            any[axis] |= group.lanes[i].of[axis];
     }
-    if (any[0] != 0) trace_lanes<0, count>(job, block, numbers, packets, lanes);
-    if (any[1] != 0) trace_lanes<1, count>(job, block, numbers, packets, lanes);
-    if (any[2] != 0) trace_lanes<2, count>(job, block, numbers, packets, lanes);
-    if (count > 1)
-        for (const Packet& packet : packets)
-            prefetch_triangles(job, packet);
-    for (Packet& packet : packets)
-        write_counted_hits(job, packet);
+    if (any[0] != 0) trace_lanes<0>(job, block, group);
+    if (any[1] != 0) trace_lanes<1>(job, block, group);
+    if (any[2] != 0) trace_lanes<2>(job, block, group);
+    for (uint i = 0; i < group.count; ++i)
+        prefetch_triangles(job, group.packets[i]);
+    for (uint i = 0; i < group.count; ++i)
+        write_counted_hits(job, group.packets[i]);
+    group.count = 0;
 }
 
 // A packet whose beam has ended; most have left the domain, and need no rays for that.
 void write_ended(const PacketJob& job, const Packets& block, uint number)
 {
-    const uint x_end = block.x[number] + packet_width, y_end = block.y[number] + packet_height;
-    if (block.exit[number] == NO_LINK && block.steps[number] <= job.max_steps && x_end <= job.width &&
-        y_end <= job.height) {
-        write_misses(job, block.x[number], block.y[number], x_end, y_end, block.record[number] >> 2,
-                     block.steps[number]);
+    if (block.exit[number] == NO_LINK && block.steps[number] <= job.max_steps) {
+        write_misses<packet_width, packet_height>(job, block.x[number], block.y[number], block.record[number] >> 2,
+                                                  block.steps[number]);
         return;
     }
     Packet packet;
@@ -113,33 +118,20 @@ void write_ended(const PacketJob& job, const Packets& block, uint number)
     write_counted_hits(job, packet);
 }
 
-// Prefetches the cache lines that a packet's hits are written to, while there is other work.
-LANE_FN void prefetch_hits(const PacketJob& job, uint x, uint y)
-{
-    for (uint row = y; row < y + packet_height && row < job.height; ++row) {
-        const uint* const to = job.hits + HIT_WORDS * (std::size_t{row} * job.width + x);
-        __builtin_prefetch(to, 1);
-        __builtin_prefetch(to + HIT_WORDS * packet_width - 1, 1);
-    }
-}
-
 void trace_block(const PacketJob& job, Packets& block)
 {
     walk_beams(job, block);
-    uint waiting[packets_at_once], count = 0;
+    Group group;
+    group.count = 0;
     for (uint i = 0; i < block.count; ++i) {
         if (block.has_ended[i]) {
             write_ended(job, block, i);
             continue;
         }
-        prefetch_hits(job, block.x[i], block.y[i]);
-        waiting[count++] = i;
-        if (count < packets_at_once) continue;
-        trace_packets<packets_at_once>(job, block, waiting);
-        count = 0;
+        group.numbers[group.count++] = i;
+        if (group.count == most_in_turns) trace_group(job, block, group);
     }
-    for (uint i = 0; i < count; ++i)
-        trace_packets<1>(job, block, waiting + i);
+    trace_group(job, block, group);
 }
 
 // Collects the packets of a square of pixels by halving it down to squares of 8, without squares that see nothing of
@@ -151,7 +143,7 @@ void collect(const PacketJob& job, uint x, uint y, Packets& block, bool is_doubt
     const Square square = square_at(job, x, y, size);
     const Sight sight = is_doubtful ? sight_of(job, square) : Sight::all;
     if (sight == Sight::none) {
-        write_misses(job, square.x, square.y, square.x_end, square.y_end, NO_TET, 0);
+        write_misses<size, size>(job, square.x, square.y, NO_TET, 0);
     } else if constexpr (size <= 8) {
         for (uint row = square.y; row < square.y_end; row += packet_height)
             for (uint column = square.x; column < square.x_end; column += packet_width) {
@@ -178,11 +170,10 @@ extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_rays_, LANES)(const P
         trace_rays<false>(job);
 }
 
-extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job, std::uint32_t x,
-                                                                          std::uint32_t y)
+extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const PacketJob& job)
 {
     Packets block;
     block.count = 0;
-    collect<tetrace::openmp::packet_block_size>(job, x, y, block, true);
+    collect<tetrace::openmp::packet_block_size>(job, job.block_x, job.block_y, block, true);
     trace_block(job, block);
 }

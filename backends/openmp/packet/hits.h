@@ -78,15 +78,35 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
     if (hitting != 0) meet_triangles(job, packet, hitting, hits);
     write_words(job, packet, lanes & ~packet.left_to_scalar, hits);
     for (uint left = lanes & packet.left_to_scalar; left != 0; left &= left - 1)
-        job.trace_one(job.context, packet.numbers.of[first_of(left)]);
+        job.trace_one(job, packet.numbers.of[first_of(left)]);
 }
 
-// The hits of rays that all leave the domain from the same tet after as many steps, or miss it (NO_TET, 0), of pixels
-// [x, x_end) x [y, y_end).
-LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint x_end, uint y_end, uint tet, uint steps)
+// The words of one miss over and over: a row of misses is these vectors in turn.
+struct Misses {
+    Words of[3];
+};
+LANE_FN Misses misses_of(uint tet, uint steps)
 {
-    const uint hit[HIT_WORDS] = {NO_HIT, tet, 0, 0, 0, steps};
-    for (; y < y_end; ++y)
-        for (uint i = x; i < x_end; ++i)
-            __builtin_memcpy(job.hits + HIT_WORDS * (std::size_t{y} * job.width + i), hit, sizeof(hit));
+    Misses misses;
+    for (uint i = 0; i < 3; ++i)
+        for (uint lane = 0; lane < LANES; ++lane) {
+            const uint word = (i * LANES + lane) % HIT_WORDS;
+            misses.of[i][lane] = word == 0 ? NO_HIT : word == 1 ? tet : word == 5 ? steps : 0;
+        }
+    return misses;
+}
+
+// The hits of rays that all leave the domain from the same tet after as many steps, or miss it (NO_TET, 0), of `width`
+// x `height` pixels of the block from (x, y) on.
+template <uint width, uint height>
+LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint tet, uint steps)
+{
+    constexpr uint vectors = HIT_WORDS * width / LANES, rest = HIT_WORDS * width % LANES; // of a row
+    const Misses misses = misses_of(tet, steps);
+    uint* row = job.hits + HIT_WORDS * number_in_block(job, x, y);
+    for (uint i = 0; i < height; ++i, row += HIT_WORDS * tetrace::openmp::packet_block_size) {
+        for (uint j = 0; j < vectors; ++j)
+            __builtin_memcpy(row + j * LANES, &misses.of[j % 3], sizeof(Words));
+        if (rest != 0) __builtin_memcpy(row + vectors * LANES, &misses.of[vectors % 3], rest * sizeof(uint));
+    }
 }

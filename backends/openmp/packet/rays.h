@@ -28,7 +28,7 @@ LANE_FN Vectors cross3(const Vectors& a, const Vectors& b)
 }
 
 struct Packet {
-    LaneWords numbers; // of the rays: by pixel, row after row, or in the order in which they are given
+    LaneWords numbers; // of the rays: by pixel of the block, row after row, or in the order in which they are given
     Floats origin[3], direction[3];
     Floats end;          // the largest ray parameter of a hit
     uint lanes;          // that have a ray
@@ -52,6 +52,12 @@ LANE_FN void make_rays_through(const PacketJob& job, Floats column, Floats row, 
     packet.steps = Words{};
 }
 
+// The number of a pixel in its block, row after row.
+LANE_FN uint number_in_block(const PacketJob& job, uint x, uint y)
+{
+    return (y - job.block_y) * tetrace::openmp::packet_block_size + x - job.block_x;
+}
+
 LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
 {
     Ints column{}, row{};
@@ -60,7 +66,7 @@ LANE_FN void make_rays(const PacketJob& job, uint x, uint y, Packet& packet)
         const uint at_x = x + lane % packet_width, at_y = y + lane / packet_width;
         column[lane] = static_cast<int>(at_x);
         row[lane] = static_cast<int>(at_y);
-        packet.numbers.of[lane] = at_y * job.width + at_x;
+        packet.numbers.of[lane] = number_in_block(job, at_x, at_y);
         if (at_x < job.width && at_y < job.height) packet.lanes |= 1u << lane;
     }
     make_rays_through(job, __builtin_convertvector(column, Floats), __builtin_convertvector(row, Floats), packet);

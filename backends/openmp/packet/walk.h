@@ -142,19 +142,21 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
 
 // Walks several packets in turn until all lanes have ended: while one waits for its records, others compute.
 // steps: the number of tets that the lanes have already left.
-template <int z, uint count>
-LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint steps)
+template <int z>
+LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint count, uint steps)
 {
-    for (uint i = 0; i < count; ++i)
+    for (uint i = 0; i < count; ++i) {
         store(walks[i].offsets, walks[i].record * (4 * HALF32_QUADS));
+        prefetch_quads(job.records, walks[i].offsets);
+    }
     uint live = every_lane;
     while (live != 0 && steps < job.max_steps) {
         ++steps;
         live = 0;
-#pragma GCC unroll 4
         for (uint i = 0; i < count; ++i) {
             if (walks[i].live == 0) continue;
             step<z, false>(job, packets[i], walks[i], steps);
+            prefetch_quads(job.records, walks[i].offsets);
             live |= walks[i].live;
         }
     }

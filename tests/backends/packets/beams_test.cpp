@@ -1,6 +1,6 @@
 // A beam answers only what all of its rays answer: sides at edges, and ways through a scene.
 #include "kernels/layouts/layout.h"
-#include "tests/backends/beam_probe.h"
+#include "tests/backends/packets/beam_probe.h"
 #include "tests/support/device_rays.h"
 #include "tests/support/packet_widths.h"
 #include "tests/support/random.h"

@@ -1,6 +1,6 @@
 // The beams of packets of LANES rays for beams_test.cpp: compiled as packet/block.cpp is, and like it without inline
 // functions of any library.
-#include "tests/backends/beam_probe.h"
+#include "tests/backends/packets/beam_probe.h"
 #include "kernels/layouts/layout.h"
 
 #include <cstddef>
