@@ -1,28 +1,22 @@
-// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray.
+// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. Where rays enter the domain
+// is found before, in packets all of whose lanes have a ray.
 constexpr uint packets_in_turns = 8;
-constexpr uint lanes_wanted = LANES * 5 / 8; // a packet takes new rays when it has fewer live lanes
-constexpr uint rays_at_once = 512;           // that a thread takes at a time
-constexpr uint rays_ahead = 32;              // whose tets are prefetched before the rays are taken
+constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
+constexpr uint rays_at_once = 512;       // that a thread takes at a time
+constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_QUADS, tet_words = 4 * record_words;
 
+constexpr uint left_link = NO_LINK - 1; // of no face
+
 using GivenWalk = Walk<any_axis>;
 
-// Numbers of the rays that this thread has taken, and that wait.
+// Numbers of the rays that this thread has taken, of which those from `next` on wait. entered: by ray from `first` on,
+// the links by which those from outside enter the domain, NO_LINK where they miss it, left_link for the scalar kernel.
 struct Queue {
-    uint next, end;
+    uint first, next, end;
+    alignas(4 * LANES) uint entered[rays_at_once];
 };
-
-// Whether a ray waits; takes more rays first if none does.
-LANE_FN bool has_rays(const PacketJob& job, Queue& queue)
-{
-    if (queue.next == queue.end && queue.end < job.ray_count) {
-        const auto at_most = [&](uint number) { return number < job.ray_count ? number : job.ray_count; };
-        const uint first = __atomic_fetch_add(job.next_ray, rays_at_once, __ATOMIC_RELAXED);
-        queue = {at_most(first), at_most(first + rays_at_once)};
-    }
-    return queue.next != queue.end;
-}
 
 // Prefetches the two cache lines of the tet that a given ray's link names.
 LANE_FN void prefetch_tet(const PacketJob& job, uint number)
@@ -48,6 +42,41 @@ LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
     const Floats end = as_floats(origin.of[3]);
     packet.end = select(mask, select(greater(all(NO_END), end), end, all(__builtin_inff())), packet.end);
     return direction.of[3];
+}
+
+// Finds where the queue's rays enter the domain.
+[[gnu::noinline]] void enter_domain(const PacketJob& job, Queue& queue)
+{
+    Packet packet{};
+    packet.lanes = every_lane;
+    for (uint first = queue.first; first < queue.end; first += LANES) {
+        for (uint lane = 0; lane < LANES; ++lane)
+            packet.numbers.of[lane] = first + lane < queue.end ? first + lane : first;
+        packet.left_to_scalar = 0;
+        const uint outside = lanes_of(equal(fetch_rays(job, packet, every_lane), all(NO_LINK)));
+        if (outside == 0) continue;
+        const Words links = entry_links(job, packet, shear_of<any_axis>(packet.direction), outside);
+        *reinterpret_cast<Words*>(queue.entered + (first - queue.first)) =
+            select(mask_of(packet.left_to_scalar), all(left_link), links);
+    }
+}
+
+// Whether a ray waits, or may be taken.
+LANE_FN bool may_have_rays(const PacketJob& job, const Queue& queue)
+{
+    return queue.next != queue.end || queue.end < job.ray_count;
+}
+
+// Whether a ray waits; takes more rays first if none does.
+LANE_FN bool has_rays(const PacketJob& job, Queue& queue)
+{
+    if (queue.next == queue.end && may_have_rays(job, queue)) {
+        const auto at_most = [&](uint number) { return number < job.ray_count ? number : job.ray_count; };
+        queue.first = queue.next = at_most(__atomic_fetch_add(job.next_ray, rays_at_once, __ATOMIC_RELAXED));
+        queue.end = at_most(queue.first + rays_at_once);
+        if (job.starts_outside) enter_domain(job, queue);
+    }
+    return queue.next != queue.end;
 }
 
 // Selects carried vertex i, or a property of it, from those of the four vertices of lanes' tets. A ray that leaves by
@@ -105,6 +134,35 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     store(walk.offsets, walk.record * record_words);
 }
 
+// Lets lanes enter the domain where enter_domain() has found that they do.
+template <bool has_ends>
+LANE_FN void enter_records(const PacketJob& job, const Queue& queue, Packet& packet, GivenWalk& walk, uint lanes,
+                           uint steps)
+{
+    LaneWords link_of{};
+    uint entering = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const uint lane = first_of(lanes), link = queue.entered[packet.numbers.of[lane] - queue.first];
+        if (link == left_link) packet.left_to_scalar |= 1u << lane;
+        if (link == left_link || link == NO_LINK) continue;
+        link_of.of[lane] = link;
+        entering |= 1u << lane;
+    }
+    const Words links = *reinterpret_cast<const Words*>(link_of.of);
+    const Mask mask = mask_of(entering);
+    for (uint i = 0; i < 3; ++i) {
+        const Quad corner = corners_of(job, links, i);
+        walk.carried[i] = select(mask, seen_at(packet, walk.shear, corner.of), walk.carried[i]);
+        if constexpr (has_ends) walk.depths[i] = select(mask, depth_at(packet, corner.of), walk.depths[i]);
+    }
+    if constexpr (has_ends) walk.reach = depth_of_end(packet);
+    packet.steps = select(mask, all(0u - steps), packet.steps);
+    walk.live |= entering;
+    walk.turn = select(mask, Words{}, walk.turn);
+    walk.record = select(mask, links, walk.record);
+    store(walk.offsets, walk.record * record_words);
+}
+
 // Writes the hits of a packet's ended rays, and lets its free lanes take new rays. steps: of the packet so far.
 template <bool has_ends>
 [[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Packet& packet, GivenWalk& walk, uint steps)
@@ -125,22 +183,23 @@ template <bool has_ends>
         if (queue.next + rays_ahead < job.ray_count) prefetch_tet(job, queue.next + rays_ahead);
     }
     if (taken == 0) return;
-    Words links = fetch_rays(job, packet, taken);
+    const Words links = fetch_rays(job, packet, taken);
     const Mask mask = mask_of(taken);
     walk.shear = shear_of<any_axis>(packet.direction);
-    const uint outside = taken & lanes_of(equal(links, all(NO_LINK)));
-    if (outside != 0) links = select(mask_of(outside), entry_links(job, packet, walk, outside), links);
     packet.lanes |= taken;
     packet.exit = select(mask, all(NO_LINK), packet.exit);
     packet.record = select(mask, all(NO_LINK), packet.record);
     packet.steps = select(mask, Words{}, packet.steps);
-    leave_tets<has_ends>(job, packet, walk, taken & ~lanes_of(equal(links, all(NO_LINK))), links, steps);
+    const uint outside = taken & lanes_of(equal(links, all(NO_LINK))), inside = taken & ~outside;
+    if (outside != 0) enter_records<has_ends>(job, queue, packet, walk, outside, steps);
+    if (inside != 0) leave_tets<has_ends>(job, packet, walk, inside, links, steps);
 }
 
 template <bool has_ends>
 [[gnu::noinline]] void trace_rays(const PacketJob& job)
 {
-    Queue queue{};
+    Queue queue;
+    queue.first = queue.next = queue.end = 0;
     Packet packets[packets_in_turns];
     GivenWalk walks[packets_in_turns];
     uint checked[packets_in_turns] = {};
@@ -150,7 +209,7 @@ template <bool has_ends>
     }
     bool goes_on = true;
     for (uint steps = 0; goes_on; ++steps) {
-        goes_on = false;
+        goes_on = may_have_rays(job, queue); // even where all lanes have just run out of steps
         for (uint i = 0; i < packets_in_turns; ++i) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
             const bool takes = live < lanes_wanted && has_rays(job, queue);
