@@ -127,7 +127,8 @@ std::vector<OptionRow> row_options()
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
              " (the number of rays that a BVH gets at once), or 'all'. Default: maria, project on half32, and the "
-             "methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria with BVHs.",
+             "methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria with BVHs, and "
+             "through tets for rays project on half32.",
          reproducing | selecting | bit(Verb::dump), true,
          append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",

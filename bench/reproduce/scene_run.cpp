@@ -91,6 +91,27 @@ Options options_of(Structure structure, Options options)
     return options;
 }
 
+/// The CDT's fastest walk, which tets for rays are compared by where the user has not left it out.
+constexpr Method fastest_method = Method::project;
+constexpr Layout fastest_layout = Layout::half32;
+
+bool takes_fastest(const Options& options)
+{
+    const Options of_cdt = options_of(Structure::cdt, options);
+    const auto takes = [](const auto& list, auto value) {
+        return list.empty() || std::ranges::find(list, value) != list.end();
+    };
+    return takes(of_cdt.methods, fastest_method) && takes(of_cdt.layouts, fastest_layout);
+}
+
+Options of_fastest(const Options& options)
+{
+    Options of_cdt = options_of(Structure::cdt, options);
+    of_cdt.methods = {fastest_method};
+    of_cdt.layouts = {fastest_layout};
+    return of_cdt;
+}
+
 } // namespace
 
 std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& options)
@@ -99,9 +120,12 @@ std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& option
     Options of_cdt = options_of(Structure::cdt, options);
     if (!build.methods) of_cdt.methods = {Method::maria};
     auto rows = select_rows(of_cdt, {build.label});
-    if (!build.rivals) return rows;
-    for (RowKey& key : select_rows(options_of(Structure::bvh, options), {build.label}))
-        rows.push_back(std::move(key));
+    const auto add = [&](const Options& others) {
+        for (RowKey& key : select_rows(others, {build.label}))
+            rows.push_back(std::move(key));
+    };
+    if (!build.methods && build.build == rays_build && takes_fastest(options)) add(of_fastest(options));
+    if (build.rivals) add(options_of(Structure::bvh, options));
     return rows;
 }
 

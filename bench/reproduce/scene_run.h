@@ -26,7 +26,8 @@ struct SceneBuild {
     std::string label;      ///< name in rows: the scene, with "-paper" or "-rays" appended for these builds
     bool robustness = true; ///< whether to look for flat tets
     bool timing = true;     ///< whether to take samples
-    bool methods = true;    ///< whether to trace all methods of the cdt that were asked for, or only maria
+    bool methods = true;    ///< whether to trace all methods of the cdt that were asked for, or only maria (and the
+                            ///< fastest walk through tets for rays)
     bool rivals = false;    ///< whether to trace the BVHs as well
     bool growth = false;    ///< whether it is one of the sizes of growth, which has tables of its own
 };

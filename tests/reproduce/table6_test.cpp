@@ -139,6 +139,24 @@ TEST(Table6, rows_pair_on_one_device_and_embree_with_openmp)
     EXPECT_EQ(fastest_pairs(run).size(), 4u + 2) << "one layout of the CDT a device";
 }
 
+TEST(Table6, tets_for_rays_are_compared_by_the_fastest_walk_as_well_the_cdt_by_marias_alone)
+{
+    SceneRun run = open_run("openmp");
+    const auto has_project = [&] {
+        return std::ranges::any_of(row_pairs(run), [&](const RowPair& pair) {
+            return run.rows[pair.cdt].key.kernel.method == Method::project;
+        });
+    };
+    run.rows[find_row(run, Layout::tet96, Method::maria)].key.kernel.method = Method::project;
+    set_all(run, 2, 3);
+    EXPECT_FALSE(has_project()) << "the paper's claims are about its own method";
+    run.build.build = rays_build;
+    EXPECT_TRUE(has_project());
+    set_times(run, find_row(run, Layout::tet96, Method::project), ramp(1.5));
+    for (const RowPair& pair : fastest_pairs(run))
+        EXPECT_EQ(run.rows[pair.cdt].key.kernel.method, Method::project);
+}
+
 TEST(Table6, rows_of_different_math_modes_are_not_compared)
 {
     SceneRun run = open_run("openmp");

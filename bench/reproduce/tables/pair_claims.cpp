@@ -62,12 +62,13 @@ std::string pair_evidence(const RowPair& pair)
         const auto [least, most] = std::ranges::minmax_element(frames);
         return fmt::format("{:.4g} to {:.4g}", *least, *most);
     };
-    return fmt::format("{} {}: the time of {} is {} of that of the {}, median of {} views, {:.3g} to {:.3g}, above 1 "
-                       "in {:.1f} % of them; {} frames/s of the tets, {} of the BVH.",
-                       name_of(cdt.key.kernel.layout), device_label(cdt.key),
-                       name_of(pair.run->rows[pair.bvh].key.kernel.layout), estimate_text(pair.ratio.median),
-                       tets_name(*pair.run), pair.ratio.views.size(), pair.ratio.lowest, pair.ratio.highest,
-                       100 * pair.ratio.won, range(cdt_frames), range(bvh_frames));
+    return fmt::format(
+        "{} {} {}: the time of {} is {} of that of the {}, median of {} views, {:.3g} to {:.3g}, above 1 "
+        "in {:.1f} % of them; {} frames/s of the tets, {} of the BVH.",
+        name_of(cdt.key.kernel.method), name_of(cdt.key.kernel.layout), device_label(cdt.key),
+        name_of(pair.run->rows[pair.bvh].key.kernel.layout), estimate_text(pair.ratio.median), tets_name(*pair.run),
+        pair.ratio.views.size(), pair.ratio.lowest, pair.ratio.highest, 100 * pair.ratio.won, range(cdt_frames),
+        range(bvh_frames));
 }
 
 Claim faster_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, DeviceKind kind)
@@ -102,7 +103,7 @@ Claim faster_claim(const SceneRuns& runs, const paper::PairOutcome& outcome, Dev
 Claim rays_claim(const SceneRun& run, DeviceKind kind)
 {
     Claim claim{fmt::format("table6-tets-for-rays-are-faster-on-{}-{}", run.build.scene, name_of(kind)),
-                fmt::format("not the paper's: on {}, maria in tets for rays is faster than bvh2 and cwbvh on {}",
+                fmt::format("not the paper's: on {}, a walk through tets for rays is faster than bvh2 and cwbvh on {}",
                             kind == DeviceKind::gpu ? "a GPU" : "this CPU", run.build.scene)};
     std::vector<Estimate> ratios;
     bool noisy = false;
