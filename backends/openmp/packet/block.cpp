@@ -31,8 +31,6 @@ using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/given.h"
 
-constexpr uint most_in_turns = 8; // packets: enough that what one of them prefetches is there when its turn comes
-
 // Steps that packets do not count: the one out of the tet in which all rays start.
 LANE_FN uint steps_before(const PacketJob& job)
 {
@@ -42,16 +40,16 @@ LANE_FN uint steps_before(const PacketJob& job)
 // Packets that walk in turns. numbers: of the packets in their block.
 struct Group {
     uint count;
-    uint numbers[most_in_turns];
-    Packet packets[most_in_turns];
-    ByAxis lanes[most_in_turns];
+    uint numbers[packets_in_turns];
+    Packet packets[packets_in_turns];
+    ByAxis lanes[packets_in_turns];
 };
 
 // The group's lanes with one deepest axis.
 template <int z>
 [[gnu::noinline]] void trace_lanes(const PacketJob& job, const Packets& block, Group& group)
 {
-    Walk<z> walks[most_in_turns];
+    Walk<z> walks[packets_in_turns];
     Packet* const packets = group.packets;
     for (uint i = 0; i < group.count; ++i) {
         const uint lanes = group.lanes[i].of[z], number = group.numbers[i];
@@ -129,7 +127,7 @@ void trace_block(const PacketJob& job, Packets& block)
             continue;
         }
         group.numbers[group.count++] = i;
-        if (group.count == most_in_turns) trace_group(job, block, group);
+        if (group.count == packets_in_turns) trace_group(job, block, group);
     }
     trace_group(job, block, group);
 }

@@ -1,6 +1,5 @@
 // Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. Where rays enter the domain
 // is found before, in packets all of whose lanes have a ray.
-constexpr uint packets_in_turns = 8;
 constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
 constexpr uint rays_at_once = 512;       // that a thread takes at a time
 constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
