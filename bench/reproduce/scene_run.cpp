@@ -91,25 +91,18 @@ Options options_of(Structure structure, Options options)
     return options;
 }
 
-/// The CDT's fastest walk, which tets for rays are compared by where the user has not left it out.
-constexpr Method fastest_method = Method::project;
-constexpr Layout fastest_layout = Layout::half32;
-
-bool takes_fastest(const Options& options)
+/// The rows of the CDT's fastest walk, where the options have not left it out.
+std::vector<RowKey> rows_of_fastest_walk(const Options& options, const std::string& label)
 {
-    const Options of_cdt = options_of(Structure::cdt, options);
-    const auto takes = [](const auto& list, auto value) {
-        return list.empty() || std::ranges::find(list, value) != list.end();
+    Options of_walk = options_of(Structure::cdt, options);
+    const auto narrow = [](auto& list, auto value) {
+        const bool takes = list.empty() || std::ranges::find(list, value) != list.end();
+        list = {value};
+        return takes;
     };
-    return takes(of_cdt.methods, fastest_method) && takes(of_cdt.layouts, fastest_layout);
-}
-
-Options of_fastest(const Options& options)
-{
-    Options of_cdt = options_of(Structure::cdt, options);
-    of_cdt.methods = {fastest_method};
-    of_cdt.layouts = {fastest_layout};
-    return of_cdt;
+    const bool takes_method = narrow(of_walk.methods, Method::project);
+    const bool takes_layout = narrow(of_walk.layouts, Layout::half32);
+    return takes_method && takes_layout ? select_rows(of_walk, {label}) : std::vector<RowKey>();
 }
 
 } // namespace
@@ -120,12 +113,9 @@ std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& option
     Options of_cdt = options_of(Structure::cdt, options);
     if (!build.methods) of_cdt.methods = {Method::maria};
     auto rows = select_rows(of_cdt, {build.label});
-    const auto add = [&](const Options& others) {
-        for (RowKey& key : select_rows(others, {build.label}))
-            rows.push_back(std::move(key));
-    };
-    if (!build.methods && build.build == rays_build && takes_fastest(options)) add(of_fastest(options));
-    if (build.rivals) add(options_of(Structure::bvh, options));
+    const auto add = [&](std::vector<RowKey> others) { std::ranges::move(others, std::back_inserter(rows)); };
+    if (!build.methods && build.build == rays_build) add(rows_of_fastest_walk(options, build.label));
+    if (build.rivals) add(select_rows(options_of(Structure::bvh, options), {build.label}));
     return rows;
 }
 

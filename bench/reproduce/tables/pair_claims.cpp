@@ -17,7 +17,7 @@ Estimate inverse(const Estimate& estimate)
     return {1 / estimate.value, over(estimate.high), over(estimate.low), estimate.exact};
 }
 
-/// The device's fastest layout of the tets beside a BVH of that layout, on devices of a kind.
+/// The device's fastest row of the tets beside a BVH of that layout, on devices of a kind.
 std::vector<RowPair> pairs_with(Layout layout, const SceneRun& run, DeviceKind kind)
 {
     auto pairs = fastest_pairs(run);

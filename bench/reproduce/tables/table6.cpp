@@ -217,7 +217,7 @@ PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector
         {"time of the BVH over that of the tets", "", true},
         {"Above 1 the tets are faster. A curve has all views of a pair, ascending: where it crosses 1 is "
          "the share of the "
-         "views in which the BVH is faster. The tets have their device's fastest layout."}};
+         "views in which the BVH is faster. The tets have their device's fastest row."}};
     const RowKey& first = run.rows[pairs.front().cdt].key;
     const bool one_device =
         std::ranges::all_of(pairs, [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
