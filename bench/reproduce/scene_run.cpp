@@ -91,18 +91,18 @@ Options options_of(Structure structure, Options options)
     return options;
 }
 
-/// The rows of the CDT's fastest walk, where the options have not left it out.
-std::vector<RowKey> rows_of_fastest_walk(const Options& options, const std::string& label)
+/// The rows of the CDT's fastest walks, those through records, where the options have not left them out.
+std::vector<RowKey> rows_of_fastest_walks(const Options& options, const std::string& label)
 {
-    Options of_walk = options_of(Structure::cdt, options);
-    const auto narrow = [](auto& list, auto value) {
-        const bool takes = list.empty() || std::ranges::find(list, value) != list.end();
-        list = {value};
-        return takes;
+    Options of_walks = options_of(Structure::cdt, options);
+    const auto narrow = [](auto& list, auto values) {
+        if (!list.empty()) std::erase_if(values, [&](auto value) { return std::ranges::find(list, value) == list.end(); });
+        list = values;
+        return !values.empty();
     };
-    const bool takes_method = narrow(of_walk.methods, Method::project);
-    const bool takes_layout = narrow(of_walk.layouts, Layout::half32);
-    return takes_method && takes_layout ? select_rows(of_walk, {label}) : std::vector<RowKey>();
+    const bool takes_method = narrow(of_walks.methods, std::vector{Method::project});
+    const bool takes_layout = narrow(of_walks.layouts, std::vector{Layout::half32, Layout::tet64});
+    return takes_method && takes_layout ? select_rows(of_walks, {label}) : std::vector<RowKey>();
 }
 
 } // namespace
@@ -114,7 +114,7 @@ std::vector<RowKey> rows_of_build(const SceneBuild& build, const Options& option
     if (!build.methods) of_cdt.methods = {Method::maria};
     auto rows = select_rows(of_cdt, {build.label});
     const auto add = [&](std::vector<RowKey> others) { std::ranges::move(others, std::back_inserter(rows)); };
-    if (!build.methods && build.build == rays_build) add(rows_of_fastest_walk(options, build.label));
+    if (!build.methods && build.build == rays_build) add(rows_of_fastest_walks(options, build.label));
     if (build.rivals) add(select_rows(options_of(Structure::bvh, options), {build.label}));
     return rows;
 }

@@ -53,7 +53,7 @@ struct RowKey {
 /// - Math mode does not select among the rows of Embree and of drivers (rt), nor schedule among Embree's; order selects
 /// only among those of the cdt.
 /// - Defaults: exact, tiles and (except in `reproduce`) packets, and hilbert. Without methods, of the cdt only maria
-/// and project on half32.
+/// and project on half32 and tet64.
 /// - Kinds of rays other than primary have rows of the kernels that take rays.
 /// - A backend has rows of its usable devices. A backend without one has rows of its first device where --backend or
 /// --require names it.

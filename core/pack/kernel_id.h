@@ -17,7 +17,7 @@ enum class Method {
 #define METHOD(name, ...) name,
 #include "kernels/kernel_list.inc"
 };
-/// A packed form of the mesh: tets (half32: a record for each tet and entry face; tet20 and tet16: tets that share
+/// A packed form of the mesh: tets (half32: a record for each tet and entry face; tet64: a cache line a tet; tet20 and tet16: tets that share
 /// their vertices), a BVH of our own, or a BVH that Embree or a GPU's driver (rt) builds itself.
 enum class Layout {
 #define LAYOUT(name, ...) name,

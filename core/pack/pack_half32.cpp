@@ -38,7 +38,7 @@ std::array<std::uint32_t, 3> corners_of(const Tet& tet, std::uint32_t face)
 std::uint32_t exit_word(const TetMesh& mesh, const Tet& tet, std::uint32_t entry, std::size_t index)
 {
     const std::uint32_t face = face_corners[entry][index];
-    if (tet.faces[face] != FREE_FACE) return tet.faces[face] << 2 | HALF32_END;
+    if (tet.faces[face] != FREE_FACE) return tet.faces[face] << 2 | EXIT_END;
     const std::uint32_t link = tet.links[face];
     if (link == NO_LINK) return NO_LINK;
     auto carried = corners_of(tet, entry);

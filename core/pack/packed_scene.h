@@ -34,8 +34,8 @@ struct PackedScene {
     std::uint32_t divisions = 1;
     std::uint32_t stack_entries = 0; ///< of a BVH: a ray touches no more; 0: as many as kernels have
 
-    std::vector<Quad> tets;           ///< TET80_QUADS or TET96_QUADS a tet, or HALF32_QUADS for each of its faces
-    std::vector<Quad> triangles;      ///< TRIANGLE_QUADS an input triangle
+    std::vector<Quad> tets;           ///< TET80_QUADS or TET96_QUADS a tet; for each of its faces HALF32_QUADS, or one
+    std::vector<Quad> triangles;      ///< TRIANGLE_QUADS an input triangle, or of tet64 an occlusive face
     std::vector<std::uint32_t> lines; ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
     std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
     std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order

@@ -71,12 +71,21 @@
 // half32: a record of 32 bytes for each tet and each face by which a ray may enter it, at its link (tet << 2 | face):
 //   {apex.xyz, its rank}  {exit 0, exit 1, exit 2, link of the entry face}
 // Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows: the
-// corners of its entry face are the ray's three vertices, rotated by `rotation`. Else triangle << 2 | HALF32_END for
+// corners of its entry face are the ray's three vertices, rotated by `rotation`. Else triangle << 2 | EXIT_END for
 // the input triangle that is hit there, or NO_LINK at the domain's boundary.
 #define HALF32_QUADS 2u // of a record; a tet has four
-#define HALF32_END 3u
+#define EXIT_END 3u
+#define EXIT_AT_TIE (NO_LINK - 4u) // in a walk, instead of an exit that is not yet known: it ends loops as an end does
 #define HALF32_MAX_TETS 0x0FFFFFFFu
-#define HALF32_MAX_TRIANGLES 0x3FFFFFFEu // the next number is that of EXIT_AT_TIE in walk_by_records.h
+#define HALF32_MAX_TRIANGLES 0x3FFFFFFEu // the next number is that of EXIT_AT_TIE
+// tet64: a record is a quad, {vertex.xyz, what is behind the face opposite it}, and a tet has four. That word is
+//   EXIT_IS_NORMAL | record << 2 | fold   where a tet follows: vertex face ^ fold of this tet is vertex face' ^ fold of
+//                                         that one, and the two others of the face are crossed; 3 is written as 0
+//   EXIT_IS_NORMAL | row << 2 | EXIT_END        for an occlusive face, which has a row of `triangles`; or NO_LINK
+// As a float it must not be denormal, as ranks.
+#define EXIT_IS_NORMAL 0x40000000u
+#define TET64_MAX_TETS 0x03FFFFFFu
+#define TET64_MAX_ROWS 0x0FFFFFFFu
 // tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
 #define TET20_WORDS 5u
 // tet16: a quad: tet20's words without the last, and each neighbour xor that last one.
@@ -86,7 +95,9 @@
 // occlusive_faces: {input triangle, the tet on side 0, that on side 1}
 #define OCCLUSIVE_WORDS 3u
 // entry_faces: {three vertices in the order of faces.h, tet}
-// triangles: v0, v1 - v0, v2 - v0 of each input triangle, a quad of 16 bytes each (w is 0).
+// triangles: v0, v1 - v0, v2 - v0 of each input triangle, a quad of 16 bytes each (w is 0). In tet64 there is a row for
+// each occlusive face, in the order of the tets, and w is FIRST_RANK + its input triangle, then EXIT_IS_NORMAL | its
+// link on each side (NO_LINK where there is no tet).
 #define TRIANGLE_QUADS 3u
 
 // leaf triangles of a BVH: {v0, input triangle}, {v1, 0}, {v2, 0}, as the mesh has them.

@@ -79,7 +79,7 @@ TEST_P(GivenRays, of_walks_that_ask_for_their_path_have_the_bits_of_openmp)
     RaySet hard = hard_ray_set(cubes.scene, 0, 3600);
     for (std::size_t i = 1; i < hard.rays.size(); i += 2)
         hard.rays[i].end = 0.375F;
-    for (const Layout layout : {Layout::tet80, Layout::half32}) {
+    for (const Layout layout : {Layout::tet80, Layout::half32, Layout::tet64}) {
         const KernelId kernel{.method = Method::project, .layout = layout, .task = Task::rays};
         const PackedScene packed = pack(cubes.scene, layout, TetOrder::hilbert);
         for (const std::size_t device : usable) {

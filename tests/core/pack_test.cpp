@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -49,7 +50,7 @@ TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
 }
 
 INSTANTIATE_TEST_SUITE_P(each, Packing,
-                         testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32),
+                         testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32, Layout::tet64),
                                           testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
                          [](const auto& tested) {
                              return std::string(name_of(std::get<0>(tested.param))) + "_" +
@@ -63,6 +64,7 @@ TEST(Pack, sizes_are_those_of_the_layout)
     EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Quad), 80 * tets);
     EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Quad), 96 * tets);
     EXPECT_EQ(pack(scene, Layout::half32, TetOrder::hilbert).tets.size() * sizeof(Quad), 4 * 32 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet64, TetOrder::hilbert).tets.size() * sizeof(Quad), 64 * tets);
 }
 
 TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
@@ -70,6 +72,7 @@ TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
     EXPECT_EQ(traits_of(Layout::tet80).most, 214'748'364u) << "20 words each";
     EXPECT_EQ(traits_of(Layout::tet96).most, 715'827'882u) << "6 quads each";
     EXPECT_EQ(traits_of(Layout::half32).most, 268'435'455u) << "28 bits in an exit";
+    EXPECT_EQ(traits_of(Layout::tet64).most, 67'108'863u) << "26 bits in an exit";
 }
 
 // Along the curve no two tets that follow each other are far apart; row after row of cubes, the ends of rows are.
@@ -136,27 +139,63 @@ TEST(Pack, every_word_of_a_tet_matters)
     }
 }
 
-// half32 says most things several times: no copy may differ from the others.
+// Records say most things several times: no copy may differ from the others.
 TEST(Pack, no_word_of_a_record_may_contradict_the_others)
 {
     const Scene scene = make_cubes(2);
-    const PackedScene packed = pack(scene, Layout::half32, TetOrder::hilbert);
-    for (std::size_t word = 0; word < std::size_t{4} * 4 * HALF32_QUADS; ++word)
-        for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
+    for (const Layout layout : {Layout::half32, Layout::tet64}) {
+        const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
+        const std::size_t tets_words = layout == Layout::half32 ? std::size_t{16} * HALF32_QUADS : 16;
+        const auto refused = [&](std::vector<Quad> PackedScene::*quads, std::size_t word, std::uint32_t bit) {
             PackedScene spoilt = packed;
-            Quad& quad = spoilt.tets[word / 4];
+            Quad& quad = (spoilt.*quads)[word / 4];
             std::uint32_t* at[] = {&quad.x, &quad.y, &quad.z, &quad.w};
             *at[word % 4] ^= bit;
-            EXPECT_THROW((void)unpack(spoilt), Error) << "word " << word << ", bit " << bit;
+            EXPECT_THROW((void)unpack(spoilt), Error) << name_of(layout) << " word " << word << ", bit " << bit;
+        };
+        for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
+            for (std::size_t word = 0; word < tets_words; ++word)
+                refused(&PackedScene::tets, word, bit);
+            for (const std::size_t word : {7u, 11u}) // a row's two links
+                if (layout == Layout::tet64) refused(&PackedScene::triangles, word, bit);
         }
+    }
 }
 
-// Compilers compute with a record's ranks as with its coordinates.
-TEST(Pack, no_rank_is_denormal_as_a_float)
+// Compilers compute with the fourth word of a quad as with the three coordinates before it.
+TEST(Pack, no_word_beside_coordinates_is_denormal_as_a_float)
 {
-    const PackedScene packed = pack(make_cubes(4), Layout::half32, TetOrder::hilbert);
-    for (std::size_t quad = 0; quad < packed.tets.size(); quad += HALF32_QUADS)
-        ASSERT_TRUE(std::isnormal(std::bit_cast<float>(packed.tets[quad].w))) << "quad " << quad;
+    const Scene scene = make_cubes(4);
+    const auto expect_no_denormal = [](const std::vector<Quad>& quads, std::size_t stride) {
+        for (std::size_t quad = 0; quad < quads.size(); quad += stride)
+            ASSERT_NE(std::fpclassify(std::bit_cast<float>(quads[quad].w)), FP_SUBNORMAL) << "quad " << quad;
+    };
+    expect_no_denormal(pack(scene, Layout::half32, TetOrder::hilbert).tets, HALF32_QUADS);
+    const PackedScene packed = pack(scene, Layout::tet64, TetOrder::hilbert);
+    expect_no_denormal(packed.tets, 1);
+    expect_no_denormal(packed.triangles, 1);
+}
+
+// An occlusive face has a row, which its two sides share; a triangle that is cut has several.
+TEST(Pack, rows_of_tet64_name_their_triangle_and_what_is_on_both_sides)
+{
+    const Scene scene = make_cubes(4);
+    const PackedScene packed = pack(scene, Layout::tet64, TetOrder::hilbert);
+    const PackedScene of_triangles = pack(scene, Layout::tet80, TetOrder::hilbert);
+    const std::size_t rows = packed.triangles.size() / TRIANGLE_QUADS;
+    EXPECT_EQ(rows, count_faces(scene.tets).occlusive_faces);
+    const TetMesh mesh = unpack(packed);
+    for (std::size_t row = 0; row < rows; ++row) {
+        const Quad* const quads = &packed.triangles[TRIANGLE_QUADS * row];
+        const std::uint32_t triangle = quads[0].w - FIRST_RANK;
+        const std::uint32_t one = quads[1].w ^ EXIT_IS_NORMAL, other = quads[2].w ^ EXIT_IS_NORMAL;
+        ASSERT_EQ(mesh.tets[link_tet(one)].faces[link_face(one)], triangle) << "row " << row;
+        ASSERT_EQ(mesh.tets[link_tet(one)].links[link_face(one)], other) << "row " << row;
+        for (std::size_t i = 0; i < TRIANGLE_QUADS; ++i) {
+            const Quad& right = of_triangles.triangles[TRIANGLE_QUADS * triangle + i];
+            ASSERT_EQ(std::tie(quads[i].x, quads[i].y, quads[i].z), std::tie(right.x, right.y, right.z)) << row;
+        }
+    }
 }
 
 TEST(Pack, triangles_hold_a_corner_and_two_edges)

@@ -18,7 +18,7 @@ using namespace tetrace::test;
 
 namespace {
 
-constexpr Layout carrying_layouts[] = {Layout::half32, Layout::tet20, Layout::tet16};
+constexpr Layout carrying_layouts[] = {Layout::half32, Layout::tet64, Layout::tet20, Layout::tet16};
 
 /// `cubes` without its jitter: rays along the grid pass vertices, edges and faces.
 Scene regular_cubes(std::uint32_t n)

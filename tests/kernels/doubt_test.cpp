@@ -42,6 +42,26 @@ namespace project_half32 {
 #include "kernels/kernel_cpp.h"
 }
 #undef HAS_RECORDS
+#undef RecordExits
+#undef RECORD_EXITS
+#undef RANK_BESIDE
+#undef TRIANGLE_OF
+#undef TURN_OF_CORNERS
+#undef TURN_AFTER
+#undef EXIT_REPLACING
+#undef KERNEL_LAYOUT_HEADER
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet64.h"
+namespace project_tet64 {
+#include "kernels/kernel_cpp.h"
+}
+#undef HAS_RECORDS
+#undef RecordExits
+#undef RECORD_EXITS
+#undef RANK_BESIDE
+#undef TRIANGLE_OF
+#undef TURN_OF_CORNERS
+#undef TURN_AFTER
+#undef EXIT_REPLACING
 #undef KERNEL_LAYOUT_HEADER
 #undef KERNEL_METHOD_HEADER
 #undef KERNEL_STRUCTURE_HEADER
@@ -82,6 +102,7 @@ struct Walk {
 const Walk walks[] = {{{.method = Method::maria, .layout = Layout::tet80}, HITS_OF(maria_tet80)},
                       {{.method = Method::project, .layout = Layout::tet80}, HITS_OF(project_tet80)},
                       {{.method = Method::project, .layout = Layout::half32}, HITS_OF(project_half32)},
+                      {{.method = Method::project, .layout = Layout::tet64}, HITS_OF(project_tet64)},
                       {{.method = Method::project, .layout = Layout::tet20}, HITS_OF(project_tet20)}};
 
 } // namespace

@@ -14,6 +14,8 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
+#include <memory>
 #include <string>
 
 using namespace tetrace;
@@ -59,17 +61,23 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
 Judged judged_on_openmp(const Scene& scene, std::uint64_t count)
 {
     const KernelId kernel{.method = Method::project, .task = Task::rays};
-    const KernelId of_records{.method = Method::project, .layout = Layout::half32, .task = Task::rays};
     const PackedScene packed = pack(scene, kernel.layout, TetOrder::hilbert);
-    const PackedScene records = pack(scene, of_records.layout, TetOrder::hilbert);
     const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {});
-    const auto other = openmp_backend().open(0, of_records, {&scene.mesh, &records}, {});
+    std::map<Layout, PackedScene> records;
+    std::map<Layout, std::unique_ptr<Session>> of_records;
+    for (const Layout layout : {Layout::half32, Layout::tet64}) {
+        records[layout] = pack(scene, layout, TetOrder::hilbert);
+        const KernelId same{.method = Method::project, .layout = layout, .task = Task::rays};
+        of_records[layout] = openmp_backend().open(0, same, {&scene.mesh, &records[layout]}, {});
+    }
     return judged(scene, packed, count, [&](const RaySet& set, const std::vector<Quad>& quads) {
         const TraceJob job = given_job(set.rays.size(), packed.tet_count + 1, false);
         session->set_rays(quads);
-        other->set_rays(given_quads(set, records));
         std::vector<Hit> hits = traced(*session, job);
-        EXPECT_EQ(different_rays(traced(*other, job), hits, 0), 0u);
+        for (const auto& [layout, other] : of_records) {
+            other->set_rays(given_quads(set, records[layout]));
+            EXPECT_EQ(different_rays(traced(*other, job), hits, 0), 0u) << name_of(layout);
+        }
         return hits;
     });
 }

@@ -38,6 +38,26 @@ namespace leaves_half32 {
 #include "kernels/kernel_cpp.h"
 }
 #undef HAS_RECORDS
+#undef RecordExits
+#undef RECORD_EXITS
+#undef RANK_BESIDE
+#undef TRIANGLE_OF
+#undef TURN_OF_CORNERS
+#undef TURN_AFTER
+#undef EXIT_REPLACING
+#undef KERNEL_LAYOUT_HEADER
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/tet64.h"
+namespace leaves_tet64 {
+#include "kernels/kernel_cpp.h"
+}
+#undef HAS_RECORDS
+#undef RecordExits
+#undef RECORD_EXITS
+#undef RANK_BESIDE
+#undef TRIANGLE_OF
+#undef TURN_OF_CORNERS
+#undef TURN_AFTER
+#undef EXIT_REPLACING
 #undef KERNEL_LAYOUT_HEADER
 #undef KERNEL_STRUCTURE_HEADER
 #undef KERNEL_ARRAYS_HEADER
@@ -113,6 +133,7 @@ TEST(LeftTies, are_those_of_walks_that_read_corners_from_tets)
 TEST(LeftTies, are_those_of_walks_that_carry_vertices_through_records)
 {
     expect_left_at_ties_alone(Layout::half32, TRACE_OF(leaves_half32));
+    expect_left_at_ties_alone(Layout::tet64, TRACE_OF(leaves_tet64));
 }
 
 TEST(LeftTies, are_those_of_walks_through_compact_tets)

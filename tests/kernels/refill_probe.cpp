@@ -36,7 +36,7 @@ void run_thread(uint thread, const tetrace::test::WarpLaunch& launch, uint* coun
 {
     tetrace::cuda_host::current_thread = {thread, 0, 0};
     tetrace::cuda_host::block_size = {launch.warps * warpSize, 1, 1};
-    const SceneView scene{quads(launch.packed.nodes), quads(launch.packed.leaf_triangles), launch.packed.divisions};
+    const SceneView scene{quads(launch.packed.nodes), quads(launch.packed.leaf_triangles), launch.packed.divisions, {}};
     const auto params = std::bit_cast<LaunchParams>(launch.params);
     const uint tiles = tetrace::tile_count(launch.params);
     uint* const output = launch.output.data();

@@ -178,13 +178,14 @@ TEST_F(Program, lists_rows_without_loading_scenes)
 {
     const Ended ours = run("bench --backend openmp,embree --scene bunny,armadillo --list");
     EXPECT_EQ(ours.code, 0) << ours.errors;
-    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 16);
+    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 18);
     EXPECT_EQ(run("bench --backend openmp,embree --scene bunny,armadillo --benchmark_list_tests").out, ours.out);
     EXPECT_EQ(
         run("bench --backend openmp,embree --scene bunny --benchmark_list_tests=true --benchmark_filter=-bvh").out,
         "cdt/maria/tet80/bunny/primary/math:exact/api:openmp\ncdt/maria/tet96/bunny/primary/math:exact/api:openmp\n"
         "cdt/project/half32/bunny/primary/math:exact/api:openmp\n"
-        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n");
+        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n"
+        "cdt/project/tet64/bunny/primary/math:exact/api:openmp\n");
 }
 
 TEST_F(Program, google_benchmarks_flags_keep_their_meaning)

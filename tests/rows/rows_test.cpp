@@ -205,13 +205,14 @@ TEST(Rows, persistent_threads_are_rows_where_they_are_asked_for)
     EXPECT_EQ(row_name(rows[3]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
-TEST(Rows, the_default_is_maria_and_project_on_half32_beside_bvhs_and_embree)
+TEST(Rows, the_default_is_maria_and_projects_records_beside_bvhs_and_embree)
 {
     EXPECT_EQ(names({"bench"}, {"bunny"}),
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
                                         "cdt/maria/tet96/bunny/primary/math:exact/api:openmp",
                                         "cdt/project/half32/bunny/primary/math:exact/api:openmp",
                                         "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp",
+                                        "cdt/project/tet64/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",

@@ -57,7 +57,7 @@ inline TetMesh unpack_corners(const PackedScene& packed)
 // The triangle that an exit ends at; FREE_FACE where it does not, and at the domain's boundary.
 inline std::uint32_t triangle_at(std::uint32_t exit)
 {
-    return (exit & 3u) == HALF32_END && exit != NO_LINK ? exit >> 2 : FREE_FACE;
+    return (exit & 3u) == EXIT_END && exit != NO_LINK ? exit >> 2 : FREE_FACE;
 }
 
 // Whether the neighbour behind a face has that face as its own; the domain's boundary always has.
@@ -70,39 +70,106 @@ inline bool is_linked_back(const TetMesh& mesh, std::uint32_t face)
 
 [[noreturn]] inline void reject(std::size_t record, const char* why)
 {
-    throw Error(ErrorKind::internal, "half32: record " + std::to_string(record) + ": " + why);
+    throw Error(ErrorKind::internal, "record " + std::to_string(record) + ": " + why);
 }
+
+inline void require_linked_back(const TetMesh& mesh)
+{
+    for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
+        if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
+}
+
+// Whether the tets on both sides of a face have its three vertices.
+inline bool shares_vertices(const TetMesh& mesh, std::uint32_t face)
+{
+    const Tet& tet = mesh.tets[link_tet(face)];
+    if (tet.links[link_face(face)] == NO_LINK) return true;
+    const auto& others = mesh.tets[link_tet(tet.links[link_face(face)])].vertices;
+    return std::ranges::all_of(face_corners[link_face(face)], [&](std::uint32_t corner) {
+        return std::ranges::find(others, tet.vertices[corner]) != others.end();
+    });
+}
+
+inline void require_same(const std::vector<Quad>& quads, const std::vector<Quad>& again, std::size_t stride)
+{
+    const auto differing = std::mismatch(quads.begin(), quads.end(), again.begin(), again.end()).first;
+    if (differing != quads.end() || quads.size() != again.size())
+        reject(static_cast<std::size_t>(differing - quads.begin()) / stride,
+               "it contradicts the others of its tet, or those of its neighbours");
+}
+
+// Numbers positions as they are first met.
+class Places {
+public:
+    explicit Places(std::vector<Float3>& vertices) : vertices_(vertices) {}
+    std::uint32_t number_of(const Quad& quad)
+    {
+        const auto [place, is_new] =
+            index_.try_emplace({quad.x, quad.y, quad.z}, static_cast<std::uint32_t>(vertices_.size()));
+        if (is_new)
+            vertices_.push_back(
+                {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)});
+        return place->second;
+    }
+
+private:
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index_;
+    std::vector<Float3>& vertices_;
+};
 
 inline TetMesh unpack_half32(const std::vector<Quad>& records)
 {
-    std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::uint32_t> index;
     TetMesh mesh;
+    Places places(mesh.vertices);
     mesh.tets.resize(records.size() / (4 * HALF32_QUADS));
     for (std::size_t record = 0; record < 4 * mesh.tets.size(); ++record) {
         Tet& tet = mesh.tets[record / 4];
         const std::size_t entry = record % 4;
         const Quad &apex = records[HALF32_QUADS * record], &exits = records[HALF32_QUADS * record + 1];
-        const auto [place, is_new] =
-            index.try_emplace({apex.x, apex.y, apex.z}, static_cast<std::uint32_t>(mesh.vertices.size()));
-        if (is_new)
-            mesh.vertices.push_back(
-                {std::bit_cast<float>(apex.x), std::bit_cast<float>(apex.y), std::bit_cast<float>(apex.z)});
-        tet.vertices[entry] = place->second;
+        tet.vertices[entry] = places.number_of(apex);
         tet.links[entry] = exits.w;
         const auto& faces = face_corners[entry];
         tet.faces[faces[0]] = triangle_at(exits.x);
         tet.faces[faces[1]] = triangle_at(exits.y);
         tet.faces[faces[2]] = triangle_at(exits.z);
     }
-    for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
-        if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
-    PackedScene packed;
-    pack_half32(packed, mesh);
-    const std::vector<Quad>& again = packed.tets;
-    const auto differing = std::mismatch(records.begin(), records.end(), again.begin()).first;
-    if (differing != records.end())
-        reject(static_cast<std::size_t>(differing - records.begin()) / HALF32_QUADS,
-               "it contradicts the others of its tet, or those of its neighbours");
+    require_linked_back(mesh);
+    PackedScene again;
+    pack_half32(again, mesh);
+    require_same(records, again.tets, HALF32_QUADS);
+    return mesh;
+}
+
+inline TetMesh unpack_tet64(const PackedScene& packed)
+{
+    TetMesh mesh;
+    Places places(mesh.vertices);
+    mesh.tets.resize(packed.tets.size() / 4);
+    PackedScene again;
+    for (std::uint32_t record = 0; record < packed.tets.size(); ++record) {
+        Tet& tet = mesh.tets[record / 4];
+        const Quad& quad = packed.tets[record];
+        const std::uint32_t behind = (quad.w & (EXIT_IS_NORMAL - 1)) >> 2;
+        tet.vertices[record % 4] = places.number_of(quad);
+        tet.links[record % 4] = quad.w == NO_LINK ? NO_LINK : behind;
+        tet.faces[record % 4] = FREE_FACE;
+        if (quad.w == NO_LINK || (quad.w & 3) != EXIT_END) continue;
+        if (packed.triangles.size() < TRIANGLE_QUADS * (std::size_t{behind} + 1)) reject(record, "it names no row");
+        const Quad* const row = &packed.triangles[std::size_t{TRIANGLE_QUADS} * behind];
+        const std::uint32_t triangle = row[0].w - FIRST_RANK;
+        const std::uint32_t link = row[1].w == (EXIT_IS_NORMAL | record) ? row[2].w : row[1].w;
+        tet.links[record % 4] = link == NO_LINK ? NO_LINK : link & (EXIT_IS_NORMAL - 1);
+        tet.faces[record % 4] = triangle;
+        if (triangle > packed.triangles.size()) reject(record, "its row names no triangle");
+        again.triangles.resize(std::max(again.triangles.size(), TRIANGLE_QUADS * (std::size_t{triangle} + 1)));
+        std::copy_n(row, TRIANGLE_QUADS, &again.triangles[std::size_t{TRIANGLE_QUADS} * triangle]);
+    }
+    require_linked_back(mesh);
+    for (std::uint32_t record = 0; record < packed.tets.size(); ++record)
+        if (!shares_vertices(mesh, record)) reject(record, "its neighbour has other vertices");
+    pack_tet64(again, mesh);
+    require_same(packed.tets, again.tets, 1);
+    require_same(packed.triangles, again.triangles, TRIANGLE_QUADS);
     return mesh;
 }
 
@@ -260,10 +327,11 @@ inline TetMesh unpack_compact(const PackedScene& packed)
 
 /// The tets of a packed scene again, in packed order: links, faces and coordinates as they were, bit for bit, and one
 /// vertex per position; of tet20 and tet16 with the same vertices, in whichever order gives them their orientation.
-/// Throws Error where the words of half32, tet20 or tet16 contradict each other.
+/// Throws Error where the words of half32, tet64, tet20 or tet16 contradict each other.
 [[nodiscard]] inline TetMesh unpack(const PackedScene& packed)
 {
     if (packed.layout == Layout::half32) return unpacking::unpack_half32(packed.tets);
+    if (packed.layout == Layout::tet64) return unpacking::unpack_tet64(packed);
     return is_compact(packed.layout) ? unpacking::unpack_compact(packed) : unpacking::unpack_corners(packed);
 }
 

@@ -157,7 +157,7 @@ LANE_FN void leave_start(const PacketJob& job, const Eye& eye, BeamWalk& walk, u
         if (lanes_of(leaving) == 0) continue;
         walk.steps = select(leaving, all(1u), walk.steps);
         const uint exit = exit_through(job, job.start_tet, face);
-        if ((exit & 3u) == HALF32_END) {
+        if ((exit & 3u) == EXIT_END) {
             walk.exit = select(leaving, all(exit), walk.exit);
             walk.record = select(leaving, all(job.start_tet << 2), walk.record);
             walk.ended |= lanes_of(leaving);
@@ -185,7 +185,7 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
     const Words turn = walk.turn;
     const Words exits = exits_of(walk, replaced, at.exits.of);
     walk.turn = select(mask_of(going), walk.turn, turn); // beams that stop here keep their vertices
-    const uint ended = going & lanes_of(equal(exits & all(3u), all(HALF32_END)));
+    const uint ended = going & lanes_of(equal(exits & all(3u), all(EXIT_END)));
     walk.exit = select(mask_of(ended), exits, walk.exit);
     walk.ended |= ended;
     walk.live = going & ~ended;

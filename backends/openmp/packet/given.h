@@ -112,7 +112,7 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     packet.left_to_scalar |= lanes & ~leaving;
 
     Words exit = by(second.exits.of[0], first.exits.of[0], first.exits.of[1], first.exits.of[2]);
-    Mask is_end = equal(exit & 3u, all(HALF32_END));
+    Mask is_end = equal(exit & 3u, all(EXIT_END));
     for (uint i = 0; i < 3; ++i)
         walk.carried[i] = select(mask, carried_behind(by_face, v, i), walk.carried[i]);
     if constexpr (has_ends) {

@@ -150,7 +150,7 @@ LANE_FN void leave_first(const PacketJob& job, Packet& packet, Walk<z>& walk, ui
 {
     if (lanes == 0) return;
     const uint exit = exit_through(job, job.start_tet, face);
-    if ((exit & 3u) == HALF32_END)
+    if ((exit & 3u) == EXIT_END)
         end_lanes(packet, lanes, all(exit), all(job.start_tet << 2), 1);
     else
         enter_record(job, packet, walk, lanes, exit >> 2);

@@ -128,7 +128,7 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
         walk.carried[i] = select(replaced[i], apex, walk.carried[i]);
     Words exit = exits_of(walk, replaced, at.exits.of);
     const uint ties = walk.live & lanes_of(s0.tie | s1.tie | s2.tie);
-    Mask is_end = equal(exit & all(3u), all(HALF32_END));
+    Mask is_end = equal(exit & all(3u), all(EXIT_END));
     if constexpr (has_ends) {
         const Floats depth = depth_at(packet, at.apex.of);
         for (uint i = 0; i < 3; ++i)

@@ -1,0 +1,81 @@
+#include "core/base/error.h"
+#include "core/pack/packed_scene.h"
+#include "core/pack/traits.h"
+
+#include <bit>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetrace {
+namespace {
+
+const Tet& tet_of(const TetMesh& mesh, std::uint32_t link)
+{
+    return mesh.tets[link_tet(link)];
+}
+
+// Vertex `face ^ fold` of the tet is vertex `face ^ fold` of the tet behind that face, each with its own number of it.
+std::uint32_t fold_at(const TetMesh& mesh, const Tet& tet, std::uint32_t face)
+{
+    const Tet& next = tet_of(mesh, tet.links[face]);
+    const std::uint32_t entry = link_face(tet.links[face]);
+    for (std::uint32_t fold = 1; fold < 3; ++fold)
+        if (tet.vertices[face ^ fold] == next.vertices[entry ^ fold]) return fold;
+    return 3; // also if no corner is shared: tests damage links
+}
+
+std::uint32_t side_word(std::uint32_t link)
+{
+    return link == NO_LINK ? NO_LINK : EXIT_IS_NORMAL | link;
+}
+
+// The row of each occlusive face, by its link; replaces the rows of the input triangles by them.
+std::vector<std::uint32_t> pack_rows(PackedScene& packed, const TetMesh& mesh)
+{
+    std::vector<std::uint32_t> row_of(mesh.tets.size() * 4, NO_LINK);
+    std::vector<Quad> rows;
+    for (std::uint32_t own = 0; own < row_of.size(); ++own) {
+        const std::uint32_t triangle = tet_of(mesh, own).faces[link_face(own)];
+        const std::uint32_t link = tet_of(mesh, own).links[link_face(own)];
+        if (triangle == FREE_FACE) continue;
+        const bool has_row = link < own && row_of[link] != NO_LINK && tet_of(mesh, link).links[link_face(link)] == own;
+        row_of[own] = has_row ? row_of[link] : static_cast<std::uint32_t>(rows.size() / TRIANGLE_QUADS);
+        if (has_row) continue;
+        const Quad* const quads = &packed.triangles.at(std::size_t{TRIANGLE_QUADS} * triangle);
+        rows.insert(rows.end(), quads, quads + TRIANGLE_QUADS);
+        rows[rows.size() - 3].w = FIRST_RANK + triangle;
+        rows[rows.size() - 2].w = side_word(own);
+        rows[rows.size() - 1].w = side_word(link);
+    }
+    packed.triangles = std::move(rows);
+    return row_of;
+}
+
+std::uint32_t exit_word(const TetMesh& mesh, const Tet& tet, std::uint32_t face, std::uint32_t row)
+{
+    if (row != NO_LINK) return EXIT_IS_NORMAL | row << 2 | EXIT_END;
+    const std::uint32_t link = tet.links[face];
+    return link == NO_LINK ? NO_LINK : EXIT_IS_NORMAL | link << 2 | fold_at(mesh, tet, face) % 3;
+}
+
+} // namespace
+
+void pack_tet64(PackedScene& packed, const TetMesh& mesh)
+{
+    const std::vector<std::uint32_t> row_of = pack_rows(packed, mesh);
+    if (const std::size_t rows = packed.triangles.size() / TRIANGLE_QUADS; rows > TET64_MAX_ROWS)
+        throw Error(ErrorKind::unsupported, "packing as tet64: " + std::to_string(rows) +
+                                                " occlusive faces, its exits name at most " +
+                                                std::to_string(TET64_MAX_ROWS));
+    packed.tets.reserve(row_of.size());
+    for (std::uint32_t own = 0; own < row_of.size(); ++own) {
+        const Tet& tet = tet_of(mesh, own);
+        const Float3 vertex = mesh.vertices[tet.vertices[link_face(own)]];
+        packed.tets.push_back({std::bit_cast<std::uint32_t>(vertex.x), std::bit_cast<std::uint32_t>(vertex.y),
+                               std::bit_cast<std::uint32_t>(vertex.z),
+                               exit_word(mesh, tet, link_face(own), row_of[own])});
+    }
+}
+
+} // namespace tetrace

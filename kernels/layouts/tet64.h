@@ -1,0 +1,100 @@
+// Layout tet64: a tet is one cache line of four records, one for each face by which a ray may enter it: the new vertex,
+// and what lies behind the face opposite that vertex (layout.h). A step loads the record's vertex, then what is behind
+// one other face, as a word of another record of the same line. A link is its record's number. The corners of face f are
+// here f ^ 1, f ^ 2, f ^ 3, which are those of faces.h, turned (docs/spec/layouts.md, L13).
+#define HAS_RECORDS
+#define RecordExits uint
+#define RECORD_EXITS(scene, record) (record)
+// A rank beside the apex's, which is 1. is_before() is the method's.
+#define RANK_BESIDE(vertex, apex) (is_before(place_of(vertex), place_of(apex)) ? 0u : 1u)
+#define TRIANGLE_OF(row, first) ((first).w - FIRST_RANK)
+#define TURN_OF_CORNERS(face) turn_of_corners(face)
+#define TURN_AFTER(turn, replaced) turn_after(turn, replaced)
+#define EXIT_REPLACING(scene, exits, turn, replaced) exit_replacing(scene, exits, turn, replaced)
+
+KERNEL_FN uint4 record_apex(SceneView scene, uint record)
+{
+    return FETCH(scene, tet_quads, record);
+}
+
+KERNEL_FN uint record_of_corner(uint record, uint index)
+{
+    return record ^ (index + 1u);
+}
+
+KERNEL_FN uint exit_to(uint record)
+{
+    return EXIT_IS_NORMAL | (record << 2u);
+}
+
+KERNEL_FN uint record_behind(uint exit)
+{
+    return (exit & (EXIT_IS_NORMAL - 1u)) >> 2u;
+}
+
+// 0, 0, 2, 1 for faces 0 to 3.
+KERNEL_FN uint turn_of_corners(uint face)
+{
+    return (0x60u >> (2u * face)) & 3u;
+}
+
+// Not reduced: the turn, or 3 more.
+KERNEL_FN uint turn_behind(uint turn, uint exit)
+{
+    return turn + (exit & 3u);
+}
+
+// (2 - turn - replaced) mod 3: the next exit's fold is added to it.
+KERNEL_FN uint turn_after(uint turn, uint replaced)
+{
+    uint by_turn = replaced == 0u ? 0x186u : replaced == 1u ? 0x61u : 0x218u;
+    return (by_turn >> (2u * turn)) & 3u;
+}
+
+// The corner's number is (replaced - turn) mod 3. For UNDECIDED it is any.
+KERNEL_FN uint exit_replacing(SceneView scene, RecordExits record, uint turn, uint replaced)
+{
+    uint by_turn = replaced == 0u ? 0x36Du : replaced == 1u ? 0x1B6u : 0x2DBu;
+    uint corner_and_1 = (by_turn >> (2u * turn)) & 3u;
+    return FETCH(scene, tet_quads, record ^ corner_and_1).w;
+}
+
+KERNEL_FN Vec3 place_of(uint4 apex)
+{
+    return VEC3(as_real(apex.x), as_real(apex.y), as_real(apex.z));
+}
+
+KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
+{
+    return place_of(record_apex(scene, (tet << 2u) | corner));
+}
+
+KERNEL_FN uint exit_through(SceneView scene, uint tet, uint face)
+{
+    return record_apex(scene, (tet << 2u) | face).w;
+}
+
+// The row of an occlusive face, or NO_LINK.
+KERNEL_FN uint row_at(SceneView scene, uint tet, uint face)
+{
+    uint exit = exit_through(scene, tet, face);
+    return (exit & 3u) == EXIT_END && exit != NO_LINK ? record_behind(exit) : NO_LINK;
+}
+
+KERNEL_FN uint face_triangle(SceneView scene, uint tet, uint face)
+{
+    uint row = row_at(scene, tet, face);
+    if (row == NO_LINK) return FREE_FACE;
+    return FETCH(scene, triangles, TRIANGLE_QUADS * row).w - FIRST_RANK;
+}
+
+KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
+{
+    uint exit = exit_through(scene, tet, face);
+    uint row = row_at(scene, tet, face);
+    if (exit == NO_LINK || row == NO_LINK) return exit == NO_LINK ? NO_LINK : record_behind(exit);
+    uint one = FETCH(scene, triangles, TRIANGLE_QUADS * row + 1u).w;
+    uint other = FETCH(scene, triangles, TRIANGLE_QUADS * row + 2u).w;
+    uint behind = one == (EXIT_IS_NORMAL | (tet << 2u) | face) ? other : one;
+    return behind == NO_LINK ? NO_LINK : behind & (EXIT_IS_NORMAL - 1u);
+}
