@@ -13,7 +13,7 @@ namespace {
 
 std::string label_of(const std::string& backend, std::size_t index)
 {
-    return device_label({{}, backend, {}, RayKind::primary, TetOrder::hilbert, index});
+    return device_label({{}, backend, {}, RayKind::primary, TetOrder::chains, index});
 }
 
 /// A reduced kernel on a device, as a result has it.

@@ -56,10 +56,10 @@ nlohmann::json device_json(const RowRun& row, const TraceRun& run)
     return object;
 }
 
-/// What is not as it is of primary rays, and of tets in Hilbert order.
+/// What is not as it is of primary rays, and of tets in chains.
 void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray, const Scene& scene)
 {
-    if (key.order != TetOrder::hilbert) trace["order"] = name_of(key.order);
+    if (key.order != TetOrder::chains) trace["order"] = name_of(key.order);
     if (key.ray_order != RayOrder::tiles) trace["ray_order"] = name_of(key.ray_order);
     if (!ray.given) return;
     const GivenRay& given = *ray.given;

@@ -127,12 +127,14 @@ std::vector<OptionRow> row_options()
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
              " (the number of rays that a BVH gets at once), or 'all'. Default: maria, project on half32 and "
-             "tet64, and the methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria with BVHs, and "
+             "tet64, and the methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria "
+             "with BVHs, and "
              "through tets for rays project on half32 and tet64.",
          reproducing | selecting | bit(Verb::dump), true,
          append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with project), bvh2 or "
+         "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with project), "
+         "bvh2 or "
          "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its own rays). "
          "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
          "where rt is named here, in a filter, or by '--schedule pipeline'.",
@@ -163,14 +165,16 @@ std::vector<OptionRow> row_options()
          selecting | bit(Verb::dump), true, append("--math", &Options::math)},
         {"Rows", "--order", "ORDER",
          "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but the tets that "
-         "no ray from outside reaches come last; 'input', as TetGen wrote them. For rows of structure cdt only. "
-         "Default: hilbert.",
+         "no ray from outside reaches come last; 'chains', the same again, but each tet is followed by its neighbour "
+         "behind its largest free face; 'input', as TetGen wrote them. For rows of structure cdt only. Default: "
+         "chains.",
          tracing, true, append("--order", &Options::orders)},
         {"Rows", "--schedule", "NAME",
          "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
          "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
          "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, "
-         "project on half32 and tet64, and BVHs; 'pipeline', of rt alone, through Vulkan's ray-tracing pipelines instead of ray "
+         "project on half32 and tet64, and BVHs; 'pipeline', of rt alone, through Vulkan's ray-tracing pipelines "
+         "instead of ray "
          "queries. Embree has a schedule of its own. Default: tiles and packets; for rt, pipeline where a driver "
          "has no ray queries.",
          selecting, true, append("--schedule", &Options::schedules)},

@@ -92,7 +92,7 @@ std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x
     if (kernel.math != MathMode::exact) text += fmt::format(" --math {}", name_of(kernel.math));
     if (row.key.rays != RayKind::primary) text += fmt::format(" --rays {}", name_of(row.key.rays));
     if (row.key.ray_order != RayOrder::tiles) text += fmt::format(" --ray-order {}", name_of(row.key.ray_order));
-    if (row.key.order != TetOrder::hilbert) text += fmt::format(" --order {}", name_of(row.key.order));
+    if (row.key.order != TetOrder::chains) text += fmt::format(" --order {}", name_of(row.key.order));
     if (kernel.schedule != Schedule::tiles) text += fmt::format(" --schedule {}", name_of(kernel.schedule));
     text += fmt::format(" --backend {}", row.key.backend);
     return row.key.device == 0 ? text : text + fmt::format(" --device {}:{}", row.key.backend, row.key.device);

@@ -65,9 +65,8 @@ std::string kernel_of(const ResultValue& value, const ResultRow& row)
     if (layout == "rt") return structure + " " + layout;
     const auto ray_order = value.find("ray_order");
     return fmt::format("{} {}{}{}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,
-                       unless_usual(value.at("math").line(), "exact"),
-                       unless_usual(value.at("order").line(), "hilbert"), unless_usual(row.schedule, "tiles"),
-                       ray_order ? unless_usual(ray_order->line(), "tiles") : "");
+                       unless_usual(value.at("math").line(), "exact"), unless_usual(value.at("order").line(), "chains"),
+                       unless_usual(row.schedule, "tiles"), ray_order ? unless_usual(ray_order->line(), "tiles") : "");
 }
 
 bool same_rays(const ResultScene& a, const ResultScene& b)

@@ -96,7 +96,8 @@ std::vector<RowKey> rows_of_fastest_walks(const Options& options, const std::str
 {
     Options of_walks = options_of(Structure::cdt, options);
     const auto narrow = [](auto& list, auto values) {
-        if (!list.empty()) std::erase_if(values, [&](auto value) { return std::ranges::find(list, value) == list.end(); });
+        if (!list.empty())
+            std::erase_if(values, [&](auto value) { return std::ranges::find(list, value) == list.end(); });
         list = values;
         return !values.empty();
     };

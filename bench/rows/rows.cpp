@@ -47,7 +47,7 @@ bool wanted_schedule(const Options& options, const KernelId& kernel)
 
 std::vector<TetOrder> wanted_orders(const Options& options, const KernelId& kernel)
 {
-    if (kernel.structure != Structure::cdt || options.orders.empty()) return {TetOrder::hilbert};
+    if (kernel.structure != Structure::cdt || options.orders.empty()) return {TetOrder::chains};
     return options.orders;
 }
 
@@ -319,7 +319,7 @@ std::string row_name(const RowKey& key)
                                      : std::string("/schedule:").append(name_of(key.kernel.schedule));
     return fmt::format(
         "{}/{}{}/math:{}{}{}{}/api:{}{}", name_of(key.kernel), key.scene, rays, name_of(key.kernel.math),
-        key.order == TetOrder::hilbert ? std::string() : std::string("/order:").append(name_of(key.order)), schedule,
+        key.order == TetOrder::chains ? std::string() : std::string("/order:").append(name_of(key.order)), schedule,
         order, numbered_backend(key), key.threads == 0 ? "" : fmt::format("/threads:{}", key.threads));
 }
 
@@ -358,7 +358,7 @@ std::string kernel_title(const RowKey& key)
     if (kernel.structure == Structure::cdt || is_embree) title.append(" ").append(name_of(kernel.method));
     if (!is_embree) title.append(" ").append(name_of(kernel.layout));
     if (is_portable(kernel) && kernel.math == MathMode::fast) title += " fast";
-    if (key.order != TetOrder::hilbert) title.append(" ").append(name_of(key.order)).append(" order");
+    if (key.order != TetOrder::chains) title.append(" ").append(name_of(key.order)).append(" order");
     if (kernel.schedule != Schedule::tiles) title.append(" ").append(name_of(kernel.schedule));
     if (key.rays != RayKind::primary) title.append(", ").append(name_of(key.rays));
     if (key.ray_order != RayOrder::tiles) title.append(" ").append(name_of(key.ray_order));

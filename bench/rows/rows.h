@@ -14,7 +14,7 @@ struct RowKey {
     std::string backend; ///< name, see all_backends()
     KernelId kernel;
     RayKind rays = RayKind::primary;
-    TetOrder order = TetOrder::hilbert;
+    TetOrder order = TetOrder::chains;
     std::size_t device = 0; ///< index in the backend's devices()
     unsigned threads = 0;   ///< host threads, where they differ from the whole run's
     RayOrder ray_order = RayOrder::tiles;
@@ -39,7 +39,7 @@ struct RowKey {
 [[nodiscard]] bool on_reference(const RowKey& key);
 
 /// structure/method/layout/scene/rays/math:mode/api:backend, as Google Benchmark shows it; contains no device name and
-/// no counts. Rows of another order than hilbert have "order:reached" or "order:input" before the api. Rows of another
+/// no counts. Rows of another order than chains have "order:hilbert" and the like before the api. Rows of another
 /// schedule than tiles have "schedule:persistent". Rows whose given rays come in another order than that of tiles have
 /// "rays:morton". Rows of a backend's later devices end in the device's index, "api:opencl:1". Rows of task search have
 /// no rays: theirs are given.
@@ -52,7 +52,7 @@ struct RowKey {
 /// devices.
 /// - Math mode does not select among the rows of Embree and of drivers (rt), nor schedule among Embree's; order selects
 /// only among those of the cdt.
-/// - Defaults: exact, tiles and (except in `reproduce`) packets, and hilbert. Without methods, of the cdt only maria
+/// - Defaults: exact, tiles and (except in `reproduce`) packets, and chains. Without methods, of the cdt only maria
 /// and project on half32 and tet64.
 /// - Kinds of rays other than primary have rows of the kernels that take rays.
 /// - A backend has rows of its usable devices. A backend without one has rows of its first device where --backend or

@@ -73,7 +73,7 @@ RowKey key_of(const ResultValue& value, const ResultRow& row)
     key.device = row.device_index;
     key.rays = choice_at(value, "rays", RayKind::primary);
     key.ray_order = choice_at(value, "ray_order", RayOrder::tiles);
-    key.order = choice_at(value, "order", TetOrder::hilbert);
+    key.order = choice_at(value, "order", TetOrder::chains);
     key.kernel = kernel_of(value, row.schedule, key.rays == RayKind::primary ? Task::trace : Task::rays);
     return key;
 }

@@ -17,8 +17,8 @@ enum class Method {
 #define METHOD(name, ...) name,
 #include "kernels/kernel_list.inc"
 };
-/// A packed form of the mesh: tets (half32: a record for each tet and entry face; tet64: a cache line a tet; tet20 and tet16: tets that share
-/// their vertices), a BVH of our own, or a BVH that Embree or a GPU's driver (rt) builds itself.
+/// A packed form of the mesh: tets (half32: a record for each tet and entry face; tet64: a cache line a tet; tet20 and
+/// tet16: tets that share their vertices), a BVH of our own, or a BVH that Embree or a GPU's driver (rt) builds itself.
 enum class Layout {
 #define LAYOUT(name, ...) name,
 #define FOREIGN_LAYOUT(name) name,
@@ -57,10 +57,11 @@ enum class Task { trace, rays, search };
 template <>
 inline constexpr auto enum_names<Task> = names_up_to<Task::search>("trace", "rays", "search");
 /// The order of the tets in memory: along a space-filling curve; the same, with the tets that no ray from outside
-/// reaches (inside closed surfaces) after all others; as the tetrahedralization wrote them.
-enum class TetOrder { hilbert, reached, input };
+/// reaches (inside closed surfaces) after all others; the same in chains, each tet followed by its neighbour behind its
+/// largest free face; as the tetrahedralization wrote them.
+enum class TetOrder { chains, hilbert, reached, input };
 template <>
-inline constexpr auto enum_names<TetOrder> = names_up_to<TetOrder::input>("hilbert", "reached", "input");
+inline constexpr auto enum_names<TetOrder> = names_up_to<TetOrder::input>("chains", "hilbert", "reached", "input");
 
 /// A kernel's name as data: backends map it to code, or say that they have none.
 struct KernelId {

@@ -1,5 +1,6 @@
 #include "core/base/error.h"
 #include "core/mesh/entry_grid.h"
+#include "core/mesh/face_corners.h"
 #include "core/pack/hilbert.h"
 #include "core/pack/packed_scene.h"
 #include "core/pack/traits.h"
@@ -22,6 +23,39 @@ Double3 unit_centroid(const Scene& scene, const Tet& tet)
     return {offset.x / size.x, offset.y / size.y, offset.z / size.z};
 }
 
+// By the squares of areas.
+double size_of(const TetMesh& mesh, const Tet& tet, std::uint32_t face)
+{
+    const auto at = [&](std::size_t i) { return to_double(mesh.vertices[tet.vertices[face_corners[face][i]]]); };
+    const Double3 normal = cross(at(1) - at(0), at(2) - at(0));
+    return dot(normal, normal);
+}
+
+// In chains that begin along the given order: a ray that leaves a tet goes on in the next one more often than anywhere
+// else (docs/spec/layouts.md, L14). No chain leads from a tet that rays from outside reach to one that they do not.
+std::vector<std::uint32_t> in_chains(const TetMesh& mesh, const std::vector<std::uint32_t>& tets)
+{
+    std::vector<bool> is_placed(tets.size());
+    std::vector<std::uint32_t> chains;
+    chains.reserve(tets.size());
+    for (const std::uint32_t first : tets)
+        for (std::uint32_t next = first; next != NO_TET && !is_placed[next];) {
+            chains.push_back(next);
+            is_placed[next] = true;
+            const Tet& tet = mesh.tets[next];
+            next = NO_TET;
+            double largest = -1;
+            for (std::uint32_t face = 0; face < 4; ++face) {
+                const bool leads_on =
+                    tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK && !is_placed[link_tet(tet.links[face])];
+                const double size = leads_on ? size_of(mesh, tet, face) : -1;
+                if (size > largest) next = link_tet(tet.links[face]);
+                largest = std::max(largest, size);
+            }
+        }
+    return chains;
+}
+
 // The scene's tets in packed order.
 std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
 {
@@ -32,11 +66,10 @@ std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
     std::ranges::transform(scene.tets.tets, key.begin(),
                            [&](const Tet& tet) { return hilbert_index(unit_centroid(scene, tet)); });
     std::ranges::stable_sort(tets, [&](auto a, auto b) { return key[a] < key[b]; });
-    if (order == TetOrder::reached) {
-        const std::vector<bool> reached = reached_tets(scene.tets);
-        std::stable_partition(tets.begin(), tets.end(), [&](auto tet) { return reached[tet]; });
-    }
-    return tets;
+    if (order == TetOrder::hilbert) return tets;
+    const std::vector<bool> reached = reached_tets(scene.tets);
+    std::ranges::stable_partition(tets, [&](auto tet) { return reached[tet]; });
+    return order == TetOrder::reached ? tets : in_chains(scene.tets, tets);
 }
 
 std::uint32_t renumbered(std::uint32_t link, const std::vector<std::uint32_t>& packed_of_mesh)

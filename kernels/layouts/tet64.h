@@ -1,12 +1,12 @@
 // Layout tet64: a tet is one cache line of four records, one for each face by which a ray may enter it: the new vertex,
 // and what lies behind the face opposite that vertex (layout.h). A step loads the record's vertex, then what is behind
-// one other face, as a word of another record of the same line. A link is its record's number. The corners of face f are
-// here f ^ 1, f ^ 2, f ^ 3, which are those of faces.h, turned (docs/spec/layouts.md, L13).
+// one other face, as a word of another record of the same line. A link is its record's number. The corners of face f
+// are here f ^ 1, f ^ 2, f ^ 3, which are those of faces.h, turned (docs/spec/layouts.md, L13).
 #define HAS_RECORDS
 #define RecordExits uint
 #define RECORD_EXITS(scene, record) (record)
-// A rank beside the apex's, which is 1. is_before() is the method's.
-#define RANK_BESIDE(vertex, apex) (is_before(place_of(vertex), place_of(apex)) ? 0u : 1u)
+#define RANK_OF_APEX(apex) 1u
+#define RANK_BESIDE(vertex, apex) (lies_before(vertex, apex) ? 0u : 1u)
 #define TRIANGLE_OF(row, first) ((first).w - FIRST_RANK)
 #define TURN_OF_CORNERS(face) turn_of_corners(face)
 #define TURN_AFTER(turn, replaced) turn_after(turn, replaced)
@@ -24,7 +24,7 @@ KERNEL_FN uint record_of_corner(uint record, uint index)
 
 KERNEL_FN uint exit_to(uint record)
 {
-    return EXIT_IS_NORMAL | (record << 2u);
+    return ((EXIT_IS_NORMAL >> 2u) | record) << 2u; // in this form compilers see that it is no end
 }
 
 KERNEL_FN uint record_behind(uint exit)
@@ -62,6 +62,15 @@ KERNEL_FN uint exit_replacing(SceneView scene, RecordExits record, uint turn, ui
 KERNEL_FN Vec3 place_of(uint4 apex)
 {
     return VEC3(as_real(apex.x), as_real(apex.y), as_real(apex.z));
+}
+
+// is_before() of signs.h, without branches.
+KERNEL_FN bool lies_before(uint4 a, uint4 b)
+{
+    Vec3 p = place_of(a);
+    Vec3 q = place_of(b);
+    bool is_before_by_z = p.y == q.y && p.z < q.z;
+    return p.x < q.x || (p.x == q.x && (p.y < q.y || is_before_by_z));
 }
 
 KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)

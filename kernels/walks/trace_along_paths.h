@@ -4,13 +4,12 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
 {
     Shear shear = shear_of(ray);
     Beginning first;
-    uint start = FREE_FACE;
+    uint start = params.start_tet == NO_TET ? FROM_OUTSIDE : FREE_FACE; // here a compiler sees that it is constant
     if (params.start_tet == NO_TET) {
         Entrance entrance = entrance_of(scene, ray, shear);
         uint link = entry_link(scene, entrance.index);
         if (link == NO_LINK) return make_no_hit(entrance.index == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
         first = BEGINNING_AT(scene, ray, link, entrance);
-        start = FROM_OUTSIDE;
     } else {
         first = BEGINNING_IN(scene, ray, shear, params.start_tet, start_face(scene, params.start_tet, ray));
     }

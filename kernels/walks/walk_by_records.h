@@ -1,7 +1,7 @@
 // The walk of project through records (half32.h, tet64.h): it carries the vertices of the current face. Decisions, and
-// so the bits of the hits, are the same as in walk_along_paths.h on tets that hold their vertices (docs/spec/layouts.md,
-// L4). Corner i of a record's entry face is the carried vertex (i + turn) % 3. How an exit changes the turn, and how the
-// turn selects an exit, is the layout's.
+// so the bits of the hits, are the same as in walk_along_paths.h on tets that hold their vertices
+// (docs/spec/layouts.md, L4). Corner i of a record's entry face is the carried vertex (i + turn) % 3. How an exit
+// changes the turn, and how the turn selects an exit, is the layout's.
 
 // What lies behind a face of the tet in which a walk begins, as a record's exit without a rotation: the corners are
 // then fetched from memory.
@@ -74,7 +74,7 @@ KERNEL_FN Walker face_at_tie(SceneView scene, Ray ray, Shear shear, Walker at)
     ranks.p1 = turn == 0u ? rank_1 : turn == 1u ? rank_0 : rank_2;
     ranks.p2 = turn == 0u ? rank_2 : turn == 1u ? rank_1 : rank_0;
     Carried apex = carried(ray, shear, vertex);
-    uint replaced = replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, ranks, apex.seen, RANK_BESIDE(vertex, vertex));
+    uint replaced = replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, ranks, apex.seen, RANK_OF_APEX(vertex));
     RecordExits exits = RECORD_EXITS(scene, record);
     Walker next = with_apex(at, apex, replaced);
     next.exit = EXIT_REPLACING(scene, exits, turn, replaced);
@@ -118,7 +118,8 @@ KERNEL_FN Beginning beginning_at(uint link, Entrance entrance)
 {
     Beginning first;
     first.at = walker_with(carried_from(entrance.p0), carried_from(entrance.p1), carried_from(entrance.p2), link >> 2u,
-                           exit_to(link) | TURN_OF_CORNERS(link & 3u), 0u);
+                           exit_to(link), 0u);
+    first.at.turn = TURN_OF_CORNERS(link & 3u);
     first.own = link;
     return first;
 }

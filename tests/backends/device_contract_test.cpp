@@ -98,7 +98,7 @@ TEST(LargestBuffer, is_the_smaller_of_the_devices_and_the_options)
 
 TEST(PackedScene, is_checked_before_a_session_opens)
 {
-    const PackedScene packed = pack(make_cubes(3), Layout::tet80, TetOrder::hilbert);
+    const PackedScene packed = pack(make_cubes(3), Layout::tet80, TetOrder::chains);
     const Backend& host = openmp_backend();
     EXPECT_EQ(&packed_scene(host, 0, {}, {nullptr, &packed}), &packed);
     EXPECT_TRUE(contains(error_of([&] {
@@ -177,7 +177,7 @@ TEST(Searches, find_faces_and_nothing_else)
 
 TEST(TetParts, cut_the_tets_at_powers_of_two_and_lose_no_byte)
 {
-    const PackedScene packed = pack(make_cubes(8), Layout::tet80, TetOrder::hilbert);
+    const PackedScene packed = pack(make_cubes(8), Layout::tet80, TetOrder::chains);
     const auto tets = scene_buffers(packed)[0].bytes;
     ASSERT_GT(tets.size(), 200'000u);
     EXPECT_EQ(tet_parts(packed, 0).count, 1u);
@@ -197,7 +197,7 @@ TEST(TetParts, refuse_with_both_numbers)
 {
     Scene scene = make_cubes(8);
     scene.domain = cut_anew(scene.domain, 1); // short lists of boundary faces: the tets are what is too many
-    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::chains);
     const std::string too_many = error_of([&] { (void)tet_parts(packed, 20'000); });
     EXPECT_TRUE(contains(too_many, std::to_string(scene_buffers(packed)[0].bytes.size()))) << too_many;
     EXPECT_TRUE(contains(too_many, "20000"));

@@ -81,7 +81,7 @@ TEST_P(GivenRays, of_walks_that_ask_for_their_path_have_the_bits_of_openmp)
         hard.rays[i].end = 0.375F;
     for (const Layout layout : {Layout::tet80, Layout::half32, Layout::tet64}) {
         const KernelId kernel{.method = Method::project, .layout = layout, .task = Task::rays};
-        const PackedScene packed = pack(cubes.scene, layout, TetOrder::hilbert);
+        const PackedScene packed = pack(cubes.scene, layout, TetOrder::chains);
         for (const std::size_t device : usable) {
             const auto session = backend.open(device, kernel, {&cubes.scene.mesh, &packed}, {});
             for (const RaySet& set :

@@ -91,7 +91,8 @@ TEST_F(Vulkan, rays_left_at_ties_get_openmps_hits)
 {
     const auto lines = even_lines(8, 1);
     const Scene grid = grid_of({lines, lines, lines});
-    for (const Layout layout : {Layout::half32, Layout::tet64, Layout::tet80, Layout::tet96, Layout::tet20, Layout::tet16}) {
+    for (const Layout layout :
+         {Layout::half32, Layout::tet64, Layout::tet80, Layout::tet96, Layout::tet20, Layout::tet16}) {
         const DeviceRays rays(grid, layout);
         const KernelId kernel{.method = Method::project, .layout = layout};
         const auto on_host = openmp_backend().open(0, kernel, rays.data(), {.threads = 2});

@@ -38,7 +38,7 @@ std::map<Place, std::pair<std::uint32_t, std::uint32_t>> faces_of(const TetMesh&
 std::string unsupported_text(const Scene& scene, Layout layout)
 {
     try {
-        (void)pack(scene, layout, TetOrder::hilbert);
+        (void)pack(scene, layout, TetOrder::chains);
     } catch (const Error& error) {
         return error.kind() == ErrorKind::unsupported ? error.what() : "another kind of error";
     }
@@ -52,7 +52,7 @@ class CompactPacking : public testing::TestWithParam<Layout> {};
 TEST_P(CompactPacking, unpacking_gives_the_tets_back)
 {
     const Scene scene = make_cubes(6);
-    for (const TetOrder order : {TetOrder::hilbert, TetOrder::input}) {
+    for (const TetOrder order : {TetOrder::chains, TetOrder::input}) {
         const PackedScene packed = pack(scene, GetParam(), order);
         const TetMesh back = unpack(packed);
         ASSERT_EQ(back.tets.size(), scene.tets.tets.size());
@@ -70,25 +70,25 @@ TEST_P(CompactPacking, sizes_are_those_of_the_layout)
 {
     const Scene scene = make_cubes(4);
     const std::size_t tets = scene.tets.tets.size();
-    const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
+    const PackedScene packed = pack(scene, GetParam(), TetOrder::chains);
     EXPECT_EQ(packed.tets.size() * sizeof(Quad), (GetParam() == Layout::tet20 ? 20 : 16) * tets);
     EXPECT_EQ(packed.vertices.size(), scene.tets.vertices.size());
     EXPECT_EQ(packed.occlusive_faces.size(), OCCLUSIVE_WORDS * count_faces(scene.tets).occlusive_faces);
     EXPECT_TRUE(packed.entry_links.empty());
-    EXPECT_EQ(packed.entry_faces.size(), pack(scene, Layout::tet80, TetOrder::hilbert).entry_links.size());
+    EXPECT_EQ(packed.entry_faces.size(), pack(scene, Layout::tet80, TetOrder::chains).entry_links.size());
 }
 
 TEST_P(CompactPacking, numbers_the_tets_as_other_layouts_do)
 {
     const Scene scene = make_cubes(5);
-    EXPECT_EQ(pack(scene, GetParam(), TetOrder::hilbert).packed_of_mesh,
-              pack(scene, Layout::tet80, TetOrder::hilbert).packed_of_mesh);
+    EXPECT_EQ(pack(scene, GetParam(), TetOrder::chains).packed_of_mesh,
+              pack(scene, Layout::tet80, TetOrder::chains).packed_of_mesh);
 }
 
 TEST_P(CompactPacking, vertices_have_the_rank_of_their_place)
 {
     const Scene scene = make_cubes(4);
-    const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
+    const PackedScene packed = pack(scene, GetParam(), TetOrder::chains);
     std::map<std::uint32_t, Place> places;
     for (const Quad& quad : packed.vertices)
         places[quad.w] = {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
@@ -103,7 +103,7 @@ TEST_P(CompactPacking, vertices_have_the_rank_of_their_place)
 TEST_P(CompactPacking, vertices_lie_as_the_tets_do)
 {
     const Scene scene = make_cubes(16);
-    const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
+    const PackedScene packed = pack(scene, GetParam(), TetOrder::chains);
     std::vector<std::uint32_t> mesh_of_packed(packed.tet_count);
     for (std::uint32_t tet = 0; tet < packed.tet_count; ++tet)
         mesh_of_packed[packed.packed_of_mesh[tet]] = tet;
@@ -121,7 +121,7 @@ TEST_P(CompactPacking, vertices_lie_as_the_tets_do)
 TEST_P(CompactPacking, every_bit_of_a_tet_matters)
 {
     const Scene scene = make_cubes(2);
-    const PackedScene packed = pack(scene, GetParam(), TetOrder::hilbert);
+    const PackedScene packed = pack(scene, GetParam(), TetOrder::chains);
     const TetMesh whole = unpack(packed);
     for (std::size_t word = 0; word < 20; ++word)
         for (const std::uint32_t bit : {0u, 3u, 17u, 31u}) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <set>
@@ -39,6 +40,25 @@ void expect_same_tets(const Scene& scene, const PackedScene& packed)
     EXPECT_EQ(find_defect(back, scene.mesh.triangles.size()), std::nullopt);
 }
 
+void expect_reached_first(const TetMesh& mesh)
+{
+    std::vector<bool> reached(mesh.tets.size());
+    std::size_t count = 0;
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet)
+            for (std::size_t face = 0; face < 4 && !reached[tet]; ++face) {
+                const auto link = mesh.tets[tet].links[face];
+                const bool is_open =
+                    link == NO_LINK || (mesh.tets[tet].faces[face] == FREE_FACE && reached[link_tet(link)]);
+                if (is_open) grows = reached[tet] = true, ++count;
+            }
+    }
+    EXPECT_GT(count, 0u);
+    EXPECT_LT(count, mesh.tets.size());
+    EXPECT_TRUE(std::is_partitioned(reached.begin(), reached.end(), [](bool is_reached) { return is_reached; }));
+}
+
 class Packing : public testing::TestWithParam<std::tuple<Layout, TetOrder>> {};
 
 } // namespace
@@ -51,7 +71,8 @@ TEST_P(Packing, unpacking_gives_the_tets_back_bit_for_bit)
 
 INSTANTIATE_TEST_SUITE_P(each, Packing,
                          testing::Combine(testing::Values(Layout::tet80, Layout::tet96, Layout::half32, Layout::tet64),
-                                          testing::Values(TetOrder::hilbert, TetOrder::reached, TetOrder::input)),
+                                          testing::Values(TetOrder::chains, TetOrder::hilbert, TetOrder::reached,
+                                                          TetOrder::input)),
                          [](const auto& tested) {
                              return std::string(name_of(std::get<0>(tested.param))) + "_" +
                                     std::string(name_of(std::get<1>(tested.param)));
@@ -61,10 +82,10 @@ TEST(Pack, sizes_are_those_of_the_layout)
 {
     const Scene scene = make_cubes(3);
     const auto tets = scene.tets.tets.size();
-    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).tets.size() * sizeof(Quad), 80 * tets);
-    EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::hilbert).tets.size() * sizeof(Quad), 96 * tets);
-    EXPECT_EQ(pack(scene, Layout::half32, TetOrder::hilbert).tets.size() * sizeof(Quad), 4 * 32 * tets);
-    EXPECT_EQ(pack(scene, Layout::tet64, TetOrder::hilbert).tets.size() * sizeof(Quad), 64 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::chains).tets.size() * sizeof(Quad), 80 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet96, TetOrder::chains).tets.size() * sizeof(Quad), 96 * tets);
+    EXPECT_EQ(pack(scene, Layout::half32, TetOrder::chains).tets.size() * sizeof(Quad), 4 * 32 * tets);
+    EXPECT_EQ(pack(scene, Layout::tet64, TetOrder::chains).tets.size() * sizeof(Quad), 64 * tets);
 }
 
 TEST(Pack, a_layout_holds_no_more_tets_than_its_kernels_index_with_32_bits)
@@ -90,34 +111,53 @@ TEST(Pack, hilbert_order_has_no_long_jumps)
     EXPECT_LT(longest_jump(TetOrder::hilbert), 0.5 * longest_jump(TetOrder::input));
 }
 
+// A tet is followed by its neighbour behind its largest free face of those that are not placed yet.
+TEST(Pack, chains_go_on_behind_the_largest_free_face_and_begin_along_the_curve)
+{
+    const Scene scene = make_cubes(9);
+    const TetMesh mesh = unpack(pack(scene, Layout::tet80, TetOrder::chains));
+    const auto area = [&](std::uint32_t tet, std::uint32_t face) {
+        std::array<Double3, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = to_double(mesh.vertices[mesh.tets[tet].vertices[face_corners[face][i]]]);
+        return length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    };
+    std::size_t followed = 0;
+    for (std::uint32_t tet = 0; tet + 1 < mesh.tets.size(); ++tet) {
+        double largest = 0, to_next = 0;
+        for (std::uint32_t face = 0; face < 4; ++face) {
+            const std::uint32_t link = mesh.tets[tet].links[face];
+            if (mesh.tets[tet].faces[face] != FREE_FACE || link == NO_LINK || link_tet(link) < tet) continue;
+            largest = std::max(largest, area(tet, face));
+            if (link_tet(link) == tet + 1) to_next = area(tet, face);
+        }
+        EXPECT_NEAR(to_next, largest, 1e-12) << "after tet " << tet;
+        followed += to_next > 0 ? 1 : 0;
+    }
+    EXPECT_GT(followed, mesh.tets.size() / 2);
+
+    const auto first_of = [&](TetOrder order) {
+        const auto& packed = pack(scene, Layout::tet80, order).packed_of_mesh;
+        return std::ranges::find(packed, 0u) - packed.begin();
+    };
+    const auto is_reached = reached_tets(scene.tets);
+    ASSERT_TRUE(is_reached[static_cast<std::size_t>(first_of(TetOrder::hilbert))]);
+    EXPECT_EQ(first_of(TetOrder::chains), first_of(TetOrder::hilbert));
+}
+
 // cubes are closed surfaces: a part of the tets lies inside them.
-TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached)
+TEST(Pack, tets_that_no_ray_reaches_come_last_in_order_reached_and_in_chains)
 {
     const Scene scene = make_cubes(12);
-    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::reached);
-    const TetMesh mesh = unpack(packed);
-    std::vector<bool> reached(mesh.tets.size());
-    std::size_t count = 0;
-    for (bool grows = true; grows;) {
-        grows = false;
-        for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet)
-            for (std::size_t face = 0; face < 4 && !reached[tet]; ++face) {
-                const auto link = mesh.tets[tet].links[face];
-                const bool is_open =
-                    link == NO_LINK || (mesh.tets[tet].faces[face] == FREE_FACE && reached[link_tet(link)]);
-                if (is_open) grows = reached[tet] = true, ++count;
-            }
-    }
-    EXPECT_GT(count, 0u);
-    EXPECT_LT(count, mesh.tets.size());
-    EXPECT_TRUE(std::is_partitioned(reached.begin(), reached.end(), [](bool is_reached) { return is_reached; }));
+    for (const TetOrder order : {TetOrder::reached, TetOrder::chains})
+        expect_reached_first(unpack(pack(scene, Layout::tet80, order)));
 }
 
 TEST(Pack, layouts_number_the_tets_alike)
 {
     const Scene scene = make_cubes(5);
-    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::hilbert).packed_of_mesh,
-              pack(scene, Layout::tet96, TetOrder::hilbert).packed_of_mesh);
+    EXPECT_EQ(pack(scene, Layout::tet80, TetOrder::chains).packed_of_mesh,
+              pack(scene, Layout::tet96, TetOrder::chains).packed_of_mesh);
 }
 
 // One flipped bit anywhere in the tets' quads must be visible after unpacking: no word is ignored but tet96's w.
@@ -125,7 +165,7 @@ TEST(Pack, every_word_of_a_tet_matters)
 {
     const Scene scene = make_cubes(2);
     for (const auto layout : {Layout::tet80, Layout::tet96}) {
-        const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
+        const PackedScene packed = pack(scene, layout, TetOrder::chains);
         const TetMesh whole = unpack(packed);
         const std::size_t words = layout == Layout::tet80 ? 20 : 24;
         for (std::size_t word = 0; word < words; ++word) {
@@ -144,7 +184,7 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
 {
     const Scene scene = make_cubes(2);
     for (const Layout layout : {Layout::half32, Layout::tet64}) {
-        const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
+        const PackedScene packed = pack(scene, layout, TetOrder::chains);
         const std::size_t tets_words = layout == Layout::half32 ? std::size_t{16} * HALF32_QUADS : 16;
         const auto refused = [&](std::vector<Quad> PackedScene::*quads, std::size_t word, std::uint32_t bit) {
             PackedScene spoilt = packed;
@@ -170,8 +210,8 @@ TEST(Pack, no_word_beside_coordinates_is_denormal_as_a_float)
         for (std::size_t quad = 0; quad < quads.size(); quad += stride)
             ASSERT_NE(std::fpclassify(std::bit_cast<float>(quads[quad].w)), FP_SUBNORMAL) << "quad " << quad;
     };
-    expect_no_denormal(pack(scene, Layout::half32, TetOrder::hilbert).tets, HALF32_QUADS);
-    const PackedScene packed = pack(scene, Layout::tet64, TetOrder::hilbert);
+    expect_no_denormal(pack(scene, Layout::half32, TetOrder::chains).tets, HALF32_QUADS);
+    const PackedScene packed = pack(scene, Layout::tet64, TetOrder::chains);
     expect_no_denormal(packed.tets, 1);
     expect_no_denormal(packed.triangles, 1);
 }
@@ -180,8 +220,8 @@ TEST(Pack, no_word_beside_coordinates_is_denormal_as_a_float)
 TEST(Pack, rows_of_tet64_name_their_triangle_and_what_is_on_both_sides)
 {
     const Scene scene = make_cubes(4);
-    const PackedScene packed = pack(scene, Layout::tet64, TetOrder::hilbert);
-    const PackedScene of_triangles = pack(scene, Layout::tet80, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, Layout::tet64, TetOrder::chains);
+    const PackedScene of_triangles = pack(scene, Layout::tet80, TetOrder::chains);
     const std::size_t rows = packed.triangles.size() / TRIANGLE_QUADS;
     EXPECT_EQ(rows, count_faces(scene.tets).occlusive_faces);
     const TetMesh mesh = unpack(packed);
@@ -201,7 +241,7 @@ TEST(Pack, rows_of_tet64_name_their_triangle_and_what_is_on_both_sides)
 TEST(Pack, triangles_hold_a_corner_and_two_edges)
 {
     const Scene scene = make_cubes(3);
-    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, Layout::tet80, TetOrder::chains);
     ASSERT_EQ(packed.triangles.size(), 3 * scene.mesh.triangles.size());
     const auto& [a, b, c] = scene.mesh.triangles[1];
     const auto x = [](const Quad& quad) { return std::bit_cast<float>(quad.x); };

@@ -105,8 +105,7 @@ TEST_F(RaySteps, lead_from_neighbour_to_neighbour_to_the_triangle_that_is_hit)
     for (const auto& [method, layout] :
          {std::pair(Method::maria, Layout::tet80), std::pair(Method::maria, Layout::tet96),
           std::pair(Method::project, Layout::half32), std::pair(Method::project, Layout::tet64),
-          std::pair(Method::project, Layout::tet20),
-          std::pair(Method::plucker, Layout::tet80)}) {
+          std::pair(Method::project, Layout::tet20), std::pair(Method::plucker, Layout::tet80)}) {
         RowRun traced = row(method, layout);
         const RayOnDevice ray = follow_ray(traced, 0, pixel);
         ASSERT_LT(ray.hit.face_id, scene_->loaded().scene.mesh.triangles.size()) << "the pixel hits";

@@ -126,10 +126,11 @@ TEST_F(Inspect, programs_of_amd_targets_decide_nothing_by_fused_operations_and_k
 {
     for (const char* const target : {"gfx1100", "gfx906"}) {
         const json programs = inspected(fmt::format(
-            "--target {} --method maria,project,single --layout tet80,half32,bvh2,cwbvh --entry outside", target));
+            "--target {} --method maria,project,single --layout tet80,half32,tet64,bvh2,cwbvh --entry outside",
+            target));
         ASSERT_FALSE(programs.empty());
         if (programs.front()["status"] == "skipped") GTEST_SKIP() << programs.front()["reason"];
-        EXPECT_EQ(programs.size(), 5u) << "maria and project on tet80, project on half32, two BVHs";
+        EXPECT_EQ(programs.size(), 6u) << "maria and project on tet80, project on half32 and tet64, two BVHs";
         expect_exact(programs);
         expect_known_figures(programs);
     }
@@ -138,9 +139,9 @@ TEST_F(Inspect, programs_of_amd_targets_decide_nothing_by_fused_operations_and_k
 TEST_F(Inspect, programs_of_nvidia_targets_decide_nothing_by_fused_operations_and_keep_half_of_the_occupancy)
 {
     const json programs =
-        inspected("--target sm_90 --method project,single --layout half32,bvh2,cwbvh --entry outside");
+        inspected("--target sm_90 --method project,single --layout half32,tet64,bvh2,cwbvh --entry outside");
     if (!programs.empty() && programs.front()["status"] == "skipped") GTEST_SKIP() << programs.front()["reason"];
-    EXPECT_EQ(programs.size(), 6u) << "tiles and persistent";
+    EXPECT_EQ(programs.size(), 8u) << "tiles and persistent";
     expect_exact(programs);
     expect_known_figures(programs);
 }

@@ -57,7 +57,7 @@ std::vector<Hit> hits_on(Backend& backend, std::size_t device, const Scene& scen
                          const std::vector<Float3>& origins, std::uint32_t max_steps = 10'000,
                          std::uint64_t max_buffer_bytes = 0)
 {
-    const PackedScene packed = pack(scene, layout, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, layout, TetOrder::chains);
     const KernelId kernel{.method = Method::project, .layout = layout};
     const SessionOptions options{.threads = 2, .max_buffer_bytes = max_buffer_bytes};
     const auto session = backend.open(device, kernel, {&scene.mesh, &packed}, options);
@@ -143,7 +143,7 @@ TEST(Carrying, has_the_same_bits_with_the_tets_in_parts)
     const auto right = hits_on(openmp_backend(), 0, scene, Layout::tet80, origins);
     for (const Layout layout : carrying_layouts) {
         const std::uint64_t limit = layout == Layout::half32 ? 100'000 : 40'000;
-        ASSERT_GT(tet_parts(pack(scene, layout, TetOrder::hilbert), limit).count, 1u);
+        ASSERT_GT(tet_parts(pack(scene, layout, TetOrder::chains), limit).count, 1u);
         for (Backend* backend : all_backends())
             for (std::size_t device = 0; device < backend->devices().size(); ++device) {
                 const bool cuts_tets = backend->name() == "opencl" || backend->name() == "vulkan";

@@ -44,6 +44,7 @@ namespace project_half32 {
 #undef HAS_RECORDS
 #undef RecordExits
 #undef RECORD_EXITS
+#undef RANK_OF_APEX
 #undef RANK_BESIDE
 #undef TRIANGLE_OF
 #undef TURN_OF_CORNERS
@@ -57,6 +58,7 @@ namespace project_tet64 {
 #undef HAS_RECORDS
 #undef RecordExits
 #undef RECORD_EXITS
+#undef RANK_OF_APEX
 #undef RANK_BESIDE
 #undef TRIANGLE_OF
 #undef TURN_OF_CORNERS

@@ -61,12 +61,12 @@ Judged judged(const Scene& scene, const PackedScene& packed, std::uint64_t count
 Judged judged_on_openmp(const Scene& scene, std::uint64_t count)
 {
     const KernelId kernel{.method = Method::project, .task = Task::rays};
-    const PackedScene packed = pack(scene, kernel.layout, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, kernel.layout, TetOrder::chains);
     const auto session = openmp_backend().open(0, kernel, {&scene.mesh, &packed}, {});
     std::map<Layout, PackedScene> records;
     std::map<Layout, std::unique_ptr<Session>> of_records;
     for (const Layout layout : {Layout::half32, Layout::tet64}) {
-        records[layout] = pack(scene, layout, TetOrder::hilbert);
+        records[layout] = pack(scene, layout, TetOrder::chains);
         const KernelId same{.method = Method::project, .layout = layout, .task = Task::rays};
         of_records[layout] = openmp_backend().open(0, same, {&scene.mesh, &records[layout]}, {});
     }
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(each, HardRaysOf, testing::Values("bunny", "armadillo",
 TEST(HardRays, find_a_walk_without_the_rule_for_ties)
 {
     const Scene scene = std::move(make_hard_scenes().front().scene);
-    const PackedScene packed = pack(scene, Layout::tet96, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, Layout::tet96, TetOrder::chains);
     const without_ties::SceneView view = without_ties::view_of(packed);
     without_ties::TraceParams params{};
     params.max_steps = packed.tet_count + 1;

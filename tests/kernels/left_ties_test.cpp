@@ -40,6 +40,7 @@ namespace leaves_half32 {
 #undef HAS_RECORDS
 #undef RecordExits
 #undef RECORD_EXITS
+#undef RANK_OF_APEX
 #undef RANK_BESIDE
 #undef TRIANGLE_OF
 #undef TURN_OF_CORNERS
@@ -53,6 +54,7 @@ namespace leaves_tet64 {
 #undef HAS_RECORDS
 #undef RecordExits
 #undef RECORD_EXITS
+#undef RANK_OF_APEX
 #undef RANK_BESIDE
 #undef TRIANGLE_OF
 #undef TURN_OF_CORNERS

@@ -253,8 +253,9 @@ TEST(ProjectCycles, begins_anew_with_the_same_bits_on_every_layout_and_device)
     const auto starts = cyclic_starts(grid, 1000);
     ASSERT_GT(starts.size(), 10u);
     std::vector<Hit> expected;
-    for (const Layout layout : {Layout::tet96, Layout::tet80, Layout::half32, Layout::tet64, Layout::tet20, Layout::tet16}) {
-        const auto packed = pack(grid.scene, layout, TetOrder::hilbert);
+    for (const Layout layout :
+         {Layout::tet96, Layout::tet80, Layout::half32, Layout::tet64, Layout::tet20, Layout::tet16}) {
+        const auto packed = pack(grid.scene, layout, TetOrder::chains);
         const auto hits_of = [&](Session& session) { return hits_from(session, grid, packed, starts); };
         expect_same_hits({.method = Method::project, .layout = layout}, grid, packed, hits_of, expected);
     }
@@ -267,7 +268,7 @@ TEST(ProjectCycles, begins_given_rays_anew_with_the_same_bits_on_every_layout_an
     const RaySet set = given_among_others(grid, starts);
     std::vector<Hit> expected;
     for (const Layout layout : {Layout::tet96, Layout::tet80, Layout::half32, Layout::tet64}) {
-        const auto packed = pack(grid.scene, layout, TetOrder::hilbert);
+        const auto packed = pack(grid.scene, layout, TetOrder::chains);
         const auto hits_of = [&](Session& session) { return hits_of_given(session, packed, set); };
         KernelId kernel{.method = Method::project, .layout = layout, .task = Task::rays};
         expect_same_hits(kernel, grid, packed, hits_of, expected);

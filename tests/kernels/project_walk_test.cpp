@@ -230,7 +230,7 @@ TEST(ProjectWalk, has_the_same_bits_on_openmp_and_cuda_host_where_rays_pass_vert
 {
     const Scene& scene = grids().front()->scene;
     const KernelId kernel{.method = Method::project};
-    const auto packed = pack(scene, kernel.layout, TetOrder::hilbert);
+    const auto packed = pack(scene, kernel.layout, TetOrder::chains);
     TraceJob job;
     job.view = {{0.25f, 0, 3}, {-1, -1, -2}, {0.125f, 0, 0}, {0, 0.125f, 0}};
     job.width = job.height = 17;

@@ -33,7 +33,7 @@ protected:
     void add_row(FakeBackend& backend, Layout layout)
     {
         RowRun row;
-        row.key = {"bunny", backend.name(), {}, RayKind::primary, TetOrder::hilbert, 0};
+        row.key = {"bunny", backend.name(), {}, RayKind::primary, TetOrder::chains, 0};
         row.key.kernel.layout = layout;
         row.backend = &backend;
         row.device = backend.devices()[0];

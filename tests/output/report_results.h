@@ -29,7 +29,7 @@ inline const Names hostile = {R"(<script>alert("1")</script> & 'Co' </svg></titl
             {"backend", backend},
             {"rays", "primary"},
             {"math", "exact"},
-            {"order", "hilbert"},
+            {"order", "chains"},
             {"status", "ok"},
             {"device", {{"name", names.device + " of " + backend}, {"type", type}, {"driver", names.device}}},
             {"device_index", 0},

@@ -59,7 +59,7 @@ TEST_F(Compare, finds_a_result_the_same_as_itself)
 {
     const Ended ended = compare_with([](Json&) {});
     EXPECT_EQ(ended.code, 0) << ended.errors;
-    EXPECT_TRUE(contains(unwrapped(ended), "8 of 8 rows: 8 SAME; geometric mean of B / A 1.000"));
+    EXPECT_TRUE(contains(unwrapped(ended), "9 of 9 rows: 9 SAME; geometric mean of B / A 1.000"));
     EXPECT_TRUE(contains(unwrapped(ended), "Differ in nothing"));
     EXPECT_TRUE(contains(unwrapped(ended), "is at most 1 %"));
 }
@@ -94,7 +94,7 @@ TEST_F(Compare, counts_a_failed_row_as_a_regression_and_a_missing_one_unless_all
     const Ended failed = compare_with(fail, "--allow-missing");
     EXPECT_EQ(failed.code, 1) << failed.out;
     EXPECT_TRUE(contains(failed.out, "FAILED: B: error: the driver is ?[31mgone"));
-    EXPECT_TRUE(contains(unwrapped(failed), "7 of 8 rows: 7 SAME"));
+    EXPECT_TRUE(contains(unwrapped(failed), "8 of 9 rows: 8 SAME"));
     const auto drop = [](Json& section) { section["rows"].erase(0); };
     EXPECT_EQ(compare_with(drop).code, 1);
     EXPECT_EQ(compare_with(drop, "--allow-missing").code, 0);
@@ -144,7 +144,7 @@ TEST_F(Compare, says_so_where_samples_are_too_few_to_tell)
     });
     EXPECT_EQ(ended.code, 0);
     EXPECT_TRUE(contains(unwrapped(ended), "UNSURE: fewer than 5 samples, so no interval: 7 in A and 3 in B"));
-    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 UNSURE; 1 with fewer than 5 samples, so no interval;"));
+    EXPECT_TRUE(contains(unwrapped(ended), "8 SAME, 1 UNSURE; 1 with fewer than 5 samples, so no interval;"));
 }
 
 TEST_F(Compare, a_run_of_a_disturbed_machine_is_not_judged_and_says_so)
@@ -155,7 +155,7 @@ TEST_F(Compare, a_run_of_a_disturbed_machine_is_not_judged_and_says_so)
     });
     EXPECT_EQ(ended.code, 0) << ended.out;
     EXPECT_TRUE(contains(unwrapped(ended), "NOISY: in B the pulse beside its samples took 6.00 times its fastest"));
-    EXPECT_TRUE(contains(unwrapped(ended), "7 SAME, 1 NOISY; geometric mean")) << ended.out;
+    EXPECT_TRUE(contains(unwrapped(ended), "8 SAME, 1 NOISY; geometric mean")) << ended.out;
     EXPECT_TRUE(contains(unwrapped(ended), "they decide nothing. Measure again on a quieter machine."));
 }
 
@@ -245,7 +245,7 @@ TEST_F(Compare, refuses_other_scenes_and_lists_other_hits_naming_the_row)
     const Ended hits = compare_with([](Json& section) { section["rows"].back()["hit_hash"] = "0000000000000000"; });
     EXPECT_EQ(hits.code, 0) << hits.errors;
     EXPECT_TRUE(contains(hits.out, "api:embree: DIFFERENT: hit hash")) << hits.out;
-    EXPECT_TRUE(contains(unwrapped(hits), "7 of 8 rows: 7 SAME; 1 DIFFERENT, not compared")) << hits.out;
+    EXPECT_TRUE(contains(unwrapped(hits), "8 of 9 rows: 8 SAME; 1 DIFFERENT, not compared")) << hits.out;
 }
 
 TEST_F(Compare, gives_a_table_csv_markdown_and_json)
@@ -253,7 +253,7 @@ TEST_F(Compare, gives_a_table_csv_markdown_and_json)
     const auto slower = [](Json& section) { slow_down(section["rows"][1], 1.25); };
     const Ended csv = compare_with(slower, "--format csv");
     EXPECT_EQ(csv.out.rfind("name,verdict,ratio,low,high,confidence,", 0), 0u);
-    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 10);
     EXPECT_TRUE(contains(compare_with(slower, "--format markdown").out,
                          "\n| row | A (Mrays/s) | B (Mrays/s) | B / A | verdict |\n"));
     const Ended both = compare_with(slower, "--out comparison.json");
@@ -265,7 +265,7 @@ TEST_F(Compare, gives_a_table_csv_markdown_and_json)
     EXPECT_EQ(comparison["rows"][1]["verdict"], "SLOWER");
     ASSERT_EQ(comparison["regressions"].size(), 1u);
     EXPECT_EQ(comparison["regressions"][0], comparison["rows"][1]["name"]);
-    EXPECT_NEAR(comparison["geometric_mean"].get<double>(), std::pow(0.8, 1.0 / 8), 1e-9);
+    EXPECT_NEAR(comparison["geometric_mean"].get<double>(), std::pow(0.8, 1.0 / 9), 1e-9);
 }
 
 TEST_F(Compare, refuses_files_that_it_cannot_compare)

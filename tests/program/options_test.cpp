@@ -89,7 +89,7 @@ TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "openmp, opencl, vulkan, cuda, cuda-host"));
     EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
-    EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "hilbert, reached or input"));
+    EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "chains, hilbert, reached or input"));
     EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, reproduce, inspect, "
                                               "trace, dump, compare, show, report, merge or help"));
     EXPECT_TRUE(contains(rejection({"help", "draw"}), "bench"));

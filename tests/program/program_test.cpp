@@ -90,7 +90,7 @@ TEST_F(Program, usage_errors_go_to_standard_error_with_exit_code_2)
         EXPECT_NE(ended.errors, "") << bad;
     }
     EXPECT_TRUE(contains(run("bench --backend openmp,embree --scene cubes --filter nothing").errors,
-                         "matches none of the 8 rows"));
+                         "matches none of the 9 rows"));
 }
 
 TEST_F(Program, renders_without_openimageio)
@@ -131,10 +131,10 @@ TEST_F(Program, benches_and_writes_the_table_and_the_json)
     const Ended ended = bench("--out result.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "Mrays/s"));
-    EXPECT_TRUE(contains(ended.out, "Verified  18,432 rays"));
+    EXPECT_TRUE(contains(ended.out, "Verified  20,736 rays"));
     const auto json = nlohmann::json::parse(file("result.json"));
     EXPECT_EQ(json["tetrace"]["schema_version"], 2);
-    ASSERT_EQ(json["tetrace"]["rows"].size(), 8u);
+    ASSERT_EQ(json["tetrace"]["rows"].size(), 9u);
     std::set<std::string> benchmarked;
     for (const auto& entry : json["benchmarks"])
         benchmarked.insert(entry["run_name"].get<std::string>());
@@ -167,7 +167,7 @@ TEST_F(Program, benches_as_csv_and_markdown)
     const Ended csv = bench("--format csv");
     ASSERT_EQ(csv.code, 0) << csv.errors;
     EXPECT_EQ(csv.out.rfind("name,scene,structure,method,", 0), 0u);
-    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 9);
+    EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 10);
     EXPECT_TRUE(contains(bench("--format markdown").out, "\n| row | backend | Mrays/s |"));
     const Ended to_file = bench("--format csv --out table.csv");
     EXPECT_EQ(to_file.out, "");
@@ -184,8 +184,8 @@ TEST_F(Program, lists_rows_without_loading_scenes)
         run("bench --backend openmp,embree --scene bunny --benchmark_list_tests=true --benchmark_filter=-bvh").out,
         "cdt/maria/tet80/bunny/primary/math:exact/api:openmp\ncdt/maria/tet96/bunny/primary/math:exact/api:openmp\n"
         "cdt/project/half32/bunny/primary/math:exact/api:openmp\n"
-        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n"
-        "cdt/project/tet64/bunny/primary/math:exact/api:openmp\n");
+        "cdt/project/tet64/bunny/primary/math:exact/api:openmp\n"
+        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp\n");
 }
 
 TEST_F(Program, google_benchmarks_flags_keep_their_meaning)
@@ -206,11 +206,11 @@ TEST_F(Program, google_benchmarks_flags_keep_their_meaning)
 TEST_F(Program, checks_every_ray)
 {
     const Ended ended = run(
-        "check --backend openmp,embree --scene cubes --resolution 6 --size 24 --math exact,fast --order hilbert,input "
+        "check --backend openmp,embree --scene cubes --resolution 6 --size 24 --math exact,fast --order chains,input "
         "--require openmp,embree --out check.json");
     ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
     const auto rows = nlohmann::json::parse(file("check.json"))["tetrace"]["rows"];
-    EXPECT_EQ(rows.size(), 20u);
+    EXPECT_EQ(rows.size(), 24u);
     for (const auto& row : rows) {
         EXPECT_EQ(row["status"], "ok") << row;
         const auto& found = row["verification"];
@@ -232,7 +232,7 @@ TEST_F(Program, check_shows_rows_against_devices_and_writes_junit)
     EXPECT_EQ(cell["cell"], "reference");
     EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
     EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
-    EXPECT_TRUE(contains(file("check.xml"), "tests=\"6\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+    EXPECT_TRUE(contains(file("check.xml"), "tests=\"7\" failures=\"0\" errors=\"0\" skipped=\"0\""));
     EXPECT_TRUE(contains(file("check.xml"), "classname=\"tetrace.openmp."));
     EXPECT_TRUE(contains(file("check.xml"), "<property name=\"tetrace.version\""));
 }
@@ -310,7 +310,7 @@ TEST_F(Program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
         "bench --backend openmp,embree --scene cubes,broken.tet --resolution 6 --size 24 --samples 3 --format json");
     EXPECT_NE(ended.code, 0);
     const auto rows = nlohmann::json::parse(ended.out)["tetrace"]["rows"];
-    ASSERT_EQ(rows.size(), 16u);
+    ASSERT_EQ(rows.size(), 18u);
     for (const auto& row : rows) {
         EXPECT_EQ(row["status"], row["scene"] == "cubes" ? "ok" : "error") << row;
         EXPECT_EQ(row.contains("rates"), row["scene"] == "cubes");

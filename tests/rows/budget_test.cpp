@@ -58,7 +58,7 @@ protected:
     /// Opens a row of openmp's that calls itself `backend` and whose views take so long.
     std::size_t add_row(Layout layout, double view_s, const std::string& backend = "other", double first_launch_s = 0)
     {
-        RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+        RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::chains};
         key.kernel.layout = layout;
         rows_.push_back(open_row(key, scene_, options_));
         RowRun& row = rows_.back();
@@ -259,7 +259,7 @@ TEST_F(BudgetOfRows, without_a_limit_estimates_and_skips_nothing)
 TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_a_part_of_them)
 {
     rows_.reserve(1);
-    RowKey key{"cubes", "openmp", {}, RayKind::random, TetOrder::hilbert};
+    RowKey key{"cubes", "openmp", {}, RayKind::random, TetOrder::chains};
     key.kernel.task = Task::rays;
     rows_.push_back(open_row(key, scene_, options_));
     const double ray_s = 1;
@@ -272,7 +272,7 @@ TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_a_part_of_them)
 TEST_F(BudgetOfRows, estimates_rays_that_are_given_from_the_first_of_them_as_they_are)
 {
     rows_.reserve(1);
-    RowKey key{"cubes", "openmp", {}, RayKind::random, TetOrder::hilbert};
+    RowKey key{"cubes", "openmp", {}, RayKind::random, TetOrder::chains};
     key.kernel.task = Task::rays;
     rows_.push_back(open_row(key, scene_, options_));
     std::vector<Quad> some;

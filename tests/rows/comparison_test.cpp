@@ -12,7 +12,7 @@ namespace {
 RowRun row_on(const std::string& backend, DeviceKind kind, double seconds, const std::string& uuid = "")
 {
     RowRun row;
-    row.key = {"bunny", backend, {}, RayKind::primary, TetOrder::hilbert, 0};
+    row.key = {"bunny", backend, {}, RayKind::primary, TetOrder::chains, 0};
     row.device.kind = kind;
     row.device.uuid = uuid;
     Traced result;

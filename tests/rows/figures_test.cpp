@@ -10,7 +10,7 @@ namespace {
 RowRun timed_row(Layout layout = Layout::tet80)
 {
     RowRun row;
-    row.key = {"a", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+    row.key = {"a", "openmp", {}, RayKind::primary, TetOrder::chains};
     row.key.kernel.layout = layout;
     row.device.kind = DeviceKind::cpu;
     Traced result;

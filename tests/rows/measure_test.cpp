@@ -120,7 +120,7 @@ protected:
     {
         rows_.clear();
         for (const Layout layout : {Layout::tet80, Layout::tet96}) {
-            RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+            RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::chains};
             key.kernel.layout = layout;
             rows_.push_back(open_row(key, scene_, options_));
             RowRun& row = rows_.back();

@@ -37,7 +37,7 @@ protected:
     Pulsed()
     {
         for (const Layout layout : {Layout::tet80, Layout::tet96}) {
-            RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+            RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::chains};
             key.kernel.layout = layout;
             rows_.push_back(open_row(key, scene_, options_));
         }

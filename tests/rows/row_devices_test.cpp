@@ -26,7 +26,7 @@ Device device(const char* name, DeviceKind kind, const char* uuid = "")
 RowRun row_of(Backend& backend)
 {
     RowRun row;
-    row.key = {"a", backend.name(), {}, RayKind::primary, TetOrder::hilbert, 0};
+    row.key = {"a", backend.name(), {}, RayKind::primary, TetOrder::chains, 0};
     row.backend = &backend;
     row.device = backend.devices()[0];
     Traced result;

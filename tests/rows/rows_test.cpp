@@ -99,10 +99,10 @@ TEST(Rows, a_kernel_that_the_host_cannot_run_is_a_row_and_one_that_the_backend_l
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--math", "exact,fast"}), {"a"}, {&old});
-    EXPECT_EQ(rows.size(), 7u);
+    EXPECT_EQ(rows.size(), 9u);
     EXPECT_EQ(
         std::count_if(rows.begin(), rows.end(), [](const RowKey& key) { return key.kernel.math == MathMode::fast; }),
-        3);
+        4);
     EXPECT_TRUE(std::none_of(rows.begin(), rows.end(),
                              [](const RowKey& key) { return key.kernel.structure == Structure::bvh; }));
 }
@@ -143,11 +143,11 @@ TEST(Rows, an_api_without_a_device_has_rows_only_where_it_is_asked_for)
 {
     OldHost old({device_named("none", DeviceKind::gpu, false)});
     OldHost usable;
-    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 4u);
+    EXPECT_EQ(select_rows(parse_options({"bench"}), {"s"}, {&old, &usable}).size(), 5u);
     EXPECT_THROW(static_cast<void>(select_rows(parse_options({"bench"}), {"s"}, {&old})), Error);
     EXPECT_EQ(missing_devices(parse_options({"bench"}), {&old}),
               std::vector<std::string>{"old: no device: no driver; install one"});
-    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 4u);
+    EXPECT_EQ(select_rows(with_required("old"), {"s"}, {&old}).size(), 5u);
     EXPECT_TRUE(missing_devices(with_required("old"), {&old}).empty());
 }
 
@@ -201,8 +201,8 @@ TEST(Rows, persistent_threads_are_rows_where_they_are_asked_for)
 {
     OldHost old;
     const auto rows = select_rows(parse_options({"bench", "--schedule", "tiles,persistent"}), {"s"}, {&old});
-    EXPECT_EQ(rows.size(), 6u);
-    EXPECT_EQ(row_name(rows[3]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
+    EXPECT_EQ(rows.size(), 8u);
+    EXPECT_EQ(row_name(rows[4]), "cdt/maria/tet80/s/primary/math:exact/schedule:persistent/api:old");
 }
 
 TEST(Rows, the_default_is_maria_and_projects_records_beside_bvhs_and_embree)
@@ -211,8 +211,8 @@ TEST(Rows, the_default_is_maria_and_projects_records_beside_bvhs_and_embree)
               (std::vector<std::string>{"cdt/maria/tet80/bunny/primary/math:exact/api:openmp",
                                         "cdt/maria/tet96/bunny/primary/math:exact/api:openmp",
                                         "cdt/project/half32/bunny/primary/math:exact/api:openmp",
-                                        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp",
                                         "cdt/project/tet64/bunny/primary/math:exact/api:openmp",
+                                        "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp",
                                         "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",
@@ -251,7 +251,7 @@ TEST(Rows, options_select_and_rows_go_scene_after_scene)
 TEST(Rows, embree_has_one_row_whatever_the_math_modes_and_orders)
 {
     const auto list =
-        names({"bench", "--math", "exact,fast", "--order", "input,hilbert", "--layout", "tet80,embree"}, {"a"});
+        names({"bench", "--math", "exact,fast", "--order", "input,chains", "--layout", "tet80,embree"}, {"a"});
     EXPECT_EQ(std::count_if(list.begin(), list.end(),
                             [](const auto& name) { return name.find("api:embree") + 10 == name.size(); }),
               2);
@@ -268,7 +268,7 @@ TEST(Rows, values_given_twice_give_a_row_once)
 TEST(Rows, the_filter_is_a_search_in_names)
 {
     EXPECT_EQ(names({"bench", "--filter", "tet80|packet16"}, {"a"}).size(), 2u);
-    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 6u);
+    EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 7u);
 }
 
 TEST(Rows, an_empty_selection_is_an_error_that_says_so)
@@ -278,7 +278,7 @@ TEST(Rows, an_empty_selection_is_an_error_that_says_so)
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("matches none of the 8 rows"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("matches none of the 9 rows"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("cdt/maria/tet96/a"), std::string::npos) << error.what();
     }
     try {

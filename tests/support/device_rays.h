@@ -35,7 +35,7 @@ protected:
 class DeviceRays {
 public:
     DeviceRays(const Scene& scene, Layout layout)
-        : scene_(scene), packed_(pack(scene, layout, TetOrder::hilbert)), sphere_(bounding_sphere(scene.mesh))
+        : scene_(scene), packed_(pack(scene, layout, TetOrder::chains)), sphere_(bounding_sphere(scene.mesh))
     {
     }
     [[nodiscard]] const PackedScene& packed() const { return packed_; }

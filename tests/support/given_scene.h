@@ -23,7 +23,7 @@ struct GivenScene {
 
     /// inside: the camera is in the middle of the ball, else 2 radii away.
     explicit GivenScene(std::uint32_t size = 64, bool inside = false, std::uint32_t resolution = 9,
-                        TetOrder order = TetOrder::hilbert)
+                        TetOrder order = TetOrder::chains)
         : scene(make_cubes(resolution)), packed(pack(scene, Layout::tet80, order)),
           mesh_of_packed(inverse_of(packed.packed_of_mesh))
     {

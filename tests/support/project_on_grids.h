@@ -43,7 +43,7 @@ namespace right {
 struct Grid {
     const char* name;
     Scene scene;
-    PackedScene packed = pack(scene, Layout::tet96, TetOrder::hilbert);
+    PackedScene packed = pack(scene, Layout::tet96, TetOrder::chains);
     right::SceneView view = right::view_of(packed);
     ExactSearch search{scene.mesh};
     Settler settler{scene.mesh, search};

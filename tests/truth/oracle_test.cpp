@@ -25,7 +25,7 @@ constexpr std::uint32_t size = 128;
 
 struct Traced {
     Scene scene = make_cubes(9);
-    PackedScene packed = pack(scene, Layout::tet80, TetOrder::hilbert);
+    PackedScene packed = pack(scene, Layout::tet80, TetOrder::chains);
     TraceJob job;
     std::vector<Hit> hits = std::vector<Hit>(std::size_t{size} * size);
 
@@ -147,7 +147,7 @@ TEST(Walk, layouts_and_threads_do_not_change_a_bit)
 {
     Traced traced;
     const auto reference = traced.hits;
-    traced.packed = pack(traced.scene, Layout::tet96, TetOrder::hilbert);
+    traced.packed = pack(traced.scene, Layout::tet96, TetOrder::chains);
     traced.trace({Structure::cdt, Method::maria, Layout::tet96, MathMode::exact});
     EXPECT_TRUE(traced.hits == reference);
     for (const unsigned threads : {1u, 3u}) {

@@ -15,7 +15,7 @@ constexpr std::uint32_t size = 96;
 
 std::vector<Hit> trace(const Scene& scene, const KernelId& kernel, const Camera& camera, Verdicts& verdicts)
 {
-    const PackedScene packed = pack(scene, kernel.layout, TetOrder::hilbert);
+    const PackedScene packed = pack(scene, kernel.layout, TetOrder::chains);
     TraceJob job;
     job.view = make_view(camera, size, size);
     const Start start = find_start(scene, job.view.origin);

@@ -38,7 +38,7 @@ protected:
     /// Verifies maria on tet80 through a damaged openmp that calls itself `backend`.
     RowRun verified(const std::string& backend, const Damage& damage, SelfTest self_test = {})
     {
-        RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert};
+        RowKey key{"cubes", "openmp", {}, RayKind::primary, TetOrder::chains};
         RowRun row = open_row(key, scene_, options_);
         EXPECT_EQ(row.self_test, SelfTest{}) << "openmp in exact mode";
         row.self_test = self_test;
@@ -52,7 +52,7 @@ protected:
     /// A row of openmp's on rays that are given, whose answers are damaged, called `backend`.
     RowRun damaged_row(RayKind kind, Layout layout, const Damage& damage, const std::string& backend)
     {
-        RowKey key{"cubes", "openmp", {}, kind, TetOrder::hilbert};
+        RowKey key{"cubes", "openmp", {}, kind, TetOrder::chains};
         key.kernel.task = Task::rays;
         key.kernel.layout = layout;
         key.kernel.structure = structure_of(layout);
@@ -138,7 +138,7 @@ TEST_F(Verify, a_lost_ray_makes_a_row_flawed)
 TEST_F(Verify, a_ray_lost_at_the_device_s_own_cap_is_explained)
 {
     const auto limited = [&](std::uint32_t most_steps, std::uint32_t steps) {
-        RowRun row = open_row({"cubes", "openmp", {}, RayKind::primary, TetOrder::hilbert}, scene_, options_);
+        RowRun row = open_row({"cubes", "openmp", {}, RayKind::primary, TetOrder::chains}, scene_, options_);
         row.device.most_steps = most_steps;
         row.device.implementation = "a device";
         row.key.backend = "other";

@@ -26,7 +26,7 @@ std::string milliseconds(double seconds)
 
 double mebibytes(SceneWork& scene, Layout layout)
 {
-    return 0x1p-20 * static_cast<double>(scene.packed(layout, TetOrder::hilbert).data.bytes());
+    return 0x1p-20 * static_cast<double>(scene.packed(layout, TetOrder::chains).data.bytes());
 }
 
 std::vector<PaperCell> scene_cells(const SceneRun& run)

@@ -113,7 +113,7 @@ TEST_P(Packets, of_given_rays_of_every_kind_have_the_scalar_kernels_bits)
 {
     for (const bool inside : {false, true}) {
         const GivenScene cubes(96, inside);
-        const auto packed = pack(cubes.scene, Layout::half32, TetOrder::hilbert);
+        const auto packed = pack(cubes.scene, Layout::half32, TetOrder::chains);
         for (const RayKind kind : {RayKind::primary, RayKind::shadow, RayKind::ao, RayKind::diffuse, RayKind::random}) {
             const RaySet set = make_rays(kind, cubes.source());
             ASSERT_FALSE(set.rays.empty());
@@ -125,7 +125,7 @@ TEST_P(Packets, of_given_rays_of_every_kind_have_the_scalar_kernels_bits)
 TEST_P(Packets, of_given_rays_that_pass_vertices_and_edges_have_the_scalar_kernels_bits)
 {
     for (const auto& [name, scene] : make_hard_scenes()) {
-        const auto packed = pack(scene, Layout::half32, TetOrder::hilbert);
+        const auto packed = pack(scene, Layout::half32, TetOrder::chains);
         RaySet set = hard_ray_set(scene, 0, 9 * 2048);
         expect_scalar_bits_given(packed, set, name);
         for (std::size_t i = 1; i < set.rays.size(); i += 2)
@@ -137,7 +137,7 @@ TEST_P(Packets, of_given_rays_that_pass_vertices_and_edges_have_the_scalar_kerne
 TEST_P(Packets, of_given_rays_have_the_scalar_kernels_bits_however_many_they_are)
 {
     const Scene scene = make_cubes(5);
-    const auto packed = pack(scene, Layout::half32, TetOrder::hilbert);
+    const auto packed = pack(scene, Layout::half32, TetOrder::chains);
     for (const std::size_t count : {8u, 24u, 40u, 504u, 512u, 520u, 16'400u})
         expect_scalar_bits_given(packed, hard_ray_set(scene, 7, count), "two threads that take 512 at once");
 }
@@ -145,7 +145,7 @@ TEST_P(Packets, of_given_rays_have_the_scalar_kernels_bits_however_many_they_are
 TEST_P(Packets, of_given_rays_lose_those_that_the_scalar_kernel_loses)
 {
     const Scene scene = make_cubes(7);
-    const auto packed = pack(scene, Layout::half32, TetOrder::hilbert);
+    const auto packed = pack(scene, Layout::half32, TetOrder::chains);
     RaySet set = hard_ray_set(scene, 0, 4000);
     for (std::size_t i = 1; i < set.rays.size(); i += 2)
         set.rays[i].end = 0.5f;
