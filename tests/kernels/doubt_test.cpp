@@ -41,29 +41,13 @@ namespace project_tet80 {
 namespace project_half32 {
 #include "kernels/kernel_cpp.h"
 }
-#undef HAS_RECORDS
-#undef RecordExits
-#undef RECORD_EXITS
-#undef RANK_OF_APEX
-#undef RANK_BESIDE
-#undef TRIANGLE_OF
-#undef TURN_OF_CORNERS
-#undef TURN_AFTER
-#undef EXIT_REPLACING
+#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/tet64.h"
 namespace project_tet64 {
 #include "kernels/kernel_cpp.h"
 }
-#undef HAS_RECORDS
-#undef RecordExits
-#undef RECORD_EXITS
-#undef RANK_OF_APEX
-#undef RANK_BESIDE
-#undef TRIANGLE_OF
-#undef TURN_OF_CORNERS
-#undef TURN_AFTER
-#undef EXIT_REPLACING
+#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #undef KERNEL_METHOD_HEADER
 #undef KERNEL_STRUCTURE_HEADER

@@ -37,29 +37,13 @@ namespace leaves_tet80 {
 namespace leaves_half32 {
 #include "kernels/kernel_cpp.h"
 }
-#undef HAS_RECORDS
-#undef RecordExits
-#undef RECORD_EXITS
-#undef RANK_OF_APEX
-#undef RANK_BESIDE
-#undef TRIANGLE_OF
-#undef TURN_OF_CORNERS
-#undef TURN_AFTER
-#undef EXIT_REPLACING
+#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/tet64.h"
 namespace leaves_tet64 {
 #include "kernels/kernel_cpp.h"
 }
-#undef HAS_RECORDS
-#undef RecordExits
-#undef RECORD_EXITS
-#undef RANK_OF_APEX
-#undef RANK_BESIDE
-#undef TRIANGLE_OF
-#undef TURN_OF_CORNERS
-#undef TURN_AFTER
-#undef EXIT_REPLACING
+#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #undef KERNEL_STRUCTURE_HEADER
 #undef KERNEL_ARRAYS_HEADER
