@@ -49,7 +49,7 @@ TEST_F(DriverFaults, opencl_that_crashes_at_load_is_named_and_vulkans_matrix_is_
             ++count;
         return count;
     };
-    EXPECT_EQ(cases_of("classname=\"tetrace.vulkan"), 5u);
+    EXPECT_EQ(cases_of("classname=\"tetrace.vulkan"), 6u);
     EXPECT_EQ(cases_of("<error "), cases_of("classname=\"tetrace.opencl"));
 }
 
