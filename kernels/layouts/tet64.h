@@ -6,7 +6,7 @@
 #define RecordExits uint
 #define RECORD_EXITS(scene, record) (record)
 #define RANK_OF_APEX(apex) 1u
-#define RANK_BESIDE(vertex, apex) (lies_before(vertex, apex) ? 0u : 1u)
+#define RANK_BESIDE(vertex, apex) (is_before(place_of(vertex), place_of(apex)) ? 0u : 1u)
 #define TRIANGLE_OF(row, first) ((first).w - FIRST_RANK)
 #define TURN_OF_CORNERS(face) turn_of_corners(face)
 #define TURN_AFTER(turn, replaced) turn_after(turn, replaced)
@@ -62,15 +62,6 @@ KERNEL_FN uint exit_replacing(SceneView scene, RecordExits record, uint turn, ui
 KERNEL_FN Vec3 place_of(uint4 apex)
 {
     return VEC3(as_real(apex.x), as_real(apex.y), as_real(apex.z));
-}
-
-// is_before() of signs.h, without branches.
-KERNEL_FN bool lies_before(uint4 a, uint4 b)
-{
-    Vec3 p = place_of(a);
-    Vec3 q = place_of(b);
-    bool is_before_by_z = p.y == q.y && p.z < q.z;
-    return p.x < q.x || (p.x == q.x && (p.y < q.y || is_before_by_z));
 }
 
 KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)

@@ -1,6 +1,6 @@
 // The kernels of a CDT: a layout of tets, a method that finds the face by which a ray leaves a tet, and a walk. The
 // method selects the walk: a method that defines WALKS_PATHS walks along paths, and carries vertices on layouts with
-// records (half32.h). Any other method walks by links.
+// records (half32.h, tet64.h). Any other method walks by links.
 #include "kernels/layouts/faces.h"
 
 #include KERNEL_LAYOUT_HEADER
