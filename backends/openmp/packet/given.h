@@ -1,5 +1,5 @@
-// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. Where rays enter the domain
-// is found before, in packets all of whose lanes have a ray.
+// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. Where a ray enters the domain
+// is found before, and where it meets its triangle after, in packets all of whose lanes have such a ray.
 constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
 constexpr uint rays_at_once = 512;       // that a thread takes at a time
 constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
@@ -43,20 +43,72 @@ LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
     return direction.of[3];
 }
 
-// Finds where the queue's rays enter the domain.
-[[gnu::noinline]] void enter_domain(const PacketJob& job, Queue& queue)
+// Rays of a queue that have a face to ask: the first and the end of those of their squares that are left.
+struct Asking {
+    uint count, numbers[rays_at_once], faces[rays_at_once], ends[rays_at_once];
+};
+
+LANE_FN void push(Asking& asking, uint number, uint face, uint end)
+{
+    if (face == end) return;
+    asking.numbers[asking.count] = number;
+    asking.faces[asking.count] = face;
+    asking.ends[asking.count++] = end;
+}
+
+// Finds the squares in which the queue's rays from outside meet the domain.
+LANE_FN void find_squares(const PacketJob& job, Queue& queue, Asking& asking)
 {
     Packet packet{};
-    packet.lanes = every_lane;
     for (uint first = queue.first; first < queue.end; first += LANES) {
+        const uint lanes = first_lanes(queue.end - first);
         for (uint lane = 0; lane < LANES; ++lane)
-            packet.numbers.of[lane] = first + lane < queue.end ? first + lane : first;
-        packet.left_to_scalar = 0;
-        const uint outside = lanes_of(equal(fetch_rays(job, packet, every_lane), all(NO_LINK)));
-        if (outside == 0) continue;
-        const Words links = entry_links(job, packet, shear_of<any_axis>(packet.direction), outside);
+            packet.numbers.of[lane] = lanes >> lane & 1u ? first + lane : first;
+        const Mask outside = equal(fetch_rays(job, packet, every_lane), all(NO_LINK));
+        const Words squares = entry_squares(job, packet);
+        const Mask meeting = without(outside, equal(squares, all(6 * job.divisions * job.divisions)));
         *reinterpret_cast<Words*>(queue.entered + (first - queue.first)) =
-            select(mask_of(packet.left_to_scalar), all(left_link), links);
+            select(meeting, all(left_link), all(NO_LINK)); // left unless a face is found
+        LaneWords square;
+        store(square, squares);
+        for (uint left = lanes & lanes_of(meeting); left != 0; left &= left - 1) {
+            const uint* const range = job.entry_ranges + square.of[first_of(left)];
+            push(asking, first + first_of(left), range[0], range[1]);
+        }
+    }
+}
+
+// Finds where the queue's rays enter the domain: each asks a face at a time of its square.
+[[gnu::noinline]] void enter_domain(const PacketJob& job, Queue& queue)
+{
+    Asking asking;
+    asking.count = 0;
+    find_squares(job, queue, asking);
+    Packet packet{};
+    LaneWords link{};
+    for (uint& number : packet.numbers.of)
+        number = queue.first;
+    while (asking.count != 0) {
+        const uint count = asking.count;
+        asking.count = 0; // rays that ask once more take the places of rays that have asked
+        for (uint first = 0; first < count; first += LANES) {
+            const uint lanes = first_lanes(count - first);
+            for (uint left = lanes; left != 0; left &= left - 1) {
+                const uint lane = first_of(left);
+                packet.numbers.of[lane] = asking.numbers[first + lane];
+                link.of[lane] = job.entry_links[asking.faces[first + lane]];
+            }
+            fetch_rays(job, packet, every_lane);
+            packet.left_to_scalar = 0;
+            const uint entering = lanes_entering_by(job, packet, shear_of<any_axis>(packet.direction), lanes,
+                                                    *reinterpret_cast<const Words*>(link.of));
+            for (uint left = entering; left != 0; left &= left - 1)
+                queue.entered[packet.numbers.of[first_of(left)] - queue.first] = link.of[first_of(left)];
+            for (uint left = lanes & ~(entering | packet.left_to_scalar); left != 0; left &= left - 1) {
+                const uint i = first + first_of(left);
+                push(asking, asking.numbers[i], asking.faces[i] + 1, asking.ends[i]);
+            }
+        }
     }
 }
 
@@ -162,9 +214,50 @@ LANE_FN void enter_records(const PacketJob& job, const Queue& queue, Packet& pac
     store(walk.offsets, walk.record * record_words);
 }
 
-// Writes the hits of a packet's ended rays, and lets its free lanes take new rays. steps: of the packet so far.
+// Rays that have met triangles, in a ring, until these are loaded and there are enough of them for a packet. first,
+// end: numbers of places, not reduced.
+struct Met {
+    static constexpr uint room = 4 * LANES;
+    uint first, end;
+    alignas(4 * LANES) uint numbers[room], exits[room], records[room], steps[room];
+};
+
+// Adds lanes that have met triangles, at most LANES times 3 in all.
+LANE_FN void push(const PacketJob& job, Met& met, const Packet& packet, uint lanes)
+{
+    LaneWords exit, record, steps;
+    store(exit, packet.exit);
+    store(record, packet.record);
+    store(steps, packet.steps);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const uint lane = first_of(lanes), place = met.end++ % Met::room;
+        met.numbers[place] = packet.numbers.of[lane];
+        met.exits[place] = exit.of[lane];
+        met.records[place] = record.of[lane];
+        met.steps[place] = steps.of[lane];
+        prefetch_triangle(job, exit.of[lane]);
+    }
+}
+
+// Writes the hits of the first rays, at most LANES, that have met triangles.
+[[gnu::noinline]] void write_first(const PacketJob& job, Met& met)
+{
+    const uint lanes = first_lanes(met.end - met.first), place = met.first % Met::room;
+    const auto words = [&](const uint* of) { return *reinterpret_cast<const Words*>(of + place); };
+    Packet packet{};
+    store(packet.numbers, words(met.numbers));
+    fetch_rays(job, packet, every_lane);
+    packet.exit = words(met.exits);
+    packet.record = words(met.records);
+    packet.steps = words(met.steps);
+    write_hits(job, packet, lanes);
+    met.first += static_cast<uint>(__builtin_popcount(lanes));
+}
+
+// Ends a packet's lanes whose rays have ended, and lets its free lanes take new rays. steps: of the packet so far.
 template <bool has_ends>
-[[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Packet& packet, GivenWalk& walk, uint steps)
+[[gnu::noinline]] void take_rays(const PacketJob& job, Queue& queue, Met& met, Packet& packet, GivenWalk& walk,
+                                 uint steps)
 {
     const Words most = all(job.max_steps);
     const auto are_too_many = [&](Words a) { return lanes_of(equal(least(a, most), most)); };
@@ -172,7 +265,11 @@ template <bool has_ends>
     walk.live &= ~lost;
     const uint ended = packet.lanes & ~walk.live;
     packet.left_to_scalar |= lost | (ended & are_too_many(packet.steps));
-    if (ended != 0) write_hits(job, packet, ended);
+    const uint hitting = lanes_hitting(packet, ended);
+    if (ended != hitting) write_hits(job, packet, ended & ~hitting);
+    push(job, met, packet, hitting);
+    while (met.end - met.first >= 2 * LANES)
+        write_first(job, met);
     packet.lanes = walk.live;
     packet.left_to_scalar = 0;
     uint taken = 0;
@@ -199,6 +296,8 @@ template <bool has_ends>
 {
     Queue queue;
     queue.first = queue.next = queue.end = 0;
+    Met met;
+    __builtin_memset(&met, 0, sizeof met);
     Packet packets[packets_in_turns];
     GivenWalk walks[packets_in_turns];
     uint checked[packets_in_turns] = {};
@@ -214,7 +313,7 @@ template <bool has_ends>
             const bool takes = live < lanes_wanted && has_rays(job, queue);
             const bool has_ended = live == 0 && packets[i].lanes != 0;
             if (takes || has_ended || steps - checked[i] >= job.max_steps) {
-                take_rays<has_ends>(job, queue, packets[i], walks[i], steps);
+                take_rays<has_ends>(job, queue, met, packets[i], walks[i], steps);
                 checked[i] = steps;
             }
             if (walks[i].live != 0) {
@@ -224,4 +323,6 @@ template <bool has_ends>
             goes_on = goes_on || packets[i].lanes != 0;
         }
     }
+    while (met.first != met.end)
+        write_first(job, met);
 }

@@ -11,16 +11,20 @@ LANE_FN uint lanes_hitting(const Packet& packet, uint lanes)
     return lanes & ~packet.left_to_scalar & ~lanes_of(equal(packet.exit, all(NO_LINK)));
 }
 
+LANE_FN void prefetch_triangle(const PacketJob& job, uint exit)
+{
+    const uint* const triangle = job.triangles + 4 * TRIANGLE_QUADS * std::size_t{exit >> 2};
+    __builtin_prefetch(triangle);
+    __builtin_prefetch(triangle + 4 * TRIANGLE_QUADS - 1);
+}
+
 // Prefetches the triangles that a packet has met, while those of other packets are tested.
 LANE_FN void prefetch_triangles(const PacketJob& job, const Packet& packet)
 {
-    LaneWords faces;
-    store(faces, packet.exit >> 2);
-    for (uint left = lanes_hitting(packet, packet.lanes); left != 0; left &= left - 1) {
-        const uint* const triangle = job.triangles + 4 * TRIANGLE_QUADS * std::size_t{faces.of[first_of(left)]};
-        __builtin_prefetch(triangle);
-        __builtin_prefetch(triangle + 4 * TRIANGLE_QUADS - 1);
-    }
+    LaneWords exit;
+    store(exit, packet.exit);
+    for (uint left = lanes_hitting(packet, packet.lanes); left != 0; left &= left - 1)
+        prefetch_triangle(job, exit.of[first_of(left)]);
 }
 
 // The triangle, t, u and v of lanes that hit one, for rays that do not end before it. A ray that sees

@@ -28,6 +28,11 @@ LANE_FN Words all(uint a)
 {
     return a - Words{};
 }
+// As many lanes, or all.
+LANE_FN uint first_lanes(uint count)
+{
+    return count < LANES ? (1u << count) - 1u : every_lane;
+}
 LANE_FN uint first_of(uint lanes)
 {
     return static_cast<uint>(__builtin_ctz(lanes));

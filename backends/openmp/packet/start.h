@@ -118,23 +118,14 @@ LANE_FN uint ask_faces(const PacketJob& job, Words squares, uint lanes, const As
     return unanswered;
 }
 
-// The same where each lane may have a square of its own: the links of the faces, NO_LINK for lanes that miss the
-// domain.
+// The lanes that enter the domain by the faces that their links name.
 template <int z>
-LANE_FN Words entry_links(const PacketJob& job, Packet& packet, const Shear<z>& shear, uint lanes)
+LANE_FN uint lanes_entering_by(const PacketJob& job, Packet& packet, const Shear<z>& shear, uint lanes, Words links)
 {
-    const Words squares = entry_squares(job, packet);
-    lanes &= ~lanes_of(equal(squares, all(6 * job.divisions * job.divisions)));
-    Words links = all(NO_LINK);
-    packet.left_to_scalar |= ask_faces(job, squares, lanes, [&](Words candidates, uint asking) { // entry_anywhere()
-        Seen corners[3];
-        for (uint i = 0; i < 3; ++i)
-            corners[i] = seen_at(packet, shear, corners_of(job, candidates, i).of);
-        const uint entering = lanes_entering(packet, asking, corners);
-        links = select(mask_of(entering), candidates, links);
-        return entering | packet.left_to_scalar;
-    });
-    return links;
+    Seen corners[3];
+    for (uint i = 0; i < 3; ++i)
+        corners[i] = seen_at(packet, shear, corners_of(job, links, i).of);
+    return lanes_entering(packet, lanes, corners);
 }
 
 // exit_through() of half32.h.
