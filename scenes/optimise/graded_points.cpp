@@ -4,25 +4,52 @@
 #include "core/base/random_words.h"
 #include "scenes/optimise/shape.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
 namespace tetrace {
 namespace {
 
-constexpr std::uint32_t coarsest = 2, finest = 6; // levels: 2^level cells along each axis
-constexpr double jitter = 0.1;                    // of a cell's size, to both sides: no two points may be cospherical
+// Levels: 2^level cells along each axis.
+constexpr std::uint32_t coarsest = 2, least_finest = 5, most_finest = 8;
+constexpr double jitter = 0.1; // of a cell's size, to both sides: no two points may be cospherical
 constexpr std::uint32_t jitter_stream = 0x67726164;
 
 using Cell = std::array<std::uint32_t, 3>;
 
+// Of equilateral triangles of the mesh's area.
+double mean_edge(const TriangleMesh& mesh)
+{
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+        sum += area(to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), to_double(mesh.vertices[c]));
+    return std::sqrt(4 / std::sqrt(3.0) * sum / static_cast<double>(mesh.triangles.size()));
+}
+
+double shortest(Double3 size)
+{
+    return std::min({size.x, size.y, size.z});
+}
+
+// The first level whose cells are, along their shortest side, no longer than the mesh's mean edge.
+std::uint32_t finest_level(const TriangleMesh& mesh, Double3 size)
+{
+    const double edge = mean_edge(mesh);
+    std::uint32_t level = least_finest;
+    while (level < most_finest && shortest(size) > edge * (1U << level))
+        ++level;
+    return level;
+}
+
 class Octree {
 public:
     Octree(const TriangleMesh& mesh, const Domain& domain)
-        : low_(to_double(domain.low())), size_(to_double(domain.high()) - low_)
+        : low_(to_double(domain.low())), size_(to_double(domain.high()) - low_), finest_(finest_level(mesh, size_))
     {
-        for (std::uint32_t level = coarsest; level <= finest; ++level)
+        for (std::uint32_t level = coarsest; level <= finest_; ++level)
             held_[level].assign(std::size_t{1} << 3 * level, 0);
         for (const auto& [a, b, c] : mesh.triangles)
             add(to_double(mesh.vertices[a]), to_double(mesh.vertices[b]), to_double(mesh.vertices[c]));
@@ -32,7 +59,7 @@ public:
     [[nodiscard]] std::vector<Float3> points() const
     {
         std::vector<Float3> found;
-        for (std::uint32_t level = coarsest; level <= finest; ++level) {
+        for (std::uint32_t level = coarsest; level <= finest_; ++level) {
             const std::uint32_t n = 1U << level;
             for (std::uint32_t i = 0; i < n * n * n; ++i) {
                 const Cell cell = {i % n, i / n % n, i / n / n};
@@ -57,11 +84,11 @@ private:
     // From the cells on the domain's boundary through faces of empty cells, all of the finest level.
     void find_outside()
     {
-        constexpr std::uint32_t n = 1U << finest;
-        outside_.assign(held_[finest].size(), 0);
+        const std::uint32_t n = 1U << finest_;
+        outside_.assign(held_[finest_].size(), 0);
         std::vector<Cell> front;
         const auto reach = [&](const Cell& cell) {
-            if (holds(finest, cell) || std::exchange(outside_[index(finest, cell)], 1) != 0) return;
+            if (holds(finest_, cell) || std::exchange(outside_[index(finest_, cell)], 1) != 0) return;
             front.push_back(cell);
         };
         for (std::uint32_t i = 0; i < n * n; ++i)
@@ -85,19 +112,19 @@ private:
     [[nodiscard]] bool is_outside(std::uint32_t level, Cell cell) const
     {
         for (std::uint32_t& coordinate : cell)
-            coordinate <<= finest - level;
-        return outside_[index(finest, cell)] != 0;
+            coordinate <<= finest_ - level;
+        return outside_[index(finest_, cell)] != 0;
     }
 
     void add_point(Double3 point)
     {
-        constexpr std::uint32_t n = 1U << finest;
+        const std::uint32_t n = 1U << finest_;
         const Double3 from_low = point - low_;
-        const auto place = [](double x, double size) {
+        const auto place = [n](double x, double size) {
             return static_cast<std::uint32_t>(std::clamp(x / size * n, 0.0, n - 1.0));
         };
         Cell cell = {place(from_low.x, size_.x), place(from_low.y, size_.y), place(from_low.z, size_.z)};
-        for (std::uint32_t level = finest; level >= coarsest; --level) {
+        for (std::uint32_t level = finest_; level >= coarsest; --level) {
             held_[level][index(level, cell)] = 1;
             for (std::uint32_t& coordinate : cell)
                 coordinate /= 2;
@@ -110,7 +137,7 @@ private:
         const double ab = squared(b - a), bc = squared(c - b), ca = squared(a - c);
         if (bc > ab && bc >= ca) return add(b, c, a);
         if (ca > ab) return add(c, a, b);
-        const double cell = std::min({size_.x, size_.y, size_.z}) / (1U << finest);
+        const double cell = shortest(size_) / (1U << finest_);
         if (ab > cell * cell) {
             const Double3 middle = (a + b) * 0.5;
             add(a, middle, c);
@@ -133,7 +160,8 @@ private:
     }
 
     Double3 low_, size_;
-    std::array<std::vector<std::uint8_t>, finest + 1> held_; ///< per level and cell: whether triangles are near it
+    std::uint32_t finest_;
+    std::array<std::vector<std::uint8_t>, most_finest + 1> held_; ///< per level and cell: whether triangles are near it
     std::vector<std::uint8_t> outside_; ///< of the finest level: reached from the boundary through empty cells
 };
 
