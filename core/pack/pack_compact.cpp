@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <string>
-#include <tuple>
 
 namespace tetrace {
 namespace {
@@ -58,21 +57,16 @@ std::vector<std::uint32_t> number_vertices(const TetMesh& mesh)
     return number;
 }
 
-/// Quads of the vertices that tets name, each with its rank in the order of is_before() (kernels/methods/signs.h).
+/// Quads of the vertices that tets name.
 std::vector<Quad> vertex_quads(const TetMesh& mesh, const std::vector<std::uint32_t>& number)
 {
-    std::vector<std::uint32_t> in_order;
-    for (std::uint32_t i = 0; i < number.size(); ++i)
-        if (number[i] != not_numbered) in_order.push_back(i);
-    const auto key = [&](std::uint32_t i) {
-        return std::tuple(mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z);
-    };
-    std::ranges::sort(in_order, [&](auto a, auto b) { return key(a) < key(b); });
-    std::vector<Quad> quads(in_order.size());
-    for (std::uint32_t rank = 0; rank < in_order.size(); ++rank) {
-        const Float3 at = mesh.vertices[in_order[rank]];
-        quads[number[in_order[rank]]] = {std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y),
-                                         std::bit_cast<std::uint32_t>(at.z), FIRST_RANK + rank};
+    const auto count = std::ranges::count_if(number, [](std::uint32_t i) { return i != not_numbered; });
+    std::vector<Quad> quads(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        if (number[i] == not_numbered) continue;
+        const Float3 at = mesh.vertices[i];
+        quads[number[i]] = {std::bit_cast<std::uint32_t>(at.x), std::bit_cast<std::uint32_t>(at.y),
+                            std::bit_cast<std::uint32_t>(at.z), 0};
     }
     return quads;
 }

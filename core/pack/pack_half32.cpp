@@ -5,28 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
-#include <tuple>
 
 namespace tetrace {
 namespace {
-
-std::tuple<float, float, float> place_of(Float3 a)
-{
-    return {a.x, a.y, a.z};
-}
-
-// Of each vertex, in the order of is_before() in kernels/methods/signs.h.
-std::vector<std::uint32_t> ranks_of(const std::vector<Float3>& vertices)
-{
-    std::vector<std::uint32_t> order(vertices.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, [&](auto a, auto b) { return place_of(vertices[a]) < place_of(vertices[b]); });
-    std::vector<std::uint32_t> ranks(order.size());
-    for (std::uint32_t rank = 0; rank < order.size(); ++rank)
-        ranks[order[rank]] = FIRST_RANK + rank;
-    return ranks;
-}
 
 std::array<std::uint32_t, 3> corners_of(const Tet& tet, std::uint32_t face)
 {
@@ -57,13 +38,12 @@ void pack_half32(PackedScene& packed, const TetMesh& mesh)
         throw Error(ErrorKind::unsupported, "packing as half32: " + std::to_string(triangles) +
                                                 " triangles, its records name at most " +
                                                 std::to_string(HALF32_MAX_TRIANGLES));
-    const auto ranks = ranks_of(mesh.vertices);
     packed.tets.reserve(mesh.tets.size() * 4 * HALF32_QUADS);
     for (const Tet& tet : mesh.tets)
         for (std::uint32_t entry = 0; entry < 4; ++entry) {
             const Float3 apex = mesh.vertices[tet.vertices[entry]];
             packed.tets.push_back({std::bit_cast<std::uint32_t>(apex.x), std::bit_cast<std::uint32_t>(apex.y),
-                                   std::bit_cast<std::uint32_t>(apex.z), ranks[tet.vertices[entry]]});
+                                   std::bit_cast<std::uint32_t>(apex.z), 0});
             packed.tets.push_back({exit_word(mesh, tet, entry, 0), exit_word(mesh, tet, entry, 1),
                                    exit_word(mesh, tet, entry, 2), tet.links[entry]});
         }

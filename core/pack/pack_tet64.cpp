@@ -44,7 +44,7 @@ std::vector<std::uint32_t> pack_rows(PackedScene& packed, const TetMesh& mesh)
         if (has_row) continue;
         const Quad* const quads = &packed.triangles.at(std::size_t{TRIANGLE_QUADS} * triangle);
         rows.insert(rows.end(), quads, quads + TRIANGLE_QUADS);
-        rows[rows.size() - 3].w = FIRST_RANK + triangle;
+        rows[rows.size() - 3].w = NORMAL_BIAS + triangle;
         rows[rows.size() - 2].w = side_word(own);
         rows[rows.size() - 1].w = side_word(link);
     }

@@ -40,7 +40,7 @@ struct PackedScene {
     std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
     std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
 
-    std::vector<Quad> vertices;    ///< of tet20 and tet16: position and rank (kernels/layouts/layout.h)
+    std::vector<Quad> vertices;    ///< of tet20 and tet16: their positions (kernels/layouts/layout.h)
     std::vector<Quad> entry_faces; ///< of tet20 and tet16, in place of entry_links: three vertices and a tet
     std::vector<std::uint32_t> occlusive_faces; ///< of tet20 and tet16: OCCLUSIVE_WORDS per face
 

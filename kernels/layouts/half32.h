@@ -4,8 +4,6 @@
 #define HAS_RECORDS
 #define RecordExits uint4
 #define RECORD_EXITS(scene, record) record_exits(scene, record)
-#define RANK_OF_APEX(apex) ((apex).w) // in the order that decides ties
-#define RANK_BESIDE(vertex, apex) ((vertex).w)
 #define TURN_OF_CORNERS(face) 0u          // of a walk that carries them in the order of faces.h
 #define TURN_AFTER(turn, replaced) (turn) // once the apex has replaced a vertex
 #define EXIT_REPLACING(scene, exits, turn, replaced) exit_replacing(exits, turn, replaced)

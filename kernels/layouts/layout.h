@@ -64,12 +64,11 @@
 #define TET80_QUADS 5u
 // tet96: 4 vertices of 16 bytes (w is 0), then 4 faces of 8 bytes {link, input triangle}.
 #define TET96_QUADS 6u
-// The rank of a vertex: the number of vertices before it, by x, then y, then z, plus FIRST_RANK. It is stored next to
-// the vertex's coordinates, and compilers compute with all four words at once. As a float it must not be denormal: some
-// processors multiply denormals a hundred times slower.
-#define FIRST_RANK 0x3F800000u
+// Compilers compute with all four words of a quad at once, and some processors multiply denormal floats a hundred times
+// slower. So a word beside coordinates is 0, or no denormal as a float: a number there counts from this one.
+#define NORMAL_BIAS 0x3F800000u
 // half32: a record of 32 bytes for each tet and each face by which a ray may enter it, at its link (tet << 2 | face):
-//   {apex.xyz, its rank}  {exit 0, exit 1, exit 2, link of the entry face}
+//   {apex.xyz, 0}  {exit 0, exit 1, exit 2, link of the entry face}
 // Exit i leads through the face opposite corner i of the entry face: record << 2 | rotation where a tet follows: the
 // corners of its entry face are the ray's three vertices, rotated by `rotation`. Else triangle << 2 | EXIT_END for
 // the input triangle that is hit there, or NO_LINK at the domain's boundary.
@@ -82,21 +81,20 @@
 //   EXIT_IS_NORMAL | record << 2 | fold   where a tet follows: vertex face ^ fold of this tet is vertex face' ^ fold of
 //                                         that one, and the two others of the face are crossed; 3 is written as 0
 //   EXIT_IS_NORMAL | row << 2 | EXIT_END        for an occlusive face, which has a row of `triangles`; or NO_LINK
-// As a float it must not be denormal, as ranks.
 #define EXIT_IS_NORMAL 0x40000000u
 #define TET64_MAX_TETS 0x03FFFFFFu
 #define TET64_MAX_ROWS 0x0FFFFFFFu
 // tet20: {xor of the four vertices, what is behind the face opposite each of them}, by the vertices' numbers ascending.
 #define TET20_WORDS 5u
 // tet16: a quad: tet20's words without the last, and each neighbour xor that last one.
-// vertices of both: {x, y, z, rank}
+// vertices of both: {x, y, z, 0}
 // What is behind a face: a tet, OCCLUSIVE | 2 * occlusive face + side, or NO_LINK.
 #define OCCLUSIVE 0x80000000u
 // occlusive_faces: {input triangle, the tet on side 0, that on side 1}
 #define OCCLUSIVE_WORDS 3u
 // entry_faces: {three vertices in the order of faces.h, tet}
 // triangles: v0, v1 - v0, v2 - v0 of each input triangle, a quad of 16 bytes each (w is 0). In tet64 there is a row for
-// each occlusive face, in the order of the tets, and w is FIRST_RANK + its input triangle, then EXIT_IS_NORMAL | its
+// each occlusive face, in the order of the tets, and w is NORMAL_BIAS + its input triangle, then EXIT_IS_NORMAL | its
 // link on each side (NO_LINK where there is no tet).
 #define TRIANGLE_QUADS 3u
 

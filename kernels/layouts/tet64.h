@@ -5,9 +5,7 @@
 #define HAS_RECORDS
 #define RecordExits uint
 #define RECORD_EXITS(scene, record) (record)
-#define RANK_OF_APEX(apex) 1u
-#define RANK_BESIDE(vertex, apex) (is_before(place_of(vertex), place_of(apex)) ? 0u : 1u)
-#define TRIANGLE_OF(row, first) ((first).w - FIRST_RANK)
+#define TRIANGLE_OF(row, first) ((first).w - NORMAL_BIAS)
 #define TURN_OF_CORNERS(face) turn_of_corners(face)
 #define TURN_AFTER(turn, replaced) turn_after(turn, replaced)
 #define EXIT_REPLACING(scene, exits, turn, replaced) exit_replacing(scene, exits, turn, replaced)
@@ -85,7 +83,7 @@ KERNEL_FN uint face_triangle(SceneView scene, uint tet, uint face)
 {
     uint row = row_at(scene, tet, face);
     if (row == NO_LINK) return FREE_FACE;
-    return FETCH(scene, triangles, TRIANGLE_QUADS * row).w - FIRST_RANK;
+    return FETCH(scene, triangles, TRIANGLE_QUADS * row).w - NORMAL_BIAS;
 }
 
 KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)

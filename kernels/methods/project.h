@@ -13,11 +13,11 @@
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
     Shear shear = shear_of(ray);
-    Projected apex = projected(ray, shear, vertex(scene, tet, entry));
-    bool left = is_left(projected(ray, shear, vertex(scene, tet, corner(entry, 2u))), apex);
-    uint outcome = left ? 1u : 0u;
-    left = is_left(projected(ray, shear, vertex(scene, tet, corner(entry, outcome))), apex);
-    outcome += left ? 0u : 1u;
+    Sheared apex = sheared(shear, sub3(vertex(scene, tet, entry), ray.origin));
+    Sheared p2 = sheared(shear, sub3(vertex(scene, tet, corner(entry, 2u)), ray.origin));
+    uint outcome = is_apex_left(p2, apex) ? 1u : 0u;
+    Sheared other = sheared(shear, sub3(vertex(scene, tet, corner(entry, outcome)), ray.origin));
+    outcome += is_apex_left(other, apex) ? 0u : 1u;
     return other_face(entry, outcome);
 }
 

@@ -84,6 +84,17 @@ KERNEL_FN bool is_left(Projected p, Projected q)
     return plus > minus;
 }
 
+// The same for the edge from a vertex of the face that a walk enters a tet by to the tet's apex. Where only the order
+// of these two could decide, both answers lead to the same exit (docs/spec/project.md, P16), so it is not asked for.
+KERNEL_FN bool is_apex_left(Sheared p, Sheared apex)
+{
+    PRECISE real plus = p.x * apex.y;
+    PRECISE real minus = p.y * apex.x;
+    if (plus == minus) return SIDE_AT_TIE(p, apex, true, plus);
+    COUNT_SIGN(0);
+    return plus > minus;
+}
+
 // Whether a ray enters by a face with these corners, in the order of faces.h, as far as float products tell.
 #define HELD 0u
 #define NOT_HELD 1u

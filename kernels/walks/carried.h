@@ -8,15 +8,6 @@ STRUCT(Carried)
     real along; // its depth, as ends_before() of links.h has it; not used for rays without an end
 };
 
-// The ranks of the three vertices in the order that decides ties. They are looked up at a tie alone: carrying them
-// costs a GPU three selects a step.
-STRUCT(Ranks)
-{
-    uint p0;
-    uint p1;
-    uint p2;
-};
-
 KERNEL_FN Carried carried(Ray ray, Shear shear, uint4 vertex)
 {
     Vec3 offset = sub3(VEC3(as_real(vertex.x), as_real(vertex.y), as_real(vertex.z)), ray.origin);
@@ -35,22 +26,12 @@ KERNEL_FN Carried carried_from(Sheared corner)
     return result;
 }
 
-// is_left() of signs.h, where ranks tell the order.
-KERNEL_FN bool ranked_is_left(Sheared p, uint p_rank, Sheared q, uint q_rank)
-{
-    PRECISE real plus = p.x * q.y;
-    PRECISE real minus = p.y * q.x;
-    if (plus == minus) return SIDE_AT_TIE(p, q, p_rank < q_rank, plus);
-    COUNT_SIGN(0);
-    return plus > minus;
-}
-
 // Which of the face's vertices the apex replaces: the ray leaves by the face that has it in that vertex's place. The
 // two tests of maria: of the edges that end in the apex, that from p2, then that from p0 or p1.
-KERNEL_FN uint replaced_by(Sheared p0, Sheared p1, Sheared p2, Ranks ranks, Sheared apex, uint rank)
+KERNEL_FN uint replaced_by(Sheared p0, Sheared p1, Sheared p2, Sheared apex)
 {
-    bool left = ranked_is_left(p2, ranks.p2, apex, rank);
-    bool other_left = ranked_is_left(left ? p1 : p0, left ? ranks.p1 : ranks.p0, apex, rank);
+    bool left = is_apex_left(p2, apex);
+    bool other_left = is_apex_left(left ? p1 : p0, apex);
     return other_left ? (left ? 2u : 1u) : (left ? 0u : 2u);
 }
 

@@ -65,16 +65,8 @@ KERNEL_FN Walker face_at_tie(SceneView scene, Ray ray, Shear shear, Walker at)
 {
     uint record = record_behind(at.before);
     uint turn = at.turn >= 3u ? at.turn - 3u : at.turn;
-    uint4 vertex = record_apex(scene, record);
-    uint rank_0 = RANK_BESIDE(record_apex(scene, record_of_corner(record, 0u)), vertex);
-    uint rank_1 = RANK_BESIDE(record_apex(scene, record_of_corner(record, 1u)), vertex);
-    uint rank_2 = RANK_BESIDE(record_apex(scene, record_of_corner(record, 2u)), vertex);
-    Ranks ranks;
-    ranks.p0 = turn == 0u ? rank_0 : turn == 1u ? rank_2 : rank_1;
-    ranks.p1 = turn == 0u ? rank_1 : turn == 1u ? rank_0 : rank_2;
-    ranks.p2 = turn == 0u ? rank_2 : turn == 1u ? rank_1 : rank_0;
-    Carried apex = carried(ray, shear, vertex);
-    uint replaced = replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, ranks, apex.seen, RANK_OF_APEX(vertex));
+    Carried apex = carried(ray, shear, record_apex(scene, record));
+    uint replaced = replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
     RecordExits exits = RECORD_EXITS(scene, record);
     Walker next = with_apex(at, apex, replaced);
     next.exit = EXIT_REPLACING(scene, exits, turn, replaced);

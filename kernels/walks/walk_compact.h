@@ -35,11 +35,6 @@ KERNEL_FN Carried carried_vertex(SceneView scene, Ray ray, Shear shear, uint ver
     return carried(ray, shear, FETCH(scene, vertices, vertex));
 }
 
-KERNEL_FN uint vertex_rank(SceneView scene, uint vertex)
-{
-    return FETCH(scene, vertices, vertex).w;
-}
-
 // Among the vertices of the tet behind a gate, the ranks of the apex, and of the gate's vertex that it replaces.
 // vertex: the apex's number.
 KERNEL_FN uint apex_rank(Gate gate, uint vertex)
@@ -91,11 +86,7 @@ KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
     CompactTet tet = compact_tet(scene, gate.behind);
     uint vertex = apex_behind(gate, tet);
     Carried apex = carried_vertex(scene, ray, shear, vertex);
-    Ranks ranks;
-    ranks.p0 = vertex_rank(scene, gate.v0);
-    ranks.p1 = vertex_rank(scene, gate.v1);
-    ranks.p2 = vertex_rank(scene, gate.v2);
-    uint replaced = replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, ranks, apex.seen, vertex_rank(scene, vertex));
+    uint replaced = replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, apex.seen);
     uint behind = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex), gate.before);
     return gate_beyond(gate, vertex, apex, replaced, behind);
 }

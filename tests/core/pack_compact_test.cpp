@@ -85,20 +85,6 @@ TEST_P(CompactPacking, numbers_the_tets_as_other_layouts_do)
               pack(scene, Layout::tet80, TetOrder::chains).packed_of_mesh);
 }
 
-TEST_P(CompactPacking, vertices_have_the_rank_of_their_place)
-{
-    const Scene scene = make_cubes(4);
-    const PackedScene packed = pack(scene, GetParam(), TetOrder::chains);
-    std::map<std::uint32_t, Place> places;
-    for (const Quad& quad : packed.vertices)
-        places[quad.w] = {std::bit_cast<float>(quad.x), std::bit_cast<float>(quad.y), std::bit_cast<float>(quad.z)};
-    ASSERT_EQ(places.size(), packed.vertices.size());
-    EXPECT_EQ(places.begin()->first, FIRST_RANK);
-    EXPECT_EQ(places.rbegin()->first, FIRST_RANK + packed.vertices.size() - 1);
-    EXPECT_TRUE(
-        std::is_sorted(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.second < b.second; }));
-}
-
 // Neighbours in memory share vertices: those of 64 tets that follow each other lie within a small part of them all.
 TEST_P(CompactPacking, vertices_lie_as_the_tets_do)
 {

@@ -227,7 +227,7 @@ TEST(Pack, rows_of_tet64_name_their_triangle_and_what_is_on_both_sides)
     const TetMesh mesh = unpack(packed);
     for (std::size_t row = 0; row < rows; ++row) {
         const Quad* const quads = &packed.triangles[TRIANGLE_QUADS * row];
-        const std::uint32_t triangle = quads[0].w - FIRST_RANK;
+        const std::uint32_t triangle = quads[0].w - NORMAL_BIAS;
         const std::uint32_t one = quads[1].w ^ EXIT_IS_NORMAL, other = quads[2].w ^ EXIT_IS_NORMAL;
         ASSERT_EQ(mesh.tets[link_tet(one)].faces[link_face(one)], triangle) << "row " << row;
         ASSERT_EQ(mesh.tets[link_tet(one)].links[link_face(one)], other) << "row " << row;

@@ -2,21 +2,81 @@
 // their vertices, as on tets that hold them: on every device, also where rays pass vertices and edges and where a walk
 // begins by following its path from the boundary.
 #include "core/base/exact.h"
+#include "core/device/backend.h"
 #include "core/device/scene_buffers.h"
 #include "core/mesh/locate.h"
 #include "tests/support/cut_anew.h"
 #include "tests/support/device_rays.h"
+#include "tests/support/hard_scenes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <tuple>
+#include <vector>
 
 using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
+
+#define KERNEL_STRUCTURE_HEADER "kernels/walks/structure_cdt.h"
+#define KERNEL_ARRAYS_HEADER "kernels/layouts/cdt_arrays.h"
+#define KERNEL_METHOD_HEADER "kernels/methods/project.h"
+#define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
+namespace half32 {
+#include "kernels/kernel_cpp.h"
+}
+
+/// The sign of the edge from p to q as if no two vertices were in line with the ray (docs/spec/project.md, P3): whether
+/// it is positive.
+bool is_left(half32::Sheared p, half32::Sheared q, bool p_is_first)
+{
+    if (p.x * q.y == p.y * q.x) return half32::is_left_at_tie(p, q, p_is_first, p.x * q.y);
+    return p.x * q.y > p.y * q.x;
+}
+
+/// The places of a grid of 5 x 5 round the ray.
+std::vector<half32::Sheared> places_round_the_ray()
+{
+    std::vector<half32::Sheared> places;
+    for (int i = 0; i < 25; ++i)
+        places.push_back({static_cast<float>(i % 5 - 2), static_cast<float>(i / 5 - 2)});
+    return places;
+}
+
+/// The vertices of a tet as a ray sees them, those of a face first, in some order of them all. number: of that order.
+struct SeenTet {
+    std::array<half32::Sheared, 4> at;
+    std::array<int, 4> number;
+
+    [[nodiscard]] bool is_left_of(std::size_t i, std::size_t j) const
+    {
+        return is_left(at[i], at[j], number[i] < number[j]);
+    }
+    [[nodiscard]] bool is_entered() const { return is_left_of(0, 1) && is_left_of(1, 2) && is_left_of(2, 0); }
+    [[nodiscard]] bool does_order_decide() const
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+            if (is_left(at[i], at[3], true) != is_left(at[i], at[3], false)) return true;
+        return false;
+    }
+    /// The vertices of the face that the apex replaces, by all three signs: one bit each.
+    [[nodiscard]] unsigned replaced() const
+    {
+        unsigned found = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!is_left_of((i + 1) % 3, 3) && is_left_of((i + 2) % 3, 3)) found |= 1u << i;
+        return found;
+    }
+};
 
 constexpr Layout carrying_layouts[] = {Layout::half32, Layout::tet64, Layout::tet20, Layout::tet16};
 
@@ -81,6 +141,31 @@ std::int64_t lost_of(const std::vector<Hit>& all)
     return std::count_if(all.begin(), all.end(), [](const Hit& hit) { return hit.face_id == LOST; });
 }
 
+/// What rays meet that go through cluster_of() from so far that roundings leave a point of its inner cells, or a line:
+/// along all diagonals of the space and of its planes. The order of the vertices alone decides the way through them.
+std::vector<Hit> hits_on_cluster(const Scene& scene, Layout layout)
+{
+    const PackedScene packed = pack(scene, layout, TetOrder::chains);
+    const auto session =
+        openmp_backend().open(0, {.method = Method::project, .layout = layout}, {&scene.mesh, &packed}, {});
+    std::vector<Hit> all;
+    for (int i = 0; i < 27; ++i) {
+        Float3 origin, direction;
+        for (int axis = 0, digits = i; axis < 3; ++axis, digits /= 3) {
+            direction[axis] = static_cast<float>(digits % 3 - 1);
+            origin[axis] = 0.0625f + (direction[axis] == 0 ? 0x1p-23f : -4.0625f * direction[axis]);
+        }
+        TraceJob job;
+        job.view = {origin, direction, {}, {}};
+        job.width = job.height = 1;
+        job.max_steps = 10'000;
+        if (length(to_double(direction)) < 1.25) continue; // along an axis, or none
+        const auto hits = traced(*session, job);
+        all.insert(all.end(), hits.begin(), hits.end());
+    }
+    return all;
+}
+
 /// From a vertex, the middle of an edge and of a face, each in the tet that locate() names; and from outside.
 std::vector<Float3> awkward_origins(const Scene& scene)
 {
@@ -107,6 +192,38 @@ TEST(Carrying, has_the_bits_of_tet80_where_rays_pass_vertices_and_edges)
     for (const Layout layout : carrying_layouts)
         EXPECT_EQ(different_rays(hits_on(openmp_backend(), 0, scene, layout, awkward_origins(scene)), right, 0), 0u)
             << name_of(layout);
+}
+
+TEST(Carrying, the_order_of_the_vertices_decides_no_exit)
+{
+    const auto places = places_round_the_ray();
+    std::uint64_t entered = 0, ordered = 0, wrong = 0;
+    SeenTet tet{{}, {0, 1, 2, 3}};
+    do
+        for (const auto& a : places)
+            for (const auto& b : places)
+                for (const auto& c : places) {
+                    tet.at = {a, b, c, {}};
+                    if (!tet.is_entered()) continue;
+                    for (const auto& apex : places) {
+                        tet.at[3] = apex;
+                        ++entered;
+                        ordered += tet.does_order_decide();
+                        wrong += tet.replaced() != 1u << half32::replaced_by(a, b, c, apex);
+                    }
+                }
+    while (std::ranges::next_permutation(tet.number).found);
+    EXPECT_EQ(wrong, 0u) << "of " << entered;
+    EXPECT_GT(ordered, 1000u);
+}
+
+TEST(Carrying, has_the_bits_of_tet80_where_tets_are_seen_as_lines_and_points)
+{
+    const Scene scene = cluster_of(0x1p-24f);
+    ASSERT_EQ(find_defect(scene.tets, scene.mesh.triangles.size()), std::nullopt);
+    const auto right = hits_on_cluster(scene, Layout::tet80);
+    for (const Layout layout : carrying_layouts)
+        EXPECT_EQ(different_rays(hits_on_cluster(scene, layout), right, 0), 0u) << name_of(layout);
 }
 
 TEST(Carrying, ends_at_the_cap_of_steps_where_tet80_does)

@@ -73,12 +73,6 @@ inline bool is_linked_back(const TetMesh& mesh, std::uint32_t face)
     throw Error(ErrorKind::internal, "record " + std::to_string(record) + ": " + why);
 }
 
-inline void require_linked_back(const TetMesh& mesh)
-{
-    for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
-        if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
-}
-
 // Whether the tets on both sides of a face have its three vertices.
 inline bool shares_vertices(const TetMesh& mesh, std::uint32_t face)
 {
@@ -88,6 +82,14 @@ inline bool shares_vertices(const TetMesh& mesh, std::uint32_t face)
     return std::ranges::all_of(face_corners[link_face(face)], [&](std::uint32_t corner) {
         return std::ranges::find(others, tet.vertices[corner]) != others.end();
     });
+}
+
+inline void require_neighbours(const TetMesh& mesh)
+{
+    for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
+        if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
+    for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
+        if (!shares_vertices(mesh, record)) reject(record, "its neighbour has other vertices");
 }
 
 inline void require_same(const std::vector<Quad>& quads, const std::vector<Quad>& again, std::size_t stride)
@@ -133,7 +135,7 @@ inline TetMesh unpack_half32(const std::vector<Quad>& records)
         tet.faces[faces[1]] = triangle_at(exits.y);
         tet.faces[faces[2]] = triangle_at(exits.z);
     }
-    require_linked_back(mesh);
+    require_neighbours(mesh);
     PackedScene again;
     pack_half32(again, mesh);
     require_same(records, again.tets, HALF32_QUADS);
@@ -156,7 +158,7 @@ inline TetMesh unpack_tet64(const PackedScene& packed)
         if (quad.w == NO_LINK || (quad.w & 3) != EXIT_END) continue;
         if (packed.triangles.size() < TRIANGLE_QUADS * (std::size_t{behind} + 1)) reject(record, "it names no row");
         const Quad* const row = &packed.triangles[std::size_t{TRIANGLE_QUADS} * behind];
-        const std::uint32_t triangle = row[0].w - FIRST_RANK;
+        const std::uint32_t triangle = row[0].w - NORMAL_BIAS;
         const std::uint32_t link = row[1].w == (EXIT_IS_NORMAL | record) ? row[2].w : row[1].w;
         tet.links[record % 4] = link == NO_LINK ? NO_LINK : link & (EXIT_IS_NORMAL - 1);
         tet.faces[record % 4] = triangle;
@@ -164,9 +166,7 @@ inline TetMesh unpack_tet64(const PackedScene& packed)
         again.triangles.resize(std::max(again.triangles.size(), TRIANGLE_QUADS * (std::size_t{triangle} + 1)));
         std::copy_n(row, TRIANGLE_QUADS, &again.triangles[std::size_t{TRIANGLE_QUADS} * triangle]);
     }
-    require_linked_back(mesh);
-    for (std::uint32_t record = 0; record < packed.tets.size(); ++record)
-        if (!shares_vertices(mesh, record)) reject(record, "its neighbour has other vertices");
+    require_neighbours(mesh);
     pack_tet64(again, mesh);
     require_same(packed.tets, again.tets, 1);
     require_same(packed.triangles, again.triangles, TRIANGLE_QUADS);
