@@ -80,6 +80,25 @@ KERNEL_FN RayFrame frame_of(Ray ray)
     return frame;
 }
 
+// The ray of a frame, exactly: products with powers of two are not rounded. A GPU has no registers for it beside the
+// frame.
+KERNEL_FN Ray ray_of(RayFrame frame)
+{
+    PRECISE real x = frame.shear.x * real(-9.5367431640625e-7f);
+    PRECISE real y = frame.shear.y * real(-9.5367431640625e-7f);
+    PRECISE real z = frame.shear.z * real(9.5367431640625e-7f);
+    uint axis = frame.axis;
+    return make_ray(frame.origin, VEC3(axis == 0u   ? z
+                                       : axis == 1u ? y
+                                                    : x,
+                                       axis == 0u   ? x
+                                       : axis == 1u ? z
+                                                    : y,
+                                       axis == 0u   ? y
+                                       : axis == 1u ? x
+                                                    : z));
+}
+
 // end: ray parameter. A value above 2^64 means no end; a value below 2^-60 means the origin.
 KERNEL_FN Nearest nothing_before(Ray ray, real end)
 {

@@ -40,5 +40,5 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
     do {
 #include "kernels/bvh/bvh2_loop.h"
     } while (TRAVERSAL_GOES_ON);
-    return hit_of(scene, ray, nearest);
+    return hit_of(scene, ray_of(frame), nearest);
 }
