@@ -176,3 +176,14 @@ TEST(GradedPoints, lie_in_the_domain_on_the_grid_and_off_the_mesh)
     }
     EXPECT_EQ(points, graded_points(scene.mesh, scene.domain));
 }
+
+// Cells are cut once more where a mesh has edges half as long, so a finer mesh has points nearer to its surface.
+TEST(GradedPoints, are_denser_where_the_mesh_is_finer)
+{
+    const auto count = [](std::uint32_t triangles) {
+        const TriangleMesh mesh = make_banana(triangles);
+        return graded_points(mesh, make_domain(mesh, DomainKind::tight, 8)).size();
+    };
+    const std::size_t coarse = count(4'000), fine = count(100'000);
+    EXPECT_GT(fine, 4 * coarse);
+}
