@@ -19,9 +19,9 @@ KERNEL_FN GridFrame grid_frame(RayFrame frame, uint4 quad)
     PRECISE real step_x = as_real((quad.w & 0xFFu) << 23u) * frame.inverse.x;
     PRECISE real step_y = as_real((quad.w >> 8u & 0xFFu) << 23u) * frame.inverse.y;
     PRECISE real step_z = as_real((quad.w >> 16u & 0xFFu) << 23u) * frame.inverse.z;
-    real start_x = (as_real(quad.x) - frame.origin.x) * frame.inverse.x;
-    real start_y = (as_real(quad.y) - frame.origin.y) * frame.inverse.y;
-    real start_z = (as_real(quad.z) - frame.origin.z) * frame.inverse.z;
+    PRECISE real start_x = (as_real(quad.x) - frame.origin.x) * frame.inverse.x;
+    PRECISE real start_y = (as_real(quad.y) - frame.origin.y) * frame.inverse.y;
+    PRECISE real start_z = (as_real(quad.z) - frame.origin.z) * frame.inverse.z;
     grid.step = VEC3(step_x, step_y, step_z);
     grid.start = VEC3(start_x, start_y, start_z);
     return grid;
