@@ -84,19 +84,13 @@ KERNEL_FN RayFrame frame_of(Ray ray)
 // frame.
 KERNEL_FN Ray ray_of(RayFrame frame)
 {
-    PRECISE real x = frame.shear.x * real(-9.5367431640625e-7f);
-    PRECISE real y = frame.shear.y * real(-9.5367431640625e-7f);
-    PRECISE real z = frame.shear.z * real(9.5367431640625e-7f);
-    uint axis = frame.axis;
-    return make_ray(frame.origin, VEC3(axis == 0u   ? z
-                                       : axis == 1u ? y
-                                                    : x,
-                                       axis == 0u   ? x
-                                       : axis == 1u ? z
-                                                    : y,
-                                       axis == 0u   ? y
-                                       : axis == 1u ? x
-                                                    : z));
+    PRECISE real a = frame.shear.x * real(-9.5367431640625e-7f); // 2^-20
+    PRECISE real b = frame.shear.y * real(-9.5367431640625e-7f);
+    PRECISE real c = frame.shear.z * real(9.5367431640625e-7f);
+    real x = frame.axis == 0u ? c : frame.axis == 1u ? b : a;
+    real y = frame.axis == 0u ? a : frame.axis == 1u ? c : b;
+    real z = frame.axis == 0u ? b : frame.axis == 1u ? a : c;
+    return make_ray(frame.origin, VEC3(x, y, z));
 }
 
 // end: ray parameter. A value above 2^64 means no end; a value below 2^-60 means the origin.
