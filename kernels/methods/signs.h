@@ -2,7 +2,7 @@
 // them, which is never wrong and never undecided (docs/spec/project.md, P2 and P3). For walks that read corners from
 // tets (project.h) and for walks that carry them.
 
-// For a build that counts which level decides a sign: 0 float products, 1 what they lost, 2 the order of the vertices;
+// For a build that counts which level decides a sign: 0 float products, 1 what they lost, 2 the rule for ties;
 // that build is never timed.
 #ifndef COUNT_SIGN
 #define COUNT_SIGN(level)

@@ -95,5 +95,5 @@ TEST(ProjectSigns, each_level_of_a_sign_decides_some)
         EXPECT_GT(count, 0u);
     RecordProperty("by_products", std::to_string(decided[0]));
     RecordProperty("by_what_they_lost", std::to_string(decided[1]));
-    RecordProperty("by_order", std::to_string(decided[2]));
+    RecordProperty("by_rule_for_ties", std::to_string(decided[2]));
 }

@@ -21,7 +21,7 @@
 
 namespace tetrace::test {
 
-/// How many signs each level decided: products in float, what these lost, the order of the vertices.
+/// How many signs each level decided: products in float, what these lost, the rule for ties.
 inline std::array<std::uint64_t, 3> decided{};
 /// See COUNT_SEARCH in kernels/walks/entry_on_path.h.
 inline std::array<std::uint64_t, 3> sought{};

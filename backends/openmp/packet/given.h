@@ -222,7 +222,7 @@ struct Met {
     alignas(4 * LANES) uint numbers[room], exits[room], records[room], steps[room];
 };
 
-// Adds lanes that have met triangles, at most LANES times 3 in all.
+// Adds lanes that have met triangles. There is room for them while fewer than 2 * LANES rays wait.
 LANE_FN void push(const PacketJob& job, Met& met, const Packet& packet, uint lanes)
 {
     LaneWords exit, record, steps;
