@@ -5,7 +5,7 @@
 # empty.
 cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/libraries.cmake)
-include(${SOURCE}/scenes.cmake)
+include(${SOURCE}/packed.cmake)
 
 set(largest_bytes 67108864) # 64 MiB: what is carried to a machine, and what such machines' transfers accept
 
@@ -16,7 +16,13 @@ file(COPY ${SOURCE}/run-all ${SOURCE}/icd DESTINATION ${BUNDLE})
 copy_libraries("${PROGRAM};${XZ}" "${LOADERS}" ${BUNDLE}/lib libraries)
 copy_licences("${libraries};${XZ}" ${BUNDLE}/licences packages)
 file(COPY ${SOURCE}/../LICENSE DESTINATION ${BUNDLE})
-pack_scenes("bunny;armadillo" ${BUNDLE}/scenes scenes) # banana's 1.3 MiB are more than is left
+file(GLOB embree ${BUNDLE}/lib/libembree*)
+foreach(library IN LISTS embree) # two thirds of all bytes
+  get_filename_component(name ${library} NAME)
+  pack(${library} ${name} -3 ${BUNDLE}/lib)
+  file(REMOVE ${library})
+endforeach()
+pack_scenes("bunny;armadillo;banana" ${BUNDLE}/scenes scenes)
 
 glibc_needed("${PROGRAM};${XZ};${libraries}" GLIBC)
 list(JOIN packages "\n    " PACKAGES)

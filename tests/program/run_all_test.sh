@@ -4,7 +4,7 @@ set -u
 claim=$1 source=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir -p "$folder/a bundle/bin" "$folder/a bundle/icd"
+mkdir -p "$folder/a bundle/bin" "$folder/a bundle/icd" "$folder/programs"
 cp "$source/run-all" "$folder/a bundle/"
 cp "$source"/icd/* "$folder/a bundle/icd/"
 out="$folder/results, all"
@@ -18,7 +18,7 @@ tetrace_is() {
 # run_all <expected exit code> <options...>
 run_all() {
     expected=$1; shift
-    env -i PATH=/usr/bin:/bin "$folder/a bundle/run-all" "$@" >"$folder/printed" 2>"$folder/said"
+    env -i PATH="$folder/programs:/usr/bin:/bin" "$folder/a bundle/run-all" "$@" >"$folder/printed" 2>"$folder/said"
     code=$?
     [ $code = "$expected" ] || fail "exit code $code, not $expected"
 }
@@ -28,7 +28,8 @@ case $claim in
 steps_that_end_well_give_0)
     tetrace_is 'echo "it ran: $*"'
     run_all 0 "$out" --quick
-    for step in devices check bench bench-8x4 bench-8x8 bench-fast render-openmp render-cuda reproduce; do
+    for step in devices check check-all check-rays defects bench bench-8x4 bench-8x8 bench-bvhs bench-rays bench-fast \
+        bench-large render-openmp render-cuda reproduce-rays reproduce; do
         summary_has "^$step +ok "
         grep -q 'it ran' "$out/$step.txt" || fail "what $step printed is not kept"
     done
@@ -47,6 +48,42 @@ a_hang_and_a_failure_lose_no_other_step)
     summary_has '^render-cuda +ended by signal 11 '
     grep -q partly "$out/check.txt" || fail "what a hanging step printed is lost"
     grep -q reason "$out/bench.log" || fail "what a failing step said is lost" ;;
+known_defects_of_compilers_are_no_failure)
+    tetrace_is 'case "$*" in *--defects*) exit 1 ;; esac'
+    run_all 0 "$out" --quick
+    summary_has '^defects +ok '
+    tetrace_is 'case "$*" in *--defects*) exit 4 ;; esac'
+    run_all 1 "$out" --quick
+    summary_has '^defects +failed with exit code ' ;;
+what_is_packed_is_unpacked_for_the_steps)
+    mkdir "$folder/a bundle/lib" "$folder/a bundle/scenes"
+    cp /usr/bin/xz "$folder/a bundle/bin/" || { echo "skipped: no xz"; exit 77; }
+    echo library | xz >"$folder/a bundle/lib/libpacked.so.xz"
+    echo scene | xz >"$folder/a bundle/scenes/bunny-rays.tet.xz"
+    tetrace_is 'cat "${LD_LIBRARY_PATH%%:*}/libpacked.so" && case "$*" in *bunny-rays.tet*) cat bunny-rays.tet ;; esac'
+    run_all 0 "$out" --quick
+    grep -q library "$out/devices.txt" || fail "the library is not found"
+    grep -q scene "$out/bench.txt" || fail "the scene is not found" ;;
+each_gpu_has_its_share_of_the_tables)
+    printf '#!/bin/sh\necho "GPU 0: one"; echo "GPU 1: another"; echo "GPU 2: a third"\n' >"$folder/programs/nvidia-smi"
+    chmod +x "$folder/programs/nvidia-smi"
+    tetrace_is 'case $1 in reproduce)
+        [ $PMI_RANK != 0 ] || sleep 1 # rank 0 waits for the others
+        echo "$TETRACE_LAUNCH: $PMI_RANK of $PMI_SIZE on $MPI_LOCALRANKID" ;;
+        esac'
+    run_all 0 "$out" --quick
+    [ "$(sed 's/.*: //' "$out/reproduce.txt" | sort)" = "$(printf '%s of 3 on %s\n' 0 0 1 1 2 2)" ] || fail "other ranks"
+    [ "$(sed 's/:.*//' "$out/reproduce.txt" | sort -u | wc -l)" = 1 ] || fail "ranks of several launches"
+    tetrace_is 'case "$1 $PMI_RANK" in "reproduce 0") exit 1 ;; "reproduce "*) echo $$ >>"'"$folder"'/shares"; exec sleep 1000 ;; esac'
+    run_all 1 "$out" --quick --limit 3
+    summary_has '^reproduce +failed with exit code 1 '
+    tetrace_is 'case $1 in reproduce) echo $$ >>"'"$folder"'/shares"; exec sleep 1000 ;; esac'
+    run_all 1 "$out" --quick --limit 3
+    summary_has '^reproduce +timed out after 3 s '
+    [ "$(wc -l <"$folder/shares")" -ge 10 ] || fail "not all shares began" # two steps of two others, two of three
+    for process in $(cat "$folder/shares"); do
+        ! kill -0 "$process" 2>/dev/null || fail "a share runs on"
+    done ;;
 a_hanging_look_for_devices_costs_no_picture_of_other_apis)
     tetrace_is 'case "$*" in *"--require vulkan"*) exec sleep 1000 ;; esac'
     run_all 0 "$out" --quick --limit 2
