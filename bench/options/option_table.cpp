@@ -119,7 +119,8 @@ std::vector<OptionRow> row_options()
 {
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt or bvh. Default: both. 'check' leaves out the rows of Embree's and a "
+         "Keep the rows of this structure: cdt (tets, of either kind) or bvh. Default: both. 'check' leaves out the "
+         "rows of Embree's and a "
          "driver's own BVHs unless --structure, --method, --layout, --backend, --filter, '--schedule pipeline' or "
          "'--require embree' is given.",
          selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},

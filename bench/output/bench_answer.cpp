@@ -84,7 +84,7 @@ std::string structures_text(const std::vector<Contest>& contests)
     return joined(contests, [](const Contest& contest) -> std::string {
         const RowRun *cdt = contest.best(Structure::cdt), *bvh = contest.best(Structure::bvh);
         if (cdt == nullptr || bvh == nullptr) return {};
-        return fmt::format("the fastest CDT has {:.2f} of the rate of the fastest BVH, {}",
+        return fmt::format("the fastest walk through tets has {:.2f} of the rate of the fastest BVH, {}",
                            Contest::rate_of(*cdt) / Contest::rate_of(*bvh), row_text(*bvh));
     });
 }

@@ -55,7 +55,7 @@ std::vector<Contest> contests_of(const std::vector<RowGroup>& groups, std::size_
 std::string answer_text(const Contest& contest)
 {
     const double ratio = contest.ratio();
-    return fmt::format("{} on {}: rays go through the CDT {:.2f} times as {} as through the BVH",
+    return fmt::format("{} on {}: rays go through the tets {:.2f} times as {} as through the BVH",
                        contest.group->scene.name, contest.device, std::max(ratio, 1 / ratio),
                        ratio >= 1 ? "fast" : "slowly");
 }
@@ -83,7 +83,8 @@ Html chart_of(const Contest& contest)
     return figure(answer_text(contest), draw(chart), "");
 }
 
-/// "CDT over BVH on a device: bunny 1.41, armadillo 1.23." for each device of the contests without a chart.
+/// "Rate of the tets over that of the BVH on a device: bunny 1.41, armadillo 1.23." for each device of the contests
+/// without a chart.
 Html other_answers(std::span<const Contest> contests)
 {
     std::vector<std::pair<std::string, std::string>> lines;
@@ -94,7 +95,7 @@ Html other_answers(std::span<const Contest> contests)
     }
     Html items;
     for (const auto& [device, line] : lines)
-        items += text_element("li", "", fmt::format("Rate of the CDT over that of the BVH on {}: {}.", device, line));
+        items += text_element("li", "", fmt::format("Rate of the tets over that of the BVH on {}: {}.", device, line));
     return items.empty() ? items : element("ul", {{"class", "plain note"}}, items);
 }
 

@@ -94,7 +94,7 @@ TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
     const std::string quiet = unwrapped();
     EXPECT_TRUE(contains(quiet, "bunny (CPU): bvh bvh2 on openmp, 800.0 Mrays/s")) << quiet;
     EXPECT_TRUE(contains(quiet, "bunny (H200): ")) << quiet;
-    EXPECT_TRUE(contains(quiet, "the fastest CDT has 0.50 of the rate of the fastest BVH")) << quiet;
+    EXPECT_TRUE(contains(quiet, "the fastest walk through tets has 0.50 of the rate of the fastest BVH")) << quiet;
     EXPECT_TRUE(
         contains(quiet, "APIs by openmp's rate, medians over the kernels: cuda-host 1.00, opencl 1.00, vulkan 1.00"))
         << quiet;

@@ -47,12 +47,13 @@ TEST_F(ReportPage, begins_with_the_papers_claim_on_this_machine)
 {
     const auto answer_of = [&](const json& result) { return section_of(page_of({result}), "answer"); };
     const std::string faster = answer_of(with_bvh(2));
-    EXPECT_TRUE(contains(faster, "cubes on a device of cuda: rays go through the CDT 2.00 times as fast as through the "
-                                 "BVH"))
+    EXPECT_TRUE(contains(faster,
+                         "cubes on a device of cuda: rays go through the tets 2.00 times as fast as through the "
+                         "BVH"))
         << faster;
     using Rows = std::multiset<std::string>;
     EXPECT_EQ(rows_of(faster, "mark "), (Rows{"row/cuda", "row/bvh"}));
-    EXPECT_TRUE(contains(answer_of(with_bvh(8)), "through the CDT 2.00 times as slowly as through the BVH"));
+    EXPECT_TRUE(contains(answer_of(with_bvh(8)), "through the tets 2.00 times as slowly as through the BVH"));
     const std::string page = page_of({with_bvh(2)});
     EXPECT_LT(page.find("id=\"answer\""), page.find("<nav>")) << "before everything else";
     EXPECT_TRUE(contains(answer_of(bench_json()), "no section")) << "there is no BVH to compare with";
