@@ -166,6 +166,8 @@ TEST_F(BuilderProgram, repairs_crossing_triangles_where_it_is_asked_to)
         ASSERT_EQ(ended.code, BUILDER_GOOD) << how << ended.errors;
         const Scene scene = read_scene(folder_ / "out.tet");
         expect_sound(scene);
+        EXPECT_EQ(scene.build.optimised.tets, contains(how, "--tets rays") ? TetsKind::rays : TetsKind::cdt) << how;
+        EXPECT_EQ(scene.build.optimised.reason, "");
         const RepairInfo& repair = scene.build.repair;
         EXPECT_TRUE(contains(ended.errors, "note: " + std::to_string(repair.crossing_pairs) + " pairs of triangles "));
         EXPECT_TRUE(repair.asked);
