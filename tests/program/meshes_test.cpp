@@ -12,12 +12,29 @@ using namespace tetrace::test;
 
 namespace {
 
+/// The first line that begins so.
+std::string line_of(const std::string& text, const std::string& begin)
+{
+    const std::size_t at = text.find("\n" + begin);
+    return at == std::string::npos ? "" : text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+}
+
+/// As tables write it.
+std::string grouped(std::uint64_t number)
+{
+    return number < 1000 ? fmt::format("{}", number)
+                         : fmt::format("{},{:03}", number / 1000, number % 1000); // enough for these meshes
+}
+
 class Meshes : public ProgramTest {
 protected:
     void write(const std::string& name, const TriangleMesh& mesh) const { write_file(folder_ / name, to_off(mesh)); }
 
     /// The rows of check --out.
     [[nodiscard]] nlohmann::json rows() const { return nlohmann::json::parse(file("a.json"))["tetrace"]["rows"]; }
+
+    /// The builds of build --out.
+    [[nodiscard]] nlohmann::json builds() const { return nlohmann::json::parse(file("a.json"))["tetrace"]["builds"]; }
 
     /// Checks these scenes, with rays from outside and inside, primary ones and others.
     void expect_right(const std::string& scenes, const std::string& tets, std::size_t structures)
@@ -115,4 +132,60 @@ TEST_F(Meshes, results_name_the_file_s_triangles)
         EXPECT_GT(std::min({u, v, 1 - u - v}), -1e-5) << pixel;
     }
     EXPECT_EQ(seen.size(), 2u);
+}
+
+TEST_F(Meshes, built_for_rays_are_listed_with_what_each_operation_brought)
+{
+    write("ball.off", sphere(2));
+    const Ended ended = run("build --scene ball.off --tets cdt,rays --effort 3 --size 32 --out a.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    const auto all = builds();
+    ASSERT_EQ(all.size(), 2u);
+    const auto &cdt = all[0], &rays = all[1], &made = rays["scene_record"]["optimised"];
+    EXPECT_EQ(cdt["tets_kind"], "cdt");
+    EXPECT_EQ(rays["tets_kind"], "rays");
+    EXPECT_FALSE(cdt.contains("cost_before"));
+    EXPECT_LT(rays["cost_after"], rays["cost_before"]);
+    EXPECT_LT(rays["mean_steps"], cdt["mean_steps"]);
+    EXPECT_TRUE(contains(ended.out, fmt::format("ball (tight, 8), the optimiser in {} rounds: cost {:.2f} before, "
+                                                "{:.2f} after; steps a ray {:.2f} in the CDT, {:.2f} now\n",
+                                                made["rounds"].get<int>(), rays["cost_before"].get<double>(),
+                                                rays["cost_after"].get<double>(), cdt["mean_steps"].get<double>(),
+                                                rays["mean_steps"].get<double>())))
+        << ended.out;
+    const double whole = rays["cost_before"].get<double>() - rays["cost_after"].get<double>();
+    std::set<std::string> seen;
+    double sum = 0;
+    for (const auto& operation : made["operations"]) {
+        const double gain = operation["gain"];
+        sum += gain;
+        const std::string name = operation["name"], share = fmt::format("{:.1f}", 100 * gain / whole);
+        seen.insert(name);
+        EXPECT_GT(operation["done"], 0) << name;
+        const std::string line = line_of(ended.out, "  " + name + " ");
+        for (const std::string& cell : {grouped(operation["done"]), fmt::format("{:.2f}", gain), share})
+            EXPECT_TRUE(contains(line, " " + cell + " ")) << name;
+    }
+    EXPECT_EQ(seen, (std::set<std::string>{"edges removed", "faces removed", "moves", "collapses", "insertions"}));
+    EXPECT_NEAR(sum, whole, 1e-9);
+    for (const auto& build : all) { // the ball's inside is out of reach
+        const auto& counts = build["scene_record"];
+        const double share = counts["reached_tets"].get<double>() / counts["tets"].get<double>();
+        EXPECT_LT(share, 1);
+        EXPECT_NEAR(build["reached_mb"], build["size_mb"].get<double>() * share, 1e-12);
+    }
+}
+
+TEST_F(Meshes, whose_tets_are_still_tetgens_are_listed_so_with_the_reason)
+{
+    write("ball.off", sphere(2));
+    const Ended ended = run("build --scene ball.off --tets rays --optimise-time 1e-9 --size 16 --out a.json");
+    ASSERT_EQ(ended.code, 0) << ended.errors;
+    EXPECT_TRUE(contains(ended.errors, "ball: TetGen's tets are used: the optimiser was stopped before it had bettered "
+                                       "any\n"));
+    const auto made = builds()[0];
+    EXPECT_EQ(made["tets_kind"], "cdt");
+    EXPECT_EQ(made["cost_after"], made["cost_before"]);
+    EXPECT_EQ(made["scene_record"]["optimised"]["reason"], "the optimiser was stopped before it had bettered any");
+    EXPECT_FALSE(contains(ended.out, "the optimiser in ")) << "it has no operations to list";
 }

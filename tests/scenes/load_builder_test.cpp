@@ -152,6 +152,22 @@ TEST_F(Load, sets_a_scene_apart_whose_optimiser_was_stopped)
     EXPECT_TRUE(list_cache().empty());
 }
 
+TEST_F(Load, says_each_time_where_the_tets_are_still_tetgens)
+{
+    request.build = default_build(TetsKind::rays);
+    request.build.divisions = 3;
+    Scene made = expected();
+    made.build.optimised = {
+        TetsKind::rays, TetsKind::cdt, "the optimiser found nothing to better", request.build.effort, 2, 2, 0.1};
+    write_scene(prepared, made);
+    use_builder("echo \"note: TetGen's tets are used: the optimiser found nothing to better\" >&2");
+    EXPECT_EQ(load().messages,
+              std::vector<std::string>{"TetGen's tets are used: the optimiser found nothing to better"});
+    const LoadedScene cached = load();
+    EXPECT_TRUE(cached.from_cache);
+    EXPECT_EQ(cached.messages.front(), "thing: the tets are TetGen's: the optimiser found nothing to better");
+}
+
 TEST_F(Load, gives_the_optimiser_half_of_the_builders_time_unless_told)
 {
     (void)load();
