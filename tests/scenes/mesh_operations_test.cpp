@@ -4,7 +4,7 @@
 #include "scenes/optimise/insertion.h"
 #include "scenes/optimise/vertex_move.h"
 #include "scenes/procedural.h"
-#include "tests/support/edited_mesh.h"
+#include "tests/scenes/edited_mesh.h"
 #include "tests/support/hard_scenes.h"
 #include "tests/support/random.h"
 #include "tests/support/sound_tets.h"
