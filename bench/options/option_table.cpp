@@ -81,8 +81,9 @@ std::vector<OptionRow> scene_options()
          "'reproduce' has --builds. Default: rays.",
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
-         "Effort for --tets rays: 0 (TetGen's tets stay), 1 (quick), 2, or 3 (vertices are inserted too; the "
-         "optimiser takes ten times as long, for 1 % fewer steps at most). Default: " +
+         "Effort for --tets rays: 0 (TetGen's tets as they are, by the switches of this kind, so other ones than those "
+         "of --tets cdt), 1 (quick), 2, or 3 (vertices are inserted too; the optimiser takes ten times as long, for "
+         "1 % fewer steps at most). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},

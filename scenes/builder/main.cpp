@@ -115,7 +115,7 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
                    "of points where the switches have no q; default: cdt")
         ->check(CLI::IsMember({cdt, rays}).description(""))
         ->type_name(cdt + "|" + rays);
-    app.add_option("--effort", options.effort, "of the optimiser, 0 (none) to 3; default: 2")
+    app.add_option("--effort", options.effort, "of the optimiser, 0 (none, and no more points) to 3; default: 2")
         ->check(CLI::Range(0, most_effort).description(""))
         ->type_name("N");
     app.add_option("--optimise-for", options.optimise_for_s,

@@ -270,14 +270,16 @@ TEST_F(Builder, keeps_tetgens_tets_where_it_was_stopped_before_it_bettered_any_a
 
 TEST_F(Builder, leaves_tetgens_tets_with_effort_0)
 {
-    BuilderOptions asked = options(sphere(2), DomainKind::tight, "pq5Y");
-    const Scene plain = build(asked);
-    asked.tets = TetsKind::rays;
-    asked.effort = 0;
-    const Scene scene = build(asked);
-    EXPECT_EQ(scene.tets, plain.tets);
-    EXPECT_EQ(scene.build.optimised.tets, TetsKind::cdt);
-    EXPECT_NE(scene.build.optimised.reason, "");
+    for (const std::string switches : {"pq5Y", "pY"}) { // with pY, points are for the optimiser alone
+        BuilderOptions asked = options(sphere(2), DomainKind::tight, switches);
+        const Scene plain = build(asked);
+        asked.tets = TetsKind::rays;
+        asked.effort = 0;
+        const Scene scene = build(asked);
+        EXPECT_EQ(scene.tets, plain.tets);
+        EXPECT_EQ(scene.build.optimised.tets, TetsKind::cdt);
+        EXPECT_EQ(scene.build.optimised.reason, "--effort is 0");
+    }
 }
 
 TEST_F(Builder, keeps_triangles_and_squares_whole_with_y)
