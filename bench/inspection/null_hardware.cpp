@@ -58,11 +58,12 @@ json figures_json(const CodeFigures& figures)
             {"instructions", figures.instructions}};
 }
 
-std::string code_name(const std::string& target, const EntryPoint& point)
+/// What follows the target in the name of a program's file.
+std::string code_name(const EntryPoint& point)
 {
     std::string entry = name_of(point);
     std::ranges::replace(entry, ' ', '-');
-    return fmt::format("{}-{}-{}-{}-{}.s", target, name_of(point.kernel.method), name_of(point.kernel.layout),
+    return fmt::format("-{}-{}-{}-{}.s", name_of(point.kernel.method), name_of(point.kernel.layout),
                        name_of(point.kernel.math), entry);
 }
 
@@ -168,7 +169,7 @@ Answer ask_family(const std::string& family, const fs::path& driver, const std::
     const WorkFolder folder;
     const fs::path report = folder.path() / "report";
     std::vector<std::string> arguments = {null_hardware_word, family, driver.string(), report.string(),
-                                          code.empty() ? "-" : code.string()};
+                                          code.empty() ? "-" : (code / unknown.front().target.name).string()};
     for (const std::size_t number : numbers)
         arguments.push_back(std::to_string(number));
     double done = 0;
@@ -234,7 +235,7 @@ int run_null_hardware(const std::vector<std::string>& arguments)
     constexpr std::size_t before_numbers = 4;
     if (arguments.size() < before_numbers) return exit_code(ErrorKind::usage);
     const std::string &family = arguments[0], &driver = arguments[1];
-    const fs::path code = arguments[3] == "-" ? fs::path() : fs::path(arguments[3]);
+    const std::string code = arguments[3] == "-" ? "" : arguments[3];
     ::setenv("RADV_FORCE_FAMILY", family.c_str(), 1);
     ::setenv("VK_DRIVER_FILES", driver.c_str(), 1);  // of loaders from 1.3.207 on
     ::setenv("VK_ICD_FILENAMES", driver.c_str(), 1); // of all others
@@ -254,7 +255,7 @@ int run_null_hardware(const std::vector<std::string>& arguments)
         std::from_chars(arguments[i].data(), arguments[i].data() + arguments[i].size(), number);
         const EntryPoint& point = all.at(number);
         const json line =
-            compiled_json(*device.source, device.index, point, code.empty() ? code : code / code_name(family, point));
+            compiled_json(*device.source, device.index, point, code.empty() ? code : code + code_name(point));
         report << line.dump(-1, ' ', false, json::error_handler_t::replace) << std::endl;
         std::fprintf(stderr, "%s\n", compiled_word);
     }

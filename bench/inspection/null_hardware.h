@@ -17,8 +17,8 @@ namespace tetrace {
 inline constexpr const char* null_hardware_word = "compile-for-null-hardware";
 
 /// The child: compiles the entry points with the numbers given, and writes a line of JSON each.
-/// arguments: family, RADV's driver file, file to write, folder for code or "-", then numbers in
-/// all_entry_points(Maker::amd). Returns the exit code.
+/// arguments: family, RADV's driver file, file to write, what the names of files for code begin with or "-", then
+/// numbers in all_entry_points(Maker::amd). Returns the exit code.
 [[nodiscard]] int run_null_hardware(const std::vector<std::string>& arguments);
 
 } // namespace tetrace
