@@ -2,6 +2,7 @@
 #include "bench/terminal/text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -10,15 +11,22 @@ namespace {
 
 const char* const how_to_read_programs =
     "Each entry point of a kernel, compiled for a GPU that need not be there; nothing was run. Occupancy: the "
-    "subgroups "
-    "that a processor of the GPU holds at once, compared with an empty kernel (AMD) or with the most (NVIDIA). Fused: "
-    "floating-point operations that multiply and add with one rounding. In exact mode none may decide a sign; those in "
-    "box tests of BVHs decide nothing.";
+    "subgroups that a processor of the GPU holds at once, compared with an empty kernel (AMD) or with the most "
+    "(NVIDIA). Latency and cycles a subgroup: AMD's compiler's own estimates of one pass through all instructions, and "
+    "of how often one can begin. Fused: floating-point operations that multiply and add with one rounding, with the "
+    "first of them. In exact mode none may decide a sign; those in box tests of BVHs decide nothing.";
 
 std::string count_text(const ResultValue& program, const char* key)
 {
     const auto value = program.find(key);
     return value ? with_commas(value->count()) : std::string();
+}
+
+std::string cycles_text(const ResultValue& program, const char* key)
+{
+    const auto value = program.find(key);
+    return value ? with_commas(static_cast<std::uint64_t>(std::llround(std::max(0.0, value->number()))))
+                 : std::string();
 }
 
 std::string occupancy_of(const ResultValue& program)
@@ -38,12 +46,16 @@ std::string spills_of(const ResultValue& program)
     return stores == "0" && loads == "0" ? "0" : fmt::format("{} + {} bytes", stores, loads);
 }
 
-std::string fused_of(const ResultValue& program)
+/// How many and where; below it, in small letters, the first.
+Html fused_of(const ResultValue& program)
 {
     const auto in = program.find("fused_in");
     if (!in) return {};
     const std::string where = in->line();
-    return where == "nothing" ? "none" : fmt::format("{} in {}", count_text(program, "fused"), where);
+    if (where == "nothing") return text("none");
+    const auto first = program.find("first_fused");
+    return text(fmt::format("{} in {}", count_text(program, "fused"), where)) +
+           (first ? text_element("small", "", first->line()) : Html());
 }
 
 std::string entry_of(const ResultValue& program)
@@ -52,7 +64,15 @@ std::string entry_of(const ResultValue& program)
     return schedule == "tiles" ? entry : entry + " " + schedule;
 }
 
-Html programs_of(const ResultValue& programs)
+/// Whether a sentence of "skipped_targets", "sm_90: no nvcc", is about the program's target.
+bool is_told(const std::vector<std::string>& skipped, const ResultValue& program)
+{
+    const std::string begin = program.at("target").line() + ": ";
+    return std::ranges::any_of(skipped, [&](const std::string& sentence) { return sentence.starts_with(begin); });
+}
+
+/// Programs of skipped targets are left out.
+Html programs_of(const ResultValue& programs, const std::vector<std::string>& skipped)
 {
     HtmlTable table({{"target"},
                      {"kernel"},
@@ -64,9 +84,12 @@ Html programs_of(const ResultValue& programs)
                      {"instructions", {}, true},
                      {"branches", {}, true},
                      {"loads in loops", {}, true},
+                     {"latency", "cycles", true},
+                     {"a subgroup", "cycles", true},
                      {"fused"},
                      {"status"}});
     for (const ResultValue& program : programs.items()) {
+        if (is_told(skipped, program)) continue;
         const std::string reason = program.text_at("reason"), status = program.at("status").line();
         const std::string kernel = program.at("method").line() + " " + program.at("layout").line() +
                                    (program.at("math").line() == "fast" ? " fast" : "");
@@ -74,10 +97,29 @@ Html programs_of(const ResultValue& programs)
                    text(count_text(program, "registers")), text(spills_of(program)),
                    text(count_text(program, "scratch_bytes")), text(occupancy_of(program)),
                    text(count_text(program, "instructions")), text(count_text(program, "branches")),
-                   text(count_text(program, "loads_in_loops")), text(fused_of(program)),
+                   text(count_text(program, "loads_in_loops")), text(cycles_text(program, "latency_cycles")),
+                   text(cycles_text(program, "cycles_a_subgroup")), fused_of(program),
                    badge(status) + text(reason.empty() ? reason : ": " + reason)});
     }
     return table.html();
+}
+
+/// Why targets were skipped, a sentence each.
+std::vector<std::string> skipped_of(const ResultFile& file)
+{
+    std::vector<std::string> sentences;
+    if (const auto skipped = file.section().find("skipped_targets"))
+        for (const ResultValue& sentence : skipped->items())
+            sentences.push_back(sentence.line());
+    return sentences;
+}
+
+Html skipped_list(const std::vector<std::string>& skipped)
+{
+    Html items;
+    for (const std::string& sentence : skipped)
+        items += text_element("li", "", "skipped: " + sentence);
+    return items.empty() ? items : element("ul", {{"class", "missing"}}, items);
 }
 
 /// "radv Mesa 22.3.6, Null hardware (RADV NAVI21); nvcc 13.0", each once.
@@ -90,7 +132,7 @@ std::string compilers_of(const ResultValue& programs)
     std::string all;
     for (const std::string& name : names)
         all += (all.empty() ? "" : "; ") + name;
-    return all;
+    return all.empty() ? "no compiler" : all;
 }
 
 } // namespace
@@ -100,8 +142,11 @@ Section compiler_section(const ReportInput& input)
     Section section{"compilers", "Compilers", {}};
     Html tables;
     for (std::size_t file = 0; file < input.files.size(); ++file)
-        if (const auto programs = input.files[file].section().find("programs"))
-            tables += heading(with_letter(compilers_of(*programs), file, input.files.size())) + programs_of(*programs);
+        if (const auto programs = input.files[file].section().find("programs")) {
+            const auto skipped = skipped_of(input.files[file]);
+            tables += heading(with_letter(compilers_of(*programs), file, input.files.size())) + skipped_list(skipped) +
+                      programs_of(*programs, skipped);
+        }
     section.is_empty = tables.empty();
     section.content = tables.empty() ? paragraph("None of these results is of 'tetrace inspect --out FILE.json', which "
                                                  "asks GPUs' compilers about every kernel.")

@@ -173,8 +173,22 @@ TEST_F(ReportPage, what_compilers_told_is_a_table_of_programs)
                                          {"registers", 60},
                                          {"subgroups", 24},
                                          {"most_subgroups", 32},
+                                         {"latency_cycles", 41234.4},
+                                         {"cycles_a_subgroup", 6348.0},
                                          {"fused", 0},
                                          {"fused_in", "nothing"}},
+                                        {{"target", "gfx1100"},
+                                         {"structure", "bvh"},
+                                         {"method", "single"},
+                                         {"layout", "bvh2"},
+                                         {"math", "exact"},
+                                         {"schedule", "tiles"},
+                                         {"entry", "outside"},
+                                         {"status", "ok"},
+                                         {"compiler", "radv <22>"},
+                                         {"fused", 12},
+                                         {"fused_in", "boxes"},
+                                         {"first_fused", "v_fma_f32 v1, <v2>"}},
                                         {{"target", "sm_90"},
                                          {"structure", "cdt"},
                                          {"method", "maria"},
@@ -185,8 +199,14 @@ TEST_F(ReportPage, what_compilers_told_is_a_table_of_programs)
                                          {"status", "skipped"},
                                          {"reason", "no nvcc"}}};
     const std::string section = section_of(page_of({inspected}), "compilers");
-    for (const char* const shown : {"gfx1100", "project half32", "radv &lt;22&gt;", ">75<", "none", "no nvcc"})
+    for (const char* const shown :
+         {"gfx1100", "project half32", "radv &lt;22&gt;", ">75<", "none", ">41,234<", ">6,348<",
+          "12 in boxes<small>v_fma_f32 v1, &lt;v2&gt;</small>", "<li>skipped: sm_90: no nvcc</li>"})
         EXPECT_TRUE(contains(section, shown)) << shown;
+    EXPECT_FALSE(contains(section, "maria tet80")) << "a target that was skipped has a sentence, and no row a program";
+    json nothing = inspected;
+    nothing["tetrace"]["programs"] = json::array({inspected["tetrace"]["programs"][2]});
+    EXPECT_TRUE(contains(section_of(page_of({nothing}), "compilers"), "no compiler"));
     EXPECT_TRUE(contains(section_of(page_of({bench_json()}), "compilers"), "tetrace inspect"));
 }
 
