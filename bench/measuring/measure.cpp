@@ -1,7 +1,7 @@
 #include "bench/measuring/measure.h"
 
 #include "bench/measuring/reporters.h"
-#include "bench/rows/physical_device.h"
+#include "bench/measuring/sampling/sampler.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
@@ -11,10 +11,8 @@
 #include "core/base/whole_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iostream>
-#include <map>
 #include <sstream>
 #include <unistd.h>
 
@@ -29,29 +27,11 @@ void set_counters(benchmark::State& state, const RowRun& row)
     state.counters["Mrays/s"] = 1e-6 * static_cast<double>(traced(row)->totals.rays) / row.samples_s.back();
 }
 
-/// The monitors of the rows' GPUs, each found once.
-class Monitors {
-public:
-    explicit Monitors(FindMonitor find) : find_(std::move(find)) {}
-    /// Null where nothing tells about the row's device.
-    [[nodiscard]] GpuMonitor* of(const RowRun& row)
-    {
-        const auto [place, is_new] = found_.try_emplace({row.key.backend, row.key.device});
-        if (is_new) place->second = find_(row.device);
-        return place->second.get();
-    }
-
-private:
-    FindMonitor find_;
-    std::map<std::pair<std::string, std::size_t>, std::unique_ptr<GpuMonitor>> found_;
-};
-
 /// Counts the repetitions of all rows, for the progress line.
 struct Sweep {
     const Budget* budget; ///< whose clock is read
     Pulses* pulses;
-    Monitors* monitors;
-    double sample_s; ///< that a sample lasts at least
+    const Sampler* sampler;
     double done = 0, all = 1;
 };
 
@@ -95,21 +75,20 @@ Pass trace_views(RowRun& row, std::uint32_t passes, const Budget& budget, const 
 /// Verification has already paid the costs of a row's first passes: compiling at the first launch, finding the launch
 /// size, touching memory. One more pass just before the samples wakes the device up, shows what a sample costs, and
 /// times the download.
-void warm_up(RowRun& row, double sample_s, Budget& budget, const std::function<void(double)>& tell_progress)
+void warm_up(RowRun& row, const Sampler& sampler, Budget& budget, const std::function<void(double)>& tell_progress)
 {
-    constexpr double for_faster_clocks = 1.25; // a device that has rested is slower than it will be
     guarded(row, [&] {
         std::vector<Hit> hits;
         const Pass pass = trace_views(row, 1, budget, {tell_progress, &hits});
         std::get<Traced>(row.outcome).download_s = pass.download_s;
-        row.passes = passes_for(for_faster_clocks * sample_s, pass.kernel_s);
+        sampler.warmed_up(row, pass.kernel_s);
         row.warm_s = pass.wall_s + (row.passes > 1 ? row.passes * pass.kernel_s : 0);
         budget.traced(row, row.scene->views().size(), pass.wall_s);
     });
 }
 
 /// Seconds of one sample of every row.
-double warm_up_rows(std::vector<RowRun>& rows, double sample_s, Budget& budget)
+double warm_up_rows(std::vector<RowRun>& rows, const Sampler& sampler, Budget& budget)
 {
     double done = 0;
     for (RowRun& row : rows) {
@@ -118,7 +97,7 @@ double warm_up_rows(std::vector<RowRun>& rows, double sample_s, Budget& budget)
             progress_line().show("warming up", (done + part) / static_cast<double>(rows.size()), -1,
                                  row.key.scene + ", " + row_label(row.key));
         };
-        if (is_timed(row)) warm_up(row, sample_s, budget, tell);
+        if (is_timed(row)) warm_up(row, sampler, budget, tell);
         done += 1;
     }
     budget.review_timed();
@@ -128,25 +107,7 @@ double warm_up_rows(std::vector<RowRun>& rows, double sample_s, Budget& budget)
     return sweep_s;
 }
 
-/// Traces a sample's passes; where its GPU was throttled meanwhile, once more, and once more again.
-Pass unthrottled(RowRun& row, GpuMonitor* monitor, const Budget& budget,
-                 const std::function<Pass(const std::function<void()>&)>& trace)
-{
-    if (monitor == nullptr) return trace({});
-    if (!row.gpu) row.gpu.emplace();
-    for (int attempt = 1;; ++attempt) {
-        GpuState state;
-        const Pass sample = trace([&] { state = monitor->read(); });
-        if (!state.throttled.empty()) row.gpu->add_reason(state.throttled);
-        if (state.throttled.empty() || attempt == 3 || budget.left_s() <= 0) {
-            row.gpu->states.push_back(std::move(state));
-            return sample;
-        }
-        ++row.gpu->dropped;
-    }
-}
-
-/// Seconds of a pass. What launching and waiting take is that of a pass alone: several passes share it.
+/// Seconds of a pass.
 double take_sample(RowRun& row, const Sweep& sweep)
 {
     sweep.pulses->take_if_due();
@@ -155,19 +116,13 @@ double take_sample(RowRun& row, const Sweep& sweep)
             progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
                                  row.key.scene + ", " + row_label(row.key));
         };
-        return trace_views(row, passes, *sweep.budget, {tell, nullptr, meanwhile});
+        const Pass pass = trace_views(row, passes, *sweep.budget, {tell, nullptr, meanwhile});
+        return LaunchTimes{pass.kernel_s, pass.wall_s};
     };
-    const Pass alone = row.passes > 1 ? trace(1, {}) : Pass{};
-    const double begin_s = sweep.budget->now();
-    const Pass sample =
-        unthrottled(row, sweep.monitors->of(row), *sweep.budget,
-                    [&](const std::function<void()>& meanwhile) { return trace(row.passes, meanwhile); });
-    sweep.pulses->sampled(row, begin_s, sweep.budget->now());
-    const double kernel_s = sample.kernel_s / row.passes;
-    const Pass& launched = row.passes > 1 ? alone : sample;
-    row.wall_samples_s.push_back(kernel_s + launched.wall_s - launched.kernel_s);
-    row.passes = std::max(row.passes, passes_for(sweep.sample_s, kernel_s));
-    return kernel_s;
+    const Sample sample = sweep.sampler->take(row, trace);
+    sweep.pulses->sampled(row, sample.begin_s, sample.end_s);
+    row.wall_samples_s.push_back(sample.pass.wall_s);
+    return sample.pass.kernel_s;
 }
 
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
@@ -197,16 +152,6 @@ void register_rows(const std::vector<RowRun*>& rows, unsigned samples, Sweep& sw
             ->Repetitions(static_cast<int>(samples))
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
-}
-
-/// The timed rows on GPUs, then those on the host; those groups that have any.
-std::vector<std::vector<RowRun*>> groups_of(std::vector<RowRun>& rows)
-{
-    std::vector<std::vector<RowRun*>> groups(2);
-    for (RowRun& row : rows)
-        if (is_timed(row)) groups[runs_on_host(row.device) ? 1 : 0].push_back(&row);
-    std::erase_if(groups, [](const auto& group) { return group.empty(); });
-    return groups;
 }
 
 /// As Google Benchmark chooses them, but that NO_COLOR is honoured.
@@ -281,12 +226,6 @@ void check_rows_after(std::vector<RowRun>& rows)
 
 } // namespace
 
-std::uint32_t passes_for(double sample_s, double pass_s)
-{
-    constexpr double most = most_passes;
-    return pass_s > 0 ? static_cast<std::uint32_t>(std::clamp(std::ceil(sample_s / pass_s), 1.0, most)) : 1;
-}
-
 unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 {
     if (sweep_s * asked <= left_s) return asked;
@@ -299,16 +238,17 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
 {
     Measurement result;
     const LoadMeter meter;
-    const double sweep_s = warm_up_rows(rows, options.sample_s, budget);
+    Monitors monitors(find_monitor);
+    const Sampler sampler(options.sample_s, budget, &monitors);
+    const double sweep_s = warm_up_rows(rows, sampler, budget);
     result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
     result.lowered = !flags.repetitions && result.samples < options.samples;
     const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
-    const auto groups = groups_of(rows);
+    const auto groups = sample_groups(rows);
     const Stopwatch watch;
     Pulses pulses(rows, host ? host : host_pulse(resolved_threads(options)), budget.clock());
-    Monitors monitors(find_monitor);
-    Sweep sweep{&budget, &pulses, &monitors, options.sample_s, 0, static_cast<double>(timed) * result.samples};
+    Sweep sweep{&budget, &pulses, &sampler, 0, static_cast<double>(timed) * result.samples};
     for (const RowRun& row : rows)
         if (is_timed(row)) (void)monitors.of(row); // starting one takes a second: not while a GPU waits for its sample
     std::ostringstream json;

@@ -27,17 +27,13 @@ struct Measurement {
 /// for. sweep_s: expected seconds for one sample of every row. left_s: of the budget.
 [[nodiscard]] unsigned affordable_samples(unsigned asked, double sweep_s, double left_s);
 
-/// Passes over all views that make a sample at least so long; most_passes at most. pass_s: device seconds of one.
-[[nodiscard]] std::uint32_t passes_for(double sample_s, double pass_s);
-
 /// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
 /// of each: those on GPUs with each other, then those on the host, so that no GPU rests while a processor works. One
 /// sample traces all selected views, again and again for --sample-time; its seconds are the sum of the device's, a
 /// pass. Afterwards the hits of the last view must still equal the verified ones. Rows that fail end with their reason,
 /// and so do rows for which the budget has no time. GPUs are asked for their clocks, power and throttling during
-/// of each sample; a sample in which a GPU was throttled is taken again, twice at most. Meanwhile the pulse is taken,
-/// and rows learn what it says of their rates. Writes the file of
-/// --benchmark_out. host: its pulse; openmp::pulse_s() where it is empty. find_monitor: of a row's GPU. Throws
+/// each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their rates. Writes the file
+/// of --benchmark_out. host: its pulse; openmp::pulse_s() where it is empty. find_monitor: of a row's GPU. Throws
 /// Error{invalid_input} where that file, or what Google Benchmark prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget(), const Pulses::Work& host = {},
