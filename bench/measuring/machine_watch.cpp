@@ -27,9 +27,9 @@ double end_of(const Pulse& pulse)
 } // namespace
 
 MachineWatch::MachineWatch(Pulses::Work host, const std::vector<nlohmann::json>& before, Clock clock,
-                           double sampled_until_s)
+                           double sampled_until_s, FindMonitor find_monitor)
     : before_s_(sampled_until_s), clock_([this, clock = std::move(clock)] { return before_s_ + clock(); }),
-      pulses_(std::move(host), [this] { return now(); })
+      pulses_(std::move(host), [this] { return now(); }), monitors_(std::move(find_monitor))
 {
     for (const nlohmann::json& readings : before)
         restore(readings);

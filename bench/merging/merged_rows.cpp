@@ -67,6 +67,8 @@ void strip(json& entry, StrippedRows& stripped)
         if (record.contains("chained_hash")) record["chained_hash"] = hash_text(0);
         if (!record.contains("samples_s") || !stripped.has(name)) continue;
         record["samples_s"] = record["wall_samples_s"] = json::array();
+        for (const char* const of_samples : {"passes", "gpu"})
+            record.erase(of_samples);
     }
 }
 

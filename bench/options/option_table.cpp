@@ -258,6 +258,11 @@ std::vector<OptionRow> judging_options()
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
+        {"Measuring", "--sample-time", "TIME",
+         "A sample of a view, or batch of searches, lasts at least this long on its device (seconds, or a number "
+         "followed by s; a minute at most), or 4096 passes, whose rate is that of a pass. Less than for 'bench', since "
+         "each of up to 1,282 views has samples of its own. 0: a sample is one pass. Default: 0.005.",
+         bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
          "(if as many are asked for), since fewer give no interval. If 5 do not fit, the slowest rows are "

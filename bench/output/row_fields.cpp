@@ -272,7 +272,8 @@ std::vector<RowField> time_fields()
          recorded("durations", optional, "kernel alone, all views, a pass")},
         {"times", "passes", [](const RowRun& row) { return row.passes > 1 ? json(row.passes) : json(); },
          recorded(R"({ "type": "integer", "minimum": 2 })", optional,
-                  "of a sample, which traces all views so often; left out where once is long enough"),
+                  "of a sample, which traces all views so often; of `reproduce` the most of any view or batch; left "
+                  "out where once is long enough"),
          csv("passes")},
         {"times", "wall_samples_s", unless_empty(&RowRun::wall_samples_s),
          recorded("durations", optional, "launch to the end of waiting, on the host's clock")},

@@ -1,5 +1,6 @@
 #include "bench/reproduce/image_record.h"
 
+#include "bench/measuring/budget.h"
 #include "bench/rows/json_numbers.h"
 #include "bench/rows/ray_json.h"
 #include "core/base/hash.h"
@@ -98,28 +99,65 @@ ImageVerdict verdict_from(const json& object)
     return verdict;
 }
 
+constexpr std::optional<double> GpuState::*told[] = {&GpuState::clock_mhz, &GpuState::memory_clock_mhz,
+                                                     &GpuState::power_w, &GpuState::temperature_c};
+
+/// A state is its numbers in the order of `told`, null where it has none, and why it was throttled.
+json gpu_readings_json(const GpuReadings& readings)
+{
+    json states = json::array();
+    for (const GpuState& state : readings.states) {
+        json& numbers = states.emplace_back(json::array());
+        for (const auto member : told)
+            numbers.push_back(state.*member ? json(*(state.*member)) : json());
+        numbers.push_back(state.throttled);
+    }
+    return {{"states", std::move(states)}, {"dropped", readings.dropped}, {"reasons", readings.reasons}};
+}
+
+GpuReadings gpu_readings_from(const json& object)
+{
+    GpuReadings readings{{}, count_from<std::uint32_t>(object.at("dropped")), object.at("reasons")};
+    for (const json& numbers : object.at("states")) {
+        GpuState& state = readings.states.emplace_back();
+        std::size_t place = 0;
+        for (const auto member : told)
+            if (const json& number = numbers.at(place++); !number.is_null()) state.*member = number.get<double>();
+        state.throttled = numbers.at(place);
+    }
+    return readings;
+}
+
 json record_json(const ImageRecord& record)
 {
-    return {{"verdict", verdict_json(record.verdict)},
-            {"chained_hash", hash_text(record.chained_hash)},
-            {"lost_at_cap", record.lost_at_cap},
-            {"flat", {record.flawed.rays, record.flawed.through_flat, record.any.rays, record.any.through_flat}},
-            {"samples_s", record.samples_s},
-            {"wall_samples_s", record.wall_samples_s},
-            {"sampled_s", record.sampled_s}};
+    json object = {{"verdict", verdict_json(record.verdict)},
+                   {"chained_hash", hash_text(record.chained_hash)},
+                   {"lost_at_cap", record.lost_at_cap},
+                   {"flat", {record.flawed.rays, record.flawed.through_flat, record.any.rays, record.any.through_flat}},
+                   {"samples_s", record.samples_s},
+                   {"wall_samples_s", record.wall_samples_s},
+                   {"sampled_s", record.sampled_s}};
+    if (record.passes > 1) object["passes"] = record.passes;
+    if (record.gpu) object["gpu"] = gpu_readings_json(*record.gpu);
+    return object;
 }
 
 ImageRecord record_from(const json& object)
 {
     const json& flat = object.at("flat");
-    return {verdict_from(object.at("verdict")),
-            hash_from(object.at("chained_hash")),
-            number_from(object.at("lost_at_cap")),
-            {number_from(flat.at(0)), number_from(flat.at(1))},
-            {number_from(flat.at(2)), number_from(flat.at(3))},
-            object.at("samples_s"),
-            object.at("wall_samples_s"),
-            object.at("sampled_s")};
+    ImageRecord record = {verdict_from(object.at("verdict")),
+                          hash_from(object.at("chained_hash")),
+                          number_from(object.at("lost_at_cap")),
+                          {number_from(flat.at(0)), number_from(flat.at(1))},
+                          {number_from(flat.at(2)), number_from(flat.at(3))},
+                          object.at("samples_s"),
+                          object.at("wall_samples_s"),
+                          object.at("sampled_s")};
+    if (object.contains("passes")) record.passes = count_from<std::uint32_t>(object["passes"]);
+    if (record.passes < 1 || record.passes > most_passes)
+        throw std::domain_error(fmt::format("{} passes of a sample", record.passes));
+    if (object.contains("gpu")) record.gpu = gpu_readings_from(object["gpu"]);
+    return record;
 }
 
 /// A value of an enumeration, from the first allowed one to the last.

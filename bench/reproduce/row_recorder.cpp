@@ -1,5 +1,6 @@
 #include "bench/reproduce/row_recorder.h"
 
+#include "bench/measuring/sampling/sampler.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
 #include "bench/terminal/progress.h"
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <stdexcept>
 
 namespace tetrace {
@@ -17,6 +19,8 @@ using nlohmann::json;
 
 void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
 {
+    row.passes = 1;
+    row.gpu.reset(); // the last part's
     if (traced(row) == nullptr || images.empty()) return;
     Traced sum;
     row.samples_s.assign(images.front().samples_s.size(), 0);
@@ -24,6 +28,11 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
     for (const ImageRecord& image : images) {
         sum.add(image.verdict);
         sum.hit_hash = image.chained_hash; // 0 of merged shards, which chain only their own
+        row.passes = std::max(row.passes, image.passes);
+        if (image.gpu) {
+            if (!row.gpu) row.gpu.emplace();
+            row.gpu->add(*image.gpu);
+        }
         // A row that turned out wrong was no longer timed; it has no rate.
         for (std::size_t s = 0; s < std::min(row.samples_s.size(), image.samples_s.size()); ++s) {
             row.samples_s[s] += image.samples_s[s];
@@ -120,6 +129,8 @@ void RowRecorder::watch_rows(const std::string& name)
             row, [&] { return job_of(row, 0); }, host_clock());
     };
     watch_->pulses().watch(run_->rows, first_job_s, ", " + name);
+    for (const RowRun& row : run_->rows)
+        if (is_timed(row)) (void)watch_->monitors().of(row); // starting one takes a second: not between samples
 }
 
 /// Only where every row is launched before its answers are read again: a GPU's pulse leaves those of the first part.
@@ -157,36 +168,55 @@ json RowRecorder::run_part(std::size_t part, bool is_last)
     return entry;
 }
 
-/// Interleaved, so that drift affects all rows alike. The first launch after another row's warms the caches.
 void RowRecorder::time_rows(std::size_t part)
 {
-    for (unsigned sample = 0; sample <= samples_; ++sample) {
-        take_pulse_if_due();
-        for (const std::size_t i : begun_)
-            if (is_timed(run_->rows[i])) guarded(run_->rows[i], [&] { time_row(i, part, sample > 0); });
-    }
-    // A device that answers differently under repetition must lose its rate.
-    for (const std::size_t i : begun_)
-        if (is_timed(run_->rows[i]))
-            guarded(run_->rows[i], [&] {
-                if (hash_of_answers(run_->rows[i], part) != records_[i].verdict.hit_hash)
-                    throw Error(ErrorKind::wrong_result, "the answers changed while they were timed");
-            });
+    const Budget unlimited(std::numeric_limits<double>::infinity(),
+                           watch_ != nullptr ? [this] { return watch_->now(); } : host_clock());
+    const Sampler sampler(sample_s_, unlimited, watch_ != nullptr ? &watch_->monitors() : nullptr);
+    for (const auto& group : sample_groups(run_->rows))
+        time_group(group, part, sampler);
     take_pulse_if_due();
 }
 
-void RowRecorder::time_row(std::size_t i, std::size_t part, bool counts)
+/// Interleaved, so that drift affects all rows alike. The first launch after another row's warms the caches.
+void RowRecorder::time_group(const std::vector<RowRun*>& group, std::size_t part, const Sampler& sampler)
 {
-    RowRun& row = run_->rows[i];
-    const TraceJob job = job_of(row, part);
-    const double begin_s = watch_ != nullptr ? watch_->now() : 0;
-    const auto [kernel_s, wall_s] = timed_launch(*row.session, job);
-    if (!counts) return;
-    records_[i].samples_s.push_back(kernel_s);
-    records_[i].wall_samples_s.push_back(wall_s);
+    const auto for_timed_rows = [&](const auto& work) {
+        for (RowRun* const row : group)
+            if (is_timed(*row)) guarded(*row, [&] { work(*row); });
+    };
+    take_pulse_if_due();
+    for_timed_rows([&](RowRun& row) {
+        row.gpu.reset(); // the part before had its own
+        sampler.warmed_up(row, timed_launch(*row.session, job_of(row, part)).kernel_s);
+    });
+    for (unsigned sample = 0; sample < samples_; ++sample) {
+        take_pulse_if_due();
+        for_timed_rows([&](RowRun& row) { take_sample(row, part, sampler); });
+    }
+    // A device that answers differently under repetition must lose its rate. The next group's pulses change its
+    // answers.
+    for_timed_rows([&](RowRun& row) {
+        if (hash_of_answers(row, part) != record_of(row).verdict.hit_hash)
+            throw Error(ErrorKind::wrong_result, "the answers changed while they were timed");
+    });
+}
+
+void RowRecorder::take_sample(RowRun& row, std::size_t part, const Sampler& sampler)
+{
+    TraceJob job = job_of(row, part);
+    const Sample sample = sampler.take(row, [&](std::uint32_t passes, const std::function<void()>& meanwhile) {
+        job.passes = passes;
+        return timed_launch(*row.session, job, host_clock(), meanwhile);
+    });
+    ImageRecord& record = record_of(row);
+    record.samples_s.push_back(sample.pass.kernel_s);
+    record.wall_samples_s.push_back(sample.pass.wall_s);
+    record.passes = row.passes;
+    record.gpu = row.gpu;
     if (watch_ == nullptr) return;
-    records_[i].sampled_s.emplace_back(begin_s, watch_->now());
-    watch_->pulses().sampled(row, begin_s, watch_->now());
+    record.sampled_s.emplace_back(sample.begin_s, sample.end_s);
+    watch_->pulses().sampled(row, sample.begin_s, sample.end_s);
 }
 
 ImageOutcome RowRecorder::outcome(std::size_t i) const
@@ -268,6 +298,8 @@ void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecor
     if (watch_ == nullptr) return; // of a merged journal, or nothing is timed
     if (record.sampled_s.size() != samples || !std::ranges::all_of(record.sampled_s, is_interval))
         throw std::domain_error(fmt::format("{} wants the times of {} samples", row_name(row.key), samples));
+    if (record.gpu && record.gpu->states.size() != samples)
+        throw std::domain_error(fmt::format("{} wants its GPU's readings of {} samples", row_name(row.key), samples));
 }
 
 /// Repeats the first part after everything else that the device was given; after a resume, it is the journal's.

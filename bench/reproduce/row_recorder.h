@@ -43,8 +43,11 @@ struct RunProgress {
 /// that are in the journal are taken from there.
 class RowRecorder {
 public:
-    /// samples: timed launches of each row for each part; 0: nothing is timed.
-    RowRecorder(RecordedRows& run, unsigned samples) : run_(&run), samples_(samples) {}
+    /// samples: of each row for each part; 0: nothing is timed. sample_s: that each lasts at least.
+    RowRecorder(RecordedRows& run, unsigned samples, double sample_s)
+        : run_(&run), samples_(samples), sample_s_(sample_s)
+    {
+    }
     virtual ~RowRecorder() = default;
     RowRecorder(const RowRecorder&) = delete;
     RowRecorder& operator=(const RowRecorder&) = delete;
@@ -80,7 +83,13 @@ private:
     void take_pulse_if_due();
     [[nodiscard]] nlohmann::json run_part(std::size_t part, bool is_last);
     void time_rows(std::size_t part);
-    void time_row(std::size_t i, std::size_t part, bool counts);
+    void time_group(const std::vector<RowRun*>& group, std::size_t part, const Sampler& sampler);
+    void take_sample(RowRun& row, std::size_t part, const Sampler& sampler);
+    [[nodiscard]] ImageRecord& record_of(const RowRun& row) { return records_[index_of(row)]; }
+    [[nodiscard]] std::size_t index_of(const RowRun& row) const
+    {
+        return static_cast<std::size_t>(&row - run_->rows.data());
+    }
     [[nodiscard]] ImageOutcome outcome(std::size_t i) const;
     [[nodiscard]] std::size_t restore_parts();
     void restore(std::size_t part, const nlohmann::json& entry);
@@ -90,6 +99,7 @@ private:
 
     RecordedRows* run_;
     unsigned samples_;
+    double sample_s_;
     Journal* journal_ = nullptr;
     MachineWatch* watch_ = nullptr;    ///< null where nothing is timed
     std::vector<ImageRecord> records_; ///< of the current part, row by row

@@ -18,7 +18,7 @@ using nlohmann::json;
 /// The views of one scene.
 class ViewRecorder : public RowRecorder {
 public:
-    ViewRecorder(SceneRun& run, unsigned samples) : RowRecorder(run, samples), run_(&run) {}
+    ViewRecorder(SceneRun& run, unsigned samples, double sample_s) : RowRecorder(run, samples, sample_s), run_(&run) {}
 
 private:
     [[nodiscard]] json head_of(std::size_t view) const override
@@ -204,7 +204,7 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
 void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch)
 {
     if (run.scene == nullptr) return;
-    ViewRecorder recorder(run, run.build.timing ? options.samples : 0);
+    ViewRecorder recorder(run, run.build.timing ? options.samples : 0, options.sample_s);
     recorder.run(run.scene->views().size(), run.scene->label(), journal, progress, watch);
 }
 

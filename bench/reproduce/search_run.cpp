@@ -78,7 +78,7 @@ Verdicts judge_all(const SearchRays& rays, const Faces& faces, std::uint32_t ray
 class BatchRecorder : public RowRecorder {
 public:
     BatchRecorder(SearchRun& run, const Options& options)
-        : RowRecorder(run, options.samples), run_(&run), references_(run, options)
+        : RowRecorder(run, options.samples, options.sample_s), run_(&run), references_(run, options)
     {
     }
 

@@ -25,4 +25,15 @@ void GpuReadings::add_reason(const std::string& reason)
     if (reasons.find(reason) == std::string::npos) reasons += (reasons.empty() ? "" : ", ") + reason;
 }
 
+void GpuReadings::add(const GpuReadings& others)
+{
+    states.insert(states.end(), others.states.begin(), others.states.end());
+    dropped += others.dropped;
+    for (std::size_t begin = 0; begin < others.reasons.size();) {
+        const std::size_t end = std::min(others.reasons.find(", ", begin), others.reasons.size());
+        add_reason(others.reasons.substr(begin, end - begin));
+        begin = end + 2;
+    }
+}
+
 } // namespace tetrace

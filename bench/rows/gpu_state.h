@@ -25,6 +25,8 @@ struct GpuReadings {
     /// The median over the samples; empty where none tells.
     [[nodiscard]] std::optional<double> median(std::optional<double> GpuState::*member) const;
     void add_reason(const std::string& reason);
+    /// Adds those of other samples.
+    void add(const GpuReadings& others);
 };
 
 } // namespace tetrace

@@ -97,9 +97,9 @@ struct RowRun {
     std::unique_ptr<Session> session;
     std::optional<std::size_t> view_of_rays; ///< view whose rays the session has been given; see prepare_view()
     Outcome outcome = Traced{};
-    std::string recorded_reason = {};       ///< of a row that was read from a result, in place of its outcome's
-    double warm_s = 0;                      ///< wall seconds of the warm-up pass
-    std::uint32_t passes = 1;               ///< of a sample: how often it traces all selected views
+    std::string recorded_reason = {}; ///< of a row that was read from a result, in place of its outcome's
+    double warm_s = 0;                ///< wall seconds of the warm-up pass
+    std::uint32_t passes = 1; ///< of a sample, which traces all views so often; of `reproduce` the most of any view
     std::vector<double> samples_s;          ///< device seconds for all selected views, a pass, one value a repetition
     std::vector<double> wall_samples_s;     ///< the same by the host's clock, from launch to the end of wait
     std::optional<GpuReadings> gpu = {};    ///< of a row on a GPU that tells something

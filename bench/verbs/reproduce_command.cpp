@@ -61,6 +61,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                  {"tile", options.tile_height},
                  {"buffer_limit", options.buffer_limit},
                  {"samples", options.samples},
+                 {"sample_s", options.sample_s},
                  {"shard", text_of(shard_of(options))},
                  {"scenes", json::array()},
                  {"rows", json::array()},

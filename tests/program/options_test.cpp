@@ -72,7 +72,7 @@ TEST(Options, an_unknown_option_is_answered_with_the_accepted_ones)
     const std::string text = rejection({"bench", "--scenes", "cubes"});
     EXPECT_TRUE(contains(text, "--scenes"));
     // Rows of other verbs have these names, or the beginning of one.
-    const std::set<std::string> of_bench_too = {"--out", "--format", "--samples", "--view"};
+    const std::set<std::string> of_bench_too = {"--out", "--format", "--samples", "--sample-time", "--view"};
     for (const OptionRow& row : option_table())
         EXPECT_EQ(bool(contains(text, row.name)), takes(Verb::bench, row) || of_bench_too.count(row.name) > 0)
             << row.name;
@@ -253,6 +253,9 @@ TEST(Options, devices_schedules_tiles_and_buffer_limits_are_read)
     EXPECT_TRUE(contains(rejection({"bench", "--sample-time", "2m"}), "0 to 60 seconds"));
     EXPECT_EQ(parse_options({"bench", "--sample-time", "0.0"}).sample_s, 0);
     EXPECT_EQ(parse_options({"bench", "--sample-time", "1m"}).sample_s, 60);
+    EXPECT_EQ(parse_options({"bench"}).sample_s, 0.1);
+    EXPECT_EQ(parse_options({"reproduce"}).sample_s, 0.005) << "of each view";
+    EXPECT_EQ(parse_options({"reproduce", "--sample-time", "0.02s"}).sample_s, 0.02);
 }
 
 TEST(Options, files_stand_between_options_wherever_they_are_given)

@@ -208,6 +208,8 @@ TEST(ImageRecord, comes_back_from_json_as_it_was)
     record.lost_at_cap = 7;
     record.flawed = {10, 9}, record.any = {32, 1};
     record.samples_s = {0.1, 1.0 / 3}, record.wall_samples_s = {0.2, 0.4};
+    record.passes = 63;
+    record.gpu = GpuReadings{{{1755, 2619, 412.5, 51, "power"}, {1980, {}, {}, {}, ""}}, 4, "heat, power"};
     const json once = outcome_json(record);
     const json twice = outcome_json(outcome_from_json(json::parse(once.dump())));
     EXPECT_EQ(once, twice);
@@ -221,6 +223,24 @@ TEST(ImageRecord, comes_back_from_json_as_it_was)
     EXPECT_EQ(back.verdict.verdicts.lost, 7u);
     EXPECT_EQ(back.verdict.visits.triangles, 470u);
     EXPECT_EQ(back.any.through_flat, 1u);
+    EXPECT_EQ(back.passes, 63u);
+    EXPECT_EQ(back.gpu->dropped, 4u);
+    EXPECT_EQ(back.gpu->reasons, "heat, power");
+    ASSERT_EQ(back.gpu->states.size(), 2u);
+    EXPECT_EQ(back.gpu->states[0].temperature_c, 51);
+    EXPECT_EQ(back.gpu->states[0].throttled, "power");
+    EXPECT_EQ(back.gpu->states[1].power_w, std::nullopt);
+}
+
+TEST(ImageRecord, of_a_journal_without_passes_has_one_pass_and_impossible_ones_are_refused)
+{
+    json object = outcome_json(ImageRecord());
+    EXPECT_FALSE(object.contains("passes") || object.contains("gpu"));
+    EXPECT_EQ(std::get<ImageRecord>(outcome_from_json(object)).passes, 1u);
+    for (const json& bad : {json(0), json(4097), json(-1), json(2.5)}) {
+        object["passes"] = bad;
+        EXPECT_THROW((void)outcome_from_json(object), std::domain_error) << bad;
+    }
 }
 
 TEST(ImageRecord, an_end_of_a_row_comes_back_from_json)

@@ -38,9 +38,10 @@ protected:
         run_views(run, options_, journal, progress, &watch);
     }
 
-    Options options_ = parse_options({"reproduce", "table3", "--scene", "cubes", "--resolution", "3", "--size", "8",
-                                      "--views", "0-1281:400", "--backend", "openmp", "--layout", "tet80", "--method",
-                                      "maria", "--samples", "3"});
+    Options options_ =
+        parse_options({"reproduce", "table3",  "--scene",    "cubes",     "--resolution",  "3",        "--size",
+                       "8",         "--views", "0-1281:400", "--backend", "openmp",        "--layout", "tet80",
+                       "--method",  "maria",   "--samples",  "3",         "--sample-time", "0"});
     TemporaryFolder folder_;
     double now_s_ = 0, host_s_ = 0.01;
     int taken_ = 0;
@@ -77,8 +78,9 @@ TEST_F(Watched, a_scene_is_noisy_where_the_machine_was_slower_than_in_another)
 
 TEST_F(Watched, searches_are_watched_too)
 {
-    const Options options = parse_options({"reproduce", "table5", "--searches", "20x8", "--backend", "openmp",
-                                           "--method", "maria", "--layout", "tet80", "--samples", "3"});
+    const Options options =
+        parse_options({"reproduce", "table5", "--searches", "20x8", "--backend", "openmp", "--method", "maria",
+                       "--layout", "tet80", "--samples", "3", "--sample-time", "0"});
     MachineWatch watch(host(), {}, clock());
     watch.pulses().take();
     host_s_ = 0.02;
@@ -113,8 +115,9 @@ TEST_F(Watched, a_gpu_has_a_pulse_of_its_own_in_each_scene_and_keeps_its_answers
 
 TEST_F(Watched, searches_on_a_gpu_have_one_too)
 {
-    const Options options = parse_options({"reproduce", "table5", "--searches", "50x8", "--backend", "openmp",
-                                           "--method", "maria", "--layout", "tet80", "--samples", "3"});
+    const Options options =
+        parse_options({"reproduce", "table5", "--searches", "50x8", "--backend", "openmp", "--method", "maria",
+                       "--layout", "tet80", "--samples", "3", "--sample-time", "0"});
     MachineWatch watch(host(), {}, clock());
     SearchRun searches = open_search_run(options);
     for (RowRun& row : searches.rows)

@@ -15,13 +15,16 @@ namespace tetrace::test {
 /// The program's reproduce in a folder of its own, on a scene that it makes itself unless another is named.
 class ReproduceTest : public testing::Test {
 protected:
-    /// Starts it; its process. killed_at: the line of its journal after which it is killed; 0: none.
+    /// Starts it; its process. A sample is a pass unless a time is given. killed_at: the line of its journal after
+    /// which it is killed; 0: none.
     [[nodiscard]] pid_t start(const std::string& arguments, std::size_t killed_at = 0) const
     {
         const bool names_backends = arguments.find("--backend") != std::string::npos;
+        const bool names_time = arguments.find("--sample-time") != std::string::npos;
         const bool names_scenes = arguments.find("--scene") != std::string::npos;
         std::istringstream words("tetrace reproduce " + arguments + (names_backends ? "" : " --backend openmp") +
-                                 (names_scenes ? "" : " --scene cubes --resolution 6") + " --threads 1");
+                                 (names_scenes ? "" : " --scene cubes --resolution 6") +
+                                 (names_time ? "" : " --sample-time 0") + " --threads 1");
         std::vector<std::string> list{std::istream_iterator<std::string>(words), {}};
         std::vector<char*> pointers;
         for (std::string& word : list)

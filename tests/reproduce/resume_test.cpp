@@ -74,6 +74,10 @@ TEST_F(Resume, a_damaged_journal_is_refused)
     refused(samples, [](json&, json& row) { row["samples_s"] = json::array(); });
     refused(samples, [](json&, json& row) { row["samples_s"][1] = -1e-6; });
     refused(samples, [](json&, json& row) { row["wall_samples_s"][1] = 0; });
+    refused("0 passes of a sample", [](json&, json& row) { row["passes"] = 0; });
+    refused("wants its GPU's readings of 3 samples", [](json&, json& row) {
+        row["gpu"] = {{"states", json::array()}, {"dropped", 1}, {"reasons", "heat"}};
+    });
     EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"bench", 0}}; }), "of no view of these scenes"));
     EXPECT_TRUE(contains(resumed([](json& entry, json&) { entry = {{"scene", 7}}; }), "of no view of these scenes"));
     refused("number", [](json&, json& row) { row["samples_s"][0] = "fast"; });

@@ -71,8 +71,8 @@ void leave_as_they_are(Faces, std::size_t) {}
 /// 45 tets of 64 rays in 23 batches, the last one of a single tet.
 Options options_of(const std::string& methods, const char* threads)
 {
-    return parse_options({"reproduce", "table5", "--searches", "45x64", "--samples", "3", "--threads", threads,
-                          "--method", methods, "--layout", "tet80"});
+    return parse_options({"reproduce", "table5", "--searches", "45x64", "--samples", "3", "--sample-time", "0",
+                          "--threads", threads, "--method", methods, "--layout", "tet80"});
 }
 
 /// One thread: two wait for each other at each of many launches, long where the machine has other work.

@@ -1,9 +1,10 @@
 #include "bench/measuring/figures.h"
 #include "bench/measuring/measure.h"
 #include "bench/measuring/verify.h"
+#include "tests/rows/throttled_at.h"
+#include "tests/rows/timed_session.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/wrapped_session.h"
 
 #include <algorithm>
 #include <functional>
@@ -74,44 +75,6 @@ private:
     std::function<void()> lose_;
 };
 
-/// Notes how many passes each launch has; each takes a millisecond.
-class PassesSession : public WrappedSession {
-public:
-    PassesSession(std::unique_ptr<Session> inner, std::vector<std::uint32_t>& passes)
-        : WrappedSession(std::move(inner)), passes_(&passes)
-    {
-    }
-    void launch(const TraceJob& job) override
-    {
-        passes_->push_back(job.passes);
-        WrappedSession::launch(job);
-    }
-    [[nodiscard]] double wait() override
-    {
-        static_cast<void>(WrappedSession::wait());
-        return 1e-3 * passes_->back();
-    }
-
-private:
-    std::vector<std::uint32_t>* passes_;
-};
-
-/// A GPU that is throttled at some of the readings.
-class ThrottledAt : public GpuMonitor {
-public:
-    ThrottledAt(int& asked, int first, int last) : asked_(&asked), first_(first), last_(last) {}
-    [[nodiscard]] GpuState read() override
-    {
-        const bool is_throttled = *asked_ >= first_ && *asked_ <= last_;
-        ++*asked_;
-        return {1500, {}, {}, {}, is_throttled ? "heat" : ""};
-    }
-
-private:
-    int* asked_;
-    int first_, last_;
-};
-
 class Measure : public testing::Test {
 protected:
     Measure() { set_up_rows(); }
@@ -178,15 +141,16 @@ TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launc
     rows_.pop_back();
     options_.sample_s = 0.02;
     options_.samples = 3;
-    std::vector<std::uint32_t> passes;
-    rows_[0].session = std::make_unique<PassesSession>(std::move(rows_[0].session), passes);
+    std::vector<SeenLaunch> launches;
+    const double pass_s = 1e-3;
+    rows_[0].session = std::make_unique<TimedSession>(std::move(rows_[0].session), 0, launches, pass_s);
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
     const RowRun& row = rows_[0];
     ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
     EXPECT_EQ(row.passes, 13u) << "of two milliseconds, for a device whose clocks rise by a quarter";
     // Warm-up, and for each sample a pass alone: two views each.
-    EXPECT_EQ(std::ranges::count(passes, 1u), 2 + 3 * 2);
-    EXPECT_EQ(passes.size(), 2u + 3 * 4);
+    EXPECT_EQ(std::ranges::count(launches, 1u, &SeenLaunch::passes), 2 + 3 * 2);
+    EXPECT_EQ(launches.size(), 2u + 3 * 4);
     EXPECT_EQ(row.samples_s, (std::vector<double>{2e-3, 2e-3, 2e-3})) << "the seconds are those of a pass";
 }
 

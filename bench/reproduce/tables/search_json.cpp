@@ -35,8 +35,8 @@ json search_verification(const Traced& result)
 }
 
 /// The fields that a row of searches shares with a row of a scene; its rays do not walk.
-constexpr const char* shared_keys[] = {"name",   "method", "layout",       "backend",   "math",  "status",
-                                       "reason", "device", "device_index", "self_test", "bytes", "times"};
+constexpr const char* shared_keys[] = {"name",   "method",       "layout",    "backend", "math",  "status", "reason",
+                                       "device", "device_index", "self_test", "bytes",   "times", "gpu"};
 
 json search_row_json(const SearchRun& run, std::size_t i)
 {
