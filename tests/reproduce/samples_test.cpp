@@ -229,6 +229,7 @@ TEST_F(Samples, and_what_a_gpu_told_of_them_come_back_from_the_journal)
     EXPECT_EQ(launches_.size(), 4u) << "the first view again, and nothing else";
     EXPECT_EQ(asked_, asked);
     EXPECT_EQ(scene.rows[0].passes, 7u);
+    ASSERT_TRUE(scene.rows[0].gpu.has_value());
     EXPECT_EQ(scene.rows[0].gpu->dropped, 3u);
     EXPECT_EQ(scene.rows[0].gpu->throttled(), 1u);
     watch.pulses().judge_rows(scene.rows, {});
