@@ -65,12 +65,14 @@ TEST_F(MergeReproduce, rows_of_several_machines_keep_counts_and_lose_rates)
     const std::string files = shards(command, 2);
     ASSERT_EQ(run("merge " + files + "--out one.json").code, 0);
     EXPECT_TRUE(section("one.json")["rows"][0].contains("rates"));
+    EXPECT_GT(section("one.json")["rows"][0]["times"]["passes"], 1) << "a view takes microseconds";
     change("2.json", [](Json& section) { section["label"] = "another"; });
     const Ended ended = run("merge " + files + "--out all.json");
     ASSERT_EQ(ended.code, 0) << ended.errors;
     const Json all = section("all.json");
     EXPECT_EQ(keys_of(all["rows"], answers), keys_of(section("whole.json")["rows"], answers));
     EXPECT_FALSE(all["rows"][0].contains("rates"));
+    EXPECT_FALSE(all["rows"][0]["times"].contains("passes")) << "of samples that it has not";
     ASSERT_EQ(all["merged"]["machines"].size(), 2u);
     EXPECT_GT(all["merged"]["machines"][1]["rows"][0]["mrays_per_s"], 0);
 }

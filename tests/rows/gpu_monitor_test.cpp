@@ -134,3 +134,15 @@ TEST(GpuMonitor, there_is_none_for_a_device_on_the_host)
     emulated.kind = DeviceKind::emulated;
     EXPECT_EQ(find_gpu_monitor(emulated), nullptr);
 }
+
+TEST(GpuReadings, of_other_samples_are_added_and_each_reason_is_named_once)
+{
+    GpuReadings all{{{1500, {}, {}, {}, "heat"}}, 2, "heat"};
+    all.add({{{1700, {}, {}, {}, ""}, {1600, {}, {}, {}, "power, heat"}}, 3, "heat, power"});
+    all.add({});
+    EXPECT_EQ(all.states.size(), 3u);
+    EXPECT_EQ(all.throttled(), 2u);
+    EXPECT_EQ(all.dropped, 5u);
+    EXPECT_EQ(all.reasons, "heat, power");
+    EXPECT_EQ(all.median(&GpuState::clock_mhz), 1600);
+}
