@@ -13,6 +13,9 @@
 #define KERNEL_FN static inline __attribute__((always_inline))
 #endif
 #define RARE_FN KERNEL_FN
+#ifdef PREDICTS_BRANCHES // from outside: for a processor. A compiler makes no select of a branch with such a statement.
+#define KEEP_BRANCH __asm__ volatile("")
+#endif
 #define PRECISE // contraction is switched off for the whole program
 #define STRUCT(name)                                                                                                   \
     typedef struct name name;                                                                                          \

@@ -41,6 +41,9 @@ KERNEL_FN Walker with_apex(Walker at, Carried apex, uint replaced)
     return next;
 }
 
+#ifdef KEEP_BRANCH
+#include "kernels/walks/next_face_predicted.h"
+#else
 // The face by which the ray leaves the tet behind the current face, as far as float products tell. One branch ends the
 // loop around it: nothing waits for the record's second half alone.
 KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
@@ -59,6 +62,7 @@ KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
     next.exit = replaced == UNDECIDED ? EXIT_AT_TIE : exit;
     return next;
 }
+#endif
 
 // The same at a tie, which the step to `at` has left undecided.
 KERNEL_FN Walker face_at_tie(SceneView scene, Ray ray, Shear shear, Walker at)

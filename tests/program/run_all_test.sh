@@ -74,7 +74,7 @@ each_gpu_has_its_share_of_the_tables)
     run_all 0 "$out" --quick
     [ "$(sed 's/.*: //' "$out/reproduce.txt" | sort)" = "$(printf '%s of 3 on %s\n' 0 0 1 1 2 2)" ] || fail "other ranks"
     [ "$(sed 's/:.*//' "$out/reproduce.txt" | sort -u | wc -l)" = 1 ] || fail "ranks of several launches"
-    tetrace_is 'case "$1 $PMI_RANK" in "reproduce 0") exit 1 ;; "reproduce "*) echo $$ >>"'"$folder"'/shares"; exec sleep 1000 ;; esac'
+    tetrace_is 'case "$1 $PMI_RANK" in "reproduce 0") sleep 1; exit 1 ;; "reproduce "*) echo $$ >>"'"$folder"'/shares"; exec sleep 1000 ;; esac'
     run_all 1 "$out" --quick --limit 3
     summary_has '^reproduce +failed with exit code 1 '
     tetrace_is 'case $1 in reproduce) echo $$ >>"'"$folder"'/shares"; exec sleep 1000 ;; esac'
