@@ -13,8 +13,8 @@ std::string options_for(const FoundDevice& device, const ProgramId& id)
     // Oclgrind 21.10 interprets its optimiser's output, but not llvm.experimental.noalias.scope.decl, which comes from
     // inlined functions that return structs.
     if (device.facts.implementation.starts_with("oclgrind")) options += " -cl-opt-disable -DCALLS_FUNCTIONS";
-    // PoCL drives GPUs, too.
-    if (device.facts.implementation.starts_with("pocl") && device.facts.kind != DeviceKind::gpu)
+    // It takes asm statements, at which PoCL 6.0 ends with an assertion. PoCL drives GPUs, too.
+    if (device.facts.implementation.starts_with("pocl-3.") && device.facts.kind != DeviceKind::gpu)
         options += " -DPREDICTS_BRANCHES";
     options += math_options(id.math);
     if (id.math == MathMode::fast) return options;
