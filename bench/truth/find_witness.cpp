@@ -57,13 +57,14 @@ private:
              {frame_.local(mesh_.vertices[a]), frame_.local(mesh_.vertices[b]), frame_.local(mesh_.vertices[c])}});
     }
 
+    struct Ranked {
+        EdgeLine line;
+        double rank;
+    };
+
     // The lines of edges within the bound: the answer's own first, then the nearest.
     void find_lines()
     {
-        struct Ranked {
-            EdgeLine line;
-            double rank;
-        };
         std::map<std::pair<std::uint32_t, std::uint32_t>, Ranked> edges;
         for (const Facet& facet : facets_) {
             const auto& vertices = mesh_.triangles[facet.triangle];
@@ -83,9 +84,32 @@ private:
         std::vector<Ranked> ranked;
         for (const auto& [vertices, edge] : edges)
             ranked.push_back(edge);
+        if (question_.part.start != NO_HIT) add_start_lines(ranked);
         std::ranges::stable_sort(ranked, {}, &Ranked::rank);
         for (const Ranked& edge : ranked)
             lines_.push_back(edge.line);
+    }
+
+    // Where the planes of triangles are met at the origin's depth. On one side of such a line a triangle lies behind a
+    // curve's start, on the other ahead.
+    void add_start_lines(std::vector<Ranked>& ranked) const
+    {
+        const std::size_t edges = ranked.size();
+        for (const Facet& facet : facets_) {
+            const Double3 normal = cross(facet.corners[1] - facet.corners[0], facet.corners[2] - facet.corners[0]);
+            const double slope = length(across(normal));
+            if (slope == 0) continue;
+            const Double2 unit = across(normal) * (1 / slope);
+            const double distance = dot(normal, facet.corners[0]) / slope;
+            if (std::abs(distance) > question_.bound) continue;
+            const EdgeLine line{unit * distance, {-unit.y, unit.x}};
+            const bool is_there = std::any_of(ranked.begin() + static_cast<std::ptrdiff_t>(edges), ranked.end(),
+                                              [&](const Ranked& other) {
+                                                  return std::abs(cross(other.line.along, line.along)) < 1e-12 &&
+                                                         std::abs(other.line.side(line.point)) < radius_ * 1e-9;
+                                              });
+            if (!is_there) ranked.push_back({line, std::abs(distance)});
+        }
     }
 
     // A point of the answer's triangle inside the tube, and one near the origin where curves begin anywhere there.

@@ -237,6 +237,26 @@ TEST(Settle, a_part_that_starts_at_a_corner_may_meet_a_thin_triangle_that_leads_
     EXPECT_EQ(cells.along({{-0.25f, -0.5f, -h}, ray.direction}, 5, part).kind, Kind::wrong);
 }
 
+TEST(Settle, a_part_that_starts_on_an_edge_may_begin_behind_both_of_its_triangles)
+{
+    // The edge of a column's two walls, and its floor. A curve that meets the floor first must begin inside the column,
+    // and of the two cells that the edge makes of the tube's cross-section only a part of each is inside.
+    constexpr float low = -0x1.ffffp-2f, high = 0x1p-1f;
+    const Settled column({{{high, high, low},
+                           {high, high, high},
+                           {high, low, low},
+                           {low, high, high},
+                           {low, high, low},
+                           {low, low, -high},
+                           {low, high, -high},
+                           {high, high, -high}},
+                          {{0, 1, 2}, {3, 1, 4}, {4, 1, 0}, {5, 6, 7}}});
+    const RayPart part{.start = 4}; // on none of these
+    const ExactRay ray{{high, high, 0x1p-19f}, {-0x1p-18f, -0x1p-19f, -0x1p-1f}};
+    EXPECT_EQ(column.along(ray, 3, part).kind, Kind::tie);
+    EXPECT_EQ(column.along(ray, 3).kind, Kind::wrong) << "a ray that starts on none begins at its origin";
+}
+
 TEST(Settle, a_part_ends_within_the_bound_of_its_end)
 {
     const Settled one(layers({{0, 4}}));
