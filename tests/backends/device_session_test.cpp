@@ -52,16 +52,17 @@ TEST_P(Devices, take_longer_for_more_passes_in_either_schedule)
             if (!backend.why_not(device, kernel).empty()) continue;
             const auto session = backend.open(device, kernel, rays.data(), {});
             (void)traced(*session, job); // the first image is launched in steps
-            const auto least_seconds = [&](std::uint32_t passes) {
+            const auto seconds = [&](std::uint32_t passes) {
                 job.passes = passes;
-                double least = 1e9;
-                for (int i = 0; i < 5; ++i) {
-                    session->launch(job);
-                    least = std::min(least, session->wait());
-                }
-                return least;
+                session->launch(job);
+                return session->wait();
             };
-            EXPECT_GT(least_seconds(16), 4 * least_seconds(1)) << name_of(schedule) << ": 16 times the work";
+            double once = 1e9, often = 1e9; // the least of some: others may be at work, more than once
+            for (int i = 0; i < 100 && (i < 5 || often <= 4 * once); ++i) {
+                once = std::min(once, seconds(1));
+                often = std::min(often, seconds(16));
+            }
+            EXPECT_GT(often, 4 * once) << name_of(schedule) << ": 16 times the work";
         }
 }
 
