@@ -1,7 +1,6 @@
 #include "backends/openmp/packet_session.h"
 
 #include "backends/openmp/hit_tile.h"
-#include "backends/openmp/outline.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
@@ -219,7 +218,6 @@ void PacketSession::run(const TraceJob& job, std::span<std::uint32_t> output)
     PacketJob packets = packet_job(scene_, records_.get(), job, rays);
     packets.has_ends = rays_end_;
     packets.starts_outside = rays_start_outside_;
-    if (task_ == Task::trace) set_outline(packets);
     packets.hits = output.data();
     std::uint32_t next_ray = 0;
     packets.ray_count = job.width * job.height;

@@ -4,12 +4,6 @@
 
 namespace tetrace::openmp {
 
-/// An edge of the domain's outline as a camera sees it.
-struct OutlineEdge {
-    double normal[3]; ///< of the plane through the camera and the edge; the domain is where it points to
-    double doubt;     ///< a direction u is in doubt where |normal . u| <= doubt * |u|, with |u| its sum of magnitudes
-};
-
 /// The arguments of a packet kernel (packet/block.cpp): only pointers and numbers. The kernel is compiled for
 /// processors with more instructions than the rest of the program needs, so the two may share no inline function.
 struct PacketJob {
@@ -20,8 +14,6 @@ struct PacketJob {
     const std::uint32_t* entry_links;
     std::uint32_t divisions;
     float origin[3], corner[3], step_x[3], step_y[3]; ///< of the view
-    OutlineEdge outline[6];                           ///< of the domain, from the origin (outline.h)
-    std::uint32_t outline_edges;                      ///< 4 or 6; 0 if the origin is inside
     std::uint32_t width, height, start_tet, max_steps;
     std::uint32_t block_x, block_y;  ///< the first pixel of the block to trace, unless rays are given
     const std::uint32_t* directions; ///< quads of given rays, null if there are none: {direction, link}

@@ -25,7 +25,7 @@ using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/hits.h"
 
-#include "backends/openmp/packet/shaft.h"
+#include "backends/openmp/packet/place.h"
 
 #include "backends/openmp/packet/beams.h"
 
@@ -104,8 +104,7 @@ void trace_group(const PacketJob& job, const Packets& block, Group& group)
 void write_ended(const PacketJob& job, const Packets& block, uint number)
 {
     if (block.exit[number] == NO_LINK && block.steps[number] <= job.max_steps) {
-        write_misses<packet_width, packet_height>(job, block.x[number], block.y[number], block.record[number] >> 2,
-                                                  block.steps[number]);
+        write_misses(job, block.x[number], block.y[number], block.record[number] >> 2, block.steps[number]);
         return;
     }
     Packet packet;
@@ -132,26 +131,20 @@ void trace_block(const PacketJob& job, Packets& block)
     trace_group(job, block, group);
 }
 
-// Collects the packets of a square of pixels by halving it down to squares of 8, without squares that see nothing of
-// the domain. is_doubtful: false where all of its rays surely see the domain.
+// Collects the packets of a square of pixels by halving it down to squares of 8.
 template <uint size>
-void collect(const PacketJob& job, uint x, uint y, Packets& block, bool is_doubtful)
+void collect(const PacketJob& job, uint x, uint y, Packets& block)
 {
-    if (x >= job.width || y >= job.height) return;
-    const Square square = square_at(job, x, y, size);
-    const Sight sight = is_doubtful ? sight_of(job, square) : Sight::all;
-    if (sight == Sight::none) {
-        write_misses<size, size>(job, square.x, square.y, NO_TET, 0);
-    } else if constexpr (size <= 8) {
-        for (uint row = square.y; row < square.y_end; row += packet_height)
-            for (uint column = square.x; column < square.x_end; column += packet_width) {
+    if constexpr (size <= 8) {
+        for (uint row = y; row < y + size && row < job.height; row += packet_height)
+            for (uint column = x; column < x + size && column < job.width; column += packet_width) {
                 block.x[block.count] = column;
                 block.y[block.count++] = row;
             }
     } else {
         constexpr uint half = size / 2;
         for (uint i = 0; i < 4; ++i)
-            collect<half>(job, x + i % 2 * half, y + i / 2 * half, block, sight == Sight::doubtful);
+            collect<half>(job, x + i % 2 * half, y + i / 2 * half, block);
     }
 }
 
@@ -172,6 +165,6 @@ extern "C" void tetrace::openmp::ENTRY_POINT(tetrace_trace_block_, LANES)(const 
 {
     Packets block;
     block.count = 0;
-    collect<tetrace::openmp::packet_block_size>(job, job.block_x, job.block_y, block, true);
+    collect<tetrace::openmp::packet_block_size>(job, job.block_x, job.block_y, block);
     trace_block(job, block);
 }

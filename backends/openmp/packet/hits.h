@@ -100,15 +100,13 @@ LANE_FN Misses misses_of(uint tet, uint steps)
     return misses;
 }
 
-// The hits of rays that all leave the domain from the same tet after as many steps, or miss it (NO_TET, 0), of `width`
-// x `height` pixels of the block from (x, y) on.
-template <uint width, uint height>
+// The hits of a packet, from pixel (x, y) on, whose rays all leave the domain from the same tet after as many steps.
 LANE_FN void write_misses(const PacketJob& job, uint x, uint y, uint tet, uint steps)
 {
-    constexpr uint vectors = HIT_WORDS * width / LANES, rest = HIT_WORDS * width % LANES; // of a row
+    constexpr uint vectors = HIT_WORDS * packet_width / LANES, rest = HIT_WORDS * packet_width % LANES; // of a row
     const Misses misses = misses_of(tet, steps);
     uint* row = job.hits + HIT_WORDS * number_in_block(job, x, y);
-    for (uint i = 0; i < height; ++i, row += HIT_WORDS * tetrace::openmp::packet_block_size) {
+    for (uint i = 0; i < packet_height; ++i, row += HIT_WORDS * tetrace::openmp::packet_block_size) {
         for (uint j = 0; j < vectors; ++j)
             __builtin_memcpy(row + j * LANES, &misses.of[j % 3], sizeof(Words));
         if (rest != 0) __builtin_memcpy(row + vectors * LANES, &misses.of[vectors % 3], rest * sizeof(uint));
