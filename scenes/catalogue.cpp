@@ -4,12 +4,22 @@
 #include "core/base/printable.h"
 #include "scenes/build_scene.h"
 #include "scenes/mesh_files.h"
+#include "scenes/procedural.h"
 
 #include <charconv>
 #include <fmt/format.h>
 #include <string_view>
 
 namespace tetrace {
+
+namespace {
+
+CatalogueEntry procedural_row(const std::string& name, const std::string& description, const ProceduralMesh& mesh)
+{
+    return {name, SceneSource::procedural, fmt::format("{}; {}@N has about N", description, name), "", {}, mesh};
+}
+
+} // namespace
 
 const std::vector<CatalogueEntry>& catalogue()
 {
@@ -19,7 +29,8 @@ const std::vector<CatalogueEntry>& catalogue()
          "jittered grid of cubes cut into tets round a blocky ball; needs no TetGen",
          "",
          {}},
-        {"banana", SceneSource::banana, "procedural curved tube, 25,000 triangles; banana@N has about N", "", {}},
+        procedural_row("banana", "curved tube, closed, 25,000 triangles",
+                       {500, 4'000'000, [] { return make_banana(); }, make_banana}),
         {"bunny",
          SceneSource::file,
          "Stanford's bunny, 75,408 triangles as Debian's libcgal-demo has it",
@@ -30,6 +41,16 @@ const std::vector<CatalogueEntry>& catalogue()
          "Stanford's armadillo, 52,000 triangles as Debian's libcgal-demo has it",
          "data/meshes/armadillo.off",
          {"armadillo.off", "armadillo.ply", "Armadillo.ply"}},
+        procedural_row("atrium", "court with arcades, walls, stair and statue, mostly open surfaces, 60,000 triangles",
+                       {8'000, 4'000'000, [] { return make_atrium(60'000); }, make_atrium}),
+        procedural_row("city", "houses with rooms and windows, and one detailed object, 80,000 triangles",
+                       {4'000, 4'000'000, [] { return make_city(80'000); }, make_city}),
+        procedural_row("terrain", "fractal height field, open, 180,000 triangles",
+                       {500, 4'000'000, [] { return make_terrain(180'000); }, make_terrain}),
+        procedural_row("spheres", "1,000 spheres of very different sizes, far apart, 128,000 triangles",
+                       {8'000, 4'000'000, [] { return make_spheres(128'000); }, make_spheres}),
+        procedural_row("grass", "22,500 thin blades on a floor, 68,012 triangles",
+                       {2'000, 4'000'000, [] { return make_grass(68'012); }, make_grass}),
         {"lattice",
          SceneSource::lattice,
          fmt::format("grid of cubes of any size with solid ones scattered in it; lattice:N has N along an axis, {} "
@@ -63,13 +84,15 @@ std::optional<std::uint32_t> number_behind(std::string_view head, const std::str
 
 } // namespace
 
-std::optional<std::uint32_t> banana_triangles(const std::string& name)
+std::optional<ProceduralScene> find_procedural(const std::string& name)
 {
-    const auto triangles = number_behind("banana@", name);
-    if (triangles && (*triangles < least_banana || *triangles > most_banana))
-        throw Error(ErrorKind::usage, fmt::format("scene {}: behind the @ stands the number of its triangles, {} to {}",
-                                                  name, least_banana, most_banana));
-    return triangles;
+    const CatalogueEntry* const entry = find_in_catalogue(name.substr(0, name.find('@')));
+    if (entry == nullptr || !entry->procedural) return std::nullopt;
+    const auto triangles = number_behind(entry->name + "@", name);
+    if (triangles && (*triangles < entry->procedural->least || *triangles > entry->procedural->most))
+        throw Error(ErrorKind::usage, fmt::format("scene {}: after the @ must be the number of its triangles, {} to {}",
+                                                  name, entry->procedural->least, entry->procedural->most));
+    return ProceduralScene{*entry, triangles};
 }
 
 std::optional<std::uint32_t> lattice_resolution(const std::string& name)
@@ -104,7 +127,7 @@ std::string why_not_available(const std::string& name)
 {
     const CatalogueEntry* entry = find_in_catalogue(name);
     if (entry != nullptr) return entry->source == SceneSource::file ? locate_mesh(*entry).reason : "";
-    if (banana_triangles(name) || lattice_resolution(name)) return "";
+    if (find_procedural(name) || lattice_resolution(name)) return "";
     std::error_code ignored; // what cannot be looked at is not there for us
     if (std::filesystem::is_regular_file(name, ignored)) return "";
     return fmt::format("scene {}: neither a name of the catalogue nor a file", name);

@@ -11,10 +11,17 @@ namespace tetrace {
 
 /// Where a scene's triangles come from.
 enum class SceneSource {
-    cubes,   ///< embedded: tets made directly, no TetGen
-    banana,  ///< procedural mesh, CDT by the builder
-    lattice, ///< embedded as cubes are, of any size
-    file,    ///< a mesh file: of Debian's libcgal-demo, or the user's
+    cubes,      ///< embedded: tets made directly, no TetGen
+    procedural, ///< a mesh that is made here; tets by the builder
+    lattice,    ///< embedded as cubes are, of any size
+    file,       ///< a mesh file: of Debian's libcgal-demo, or the user's
+};
+
+/// A generator of meshes of any size.
+struct ProceduralMesh {
+    std::uint32_t least, most;                     ///< triangles that a name can ask for
+    TriangleMesh (*usual)();                       ///< without a number
+    TriangleMesh (*make)(std::uint32_t triangles); ///< with about so many triangles
 };
 
 /// One row of the catalogue: adding a scene is adding a row.
@@ -24,14 +31,18 @@ struct CatalogueEntry {
     std::string description;
     std::string archive_member;          ///< path inside the package's data archive; empty where the scene is made here
     std::vector<std::string> file_names; ///< what the mesh may be called in a folder that the user names
+    std::optional<ProceduralMesh> procedural = {}; ///< if that is the source
 };
 [[nodiscard]] const std::vector<CatalogueEntry>& catalogue();
 
-/// Triangles that the catalogue's `banana` can be made with.
-inline constexpr std::uint32_t least_banana = 500, most_banana = 4'000'000;
-/// N of a name "banana@N", the same shape in about N triangles; empty for another name. Throws Error{usage} where N is
-/// not a number in that range.
-[[nodiscard]] std::optional<std::uint32_t> banana_triangles(const std::string& name);
+/// A procedural scene that a name asks for.
+struct ProceduralScene {
+    const CatalogueEntry& entry;
+    std::optional<std::uint32_t> triangles; ///< empty: as many as usual
+};
+/// Of a name "NAME" or "NAME@N" whose NAME is a procedural row; empty for another name. Throws Error{usage} if N is not
+/// a number in the row's range.
+[[nodiscard]] std::optional<ProceduralScene> find_procedural(const std::string& name);
 
 /// Cubes along an axis that `lattice` can have; of these more than 563 have more tets than links can name.
 inline constexpr std::uint32_t least_lattice = 4, most_lattice = 563;
@@ -69,7 +80,8 @@ struct BuildOptions {
 /// are another set (docs/spec/rays-tets.md).
 [[nodiscard]] BuildOptions default_build(TetsKind tets);
 
-/// A scene that the user asked for: a name of the catalogue, `banana@N`, `lattice:N`, or the path of a mesh file or a
+/// A scene that the user asked for: a name of the catalogue, `NAME@N` of a procedural one, `lattice:N`, or the path of
+/// a mesh file or a
 /// `.tet` file.
 struct SceneRequest {
     std::string name; ///< as given; rows show scene_label()

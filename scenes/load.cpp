@@ -328,8 +328,7 @@ LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
         if (entry->source == SceneSource::cubes) return load_cubes(request, progress);
         return load_mesh_scene(request, mesh_file(*entry), progress);
     }
-    if (const auto triangles = banana_triangles(request.name))
-        return load_mesh_scene(request, banana_file(*triangles), progress);
+    if (const auto scene = find_procedural(request.name)) return load_mesh_scene(request, mesh_file(*scene), progress);
     const fs::path path = request.name;
     std::error_code ignored; // what cannot be looked at is no file for us
     if (!fs::exists(path, ignored)) refuse_name(request.name);

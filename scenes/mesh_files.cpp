@@ -6,7 +6,6 @@
 #include "core/base/hash.h"
 #include "scenes/archive.h"
 #include "scenes/cache.h"
-#include "scenes/procedural.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -76,17 +75,6 @@ std::string off_text(const TriangleMesh& mesh)
     return text;
 }
 
-fs::path banana_file(const TriangleMesh& mesh)
-{
-    const std::string text = off_text(mesh);
-    fs::path target = cached_mesh_path("banana.off", hash_of(text));
-    if (file_bytes(target) == text) return target;
-    AtomicFile file(target);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
-    return target;
-}
-
 } // namespace
 
 MeshLocation locate_mesh(const CatalogueEntry& entry)
@@ -111,14 +99,21 @@ MeshLocation locate_mesh(const CatalogueEntry& entry)
     return found;
 }
 
-fs::path banana_file(std::uint32_t triangles)
+fs::path mesh_file(const ProceduralScene& scene)
 {
-    return banana_file(make_banana(triangles));
+    const ProceduralMesh& generator = *scene.entry.procedural;
+    const std::string text = off_text(scene.triangles ? generator.make(*scene.triangles) : generator.usual());
+    fs::path target = cached_mesh_path(scene.entry.name + ".off", hash_of(text));
+    if (file_bytes(target) == text) return target;
+    AtomicFile file(target);
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+    return target;
 }
 
 fs::path mesh_file(const CatalogueEntry& entry)
 {
-    if (entry.source == SceneSource::banana) return banana_file(make_banana());
+    if (entry.procedural) return mesh_file(ProceduralScene{entry, {}});
     const MeshLocation found = locate_mesh(entry);
     if (!found.reason.empty()) throw Error(ErrorKind::missing, found.reason);
     return found.file.empty() ? unpacked(entry, found.archive) : found.file;

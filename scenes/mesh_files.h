@@ -14,11 +14,10 @@ struct MeshLocation {
 /// Looks in the folder that TETRACE_MESHES names, then where Debian's libcgal-demo puts its data.
 [[nodiscard]] MeshLocation locate_mesh(const CatalogueEntry& entry);
 
-/// The mesh of `banana` with about `triangles` triangles, made in the cache. Throws as make_banana() and mesh_file()
-/// do.
-[[nodiscard]] std::filesystem::path banana_file(std::uint32_t triangles);
+/// The mesh of a procedural scene, made in the cache. Throws Error{invalid_input} if writing fails.
+[[nodiscard]] std::filesystem::path mesh_file(const ProceduralScene& scene);
 
-/// The mesh of a catalogue row as a plain file: found, unpacked into the cache, or made there (`banana`).
+/// The mesh of a catalogue row as a plain file: found, unpacked into the cache, or made there.
 /// Throws Error{missing} with the reason of locate_mesh, Error{invalid_input} where unpacking or writing fails.
 [[nodiscard]] std::filesystem::path mesh_file(const CatalogueEntry& entry);
 

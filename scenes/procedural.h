@@ -26,7 +26,21 @@ namespace tetrace {
 
 /// The same tube in about `triangles` triangles of similar size. Rings of equal numbers of vertices would have needles
 /// at the tips, too thin for floats in fine meshes.
-/// triangles: least_banana to most_banana (scenes/catalogue.h), else throws Error{usage}.
 [[nodiscard]] TriangleMesh make_banana(std::uint32_t triangles);
+
+/// Meshes in about `triangles` triangles, in mesh units, the same bits everywhere; find_procedural()
+/// (scenes/catalogue.h) has the range of sizes. Their boxes and what is in them are the same at every size, so that
+/// their cameras fit.
+
+/// A court with arcades of fan vaults, walls with windows, a stair, railings and a statue; mostly open surfaces.
+[[nodiscard]] TriangleMesh make_atrium(std::uint32_t triangles);
+/// Blocks of houses with rooms, doors and windows, and a detailed object in the middle, 1/120 as wide as the city.
+[[nodiscard]] TriangleMesh make_city(std::uint32_t triangles);
+/// A fractal height field, open.
+[[nodiscard]] TriangleMesh make_terrain(std::uint32_t triangles);
+/// 1,000 spheres far apart, closed, with radii of 1 to 100.
+[[nodiscard]] TriangleMesh make_spheres(std::uint32_t triangles);
+/// Thin blades, three triangles each, close above a floor.
+[[nodiscard]] TriangleMesh make_grass(std::uint32_t triangles);
 
 } // namespace tetrace

@@ -52,7 +52,8 @@ std::vector<OptionRow> reproduce_options()
         {"Tables", "--sizes", "N",
          "Sizes of growth: triangles of banana, or cubes along an axis with --scene cubes. Default: 1500, 6000, 25000, "
          "100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
-         bit(Verb::reproduce), true, append_count("--sizes", &Options::sizes, 2, most_banana)},
+         bit(Verb::reproduce), true,
+         append_count("--sizes", &Options::sizes, 2, find_in_catalogue("banana")->procedural->most)},
     };
 }
 
@@ -60,8 +61,9 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
-         "A name of the catalogue ('tetrace scenes' lists it; banana@N is banana with about N triangles, lattice:N "
-         "has 6 N^3 tets, for example 2 GB in layout half32 with N = 138), a mesh file (PLY, OBJ, OFF, STL, glTF), or "
+         "A name of the catalogue ('tetrace scenes' lists it; atrium@N is atrium with about N triangles, and so are "
+         "banana, city, terrain, spheres and grass; lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N "
+         "= 138), a mesh file (PLY, OBJ, OFF, STL, glTF), or "
          "a .tet file. May be repeated, or a list with commas. Default: bunny and armadillo, or the embedded scenes if "
          "those are missing.",
          building, true, append_text(&Options::scenes)},

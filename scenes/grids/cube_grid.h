@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/mesh/scene.h"
+#include "scenes/scramble.h"
 
 #include <array>
 #include <cstdint>
@@ -10,16 +11,6 @@
 #include <vector>
 
 namespace tetrace {
-
-/// A number that depends on nothing but its counter (the finaliser of MurmurHash3).
-[[nodiscard]] constexpr std::uint32_t scramble(std::uint32_t counter)
-{
-    counter ^= counter >> 16;
-    counter *= 0x85EBCA6Bu;
-    counter ^= counter >> 13;
-    counter *= 0xC2B2AE35u;
-    return counter ^ counter >> 16;
-}
 
 /// Makes scenes of a jittered grid of resolution^3 cubes that fills its domain. Each cube is cut into six tets round
 /// its main diagonal (Kuhn 1960; also Freudenthal's cut): one tet for each order in which a path from the low corner to

@@ -2,6 +2,7 @@
 #include "scenes/builder/place.h"
 #include "scenes/builder/repair/clean.h"
 #include "scenes/builder/repair/self_intersection.h"
+#include "scenes/catalogue.h"
 #include "tests/support/builder_meshes.h"
 
 #include <cmath>
@@ -64,6 +65,18 @@ TEST(SelfIntersection, finds_none_in_sound_meshes)
     EXPECT_EQ(find_self_intersections(tetrahedron()).count, 0u);
     EXPECT_EQ(find_self_intersections(sphere(3)).count, 0u);
     EXPECT_EQ(find_self_intersections(flat_cube(5)).count, 0u);
+}
+
+TEST(SelfIntersection, finds_none_in_the_catalogue_s_procedural_meshes)
+{
+    for (const CatalogueEntry& row : catalogue())
+        for (const std::uint32_t triangles : {row.procedural ? row.procedural->least : 0, 9'000u, 40'000u})
+            if (row.procedural) {
+                TriangleMesh mesh = row.procedural->make(triangles);
+                EXPECT_EQ(clean_up(mesh), CleanUp{}) << row.name << " in " << triangles;
+                place(mesh, DomainKind::tight);
+                EXPECT_EQ(find_self_intersections(mesh).count, 0u) << row.name << " in " << triangles;
+            }
 }
 
 TEST(SelfIntersection, finds_every_way_in_which_two_triangles_meet)

@@ -50,7 +50,8 @@ TEST_F(Catalogue, has_each_name_once)
     std::set<std::string> names;
     for (const CatalogueEntry& entry : catalogue())
         EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
-    for (const char* name : {"cubes", "banana", "bunny", "armadillo", "lattice"})
+    for (const char* name :
+         {"cubes", "banana", "bunny", "armadillo", "atrium", "city", "terrain", "spheres", "grass", "lattice"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 
@@ -113,6 +114,7 @@ TEST_F(Catalogue, says_how_to_get_a_mesh_that_is_not_here)
     EXPECT_EQ(why_not_available("cubes"), "");
     EXPECT_EQ(why_not_available("banana"), "");
     EXPECT_EQ(why_not_available("lattice:138"), "");
+    EXPECT_EQ(why_not_available("city@5000"), "");
 }
 
 TEST_F(Catalogue, runs_bunny_and_armadillo_by_default_where_they_are)

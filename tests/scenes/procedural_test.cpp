@@ -247,7 +247,7 @@ TEST(Banana, bends_and_tapers)
 
 TEST(Banana, is_closed_at_every_size_and_near_the_number_asked_for)
 {
-    for (const std::uint32_t triangles : {least_banana, 1'500u, 6'000u, 100'000u}) {
+    for (const std::uint32_t triangles : {500u, 1'500u, 6'000u, 100'000u}) {
         const TriangleMesh banana = make_banana(triangles);
         EXPECT_NEAR(static_cast<double>(banana.triangles.size()), triangles, 0.13 * triangles);
         EXPECT_TRUE(closed_manifold(banana)) << triangles;
@@ -268,16 +268,6 @@ TEST(Banana, of_any_size_has_no_needles)
             }
         EXPECT_LT(longest, 6 * shortest) << triangles;
     }
-}
-
-TEST(Banana, refuses_sizes_beyond_its_range)
-{
-    for (const std::uint32_t triangles : {0u, least_banana - 1, most_banana + 1})
-        EXPECT_TRUE(contains(error_of([&] { (void)make_banana(triangles); }), "usage: making scene banana: "));
-    EXPECT_EQ(banana_triangles("banana@1500"), 1'500u);
-    EXPECT_EQ(banana_triangles("banana"), std::nullopt);
-    for (const char* const name : {"banana@", "banana@x", "banana@499", "banana@4000001", "banana@1500.5", "banana@-1"})
-        EXPECT_TRUE(contains(error_of([&] { (void)banana_triangles(name); }), "the number of its triangles")) << name;
 }
 
 TEST(Banana, is_the_same_bits_everywhere)

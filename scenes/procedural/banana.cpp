@@ -2,13 +2,10 @@
 // and square roots of doubles, so the same bits come out everywhere: rings and sides turn by constants, and the arc is
 // the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
 #include "scenes/procedural.h"
-
-#include "core/base/error.h"
-#include "scenes/catalogue.h"
+#include "scenes/procedural/turn.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -21,12 +18,6 @@ constexpr double thickness = 0.26;    ///< the tube's radius in its middle; the 
 constexpr double taper = 0.4;         ///< share of it that has tapered away where the caps begin
 constexpr double ridge_height = 0.04; ///< of the five soft ridges along the fruit, relative
 
-/// A point of the unit circle; * adds the angles.
-struct Turn {
-    double cos = 1, sin = 0;
-
-    friend Turn operator*(Turn a, Turn b) { return {a.cos * b.cos - a.sin * b.sin, a.cos * b.sin + a.sin * b.cos}; }
-};
 constexpr Turn side_step = {0.9980267284282716, 0.06279051952931337};  ///< 2 pi / sides
 constexpr Turn ring_step = {0.9996891820008162, 0.024930691738072875}; ///< pi / (rings + 1)
 
@@ -44,19 +35,15 @@ double ridges_at(Turn side)
     return 1 + ridge_height * c * (16 * c2 * c2 - 20 * c2 + 5);
 }
 
-/// Rounds to a multiple of 2^-30: exact zeros stay zero, and no reader has to round.
-double tidy(double coordinate)
-{
-    return std::round(coordinate * 0x1p30) * 0x1p-30;
-}
-
-/// The point of the tube at s along the arc, `distance` from its centre line towards `side`.
+/// The point of the tube at s along the arc, `distance` from its centre line towards `side`. Coordinates are multiples
+/// of 2^-30: exact zeros stay zero, and no reader has to round.
 Float3 tube_point(double s, double distance, Turn side)
 {
     const double t = arc_end * s;
     const double scale = 1 / (1 + t * t);
     const Double3 outwards = {(1 - t * t) * scale, 2 * t * scale, 0};
     const double reach = 1 + distance * side.cos;
+    const auto tidy = [](double coordinate) { return std::round(coordinate * 0x1p30) * 0x1p-30; };
     return to_float({tidy(outwards.x * reach), tidy(outwards.y * reach), tidy(distance * side.sin)});
 }
 
@@ -72,18 +59,6 @@ std::vector<Float3> make_vertices()
     vertices.push_back(tube_point(1, 0, {}));
     vertices.push_back(tube_point(-1, 0, {}));
     return vertices;
-}
-
-/// By an angle of at most 1.6: the series' next term is below 1e-16.
-Turn turn_by(double angle)
-{
-    const double square = angle * angle;
-    double cos = 1, sin = 1;
-    for (int i = 20; i > 0; i -= 2) {
-        cos = 1 - cos * square / (i * (i - 1));
-        sin = 1 - sin * square / (i * (i + 1));
-    }
-    return {cos, sin * angle};
 }
 
 /// The tube in triangles of about one size: an octahedron with a long waist. From either tip on, `levels` rings have 4
@@ -153,9 +128,6 @@ private:
 
 TriangleMesh make_banana(std::uint32_t triangles)
 {
-    if (triangles < least_banana || triangles > most_banana)
-        throw Error(ErrorKind::usage, fmt::format("making scene banana: {} triangles; {} to {} are possible", triangles,
-                                                  least_banana, most_banana));
     constexpr double triangles_of_one_level = 32;
     return EvenBanana(static_cast<std::uint32_t>(std::lround(std::sqrt(triangles / triangles_of_one_level)))).mesh;
 }
