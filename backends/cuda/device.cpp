@@ -136,12 +136,12 @@ void OpenDevice::synchronize()
 }
 
 void OpenDevice::launch(FunctionHandle function, unsigned blocks, unsigned block_threads,
-                        std::span<void* const> parameters, unsigned shared_bytes)
+                        std::span<void* const> parameters, unsigned shared_bytes, StreamHandle other)
 {
     std::vector<void*> pointers(parameters.begin(), parameters.end());
-    context.check(driver().launch(function, blocks, 1, 1, block_threads, 1, 1, shared_bytes, stream.get(),
-                                  pointers.data(), nullptr),
-                  "launching a kernel");
+    context.check(
+        driver().launch(function, blocks, 1, 1, block_threads, 1, 1, shared_bytes, other, pointers.data(), nullptr),
+        "launching a kernel");
 }
 
 } // namespace tetrace::cuda

@@ -30,9 +30,13 @@ struct OpenDevice {
     /// Waits for all work in the stream. Throws Error{internal} if any of it failed.
     void synchronize();
     /// Starts a kernel on a line of blocks. parameters: addresses of its arguments.
-    /// shared_bytes: of a block's memory, beyond what the function declares.
+    void launch(FunctionHandle function, unsigned blocks, unsigned block_threads, std::span<void* const> parameters)
+    {
+        launch(function, blocks, block_threads, parameters, 0, stream.get());
+    }
+    /// The same in another stream. shared_bytes: of a block's memory, in addition to what the function declares.
     void launch(FunctionHandle function, unsigned blocks, unsigned block_threads, std::span<void* const> parameters,
-                unsigned shared_bytes = 0);
+                unsigned shared_bytes, StreamHandle other);
 };
 
 } // namespace tetrace::cuda

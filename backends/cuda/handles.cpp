@@ -106,14 +106,53 @@ Owned<StreamHandle> make_stream(Context& context)
 
 namespace {
 
-Owned<EventHandle> make_event(Context& context)
+constexpr unsigned without_timing = 2; // CU_EVENT_DISABLE_TIMING
+
+Owned<EventHandle> make_event(Context& context, unsigned flags = 0)
 {
     EventHandle event = nullptr;
-    context.check(context.driver().event_create(&event, 0), "making an event");
+    context.check(context.driver().event_create(&event, flags), "making an event");
     return {event, context.driver().event_destroy};
 }
 
 } // namespace
+
+void SideStreams::fork(std::size_t streams)
+{
+    streams_ = std::min(streams, max_streams);
+    if (streams_ < 2) return;
+    if (forked_ == nullptr) forked_ = make_event(context_, without_timing);
+    while (sides_.size() < streams_ - 1)
+        sides_.push_back({make_stream(context_), make_event(context_, without_timing)});
+    record(forked_.get(), main_);
+    for (std::size_t i = 0; i + 1 < streams_; ++i)
+        wait(sides_[i].stream.get(), forked_.get());
+}
+
+StreamHandle SideStreams::stream(std::size_t work) const
+{
+    const std::size_t number = work % streams_;
+    return number == 0 ? main_ : sides_[number - 1].stream.get();
+}
+
+void SideStreams::join()
+{
+    for (std::size_t i = 0; i + 1 < streams_; ++i) {
+        record(sides_[i].done.get(), sides_[i].stream.get());
+        wait(main_, sides_[i].done.get());
+    }
+    streams_ = 1;
+}
+
+void SideStreams::record(EventHandle event, StreamHandle stream)
+{
+    context_.check(context_.driver().event_record(event, stream), "recording an event");
+}
+
+void SideStreams::wait(StreamHandle stream, EventHandle event)
+{
+    context_.check(context_.driver().stream_wait_event(stream, event, 0), "making a stream wait");
+}
 
 EventTimer::EventTimer(Context& context) : context_(context), start_(make_event(context)), stop_(make_event(context)) {}
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace tetrace::cuda {
 
@@ -62,6 +63,37 @@ template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Result (*)(Handle)>;
 
 [[nodiscard]] Owned<StreamHandle> make_stream(Context& context);
+
+/// Streams for work that runs together with that of a main stream, from a fork to a join.
+class SideStreams {
+public:
+    /// The main stream and those at its side: as many connections as NVIDIA's driver gives a context by default, so
+    /// that no stream waits for another's work (CUDA C++ Programming Guide, CUDA_DEVICE_MAX_CONNECTIONS).
+    static constexpr std::size_t max_streams = 8;
+
+    SideStreams(Context& context, StreamHandle main) : context_(context), main_(main) {}
+    /// Makes that many streams, the main one included, wait for what the main one has been given so far; at most
+    /// max_streams of them.
+    void fork(std::size_t streams);
+    /// Where the work of that number goes, until join() is called.
+    [[nodiscard]] StreamHandle stream(std::size_t work) const;
+    /// Makes the main stream wait for the others.
+    void join();
+
+private:
+    struct Side {
+        Owned<StreamHandle> stream;
+        Owned<EventHandle> done;
+    };
+    void record(EventHandle event, StreamHandle stream);
+    void wait(StreamHandle stream, EventHandle event);
+
+    Context& context_;
+    StreamHandle main_;
+    Owned<EventHandle> forked_{nullptr, nullptr};
+    std::vector<Side> sides_; ///< made when first needed
+    std::size_t streams_ = 1; ///< between fork() and join()
+};
 
 /// Two events, for the time between them by the device's clock.
 class EventTimer {

@@ -41,8 +41,9 @@ CudaSession::CudaSession(const Driver& driver, Ordinal device, const Programs& p
       inside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt
                   ? entry(device, entry_name("inside", kernel))
                   : outside_),
-      domain_(domain_of(scene)), timer_(device_.context), tile_height_(tile_height), threads_(options.threads),
-      max_buffer_bytes_(options.max_buffer_bytes), launches_(tile_height), bytes_(scene.bytes())
+      domain_(domain_of(scene)), timer_(device_.context), sides_(device_.context, device_.stream.get()),
+      tile_height_(tile_height), threads_(options.threads), max_buffer_bytes_(options.max_buffer_bytes),
+      launches_(tile_height), bytes_(scene.bytes())
 {
     require_arrays_fit(scene, max_buffer_bytes_);
     setup_.compile_s = program_.compile_s;
@@ -110,64 +111,79 @@ void CudaSession::poison_output(std::size_t words)
                           "filling the output");
 }
 
-void CudaSession::launch(const TraceJob& job)
+void CudaSession::start(std::span<const TraceJob> jobs)
 {
     make_current();
-    poison_output(output_words(job, task_));
-    entry_ = job.start_tet == NO_TET ? outside_ : inside_;
+    sides_.join(); // of a launch that failed
     launched_tiles_ = 0;
+    parts_ = output_parts(words_per_ray(task_));
+    poison_output(parts_.words());
+    entries_.clear();
+    for (const TraceJob& job : jobs)
+        entries_.push_back(job.start_tet == NO_TET ? outside_ : inside_);
     launches_.start(
-        launch_params(job, domain_, tile_height_, TetParts{}.log2_bytes), job.passes,
-        [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
-            start_launch(params, tiles, passes);
-        },
+        launch_params(jobs, domain_, tile_height_, TetParts{}.log2_bytes), jobs.front().passes,
+        [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { start_launch(pieces, passes); },
         [this] { finish_launch(); });
 }
 
-void CudaSession::start_launch(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
+void CudaSession::start_launch(std::span<const LaunchPiece> pieces, std::uint32_t passes)
 {
     finish_launch(); // the previous one: there is only one stopwatch
+    if (schedule_ == Schedule::persistent) clear_counters(passes * pieces.size());
+    Address counter = counters_.address();
+    timer_.start(device_.stream.get());
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        sides_.fork(pieces.size());
+        for (std::size_t i = 0; i < pieces.size(); ++i, counter += sizeof(std::uint32_t)) {
+            if (schedule_ == Schedule::persistent)
+                launch_persistent(pieces[i], counter, sides_.stream(i));
+            else
+                launch_tiles(pieces[i], sides_.stream(i));
+        }
+        sides_.join();
+    }
+    timer_.stop(device_.stream.get());
+    launched_tiles_ = tile_count(pieces);
     launched_passes_ = passes;
-    schedule_ == Schedule::persistent ? launch_persistent(params, tiles) : launch_tiles(params, tiles);
-    launched_tiles_ = tiles;
 }
 
-void CudaSession::launch_tiles(const LaunchParams& params, std::uint32_t tiles)
+Address CudaSession::output_of(std::size_t job) const
 {
-    LaunchParams launch = params;
-    Address output = output_.address(), rays = rays_.address();
+    return output_.address() + parts_.begin(job) * sizeof(std::uint32_t);
+}
+
+void CudaSession::launch_tiles(const LaunchPiece& piece, StreamHandle stream)
+{
+    LaunchParams launch = piece.params;
+    Address output = output_of(piece.job), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &rays}; // the last one is of tasks rays and search
     const unsigned threads = TILE_WIDTH * tile_height_;
-    timer_.start(device_.stream.get());
-    for (std::uint32_t pass = 0; pass < launched_passes_; ++pass)
-        device_.launch(entry_.function, tiles, threads, parameters, stack_bytes_ * threads);
-    timer_.stop(device_.stream.get());
+    device_.launch(entries_[piece.job].function, piece.tiles, threads, parameters, stack_bytes_ * threads, stream);
 }
 
-void CudaSession::launch_persistent(const LaunchParams& params, std::uint32_t tiles)
+void CudaSession::launch_persistent(const LaunchPiece& piece, Address counter, StreamHandle stream)
 {
-    clear_counters();
-    LaunchParams launch = params;
-    Address output = output_.address(), counter = counters_.address(), rays = rays_.address();
+    LaunchParams launch = piece.params;
+    std::uint32_t tiles = piece.tiles;
+    Address output = output_of(piece.job), rays = rays_.address();
     void* parameters[] = {scene_.data(), &launch, &output, &counter, &tiles, &rays}; // the last one is of task rays
     const std::uint32_t items = tiles * TILE_WIDTH * tile_height_;
     const unsigned blocks = (items + persistent_block_threads - 1) / persistent_block_threads;
-    timer_.start(device_.stream.get());
-    for (std::uint32_t pass = 0; pass < launched_passes_; ++pass, counter += sizeof(std::uint32_t))
-        device_.launch(entry_.function, std::min(blocks, entry_.resident_blocks), persistent_block_threads, parameters,
-                       stack_bytes_ * persistent_block_threads);
-    timer_.stop(device_.stream.get());
+    const Entry& entry = entries_[piece.job];
+    device_.launch(entry.function, std::min(blocks, entry.resident_blocks), persistent_block_threads, parameters,
+                   stack_bytes_ * persistent_block_threads, stream);
 }
 
-/// Each pass has a counter of its own: they are cleared together, which is no part of the passes' time.
-void CudaSession::clear_counters()
+/// Each piece of each pass has a counter of its own: they are cleared together, which is no part of the passes' time.
+void CudaSession::clear_counters(std::size_t count)
 {
-    const std::size_t bytes = launched_passes_ * sizeof(std::uint32_t);
+    const std::size_t bytes = count * sizeof(std::uint32_t);
     if (counters_.bytes() < bytes) {
         counters_ = {};
         counters_ = Memory(device_.context, bytes, "the counters of persistent threads");
     }
-    device_.context.check(device_.driver().fill_words(counters_.address(), 0, launched_passes_, device_.stream.get()),
+    device_.context.check(device_.driver().fill_words(counters_.address(), 0, count, device_.stream.get()),
                           "clearing the counters");
 }
 

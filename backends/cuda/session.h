@@ -16,20 +16,21 @@ public:
     ~CudaSession() override;
 
     void set_rays(std::span<const Quad> quads) override;
-    void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
     [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
 
 private:
+    void start(std::span<const TraceJob> jobs) override;
     void read_output(std::span<std::uint32_t> words) override;
     void make_current();
     void upload(const PackedScene& scene);
     void poison_output(std::size_t words);
-    void start_launch(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
-    void launch_tiles(const LaunchParams& params, std::uint32_t tiles);
-    void launch_persistent(const LaunchParams& params, std::uint32_t tiles);
-    void clear_counters();
+    void start_launch(std::span<const LaunchPiece> pieces, std::uint32_t passes);
+    void launch_tiles(const LaunchPiece& piece, StreamHandle stream);
+    void launch_persistent(const LaunchPiece& piece, Address counter, StreamHandle stream);
+    void clear_counters(std::size_t count);
+    [[nodiscard]] Address output_of(std::size_t job) const;
     /// A kernel's entry point.
     struct Entry {
         FunctionHandle function;
@@ -50,12 +51,14 @@ private:
         scene_; ///< the kernels' argument: SceneView of kernels/language/scene_view_cuda.h, word for word
     PackedDomain domain_;
     Memory output_, rays_;
-    Memory counters_; ///< of persistent threads: the rays that each pass has taken
+    Memory counters_; ///< of persistent threads: the rays that each piece of each pass has taken
     EventTimer timer_;
+    SideStreams sides_;
     unsigned tile_height_, threads_;
     std::uint64_t max_buffer_bytes_;
     Launches launches_;
-    Entry entry_ = {};                 ///< of the image
+    std::vector<Entry> entries_;       ///< of each job
+    OutputParts parts_;                ///< of the jobs
     std::uint32_t launched_tiles_ = 0; ///< of the current launch; 0: there is none
     std::uint32_t launched_passes_ = 1;
     SetupTimes setup_;

@@ -263,6 +263,11 @@ Result stream_synchronize(StreamHandle)
     return success;
 }
 
+Result stream_wait_event(StreamHandle, EventHandle, unsigned)
+{
+    return success;
+}
+
 Result event_create(EventHandle* event, unsigned)
 {
     *event = new EventState;

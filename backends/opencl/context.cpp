@@ -1,7 +1,8 @@
 #include "backends/opencl/context.h"
 
+#include <algorithm>
 #include <array>
-#include <vector>
+#include <limits>
 
 namespace tetrace::opencl {
 
@@ -24,10 +25,14 @@ cl::Device part_of(cl::Device device, unsigned units)
 
 } // namespace
 
-double seconds_between(const cl::Event& first, const cl::Event& last)
+double seconds_of(const std::vector<cl::Event>& commands)
 {
-    return 1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                      first.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+    cl_ulong begin = std::numeric_limits<cl_ulong>::max(), end = 0;
+    for (const cl::Event& command : commands) {
+        begin = std::min(begin, command.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        end = std::max(end, command.getProfilingInfo<CL_PROFILING_COMMAND_END>());
+    }
+    return 1e-9 * static_cast<double>(end - begin);
 }
 
 Context::Context(const FoundDevice& found, unsigned threads)

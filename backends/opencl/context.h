@@ -5,11 +5,12 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace tetrace::opencl {
 
-/// Seconds from the begin of one command to the end of a later one on the device, or of the same; both are finished.
-[[nodiscard]] double seconds_between(const cl::Event& first, const cl::Event& last);
+/// Seconds from the first begin of one of the commands to the last end of one, on the device; all are finished.
+[[nodiscard]] double seconds_of(const std::vector<cl::Event>& commands);
 
 /// A context on a device, shared by its sessions. It turns the API's errors into Error.
 class Context {

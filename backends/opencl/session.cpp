@@ -4,6 +4,7 @@
 #include "core/device/open_checks.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tetrace::opencl {
 
@@ -18,6 +19,9 @@ enum Argument : cl_uint {
     rays_argument,
     first_array_argument
 };
+
+/// More kernels are not in flight together.
+constexpr std::size_t max_queues = 8;
 
 constexpr std::size_t smallest_buffer_bytes = 16; // OpenCL has no empty buffers
 
@@ -44,10 +48,10 @@ OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& k
     : context_(std::move(context)), kernel_id_(kernel), cache_(options.program_cache),
       starts_outside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt),
       tile_height_(tile_height_of(options)), max_buffer_bytes_(largest_buffer(context_->facts(), options)),
-      domain_(domain_of(scene)), parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
+      domain_(domain_of(scene)), tet_parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
       launches_(tile_height_)
 {
-    run("making a queue", 0, [&] { queue_ = context_->make_queue(); });
+    run("making a queue", 0, [&] { queues_.push_back(context_->make_queue()); });
     upload(scene);
     compile();
 }
@@ -64,16 +68,15 @@ void OpenclSession::upload(const PackedScene& scene)
     run("uploading the scene", 0, [&] {
         const auto buffers = scene_buffers(scene);
         for (const SceneBuffer& buffer : buffers)
-            arrays_.push_back(make_uploaded(context_->handle(), queue_,
-                                            arrays_.empty() ? parts_.part(buffer.bytes, 0) : buffer.bytes));
-        for (unsigned part = 1; part < parts_.count; ++part)
-            more_parts_[part] = make_uploaded(context_->handle(), queue_, parts_.part(buffers[0].bytes, part));
-        queue_.finish();
-        counter_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint));
+            arrays_.push_back(make_uploaded(context_->handle(), queues_[0],
+                                            arrays_.empty() ? tet_parts_.part(buffer.bytes, 0) : buffer.bytes));
+        for (unsigned part = 1; part < tet_parts_.count; ++part)
+            more_parts_[part] = make_uploaded(context_->handle(), queues_[0], tet_parts_.part(buffers[0].bytes, part));
+        queues_[0].finish();
         rays_ = make_buffer(context_->handle(), CL_MEM_READ_ONLY, 0);
     });
     times_.upload_s = watch.seconds();
-    resize_output(output_words({}, kernel_id_.task));
+    resize_output(OutputParts(std::array<std::size_t, 1>{}, words_per_ray(kernel_id_.task)));
 }
 
 /// Compiles, and runs the kernel on no pixel: some drivers finish compiling at the first launch.
@@ -84,7 +87,7 @@ void OpenclSession::compile()
     if (kernel_id_.schedule == Schedule::persistent) defines += " -DPERSISTENT";
     if (kernel_id_.task == Task::rays) defines += " -DRAYS";
     if (kernel_id_.task == Task::search) defines += " -DSEARCH";
-    if (parts_.count > 1) defines += " -DTETS_IN_PARTS";
+    if (tet_parts_.count > 1) defines += " -DTETS_IN_PARTS";
     if (starts_outside_) defines += " -DSTARTS_OUTSIDE";
     const unsigned stack_top = context_->found().stack_top;
     if (structure_of(kernel_id_.layout) == Structure::bvh && stack_top > 0)
@@ -96,8 +99,8 @@ void OpenclSession::compile()
         LaunchParams nothing{};
         nothing.width = 1;
         nothing.tile_height = tile_height_;
-        enqueue(nothing, 1, 1);
-        queue_.finish();
+        enqueue(std::array{LaunchPiece{0, nothing, 1}}, 1);
+        queues_[0].finish();
         enqueued_.clear();
     });
     times_.compile_s += watch.seconds();
@@ -117,37 +120,40 @@ void OpenclSession::set_arguments()
     cl_uint argument = first_array_argument;
     for (const SceneArray& array : scene_arrays(kernel_id_.layout))
         kernel_.setArg(argument++, arrays_[array.binding]);
-    for (unsigned part = 1; part < MAX_TET_PARTS && parts_.count > 1; ++part)
-        kernel_.setArg(argument++, part < parts_.count ? more_parts_[part] : arrays_[0]);
-    kernel_.setArg(counter_argument, counter_);
+    for (unsigned part = 1; part < MAX_TET_PARTS && tet_parts_.count > 1; ++part)
+        kernel_.setArg(argument++, part < tet_parts_.count ? more_parts_[part] : arrays_[0]);
     kernel_.setArg(rays_argument, rays_);
-    kernel_.setArg(output_argument, output_);
 }
 
 void OpenclSession::set_rays(std::span<const Quad> quads)
 {
     require_rays_fit(quads, max_buffer_bytes_);
     run("uploading rays", quads.size_bytes(), [&] {
-        queue_.finish();      // enqueued work reads the old ones
+        queues_[0].finish();  // enqueued work reads the old ones
         rays_ = cl::Buffer(); // the old ones are freed first: both may not fit
-        rays_ = make_uploaded(context_->handle(), queue_, std::as_bytes(quads));
-        queue_.finish();
+        rays_ = make_uploaded(context_->handle(), queues_[0], std::as_bytes(quads));
+        queues_[0].finish();
         kernel_.setArg(rays_argument, rays_);
     });
 }
 
-void OpenclSession::resize_output(std::size_t words)
+void OpenclSession::resize_output(const OutputParts& parts)
 {
-    if (words == output_words_) return;
-    require_output_fits(words, max_buffer_bytes_);
-    const std::uint64_t bytes = words * sizeof(std::uint32_t);
-    output_ = cl::Buffer(); // the old one is freed first: both may not fit
-    output_words_ = 0;
+    if (parts == parts_) return;
+    require_output_fits(parts.words(), max_buffer_bytes_);
+    const std::uint64_t bytes = parts.words() * sizeof(std::uint32_t);
+    outputs_.clear(); // the old one is freed first: both may not fit
+    output_ = cl::Buffer();
+    parts_ = {};
     run("making the output", bytes, [&] {
         output_ = make_buffer(context_->handle(), CL_MEM_READ_WRITE, bytes);
-        if (kernel_() != nullptr) kernel_.setArg(output_argument, output_);
+        for (std::size_t job = 0; job < parts.count(); ++job) {
+            cl_buffer_region part = {parts.begin(job) * sizeof(std::uint32_t), parts.size(job) * sizeof(std::uint32_t)};
+            outputs_.push_back(parts.count() == 1 ? output_
+                                                  : output_.createSubBuffer(0, CL_BUFFER_CREATE_TYPE_REGION, &part));
+        }
     });
-    output_words_ = words;
+    parts_ = parts;
 }
 
 std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
@@ -160,41 +166,67 @@ std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
     return std::min<std::size_t>(tiles, resident);
 }
 
-/// Persistent groups count tiles: their counter is filled before each pass, which is no part of its time.
-void OpenclSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
+/// Persistent groups count tiles: their counters are filled before each pass, which is no part of its time.
+void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes)
 {
     const bool is_persistent = kernel_id_.schedule == Schedule::persistent;
-    kernel_.setArg(launch_argument, params);
-    kernel_.setArg(end_tile_argument, params.first_tile + tiles);
-    const std::size_t group_items = std::size_t{TILE_WIDTH} * tile_height_;
+    while (counters_.size() < pieces.size())
+        counters_.push_back(make_buffer(context_->handle(), CL_MEM_READ_WRITE, sizeof(cl_uint)));
+    while (queues_.size() < std::min(pieces.size(), max_queues))
+        queues_.push_back(context_->make_queue());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        if (is_persistent) queue_.enqueueFillBuffer(counter_, params.first_tile, 0, sizeof(params.first_tile));
-        const bool is_first = is_persistent || pass == 0;
-        if (is_first) enqueued_.push_back({tiles, is_persistent ? 1 : passes, {}, {}});
-        Enqueued& launched = enqueued_.back();
-        const bool is_timed = is_first || pass + 1 == passes;
-        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups_for(tiles) * group_items),
-                                    cl::NDRange(group_items), nullptr,
-                                    !is_timed  ? nullptr
-                                    : is_first ? &launched.first
-                                               : &launched.last);
+        for (std::size_t i = 0; is_persistent && i < pieces.size(); ++i)
+            queues_[0].enqueueFillBuffer(counters_[i], pieces[i].params.first_tile, 0, sizeof(cl_uint));
+        if (is_persistent || pass == 0) enqueued_.push_back({tile_count(pieces), is_persistent ? 1 : passes, {}});
+        std::vector<cl::Event>& events = enqueued_.back().events;
+        const bool is_timed = is_persistent || pass == 0 || pass + 1 == passes;
+        if (pieces.size() > 1)
+            enqueue_together(pieces, is_timed ? &events : nullptr);
+        else
+            enqueue_piece(pieces.front(), 0, {}, is_timed ? &events.emplace_back() : nullptr);
     }
 }
 
-void OpenclSession::launch(const TraceJob& job)
+void OpenclSession::enqueue_piece(const LaunchPiece& piece, std::size_t number, const std::vector<cl::Event>& after,
+                                  cl::Event* event)
 {
-    if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
-    resize_output(output_words(job, kernel_id_.task));
+    kernel_.setArg(counter_argument, counters_[number]);
+    kernel_.setArg(launch_argument, piece.params);
+    kernel_.setArg(end_tile_argument, piece.params.first_tile + piece.tiles);
+    kernel_.setArg(output_argument, outputs_[piece.job]);
+    const std::size_t group_items = std::size_t{TILE_WIDTH} * tile_height_;
+    queues_[number % queues_.size()].enqueueNDRangeKernel(kernel_, cl::NullRange,
+                                                          cl::NDRange(groups_for(piece.tiles) * group_items),
+                                                          cl::NDRange(group_items), &after, event);
+}
+
+/// A queue waits for another's events only if that one has been flushed.
+void OpenclSession::enqueue_together(std::span<const LaunchPiece> pieces, std::vector<cl::Event>* events)
+{
+    std::vector<cl::Event> forked(1), ended(pieces.size());
+    queues_[0].enqueueMarkerWithWaitList(nullptr, &forked[0]);
+    queues_[0].flush();
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        enqueue_piece(pieces[i], i, forked, &ended[i]);
+    for (cl::CommandQueue& queue : queues_)
+        queue.flush();
+    queues_[0].enqueueBarrierWithWaitList(&ended);
+    if (events != nullptr) events->insert(events->end(), ended.begin(), ended.end());
+}
+
+void OpenclSession::start(std::span<const TraceJob> jobs)
+{
+    const auto starts_inside = [](const TraceJob& job) { return job.start_tet != NO_TET; };
+    if (starts_outside_ && std::ranges::any_of(jobs, starts_inside)) compile_starts_inside();
+    resize_output(output_parts(words_per_ray(kernel_id_.task)));
     run("launching", output_bytes(), [&] {
         enqueued_.clear();
-        queue_.enqueueFillBuffer(output_, POISON, 0, output_bytes());
+        queues_[0].enqueueFillBuffer(output_, POISON, 0, output_bytes());
         launches_.start(
-            launch_params(job, domain_, tile_height_, parts_.log2_bytes), job.passes,
-            [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
-                enqueue(params, tiles, passes);
-            },
+            launch_params(jobs, domain_, tile_height_, tet_parts_.log2_bytes), jobs.front().passes,
+            [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { enqueue(pieces, passes); },
             [this] { take_times(); });
-        queue_.flush();
+        queues_[0].flush();
     });
 }
 
@@ -206,21 +238,20 @@ double OpenclSession::wait()
 
 void OpenclSession::take_times()
 {
-    queue_.finish();
+    queues_[0].finish();
     for (const Enqueued& launched : enqueued_) {
-        const cl::Event& last = launched.passes > 1 ? launched.last : launched.first;
-        launched.first.wait(); // reports an error of the kernel
-        last.wait();
-        launches_.took(launched.tiles, launched.passes, seconds_between(launched.first, last));
+        for (const cl::Event& event : launched.events)
+            event.wait(); // reports an error of the kernel
+        launches_.took(launched.tiles, launched.passes, seconds_of(launched.events));
     }
     enqueued_.clear();
 }
 
 void OpenclSession::read_output(std::span<std::uint32_t> words)
 {
-    require_output_of_last_launch(words.size(), output_words_);
+    require_output_of_last_launch(words.size(), parts_.words());
     run("reading back", output_bytes(),
-        [&] { queue_.enqueueReadBuffer(output_, CL_TRUE, 0, words.size_bytes(), words.data()); });
+        [&] { queues_[0].enqueueReadBuffer(output_, CL_TRUE, 0, words.size_bytes(), words.data()); });
 }
 
 } // namespace tetrace::opencl

@@ -19,12 +19,12 @@ public:
                   const SessionOptions& options);
 
     void set_rays(std::span<const Quad> quads) override;
-    void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return times_; }
     [[nodiscard]] std::uint64_t bytes() const override { return scene_bytes_; }
 
 private:
+    void start(std::span<const TraceJob> jobs) override;
     void read_output(std::span<std::uint32_t> words) override;
     /// Adds to the times of the session's set-up.
     void compile();
@@ -32,19 +32,25 @@ private:
     void compile_starts_inside();
     void upload(const PackedScene& scene);
     void set_arguments();
-    void resize_output(std::size_t words);
-    void enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
+    void resize_output(const OutputParts& parts);
+    void enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes);
+    /// number: of the piece in its launch, which decides its queue. event: for the kernel's times, or null.
+    void enqueue_piece(const LaunchPiece& piece, std::size_t number, const std::vector<cl::Event>& after,
+                       cl::Event* event);
+    /// All pieces together. events: gets their events, or null.
+    void enqueue_together(std::span<const LaunchPiece> pieces, std::vector<cl::Event>* events);
     [[nodiscard]] std::size_t groups_for(std::uint32_t tiles) const;
     /// Waits for enqueued work, and counts its times.
     void take_times();
     template <class Work>
     void run(const char* doing, std::uint64_t output_bytes, const Work& work);
-    [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
+    [[nodiscard]] std::uint64_t output_bytes() const { return parts_.words() * sizeof(std::uint32_t); }
 
-    /// Tiles of a launch that was enqueued, how often it runs, and the events of its first and last pass.
+    /// Tiles of a launch that was enqueued, how often it runs, and events of its kernels: those of the first and of the
+    /// last to end are among them.
     struct Enqueued {
         std::uint32_t tiles, passes;
-        cl::Event first, last;
+        std::vector<cl::Event> events;
     };
 
     std::shared_ptr<Context> context_;
@@ -54,16 +60,18 @@ private:
     unsigned tile_height_;
     std::uint64_t max_buffer_bytes_;
     PackedDomain domain_;
-    TetParts parts_;
+    TetParts tet_parts_;
     std::uint64_t scene_bytes_ = 0;
     SetupTimes times_;
     Launches launches_;
-    cl::CommandQueue queue_;
+    std::vector<cl::CommandQueue> queues_; ///< the first is for all but the further pieces of a launch
     cl::Kernel kernel_;
     std::vector<cl::Buffer> arrays_;                   ///< by binding
     std::array<cl::Buffer, MAX_TET_PARTS> more_parts_; ///< from 1 on; 0 is arrays_[0]
-    cl::Buffer output_, counter_, rays_;
-    std::size_t output_words_ = 0;
+    cl::Buffer output_, rays_;
+    OutputParts parts_;                ///< of output_
+    std::vector<cl::Buffer> outputs_;  ///< of each job, in output_
+    std::vector<cl::Buffer> counters_; ///< of persistent groups: the tiles that each piece of a launch has taken
     std::vector<Enqueued> enqueued_;
 };
 

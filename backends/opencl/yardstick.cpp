@@ -17,7 +17,7 @@ Yardstick measured_copies(Context& context, const cl::CommandQueue& queue, std::
         for (unsigned time = 0; time < times; ++time)
             queue.enqueueCopyBuffer(from, to, 0, 0, each, nullptr, time == 0 ? &first : &last);
         queue.finish();
-        return seconds_between(first, times == 1 ? first : last);
+        return seconds_of({first, times == 1 ? first : last});
     });
 }
 

@@ -169,20 +169,42 @@ Program::Program(const Context& context, const ProgramId& id, const ProgramCache
 
 void Program::make_layout(const Context& context, const ProgramId& id)
 {
-    const auto bindings = bindings_of(id);
+    bindings_ = bindings_of(id);
     set_layout_ = make_set_layout(context.device(), id);
     layout_ = make_pipeline_layout(context.device(), id, set_layout_);
-    if (bindings.empty()) return;
+    set_ = make_set(context);
+}
+
+Program::Set Program::make_set(const Context& context) const
+{
+    Set set;
+    if (bindings_.empty()) return set;
     std::vector<vk::DescriptorPoolSize> sizes;
-    for (const auto& binding : bindings)
+    for (const auto& binding : bindings_)
         sizes.emplace_back(binding.descriptorType, 1);
-    pool_ = context.device().createDescriptorPool(vk::DescriptorPoolCreateInfo{}
-                                                      .setFlags(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet)
-                                                      .setMaxSets(1)
-                                                      .setPoolSizes(sizes));
-    const std::array sets = {*set_layout_};
-    const auto allocation = vk::DescriptorSetAllocateInfo{}.setDescriptorPool(*pool_).setSetLayouts(sets);
-    set_ = std::move(vk::raii::DescriptorSets(context.device(), allocation).front());
+    set.pool = context.device().createDescriptorPool(vk::DescriptorPoolCreateInfo{}
+                                                         .setFlags(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet)
+                                                         .setMaxSets(1)
+                                                         .setPoolSizes(sizes));
+    const std::array layouts = {*set_layout_};
+    const auto allocation = vk::DescriptorSetAllocateInfo{}.setDescriptorPool(*set.pool).setSetLayouts(layouts);
+    set.handle = std::move(vk::raii::DescriptorSets(context.device(), allocation).front());
+    return set;
+}
+
+Program::Set Program::make_copied_set(const Context& context) const
+{
+    Set set = make_set(context);
+    std::vector<vk::CopyDescriptorSet> copies;
+    for (const auto& binding : bindings_)
+        copies.push_back(vk::CopyDescriptorSet{}
+                             .setSrcSet(*set_.handle)
+                             .setSrcBinding(binding.binding)
+                             .setDstSet(*set.handle)
+                             .setDstBinding(binding.binding)
+                             .setDescriptorCount(1));
+    context.device().updateDescriptorSets({}, copies);
+    return set;
 }
 
 void Program::make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache)
@@ -207,9 +229,22 @@ void Program::make_pipeline(const Context& context, const ProgramId& id, const P
 
 void Program::bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const
 {
-    const auto info = vk::DescriptorBufferInfo{}.setBuffer(buffer.handle()).setRange(VK_WHOLE_SIZE);
+    bind_buffer(context, set_, binding, {buffer, 0, VK_WHOLE_SIZE});
+}
+
+void Program::bind_part(const Context& context, std::size_t set, std::uint32_t binding, const BufferPart& part)
+{
+    while (other_sets_.size() < set)
+        other_sets_.push_back(make_copied_set(context));
+    bind_buffer(context, this->set(set), binding, part);
+}
+
+void Program::bind_buffer(const Context& context, const Set& set, std::uint32_t binding, const BufferPart& part)
+{
+    const auto info =
+        vk::DescriptorBufferInfo{}.setBuffer(part.buffer.handle()).setOffset(part.offset).setRange(part.bytes);
     const auto write = vk::WriteDescriptorSet{}
-                           .setDstSet(*set_)
+                           .setDstSet(*set.handle)
                            .setDstBinding(binding)
                            .setDescriptorType(vk::DescriptorType::eStorageBuffer)
                            .setBufferInfo(info);
@@ -223,7 +258,7 @@ void Program::bind_texels(const Context& context, const TexelBinding& texels, co
     views_.insert_or_assign(texels.binding, context.device().createBufferView(info));
     const vk::BufferView view = *views_.at(texels.binding);
     const auto write = vk::WriteDescriptorSet{}
-                           .setDstSet(*set_)
+                           .setDstSet(*set_.handle)
                            .setDstBinding(texels.binding)
                            .setDescriptorType(vk::DescriptorType::eUniformTexelBuffer)
                            .setTexelBufferView(view);
@@ -235,7 +270,7 @@ void Program::bind_structure(const Context& context, std::uint32_t binding,
 {
     const auto info = vk::WriteDescriptorSetAccelerationStructureKHR{}.setAccelerationStructures(structure);
     const auto write = vk::WriteDescriptorSet{}
-                           .setDstSet(*set_)
+                           .setDstSet(*set_.handle)
                            .setDstBinding(binding)
                            .setDescriptorType(vk::DescriptorType::eAccelerationStructureKHR)
                            .setDescriptorCount(1)
@@ -243,10 +278,10 @@ void Program::bind_structure(const Context& context, std::uint32_t binding,
     context.device().updateDescriptorSets(write, {});
 }
 
-void Program::record(const vk::raii::CommandBuffer& commands) const
+void Program::record(const vk::raii::CommandBuffer& commands, std::size_t set) const
 {
     commands.bindPipeline(bind_point(), *pipeline_);
-    if (*set_) commands.bindDescriptorSets(bind_point(), *layout_, 0, *set_, {});
+    if (!bindings_.empty()) commands.bindDescriptorSets(bind_point(), *layout_, 0, *this->set(set).handle, {});
 }
 
 void Program::push(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const

@@ -20,6 +20,12 @@ struct TexelBinding {
     vk::Format format;
 };
 
+/// A part of a buffer, in bytes.
+struct BufferPart {
+    const Buffer& buffer;
+    std::uint64_t offset, bytes;
+};
+
 /// What decides a program.
 struct ProgramId {
     std::string name;
@@ -57,12 +63,18 @@ public:
     [[nodiscard]] bool is_cached() const { return is_cached_; }
     /// Every binding needs a buffer before record() is called; not while commands that use the program run.
     void bind(const Context& context, std::uint32_t binding, const Buffer& buffer) const;
+    /// Binds a part of a buffer, in bytes, in one of the program's sets of buffers. Number 0 is the set that bind()
+    /// and its like change; each other one is made as a copy of it.
+    void bind_part(const Context& context, std::size_t set, std::uint32_t binding, const BufferPart& part);
+    /// Keeps set 0 alone.
+    void forget_other_sets() { other_sets_.clear(); }
     /// The previously bound buffer must live until then.
     void bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer);
     /// The structure must live as long as the program runs.
     void bind_structure(const Context& context, std::uint32_t binding, vk::AccelerationStructureKHR structure) const;
     /// Records that the program and its buffers are what a dispatch runs.
-    void record(const vk::raii::CommandBuffer& commands) const;
+    /// set: of its buffers.
+    void record(const vk::raii::CommandBuffer& commands, std::size_t set = 0) const;
     /// Records the parameters of what is dispatched next.
     void push(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const;
     /// Records so many work groups; of a ray-tracing pipeline, which has none, the invocations of so many.
@@ -73,13 +85,23 @@ private:
     {
         return table_ ? vk::PipelineBindPoint::eRayTracingKHR : vk::PipelineBindPoint::eCompute;
     }
+    /// Buffers that a dispatch is given.
+    struct Set {
+        vk::raii::DescriptorPool pool{nullptr};
+        vk::raii::DescriptorSet handle{nullptr}; ///< null if there are no bindings
+    };
     void make_layout(const Context& context, const ProgramId& id);
+    [[nodiscard]] Set make_set(const Context& context) const;
+    [[nodiscard]] Set make_copied_set(const Context& context) const;
+    [[nodiscard]] const Set& set(std::size_t number) const { return number == 0 ? set_ : other_sets_[number - 1]; }
+    static void bind_buffer(const Context& context, const Set& set, std::uint32_t binding, const BufferPart& part);
     void make_pipeline(const Context& context, const ProgramId& id, const ProgramCache& cache);
 
     vk::raii::DescriptorSetLayout set_layout_{nullptr};
     vk::raii::PipelineLayout layout_{nullptr};
-    vk::raii::DescriptorPool pool_{nullptr};
-    vk::raii::DescriptorSet set_{nullptr};                // null where there are no bindings
+    std::vector<vk::DescriptorSetLayoutBinding> bindings_;
+    Set set_;
+    std::vector<Set> other_sets_;                         // from number 1 on
     std::map<std::uint32_t, vk::raii::BufferView> views_; // by binding
     vk::raii::Pipeline pipeline_{nullptr};
     std::optional<ShaderTable> table_; // of ray-tracing pipelines

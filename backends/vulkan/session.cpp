@@ -78,14 +78,14 @@ void require_variant(const KernelId& kernel, const TetParts& parts)
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
-    : context_(found), parts_(tet_parts(scene, largest_buffer(found.facts, options))),
+    : context_(found), tet_parts_(tet_parts(scene, largest_buffer(found.facts, options))),
       max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
-      program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, parts_)),
+      program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, tet_parts_)),
       stack_entries_(in_texels_ ? array_entries(scene.stack_entries) : 0), domain_(domain_of(scene)),
       launches_(tile_height_, found.limits.groups)
 {
-    require_storage_buffers(found, scene, parts_);
-    require_variant(kernel, parts_);
+    require_storage_buffers(found, scene, tet_parts_);
+    require_variant(kernel, tet_parts_);
     const Stopwatch watch;
     context_.run("uploading the scene", scene.bytes(), [&] { make_scene_buffers(scene); });
     setup_.upload_s = watch.seconds();
@@ -124,11 +124,11 @@ void VulkanSession::make_scene_buffers(const PackedScene& scene)
     };
     const auto buffers = scene_buffers(scene);
     const std::span<const std::byte> tets = buffers[0].bytes;
-    arrays_.push_back(make(parts_.part(tets, 0)));
+    arrays_.push_back(make(tet_parts_.part(tets, 0)));
     for (std::size_t binding = 1; binding < buffers.size(); ++binding)
         arrays_.push_back(make(buffers[binding].bytes));
-    for (unsigned part = 1; part < parts_.count; ++part)
-        more_parts_.push_back(make(parts_.part(tets, part)));
+    for (unsigned part = 1; part < tet_parts_.count; ++part)
+        more_parts_.push_back(make(tet_parts_.part(tets, part)));
 }
 
 void VulkanSession::compile()
@@ -144,13 +144,13 @@ void VulkanSession::compile_starts_inside()
     take_times(); // for launches that still run the old program
     starts_outside_ = false;
     compile();
-    if (output_words_ != 0) bind_output();
+    if (parts_.count() != 0) bind_output();
 }
 
 void VulkanSession::make_program()
 {
     const bool takes_rays = kernel_.task != Task::trace;
-    const char* const variant = in_texels_ ? "_texels" : parts_.count > 1 ? "_parts" : "";
+    const char* const variant = in_texels_ ? "_texels" : tet_parts_.count > 1 ? "_parts" : "";
     ProgramId id{.name = shader_name(kernel_) + variant,
                  .bindings = {OUTPUT_BINDING},
                  .push_constant_bytes = sizeof(LaunchParams),
@@ -166,7 +166,7 @@ void VulkanSession::make_program()
         id.bindings.push_back(binding);
     if (takes_rays && in_texels_) id.texels.push_back(rays_as_texels);
     if (takes_rays && !in_texels_) id.bindings.push_back(RAYS_BINDING);
-    for (std::uint32_t part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part)
+    for (std::uint32_t part = 1; tet_parts_.count > 1 && part < MAX_TET_PARTS; ++part)
         id.bindings.push_back(SECOND_PART_BINDING - 1 + part);
     programs_.clear();
     const auto add = [&] { programs_.emplace_back(context_, id, ProgramCache(program_cache_)); };
@@ -190,9 +190,10 @@ void VulkanSession::bind_scene(Program& program)
         program.bind_texels(context_, texels, arrays_[texels.binding % FIRST_QUADS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)
         program.bind(context_, binding, arrays_[binding]);
-    for (unsigned part = 1; parts_.count > 1 && part < MAX_TET_PARTS; ++part) // those beyond the last are never read
+    for (unsigned part = 1; tet_parts_.count > 1 && part < MAX_TET_PARTS;
+         ++part) // those beyond the last are never read
         program.bind(context_, SECOND_PART_BINDING - 1 + part,
-                     part < parts_.count ? more_parts_[part - 1] : arrays_[0]);
+                     part < tet_parts_.count ? more_parts_[part - 1] : arrays_[0]);
 }
 
 void VulkanSession::set_rays(std::span<const Quad> quads)
@@ -217,33 +218,44 @@ void VulkanSession::bind_rays(Buffer rays)
     else
         programs_.front().bind(context_, RAYS_BINDING, rays);
     rays_ = std::move(rays);
+    if (parts_.count() != 0) bind_output(); // the sets of further jobs are copies
 }
 
-void VulkanSession::bind_output() const
+void VulkanSession::bind_output()
 {
-    for (const Program& program : programs_) {
-        program.bind(context_, OUTPUT_BINDING, output_);
-        if (leaves_rays()) program.bind(context_, LEFT_BINDING, left_);
+    constexpr std::uint64_t word = sizeof(std::uint32_t);
+    for (Program& program : programs_) {
+        program.forget_other_sets();
+        for (std::size_t job = 0; job < parts_.count(); ++job) {
+            program.bind_part(context_, job, OUTPUT_BINDING,
+                              {output_, word * parts_.begin(job), word * parts_.size(job)});
+            if (leaves_rays())
+                program.bind_part(context_, job, LEFT_BINDING,
+                                  {left_, word * left_parts_.begin(job), word * left_parts_.size(job)});
+        }
     }
 }
 
-void VulkanSession::resize_output(std::size_t words)
+void VulkanSession::resize_output()
 {
-    if (words == output_words_) return;
-    require_output_fits(words, max_buffer_bytes_);
-    const std::uint64_t bytes = words * sizeof(std::uint32_t);
-    const std::uint64_t left_bytes = leaves_rays() ? LEFT_PIXELS * sizeof(std::uint32_t) + bytes / HIT_WORDS : 0;
+    const OutputParts parts = output_parts(words_per_ray(kernel_.task));
+    if (parts == parts_) return;
+    require_output_fits(parts.words(), max_buffer_bytes_);
+    const std::uint64_t bytes = parts.words() * sizeof(std::uint32_t);
+    left_parts_ = leaves_rays() ? output_parts(1) : OutputParts(); // guard words leave room for LEFT_PIXELS
+    static_assert(LEFT_PIXELS <= 2 * GUARD_WORDS);
+    const std::uint64_t left_bytes = left_parts_.words() * sizeof(std::uint32_t);
     output_ = Buffer(); // the old ones are freed first: both may not fit
     staging_ = Buffer();
     left_ = Buffer();
-    output_words_ = 0;
+    parts_ = {};
     context_.run("making the output", bytes_ + bytes + left_bytes, [&] {
         if (left_bytes != 0) left_ = Buffer(context_, left_bytes, Place::device);
         output_ = Buffer(context_, bytes, Place::device);
         if (needs_staging(output_)) staging_ = Buffer(context_, bytes, Place::read_back);
     });
+    parts_ = parts;
     bind_output();
-    output_words_ = words;
 }
 
 const vk::raii::CommandBuffer& VulkanSession::commands_for(std::size_t index)
@@ -253,28 +265,31 @@ const vk::raii::CommandBuffer& VulkanSession::commands_for(std::size_t index)
     return chunks_[index].commands;
 }
 
-void VulkanSession::enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes)
+void VulkanSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes)
 {
     const vk::raii::CommandBuffer& commands = commands_for(enqueued_.size());
     const vk::raii::QueryPool& times = chunks_[enqueued_.size()].times;
     commands.begin({});
-    if (params.first_tile == 0) { // in the kernel's own commands, so that the validation layers see both
+    if (pieces.front().job == 0 && pieces.front().params.first_tile == 0) {
+        // In the kernel's own commands, so that the validation layers see both.
         commands.fillBuffer(output_.handle(), 0, VK_WHOLE_SIZE, POISON);
         record_barrier(context_, commands);
     }
     record_begin_time(commands, times);
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         if (pass > 0) record_barrier(context_, commands); // else passes may run at once
-        if (leaves_rays()) record_none_left(commands);
-        programs_.front().record(commands);
-        record_dispatches(commands, params, tiles);
-        if (leaves_rays()) record_left(commands, params);
+        if (leaves_rays()) record_none_left(commands, pieces);
+        for (const LaunchPiece& piece : pieces) {
+            programs_.front().record(commands, piece.job);
+            record_dispatches(commands, piece.params, piece.tiles);
+        }
+        if (leaves_rays()) record_left(commands, pieces);
     }
     record_end_time(commands, times);
     record_barrier(context_, commands);
     commands.end();
     context_.submit(commands);
-    enqueued_.push_back({tiles, passes});
+    enqueued_.push_back({tile_count(pieces), passes});
 }
 
 void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params,
@@ -295,32 +310,39 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
     record(tiles, 1, 1);
 }
 
-void VulkanSession::record_none_left(const vk::raii::CommandBuffer& commands) const
+void VulkanSession::record_none_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const
 {
     constexpr std::array<std::uint32_t, LEFT_PIXELS> none = {0, 1, 1, 0};
-    commands.updateBuffer<std::uint32_t>(left_.handle(), 0, none);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        if (i == 0 || pieces[i - 1].job != pieces[i].job)
+            commands.updateBuffer<std::uint32_t>(left_.handle(), left_parts_.begin(pieces[i].job) * sizeof(none[0]),
+                                                 none);
     record_barrier(context_, commands);
 }
 
-void VulkanSession::record_left(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const
+/// The rays of a job's pieces are in one list.
+void VulkanSession::record_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const
 {
     record_barrier(context_, commands);
-    programs_.back().record(commands);
-    programs_.back().push(commands, params);
-    commands.dispatchIndirect(left_.handle(), 0);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const std::size_t job = pieces[i].job;
+        if (i > 0 && pieces[i - 1].job == job) continue;
+        programs_.back().record(commands, job);
+        programs_.back().push(commands, pieces[i].params);
+        commands.dispatchIndirect(left_.handle(), left_parts_.begin(job) * sizeof(std::uint32_t));
+    }
 }
 
-void VulkanSession::launch(const TraceJob& job)
+void VulkanSession::start(std::span<const TraceJob> jobs)
 {
     context_.run("launching", output_bytes(), [&] {
         take_times(); // for a launch that nobody waited for
-        if (job.start_tet != NO_TET && starts_outside_) compile_starts_inside();
-        resize_output(output_words(job, kernel_.task));
+        const auto starts_inside = [](const TraceJob& job) { return job.start_tet != NO_TET; };
+        if (starts_outside_ && std::ranges::any_of(jobs, starts_inside)) compile_starts_inside();
+        resize_output();
         launches_.start(
-            launch_params(job, domain_, tile_height_, parts_.log2_bytes), job.passes,
-            [this](const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes) {
-                enqueue(params, tiles, passes);
-            },
+            launch_params(jobs, domain_, tile_height_, tet_parts_.log2_bytes), jobs.front().passes,
+            [this](std::span<const LaunchPiece> pieces, std::uint32_t passes) { enqueue(pieces, passes); },
             [this] { take_times(); });
     });
 }
@@ -342,7 +364,7 @@ void VulkanSession::take_times()
 
 void VulkanSession::read_output(std::span<std::uint32_t> words)
 {
-    require_output_of_last_launch(words.size(), output_words_);
+    require_output_of_last_launch(words.size(), parts_.words());
     context_.run("reading back", output_bytes(), [&] {
         take_times(); // mapped memory is read directly: nothing may still be writing it
         vulkan::read_back(context_, output_, staging_, std::as_writable_bytes(words));

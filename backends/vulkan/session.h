@@ -24,12 +24,12 @@ public:
     VulkanSession& operator=(const VulkanSession&) = delete;
 
     void set_rays(std::span<const Quad> quads) override;
-    void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
     [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
 
 private:
+    void start(std::span<const TraceJob> jobs) override;
     void read_output(std::span<std::uint32_t> words) override;
 
     void make_scene_buffers(const PackedScene& scene);
@@ -42,25 +42,27 @@ private:
     void compile_starts_inside();
     void bind_scene(Program& program);
     void bind_rays(Buffer rays);
-    void bind_output() const;
-    void resize_output(std::size_t words);
-    [[nodiscard]] std::uint64_t output_bytes() const { return output_words_ * sizeof(std::uint32_t); }
+    /// Each job has a set of buffers of its own, for its part of the output.
+    void bind_output();
+    /// For the jobs of start().
+    void resize_output();
+    [[nodiscard]] std::uint64_t output_bytes() const { return parts_.words() * sizeof(std::uint32_t); }
     /// Command buffer and timestamps number `index` of a launch, made when first asked for.
     const vk::raii::CommandBuffer& commands_for(std::size_t index);
-    /// The image's first launch poisons the output before its kernel.
-    void enqueue(const LaunchParams& params, std::uint32_t tiles, std::uint32_t passes);
+    /// The first launch of all jobs poisons the output before its kernels.
+    void enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes);
     /// Records the dispatches of that many tiles, such that each of the device's threads gets tiles from all over the
     /// image.
     void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
-    /// Records that no ray is left yet.
-    void record_none_left(const vk::raii::CommandBuffer& commands) const;
-    /// Records the program that traces the rays which programs_.front() has left.
-    void record_left(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const;
+    /// Records that no ray of the pieces is left yet.
+    void record_none_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const;
+    /// Records the program that traces the rays of the pieces which programs_.front() has left.
+    void record_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const;
     /// Waits for enqueued work, and counts its times.
     void take_times();
 
     Context context_; // outlives all that follows
-    TetParts parts_;
+    TetParts tet_parts_;
     std::uint64_t max_buffer_bytes_;
     unsigned tile_height_;
     KernelId kernel_;
@@ -76,8 +78,9 @@ private:
     std::vector<Buffer> more_parts_; ///< of the tets, from the second on
     std::optional<Acceleration> acceleration_;
     Buffer rays_, output_, staging_;
-    Buffer left_; ///< the list of rays that programs_.front() leaves: LEFT_COUNT and LEFT_PIXELS of layout.h
-    std::size_t output_words_ = 0;
+    OutputParts parts_;      ///< of output_
+    Buffer left_;            ///< of each job the rays that programs_.front() leaves: LEFT_PIXELS and so on of layout.h
+    OutputParts left_parts_; ///< of left_
     std::vector<Program> programs_; ///< the kernel, and where it leaves ties the one that traces those rays
 
     struct Chunk {

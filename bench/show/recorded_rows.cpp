@@ -16,13 +16,13 @@ class RecordedSession final : public Session {
 public:
     RecordedSession(const SetupTimes& setup, std::uint64_t bytes) : setup_(setup), bytes_(bytes) {}
 
-    void launch(const TraceJob&) override { refuse(); }
     [[nodiscard]] double wait() override { refuse(); }
     [[nodiscard]] SetupTimes setup_times() const override { return setup_; }
     [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
 
 private:
     [[noreturn]] static void refuse() { throw Error(ErrorKind::internal, "a row read from a result was launched"); }
+    void start(std::span<const TraceJob>) override { refuse(); }
     void read_output(std::span<std::uint32_t>) override { refuse(); }
 
     SetupTimes setup_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/device/output_parts.h"
 #include "core/pack/kernel_id.h"
 #include "core/pack/packed_scene.h"
 #include "core/rays/camera.h"
@@ -70,7 +71,9 @@ struct TraceJob {
     StartTet start;                   ///< of start_tet, see start_in()
     std::uint32_t max_steps = 0;      ///< a walk with this many steps is LOST
     bool any_hit = false;             ///< any hit will do, so the first one found is the answer
-    std::uint32_t passes = 1;         ///< how often the whole is traced, with the same hits each time
+    std::uint32_t passes = 1;         ///< how often the whole launch is traced, with the same hits each time
+
+    [[nodiscard]] std::size_t rays() const { return std::size_t{width} * height; }
 };
 
 /// The cap of walks through so many tets: one step more than there are tets, because a path visits none twice
@@ -124,23 +127,27 @@ public:
     /// before the first launch. quads: GIVEN_RAY_QUADS or RAY_QUADS a ray (kernels/layouts/layout.h), for a multiple of
     /// TILE_WIDTH rays. Throws Error{unsupported} with both numbers where the rays exceed the largest buffer.
     virtual void set_rays(std::span<const Quad> quads);
-    /// Fills the whole output with POISON, untimed, then starts the kernel; uses several launches where one would run
-    /// long enough for a watchdog to fire (core/device/launch.h). Passes that fit in one launch follow each other
-    /// without the host, between two readings of the device's clock, and none begins before the one before it has
-    /// ended.
-    virtual void launch(const TraceJob& job) = 0;
-    /// Waits for the launch; returns device seconds of the kernel alone, of all its passes together.
+    /// Fills the whole output with POISON, untimed, then starts the kernel for every job. The jobs are in flight
+    /// together: none waits for another's end. Uses several launches if one would run long enough for a watchdog to
+    /// fire (core/device/launch.h). jobs: one or more, all with the same passes. Passes that fit in one launch follow
+    /// each other without the host, between two readings of the device's clock. A pass begins when the pass before it
+    /// has ended, of all jobs.
+    void launch(std::span<const TraceJob> jobs);
+    /// The same for one job.
+    void launch(const TraceJob& job) { launch(std::span(&job, 1)); }
+    /// Waits for the launch; returns device seconds of the kernel alone, of all its jobs and passes together.
     [[nodiscard]] virtual double wait() = 0;
-    /// Copies the hits of the last launch, row after row; hits.size() == width * height.
+    /// Copies the hits of the last launch, job after job, row after row; hits.size(): the sum of width * height.
     /// Throws Error{wrong_result} if the kernel wrote outside its output.
     void read_back(std::span<Hit> hits);
     /// Task search: copies the faces that the last launch found, 0 to 3 or NO_EXIT, in the order of the rays.
     /// faces.size(): the number of rays. Throws Error{wrong_result} if the kernel wrote outside its output, or a word
     /// that is no face.
     void read_back(std::span<std::uint32_t> faces);
-    /// launch(), wait() and read_back() of one job; returns device seconds.
-    [[nodiscard]] double trace(const TraceJob& job, std::span<Hit> hits);
-    /// The same for task search.
+    /// launch(), wait() and read_back(); returns device seconds.
+    [[nodiscard]] double trace(std::span<const TraceJob> jobs, std::span<Hit> hits);
+    [[nodiscard]] double trace(const TraceJob& job, std::span<Hit> hits) { return trace(std::span(&job, 1), hits); }
+    /// The same for one job of task search.
     [[nodiscard]] double search(const TraceJob& job, std::span<std::uint32_t> faces);
     /// Seconds that copying the output took in the last read_back(), without its checks.
     [[nodiscard]] virtual double download_s() const { return download_s_; }
@@ -148,11 +155,19 @@ public:
     /// Device bytes that the structure and its scene data occupy.
     [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
+protected:
+    /// Where the results of the last launch are in its output; start() may call it.
+    [[nodiscard]] OutputParts output_parts(std::size_t words_per_ray) const { return {job_rays_, words_per_ray}; }
+
 private:
-    [[nodiscard]] std::vector<std::uint32_t> checked_output(std::size_t words);
-    /// Copies the whole output: GUARD_WORDS, words_per_ray() per ray row after row, GUARD_WORDS.
+    template <class Result>
+    void read_results(std::span<Result> results);
+    /// launch(), whose jobs are as it says.
+    virtual void start(std::span<const TraceJob> jobs) = 0;
+    /// Copies the whole output, as output_parts() has it: words_per_ray() per ray, row after row, between guard words.
     virtual void read_output(std::span<std::uint32_t> words) = 0;
 
+    std::vector<std::size_t> job_rays_; ///< of the last launch
     double download_s_ = 0;
 };
 

@@ -8,13 +8,14 @@
 
 namespace tetrace {
 
-void HostSession::launch(const TraceJob& job)
+void HostSession::start(std::span<const TraceJob> jobs)
 {
-    output_.assign(output_words(job, task_), POISON);
-    const auto between_guards = std::span(output_).subspan(GUARD_WORDS, output_.size() - 2 * std::size_t{GUARD_WORDS});
+    const OutputParts parts = output_parts(words_per_ray(task_));
+    output_.assign(parts.words(), POISON);
     const Stopwatch watch;
-    for (std::uint32_t pass = 0; pass < job.passes; ++pass)
-        run(job, between_guards);
+    for (std::uint32_t pass = 0; pass < jobs.front().passes; ++pass)
+        for (std::size_t job = 0; job < jobs.size(); ++job)
+            run(jobs[job], parts.results(std::span(output_), job));
     kernel_s_ = watch.seconds();
 }
 

@@ -8,15 +8,15 @@
 
 namespace tetrace {
 
-/// A session on the host's own processor and memory: launch() runs to the end, and wait() returns how long that took. A
-/// backend implements run() and the set-up.
+/// A session on the host's own processor and memory: launch() runs its jobs one after the other to the end, and wait()
+/// returns how long that took. A backend implements run() and the set-up.
 class HostSession : public Session {
 public:
     explicit HostSession(Task task) : task_(task) {}
-    void launch(const TraceJob& job) final;
     [[nodiscard]] double wait() final { return kernel_s_; }
 
 private:
+    void start(std::span<const TraceJob> jobs) final;
     void read_output(std::span<std::uint32_t> words) final;
     /// Traces the whole image. output: words_per_ray() per ray, row after row.
     virtual void run(const TraceJob& job, std::span<std::uint32_t> output) = 0;

@@ -25,6 +25,15 @@ LaunchParams launch_params(const TraceJob& job, const PackedDomain& domain, unsi
             tile_height,     part_log2,       domain.low,      domain.high};
 }
 
+std::vector<LaunchParams> launch_params(std::span<const TraceJob> jobs, const PackedDomain& domain,
+                                        unsigned tile_height, unsigned part_log2)
+{
+    std::vector<LaunchParams> images;
+    for (const TraceJob& job : jobs)
+        images.push_back(launch_params(job, domain, tile_height, part_log2));
+    return images;
+}
+
 std::uint32_t tile_count(const LaunchParams& image)
 {
     return ((image.width + TILE_WIDTH - 1) / TILE_WIDTH) * ((image.height + image.tile_height - 1) / image.tile_height);
@@ -41,18 +50,13 @@ std::size_t words_per_ray(Task task)
     return task == Task::search ? 1 : HIT_WORDS;
 }
 
-std::size_t output_words(const TraceJob& job, Task task)
-{
-    return 2 * std::size_t{GUARD_WORDS} + words_per_ray(task) * job.width * job.height;
-}
-
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes)
 {
     const std::uint64_t bytes = words * sizeof(std::uint32_t);
     if (max_buffer_bytes == 0 || bytes <= max_buffer_bytes) return;
-    throw Error(ErrorKind::unsupported, "the image's hits have " + std::to_string(bytes) +
+    throw Error(ErrorKind::unsupported, "the hits have " + std::to_string(bytes) +
                                             " bytes, the device's largest buffer " + std::to_string(max_buffer_bytes) +
-                                            "; trace a smaller image");
+                                            "; trace smaller images, or fewer at once");
 }
 
 void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes)
@@ -63,56 +67,73 @@ void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_byte
                                             "; give fewer at once");
 }
 
-void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words)
+void require_output_of_last_launch(std::size_t asked, std::size_t available)
 {
-    if (asked_words == output_words) return;
-    throw Error(ErrorKind::internal, "reading back: an output of " + std::to_string(asked_words) +
-                                         " words is asked for, that of the last launch has " +
-                                         std::to_string(output_words));
+    if (asked == available) return;
+    throw Error(ErrorKind::internal, "reading back: " + std::to_string(asked) +
+                                         " results are asked for, the last launch has " + std::to_string(available));
 }
 
-LaunchSize::LaunchSize(unsigned tile_height, std::uint32_t most_tiles)
-    : most_tiles_(std::min(most_tiles, no_limit)),
-      tiles_(std::min(most_tiles_, first_launch_rays / (TILE_WIDTH * tile_height)))
-{
-}
+LaunchSize::LaunchSize(unsigned tile_height) : tiles_(first_launch_rays / (TILE_WIDTH * tile_height)) {}
 
 void LaunchSize::took(std::uint32_t tiles, double seconds)
 {
     if (tiles == 0) return;
-    const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : most_tiles_;
+    const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : no_limit;
     // A launch shorter than the limit says little about longer ones, so the size grows in steps but shrinks at once.
-    const double largest = std::min<double>(most_tiles_, std::max<double>(tiles_, tiles * largest_growth));
+    const double largest = std::min<double>(no_limit, std::max<double>(tiles_, tiles * largest_growth));
     tiles_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, largest));
 }
 
-void Launches::start(const LaunchParams& image, std::uint32_t passes, const Enqueue& enqueue,
+std::uint32_t tile_count(std::span<const LaunchPiece> pieces)
+{
+    std::uint32_t tiles = 0;
+    for (const LaunchPiece& piece : pieces)
+        tiles += piece.tiles;
+    return tiles;
+}
+
+void Launches::start(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
                      const std::function<void()>& take_times)
 {
     seconds_ = 0;
+    std::uint64_t tiles = 0;
+    for (const LaunchParams& image : images)
+        tiles += tile_count(image);
     while (passes > 0) {
-        const std::uint32_t tiles = tile_count(image);
-        const bool fits = !is_first_image_ && tiles > 0 && tiles <= size_.tiles();
-        const std::uint32_t together = fits ? std::min(passes, most_targets * (size_.tiles() / tiles)) : 1;
-        if (fits)
-            enqueue(image, tiles, together);
-        else
-            start_pass(image, enqueue, take_times);
+        const bool fits = !is_first_pass_ && tiles > 0 && tiles <= size_.tiles();
+        const std::uint32_t together =
+            fits ? std::min(passes, most_targets * (size_.tiles() / static_cast<std::uint32_t>(tiles))) : 1;
+        start_passes(images, together, enqueue, take_times);
         passes -= together;
     }
 }
 
-void Launches::start_pass(const LaunchParams& image, const Enqueue& enqueue, const std::function<void()>& take_times)
+/// As few launches as their size allows: each but the last is full, and holds the end of one job and more of the next.
+void Launches::start_passes(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
+                            const std::function<void()>& take_times)
 {
-    LaunchParams params = image;
-    const std::uint32_t end = tile_count(image);
-    while (params.first_tile < end) {
-        const std::uint32_t tiles = std::min(size_.tiles(), end - params.first_tile);
-        enqueue(params, tiles, 1);
-        params.first_tile += tiles;
-        if (is_first_image_) take_times();
+    std::vector<LaunchPiece> pieces;
+    const auto launch = [&] {
+        if (pieces.empty()) return;
+        enqueue(pieces, passes);
+        if (is_first_pass_) take_times();
+        pieces.clear();
+    };
+    for (std::size_t job = 0; job < images.size(); ++job) {
+        LaunchParams params = images[job];
+        const std::uint32_t end = tile_count(params);
+        while (params.first_tile < end) {
+            const std::uint32_t used = tile_count(pieces);
+            const std::uint32_t room = size_.tiles() > used ? size_.tiles() - used : 0;
+            const std::uint32_t tiles = std::min({room, max_piece_tiles_, end - params.first_tile});
+            if (tiles > 0) pieces.push_back({job, params, tiles});
+            params.first_tile += tiles;
+            if (tiles == room) launch();
+        }
     }
-    is_first_image_ = false;
+    launch();
+    is_first_pass_ = false;
 }
 
 void Launches::took(std::uint32_t tiles, std::uint32_t passes, double seconds)

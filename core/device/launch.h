@@ -22,6 +22,10 @@ static_assert(sizeof(LaunchParams) == 128, "every backend reads LaunchParams, se
 [[nodiscard]] LaunchParams launch_params(const TraceJob& job, const PackedDomain& domain, unsigned tile_height,
                                          unsigned part_log2);
 
+/// The same for each of some jobs.
+[[nodiscard]] std::vector<LaunchParams> launch_params(std::span<const TraceJob> jobs, const PackedDomain& domain,
+                                                      unsigned tile_height, unsigned part_log2);
+
 /// Tiles of an image, row after row.
 [[nodiscard]] std::uint32_t tile_count(const LaunchParams& image);
 
@@ -32,16 +36,13 @@ static_assert(sizeof(LaunchParams) == 128, "every backend reads LaunchParams, se
 /// Words that a kernel writes per ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 
-/// Words of an image's output, guards included.
-[[nodiscard]] std::size_t output_words(const TraceJob& job, Task task);
-
-/// Throws Error{unsupported} with both numbers if an image's output exceeds the largest buffer; 0 is no limit.
+/// Throws Error{unsupported} with both numbers if a launch's output exceeds the largest buffer; 0 is no limit.
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
 /// The same for a session's rays.
 void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes);
 
-/// Throws Error{internal} if the hits to read back are not those of the last launch.
-void require_output_of_last_launch(std::size_t asked_words, std::size_t output_words);
+/// Throws Error{internal} if the results to read back are not those of the last launch.
+void require_output_of_last_launch(std::size_t asked, std::size_t available);
 
 /// How many tiles a launch may have so that it ends long before any watchdog fires (2 s is the shortest known): few at
 /// first, then as many as fit into a tenth of a second at the speed of the last launches.
@@ -49,42 +50,53 @@ class LaunchSize {
 public:
     static constexpr std::uint32_t no_limit = 1u << 20; ///< 2^26 rays at most: far below most APIs' limit on groups
 
-    explicit LaunchSize(unsigned tile_height, std::uint32_t most_tiles = no_limit);
+    explicit LaunchSize(unsigned tile_height);
     [[nodiscard]] std::uint32_t tiles() const { return tiles_; }
     /// Reports how long a launch of that many tiles took.
     void took(std::uint32_t tiles, double seconds);
 
 private:
-    std::uint32_t most_tiles_;
     std::uint32_t tiles_;
 };
 
-/// Cuts a session's images into launches, and adds up the seconds of an image's launches.
+/// Successive tiles of one of the jobs of a launch.
+struct LaunchPiece {
+    std::size_t job;
+    LaunchParams params;
+    std::uint32_t tiles; ///< from params.first_tile on
+};
+
+/// Tiles of all pieces.
+[[nodiscard]] std::uint32_t tile_count(std::span<const LaunchPiece> pieces);
+
+/// Cuts a session's jobs into launches, and adds up the seconds of the launches of one start().
 class Launches {
 public:
-    /// most_tiles: of a launch, where the API has a limit.
-    explicit Launches(unsigned tile_height, std::uint32_t most_tiles = LaunchSize::no_limit)
-        : size_(tile_height, most_tiles)
+    /// max_piece_tiles: of a piece, if the API has a limit.
+    explicit Launches(unsigned tile_height, std::uint32_t max_piece_tiles = LaunchSize::no_limit)
+        : size_(tile_height), max_piece_tiles_(max_piece_tiles)
     {
     }
-    /// Starts a launch of so many tiles from the params' first one on, so many times.
-    using Enqueue = std::function<void(const LaunchParams&, std::uint32_t tiles, std::uint32_t passes)>;
-    /// Calls enqueue for each launch. image: params of the first launch. passes: of the image; where a launch may have
-    /// all its tiles, as many of them are one call as fit into a second. take_times must call took(). During the
-    /// session's first image it is called after each launch, because nothing is known yet about how long a launch
-    /// takes.
-    void start(const LaunchParams& image, std::uint32_t passes, const Enqueue& enqueue,
+    /// Starts a launch of pieces, which are in flight together, so many times.
+    using Enqueue = std::function<void(std::span<const LaunchPiece> pieces, std::uint32_t passes)>;
+    /// Calls enqueue for each launch. images: the params of each job, from its first tile on. passes: of all jobs; if a
+    /// launch may have all their tiles, as many passes as fit into a second are one call. take_times must call took().
+    /// During the session's first pass it is called after each launch, because nothing is known yet about how long a
+    /// launch takes.
+    void start(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
                const std::function<void()>& take_times);
     /// Reports how long a launch of that many tiles took on the device, all its passes together.
     void took(std::uint32_t tiles, std::uint32_t passes, double seconds);
-    /// Of the image's launches that were reported to took().
+    /// Of the launches that were reported to took() since start() was called.
     [[nodiscard]] double seconds() const { return seconds_; }
 
 private:
-    void start_pass(const LaunchParams& image, const Enqueue& enqueue, const std::function<void()>& take_times);
+    void start_passes(std::span<const LaunchParams> images, std::uint32_t passes, const Enqueue& enqueue,
+                      const std::function<void()>& take_times);
 
     LaunchSize size_;
-    bool is_first_image_ = true;
+    std::uint32_t max_piece_tiles_;
+    bool is_first_pass_ = true;
     double seconds_ = 0;
 };
 

@@ -1,9 +1,11 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/device/backend.h"
+#include "core/device/launch.h"
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
+#include <numeric>
 
 namespace tetrace {
 
@@ -15,6 +17,20 @@ void check_guard(std::span<const std::uint32_t> guard, const char* where)
     if (std::ranges::all_of(guard, intact)) return;
     throw Error(ErrorKind::wrong_result,
                 std::string("the kernel wrote ") + where + " its output: the guard words there are overwritten");
+}
+
+/// All words around the results of each job are guards.
+void check_guards(std::span<const std::uint32_t> output, const OutputParts& parts)
+{
+    std::size_t begin = 0;
+    for (std::size_t job = 0; job <= parts.count(); ++job) {
+        const bool is_last = job == parts.count();
+        const std::size_t end = is_last ? output.size() : parts.begin(job) + GUARD_WORDS;
+        check_guard(output.subspan(begin, end - begin), job == 0  ? "before"
+                                                        : is_last ? "behind"
+                                                                  : "between the jobs of");
+        if (!is_last) begin = parts.begin(job) + parts.size(job) - GUARD_WORDS;
+    }
 }
 
 TraceJob column_of(std::size_t rays)
@@ -64,29 +80,44 @@ void Session::set_rays(std::span<const Quad>)
     throw Error(ErrorKind::internal, "rays are given to a session that makes its own");
 }
 
-/// Not kept in the session, because many sessions are open at a time.
-std::vector<std::uint32_t> Session::checked_output(std::size_t words)
+void Session::launch(std::span<const TraceJob> jobs)
 {
-    std::vector<std::uint32_t> output(2 * std::size_t{GUARD_WORDS} + words);
+    const auto passes = [](const TraceJob& job) { return job.passes; };
+    if (jobs.empty() || std::ranges::adjacent_find(jobs, std::ranges::not_equal_to(), passes) != jobs.end())
+        throw Error(ErrorKind::internal, "a launch of no job, or of jobs with different passes");
+    job_rays_.clear();
+    for (const TraceJob& job : jobs)
+        job_rays_.push_back(job.rays());
+    start(jobs);
+}
+
+/// The whole output is not kept in the session, because many sessions are open at a time.
+template <class Result>
+void Session::read_results(std::span<Result> results)
+{
+    static_assert(sizeof(Hit) == HIT_WORDS * sizeof(std::uint32_t));
+    const OutputParts parts = output_parts(sizeof(Result) / sizeof(std::uint32_t));
+    require_output_of_last_launch(results.size(), std::accumulate(job_rays_.begin(), job_rays_.end(), std::size_t{0}));
+    std::vector<std::uint32_t> output(parts.words());
     const Stopwatch watch;
     read_output(output);
     download_s_ = watch.seconds();
-    const std::span<const std::uint32_t> all = output;
-    check_guard(all.first(GUARD_WORDS), "before");
-    check_guard(all.last(GUARD_WORDS), "behind");
-    return output;
+    check_guards(output, parts);
+    for (std::size_t job = 0; job < parts.count(); ++job) {
+        const auto from = parts.results(std::span<const std::uint32_t>(output), job);
+        std::memcpy(results.data(), from.data(), from.size_bytes());
+        results = results.subspan(from.size_bytes() / sizeof(Result));
+    }
 }
 
 void Session::read_back(std::span<Hit> hits)
 {
-    static_assert(sizeof(Hit) == HIT_WORDS * sizeof(std::uint32_t));
-    const auto output = checked_output(HIT_WORDS * hits.size());
-    std::memcpy(hits.data(), output.data() + GUARD_WORDS, hits.size_bytes());
+    read_results(hits);
 }
 
-double Session::trace(const TraceJob& job, std::span<Hit> hits)
+double Session::trace(std::span<const TraceJob> jobs, std::span<Hit> hits)
 {
-    launch(job);
+    launch(jobs);
     const double seconds = wait();
     read_back(hits);
     return seconds;
@@ -102,8 +133,7 @@ double Session::search(const TraceJob& job, std::span<std::uint32_t> faces)
 
 void Session::read_back(std::span<std::uint32_t> faces)
 {
-    const auto output = checked_output(faces.size());
-    std::copy_n(output.begin() + GUARD_WORDS, faces.size(), faces.begin());
+    read_results(faces);
     const auto found = std::ranges::find_if(faces, [](std::uint32_t face) { return face > NO_EXIT; });
     if (found == faces.end()) return;
     throw Error(ErrorKind::wrong_result,

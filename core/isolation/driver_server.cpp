@@ -112,7 +112,7 @@ private:
         double seconds = 0;
         switch (what) {
         case Request::set_rays: session.set_rays(get_quads(request, std::move(file)).quads()); break;
-        case Request::launch: session.launch(request.get<TraceJob>()); break;
+        case Request::launch: session.launch(request.get_all<TraceJob>()); break;
         case Request::wait: seconds = session.wait(); break;
         default: read(session, what, request.get<std::uint64_t>(), std::move(file)); seconds = session.download_s();
         }

@@ -1,7 +1,8 @@
 #include "core/isolation/isolated_session.h"
 
+#include "core/device/launch.h"
+
 #include <algorithm>
-#include <cstring>
 
 namespace tetrace {
 
@@ -67,9 +68,9 @@ bool IsolatedSession::is_still_open()
 
 void IsolatedSession::require_launched()
 {
-    if (is_still_open() || !job_) return;
-    send_job();
-    static_cast<void>(await_job());
+    if (is_still_open() || jobs_.empty()) return;
+    send_jobs();
+    static_cast<void>(await_jobs());
 }
 
 void IsolatedSession::set_rays(std::span<const Quad> quads)
@@ -94,34 +95,37 @@ void IsolatedSession::send_rays()
          call_limit_s(0, quads_ * sizeof(Quad)));
 }
 
-void IsolatedSession::launch(const TraceJob& job)
+void IsolatedSession::start(std::span<const TraceJob> jobs)
 {
     static_cast<void>(is_still_open());
-    job_ = job;
-    send_job();
+    jobs_.assign(jobs.begin(), jobs.end());
+    send_jobs();
 }
 
-void IsolatedSession::send_job()
+void IsolatedSession::send_jobs()
 {
     ByteWriter arguments;
-    arguments.put(*job_);
-    call(Request::launch, "launching " + name_of(kernel_), arguments, {}, job_limit_s());
+    arguments.put_all(std::span<const TraceJob>(jobs_));
+    call(Request::launch, "launching " + name_of(kernel_), arguments, {}, call_limit_s(rays()));
 }
 
 double IsolatedSession::wait()
 {
-    if (!is_still_open() && job_) send_job();
-    return await_job();
+    if (!is_still_open() && !jobs_.empty()) send_jobs();
+    return await_jobs();
 }
 
-double IsolatedSession::await_job()
+double IsolatedSession::await_jobs()
 {
-    return call(Request::wait, "running " + name_of(kernel_), {}, {}, job_limit_s()).get<double>();
+    return call(Request::wait, "running " + name_of(kernel_), {}, {}, call_limit_s(rays())).get<double>();
 }
 
-double IsolatedSession::job_limit_s() const
+std::uint64_t IsolatedSession::rays() const
 {
-    return call_limit_s(job_ ? std::uint64_t{job_->width} * job_->height : 0);
+    std::uint64_t rays = 0;
+    for (const TraceJob& job : jobs_)
+        rays += job.rays();
+    return rays;
 }
 
 /// The other process has checked the guard words; here they are as they should be.
@@ -129,18 +133,24 @@ void IsolatedSession::read_output(std::span<std::uint32_t> words)
 {
     require_launched();
     const bool are_faces = kernel_.task == Task::search;
-    const auto output = words.subspan(GUARD_WORDS, words.size() - 2 * std::size_t{GUARD_WORDS});
-    if (output.size_bytes() > output_.bytes().size()) {
+    const OutputParts parts = output_parts(words_per_ray(kernel_.task));
+    const std::size_t bytes = rays() * words_per_ray(kernel_.task) * sizeof(words[0]);
+    if (bytes > output_.bytes().size()) {
         output_ = {};
-        output_ = SharedMemory(output.size_bytes());
+        output_ = SharedMemory(bytes);
     }
     ByteWriter arguments;
-    arguments.put(std::uint64_t{are_faces ? output.size() : output.size() / HIT_WORDS});
+    arguments.put(rays());
     download_s_ = call(are_faces ? Request::read_faces : Request::read_hits, "reading the hits of " + name_of(kernel_),
-                       arguments, output_, call_limit_s(0, output.size_bytes()))
+                       arguments, output_, call_limit_s(0, bytes))
                       .get<double>();
     std::ranges::fill(words, POISON);
-    if (!output.empty()) std::memcpy(output.data(), output_.bytes().data(), output.size_bytes());
+    std::span<const std::byte> read = output_.bytes();
+    for (std::size_t job = 0; job < parts.count(); ++job) {
+        const auto results = std::as_writable_bytes(parts.results(words, job));
+        std::ranges::copy(read.first(results.size()), results.begin());
+        read = read.subspan(results.size());
+    }
 }
 
 } // namespace tetrace

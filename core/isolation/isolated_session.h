@@ -16,27 +16,28 @@ public:
     IsolatedSession& operator=(const IsolatedSession&) = delete;
 
     void set_rays(std::span<const Quad> quads) override;
-    void launch(const TraceJob& job) override;
     [[nodiscard]] double wait() override;
     [[nodiscard]] double download_s() const override { return download_s_; }
     [[nodiscard]] SetupTimes setup_times() const override { return facts_.setup; }
     [[nodiscard]] std::uint64_t bytes() const override { return facts_.bytes; }
 
 private:
+    void start(std::span<const TraceJob> jobs) override;
     void read_output(std::span<std::uint32_t> words) override;
 
     /// Whether the session is where it was left. Else it has been opened again, with its rays.
     bool is_still_open();
-    /// As is_still_open(), and the last job has been launched again, and waited for.
+    /// As is_still_open(), and the last jobs have been launched again, and waited for.
     void require_launched();
     void open();
     void send_rays();
-    void send_job();
-    double await_job();
+    void send_jobs();
+    double await_jobs();
     /// Calls this session; takes its facts from the answer.
     ByteReader call(Request what, const std::string& doing, const ByteWriter& arguments, const SharedMemory& memory,
                     double limit_s);
-    [[nodiscard]] double job_limit_s() const;
+    /// Of all jobs.
+    [[nodiscard]] std::uint64_t rays() const;
 
     const IsolatedBackend* backend_;
     std::size_t device_;
@@ -51,7 +52,7 @@ private:
     SharedMemory rays_; ///< kept for another process
     std::uint64_t quads_ = 0;
     bool has_rays_ = false;
-    std::optional<TraceJob> job_; ///< the last
+    std::vector<TraceJob> jobs_; ///< of the last launch; empty: there was none
     SharedMemory output_;
     SessionFacts facts_;
     double download_s_ = 0;

@@ -8,6 +8,7 @@
 #include "core/device/scene_buffers.h"
 #include "scenes/procedural.h"
 #include "tests/support/cut_anew.h"
+#include "tests/support/device_rays.h"
 #include "tests/support/temporary_folder.h"
 
 #include <array>
@@ -22,12 +23,12 @@ namespace {
 class FixedSession : public Session {
 public:
     explicit FixedSession(std::function<void(std::span<std::uint32_t>)> fill) : fill_(std::move(fill)) {}
-    void launch(const TraceJob&) override {}
     [[nodiscard]] double wait() override { return 0; }
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
     [[nodiscard]] std::uint64_t bytes() const override { return 0; }
 
 private:
+    void start(std::span<const TraceJob>) override {}
     void read_output(std::span<std::uint32_t> words) override
     {
         std::fill(words.begin(), words.end(), POISON);
@@ -36,24 +37,96 @@ private:
     std::function<void(std::span<std::uint32_t>)> fill_;
 };
 
+TraceJob job_of(std::uint32_t width, std::uint32_t height)
+{
+    TraceJob job;
+    job.width = width;
+    job.height = height;
+    return job;
+}
+
 } // namespace
 
 TEST(Session, gives_the_hits_between_the_guard_words)
 {
     FixedSession session([](std::span<std::uint32_t> words) { words[GUARD_WORDS + HIT_WORDS + 1] = 77; });
     std::vector<Hit> hits(3);
+    session.launch(job_of(3, 1));
     session.read_back(hits);
     EXPECT_EQ(hits[0].face_id, POISON);
     EXPECT_EQ(hits[1].tet, 77u);
 }
 
+TEST(Session, gives_the_hits_of_all_jobs_one_after_the_other)
+{
+    const std::array jobs = {job_of(7, 3), job_of(1, 1), job_of(40, 9)};
+    FixedSession session([&](std::span<std::uint32_t> words) {
+        std::uint32_t ray = 0;
+        for (const std::size_t begin : {std::size_t{0}, OutputParts::alignment, 2 * OutputParts::alignment})
+            for (std::size_t i = 0; i < jobs[begin / OutputParts::alignment].rays(); ++i)
+                words[begin + GUARD_WORDS + HIT_WORDS * i] = ray++;
+    });
+    session.launch(jobs);
+    std::vector<Hit> hits(7 * 3 + 1 + 40 * 9);
+    session.read_back(hits);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        EXPECT_EQ(hits[i].face_id, i);
+}
+
 TEST(Session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
 {
+    const auto error_with = [](std::size_t jobs, std::size_t word) {
+        FixedSession session([&](std::span<std::uint32_t> words) { words[word] = 0; });
+        session.launch(std::vector(jobs, job_of(3, 1)));
+        std::vector<Hit> hits(3 * jobs);
+        return error_of([&] { session.read_back(hits); });
+    };
+    EXPECT_EQ(error_with(1, GUARD_WORDS + 3 * HIT_WORDS - 1), "");
+    EXPECT_TRUE(contains(error_with(1, GUARD_WORDS - 1), "before its output"));
+    EXPECT_TRUE(contains(error_with(1, GUARD_WORDS + 3 * HIT_WORDS), "behind its output"));
+    for (const std::size_t between : {GUARD_WORDS + 3 * HIT_WORDS, 500u, 1023u, 1024 + GUARD_WORDS - 1})
+        EXPECT_TRUE(contains(error_with(2, between), "between the jobs of its output")) << between;
+    EXPECT_EQ(error_with(2, 1024 + GUARD_WORDS), "");
+    EXPECT_TRUE(contains(error_with(2, 1024 + GUARD_WORDS + 3 * HIT_WORDS), "behind its output"));
+}
+
+TEST(HostSession, gives_the_hits_of_single_launches_to_jobs_that_are_launched_together)
+{
+    const Scene scene = make_cubes(3);
+    int seen = 0;
+    for (Backend* backend : all_backends())
+        for (const KernelId& kernel : all_kernels()) {
+            const bool is_on_host = backend->devices()[0].kind == DeviceKind::cpu && backend->has_kernel(kernel);
+            if (!is_on_host || !backend->why_not(0, kernel).empty() || kernel.task != Task::trace) continue;
+            const bool has_tets = is_portable(kernel) && kernel.structure == Structure::cdt;
+            if (is_portable(kernel) && !has_tets) continue;
+            const DeviceRays rays(scene, has_tets ? kernel.layout : Layout::tet80);
+            const SceneData data{&scene.mesh, has_tets ? &rays.packed() : nullptr};
+            const auto session = backend->open(0, kernel, data, {.threads = 2});
+            std::vector<TraceJob> jobs = jobs_of_all_kinds(rays); // from outside and inside
+            std::vector<Hit> single;
+            for (const TraceJob& job : jobs)
+                for (const Hit& hit : traced(*session, job))
+                    single.push_back(hit);
+            for (TraceJob& job : jobs)
+                job.passes = 2;
+            EXPECT_EQ(traced(*session, jobs), single) << backend->name() << ' ' << name_of(kernel);
+            ++seen;
+        }
+    EXPECT_GT(seen, 5) << "schedules tiles, packets and native, and Embree";
+}
+
+TEST(Session, refuses_launches_of_no_job_or_of_different_passes_and_other_numbers_of_hits)
+{
+    FixedSession session([](std::span<std::uint32_t>) {});
+    EXPECT_TRUE(contains(error_of([&] { session.launch(std::span<const TraceJob>()); }), "no job"));
+    std::array jobs = {job_of(3, 1), job_of(3, 1)};
+    jobs[1].passes = 2;
+    EXPECT_TRUE(contains(error_of([&] { session.launch(jobs); }), "different passes"));
+    jobs[0].passes = 2;
+    session.launch(jobs);
     std::vector<Hit> hits(3);
-    FixedSession before([](std::span<std::uint32_t> words) { words[GUARD_WORDS - 1] = 0; });
-    EXPECT_TRUE(contains(error_of([&] { before.read_back(hits); }), "before its output"));
-    FixedSession behind([](std::span<std::uint32_t> words) { words[GUARD_WORDS + 3 * HIT_WORDS] = 0; });
-    EXPECT_TRUE(contains(error_of([&] { behind.read_back(hits); }), "behind its output"));
+    EXPECT_TRUE(contains(error_of([&] { session.read_back(hits); }), "3 results are asked for, the last launch has 6"));
 }
 
 TEST(Devices, have_texts_that_can_be_shown)
@@ -163,6 +236,7 @@ TEST(Searches, find_faces_and_nothing_else)
         words[GUARD_WORDS + 5] = written;
         words[guard] = 2;
     });
+    session.launch(search_job(8));
     session.read_back(faces);
     EXPECT_EQ(faces, (std::vector<std::uint32_t>{2, 2, 2, 2, 2, NO_EXIT, 2, 2}));
     written = NO_EXIT + 1;

@@ -2,8 +2,10 @@
 // alone and read before anybody waits, and their times are times.
 #include "core/base/stopwatch.h"
 #include "tests/backends/each_device.h"
+#include "tests/support/temporary_folder.h"
 
 #include <algorithm>
+#include <array>
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -39,6 +41,66 @@ TEST_P(Devices, give_the_same_hits_after_several_passes_in_either_schedule)
                 EXPECT_EQ(wrong_rays(device, traced(*session, job), openmp_hits(rays, job)), 0u) << passes;
             }
         }
+}
+
+TEST_P(Devices, give_the_hits_of_single_launches_to_jobs_that_are_in_flight_together)
+{
+    for (const Layout layout : {Layout::tet80, Layout::half32}) {
+        const DeviceRays rays(make_cubes(4), layout);
+        const std::vector<TraceJob> all = jobs_of_all_kinds(rays); // of different sizes, from outside and inside
+        for (const std::size_t device : usable)
+            for (const Schedule schedule : {Schedule::tiles, Schedule::persistent}) {
+                const KernelId kernel{.method = Method::project, .layout = layout, .schedule = schedule};
+                if (!backend.why_not(device, kernel).empty()) continue;
+                const auto session = backend.open(device, kernel, rays.data(), {});
+                std::vector<Hit> single;
+                for (const TraceJob& job : all)
+                    for (const Hit& hit : traced(*session, job))
+                        single.push_back(hit);
+                for (const std::uint32_t passes : {1u, 3u, 1u}) {
+                    std::vector<TraceJob> jobs = all;
+                    for (TraceJob& job : jobs)
+                        job.passes = passes;
+                    EXPECT_EQ(traced(*session, jobs), single) << name_of(kernel) << ' ' << passes;
+                }
+                const std::vector<Hit> last = traced(*session, all.back());
+                EXPECT_TRUE(std::equal(last.begin(), last.end(), single.end() - std::ssize(last))) << "again alone";
+            }
+    }
+}
+
+TEST_P(Devices, give_joined_jobs_right_hits_in_a_sessions_first_launch_and_before_anybody_waits)
+{
+    const DeviceRays rays(make_cubes(8), Layout::tet80);
+    const std::vector jobs(5, rays.from_outside(300, 200)); // in several launches, which hold parts of two jobs
+    const std::vector<Hit> right = openmp_hits(rays, jobs[0]);
+    for (const std::size_t device : usable) {
+        const auto session = backend.open(device, {}, rays.data(), {});
+        for (int time = 0; time < 2; ++time) {
+            session->launch(jobs);
+            std::vector<Hit> hits(jobs.size() * right.size());
+            session->read_back(hits);
+            for (std::size_t job = 0; job < jobs.size(); ++job) {
+                const auto first = hits.begin() + static_cast<std::ptrdiff_t>(job * right.size());
+                EXPECT_EQ(wrong_rays(device, {first, first + std::ssize(right)}, right), 0u) << job;
+            }
+            EXPECT_GT(session->wait(), 0);
+            session->launch(jobs); // nobody waits for it
+        }
+    }
+}
+
+TEST_P(Devices, refuse_jobs_whose_hits_together_exceed_the_largest_buffer)
+{
+    const DeviceRays rays(make_cubes(3), Layout::tet80);
+    const TraceJob job = rays.from_outside(64, 64);
+    for (const std::size_t device : usable) {
+        const auto session = backend.open(device, {}, rays.data(), {.max_buffer_bytes = 250'000});
+        const std::vector<Hit> hits = traced(*session, job);
+        const std::string error = error_of([&] { session->launch(std::array{job, job, job}); });
+        EXPECT_TRUE(contains(error, "250000") && contains(error, "fewer at once")) << error;
+        EXPECT_EQ(traced(*session, job), hits) << "the session is alive";
+    }
 }
 
 // A pass that does nothing, for example because a counter of tiles is used up, leaves the hits of the first one.

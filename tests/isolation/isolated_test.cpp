@@ -152,6 +152,29 @@ TEST_F(Isolated, sessions_get_and_give_the_same_bits)
     EXPECT_EQ(faces, directs);
 }
 
+TEST_F(Isolated, jobs_that_are_launched_together_cross_together)
+{
+    const auto words_of = [](const std::vector<Hit>& hits) { // floats among them may be no numbers
+        std::vector<std::uint32_t> words(HIT_WORDS * hits.size());
+        std::memcpy(words.data(), hits.data(), 4 * words.size());
+        return words;
+    };
+    std::vector<TraceJob> jobs = {some_job(1), some_job(2), some_job(3)};
+    const auto session = open(""), direct = open_directly();
+    for (const std::size_t count : {3u, 1u, 2u}) {
+        std::vector<Hit> hits(64 * count), directs(64 * count);
+        const std::span some = std::span(jobs).first(count);
+        EXPECT_EQ(session->trace(some, hits), direct->trace(some, directs));
+        EXPECT_EQ(words_of(hits), words_of(directs));
+        std::vector<Hit> again(64 * count);
+        if (count == 2) {
+            EXPECT_NE(error_of([&] { use(*open("launch abort"), 1); }), "");
+        }
+        session->read_back(again);
+        EXPECT_EQ(words_of(again), words_of(directs)) << "also from another process, where they are launched again";
+    }
+}
+
 TEST_F(Isolated, sessions_of_several_scenes_do_not_mix_them_up)
 {
     const PackedScene other = some_scene(50);

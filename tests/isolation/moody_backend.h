@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/debugging/defects.h"
-#include "core/device/backend.h"
+#include "core/device/launch.h"
 #include "core/isolation/messages.h"
 
 #include <csignal>
@@ -58,13 +58,13 @@ public:
         misbehave(mood_, "set_rays");
         rays_ = hash_of(quads, 1);
     }
-    void launch(const TraceJob& job) override
+    void start(std::span<const TraceJob> jobs) override
     {
         misbehave(mood_, "launch");
         if (misbehaves_at_second_launch_) misbehave(mood_, "relaunch");
         misbehaves_at_second_launch_ = true;
         ByteWriter bytes;
-        bytes.put(job);
+        bytes.put_all(jobs);
         job_ = hash_of(bytes.bytes(), 2);
         ++launches_;
     }
@@ -81,11 +81,14 @@ private:
     {
         misbehave(mood_, "read");
         std::ranges::fill(words, POISON);
-        const bool outside = mood_ == "writes outside";
-        for (std::size_t i = outside ? 0 : GUARD_WORDS; i < words.size() - GUARD_WORDS; ++i) {
-            const std::uint64_t word = (given_ ^ rays_ ^ job_) * (i + 1);
-            words[i] = static_cast<std::uint32_t>(task_ == Task::search ? word % 5 : word);
-        }
+        if (mood_ == "writes outside") words[0] = 0;
+        const OutputParts parts = output_parts(words_per_ray(task_));
+        std::uint64_t i = 0;
+        for (std::size_t job = 0; job < parts.count(); ++job)
+            for (std::uint32_t& result : parts.results(words, job)) {
+                const std::uint64_t word = (given_ ^ rays_ ^ job_) * ++i;
+                result = static_cast<std::uint32_t>(task_ == Task::search ? word % 5 : word);
+            }
     }
     void add(std::span<const std::byte> bytes) { given_ = hash_of(bytes, given_); }
 

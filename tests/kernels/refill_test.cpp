@@ -97,7 +97,7 @@ protected:
         const auto on_host = openmp_backend().open(0, kernel(task), scene, {.threads = 2});
         if (!rays.empty()) on_host->set_rays(rays);
         for (const unsigned tile_height : {4u, 8u}) {
-            std::vector<std::uint32_t> output(output_words(job, task), POISON);
+            std::vector<std::uint32_t> output(2 * GUARD_WORDS + HIT_WORDS * job.rays(), POISON);
             const LaunchParams params =
                 launch_params(job, domain_of(*scene.packed), tile_height, TetParts{}.log2_bytes);
             const WarpCounts counts = GetParam().trace_by_warps({*scene.packed, params, rays, output});
@@ -115,7 +115,7 @@ protected:
     {
         const TraceJob job = given_job(set.rays.size(), 1, false);
         const std::vector<Quad> rays = given_quads_offset(set, cubes.scene.mesh);
-        std::vector<std::uint32_t> output(output_words(job, Task::rays), POISON);
+        std::vector<std::uint32_t> output(2 * GUARD_WORDS + HIT_WORDS * job.rays(), POISON);
         const LaunchParams params = launch_params(job, domain_of(packed), 4, TetParts{}.log2_bytes);
         return GetParam().trace_by_warps({packed, params, rays, output, 1, patience}).visits;
     }

@@ -19,11 +19,13 @@ public:
         : WrappedSession(std::move(inner)), now_s_(&now_s), ray_s_(&ray_s), compile_s_(first_launch_s)
     {
     }
-    void launch(const TraceJob& job) override
+    void start(std::span<const TraceJob> jobs) override
     {
-        *now_s_ += compile_s_ + *ray_s_ * job.width * job.height;
+        *now_s_ += compile_s_;
+        for (const TraceJob& job : jobs)
+            *now_s_ += *ray_s_ * static_cast<double>(job.rays());
         compile_s_ = 0;
-        WrappedSession::launch(job);
+        WrappedSession::start(jobs);
     }
 
 private:

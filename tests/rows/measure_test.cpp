@@ -25,10 +25,10 @@ public:
         : WrappedSession(std::move(inner)), number_(number), launched_(&launched), changes_(&changes)
     {
     }
-    void launch(const TraceJob& job) override
+    void start(std::span<const TraceJob> jobs) override
     {
         launched_->push_back(number_);
-        WrappedSession::launch(job);
+        WrappedSession::start(jobs);
     }
 
 private:
@@ -50,10 +50,10 @@ public:
         : WrappedSession(std::move(inner)), at_(at), lose_(std::move(lose))
     {
     }
-    void launch(const TraceJob& job) override
+    void start(std::span<const TraceJob> jobs) override
     {
         lose_at(LostAt::launch);
-        WrappedSession::launch(job);
+        WrappedSession::start(jobs);
     }
     [[nodiscard]] double wait() override
     {

@@ -41,7 +41,7 @@ RowRun row_of(Backend& backend)
 class SessionOfBytes : public Session {
 public:
     explicit SessionOfBytes(std::uint64_t bytes) : bytes_(bytes) {}
-    void launch(const TraceJob&) override {}
+    void start(std::span<const TraceJob>) override {}
     [[nodiscard]] double wait() override { return 0; }
     [[nodiscard]] SetupTimes setup_times() const override { return {}; }
     [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }

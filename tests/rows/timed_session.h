@@ -25,11 +25,11 @@ public:
         : WrappedSession(std::move(inner)), number_(number), launches_(&launches), pass_s_(&pass_s)
     {
     }
-    void launch(const TraceJob& job) override
+    void start(std::span<const TraceJob> jobs) override
     {
-        passes_ = job.passes;
+        passes_ = jobs.front().passes;
         launches_->push_back({number_, passes_});
-        WrappedSession::launch(job);
+        WrappedSession::start(jobs);
     }
     [[nodiscard]] double wait() override
     {

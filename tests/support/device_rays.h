@@ -100,12 +100,19 @@ private:
     return along_lines(width, height, {0.03125f, 0.0625f, 3});
 }
 
-/// The hits of one launch.
+/// The hits of one launch, job after job.
+[[nodiscard]] inline std::vector<Hit> traced(Session& session, std::span<const TraceJob> jobs)
+{
+    std::size_t rays = 0;
+    for (const TraceJob& job : jobs)
+        rays += job.rays();
+    std::vector<Hit> hits(rays);
+    (void)session.trace(jobs, hits);
+    return hits;
+}
 [[nodiscard]] inline std::vector<Hit> traced(Session& session, const TraceJob& job)
 {
-    std::vector<Hit> hits(std::size_t{job.width} * job.height);
-    (void)session.trace(job, hits);
-    return hits;
+    return traced(session, std::span(&job, 1));
 }
 
 /// What the job gives in exact mode on the host.

@@ -18,15 +18,24 @@ class WrappedSession : public Session {
 public:
     explicit WrappedSession(std::unique_ptr<Session> inner) : inner_(std::move(inner)) {}
     void set_rays(std::span<const Quad> quads) override { inner_->set_rays(quads); }
-    void launch(const TraceJob& job) override { inner_->launch(job); }
+    void start(std::span<const TraceJob> jobs) override { inner_->launch(jobs); }
     [[nodiscard]] double wait() override { return inner_->wait(); }
     void read_output(std::span<std::uint32_t> words) override
     {
-        std::vector<Hit> hits((words.size() - 2 * GUARD_WORDS) / HIT_WORDS);
+        const OutputParts parts = output_parts(HIT_WORDS);
+        std::size_t rays = 0;
+        for (std::size_t job = 0; job < parts.count(); ++job)
+            rays += parts.results(words, job).size() / HIT_WORDS;
+        std::vector<Hit> hits(rays);
         inner_->read_back(hits);
         change(hits);
         std::fill(words.begin(), words.end(), POISON);
-        std::memcpy(words.data() + GUARD_WORDS, hits.data(), hits.size() * sizeof(Hit));
+        const Hit* next = hits.data();
+        for (std::size_t job = 0; job < parts.count(); ++job) {
+            const auto results = parts.results(words, job);
+            std::memcpy(results.data(), next, results.size_bytes());
+            next += results.size() / HIT_WORDS;
+        }
     }
     [[nodiscard]] SetupTimes setup_times() const override { return inner_->setup_times(); }
     [[nodiscard]] std::uint64_t bytes() const override { return inner_->bytes(); }

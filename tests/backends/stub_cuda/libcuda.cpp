@@ -26,10 +26,10 @@ bool asked_for(std::string_view failure)
 /// Calls that a lost context answers with its error; what only gives something back is done all the same.
 bool needs_context(std::string_view symbol)
 {
-    constexpr std::array work{"cuModuleLoadDataEx",   "cuModuleGetFunction",  "cuMemAlloc_v2",
-                              "cuMemcpyHtoDAsync_v2", "cuMemcpyDtoHAsync_v2", "cuMemsetD32Async",
-                              "cuStreamCreate",       "cuStreamSynchronize",  "cuEventCreate",
-                              "cuEventRecord",        "cuEventSynchronize",   "cuLaunchKernel"};
+    constexpr std::array work{"cuModuleLoadDataEx",   "cuModuleGetFunction", "cuMemAlloc_v2",  "cuMemcpyHtoDAsync_v2",
+                              "cuMemcpyDtoHAsync_v2", "cuMemsetD32Async",    "cuStreamCreate", "cuStreamSynchronize",
+                              "cuStreamWaitEvent",    "cuEventCreate",       "cuEventRecord",  "cuEventSynchronize",
+                              "cuLaunchKernel"};
     for (const char* name : work)
         if (symbol == name) return true;
     return false;
