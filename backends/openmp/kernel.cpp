@@ -11,6 +11,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#if defined(__SSE2__) && !defined(COUNTS_VISITS)
+#include <immintrin.h>
+#define HOST_SSE2 // BVHs have a form for such processors
+#endif
 
 namespace {
 #ifdef COUNTS_VISITS

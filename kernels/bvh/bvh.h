@@ -13,21 +13,6 @@
 
 // Depth is the distance from the ray's origin along the axis of the direction's largest component, in the direction's
 // sense: t times the magnitude of that component.
-STRUCT(RayFrame)
-{
-    Vec3 origin;
-    Vec3 inverse; // the depth of one unit along each axis
-    Vec3 offset;  // origin * inverse
-    uint axis;    // of the direction's largest component
-    Vec3 shear;   // the direction times 2^20, its axes in cyclic order and `axis` the third; x and y negated
-};
-
-// A vertex as a ray sees it.
-STRUCT(Seen)
-{
-    Sheared at; // the ray is the origin
-    real depth; // times 2^40
-};
 
 // The nearest hit so far.
 STRUCT(Nearest)
@@ -52,47 +37,6 @@ KERNEL_FN real with_slack(real depth)
     return result;
 }
 
-// A ray that does not move along an axis gets a large finite quotient (Aila and Laine 2009).
-KERNEL_FN real depth_per_unit(real deepest, real direction)
-{
-    PRECISE real quotient = deepest / (direction == real(0.0f) ? real(8.27180612553027675e-25f) : direction); // 2^-80
-    return quotient;
-}
-
-KERNEL_FN RayFrame frame_of(Ray ray)
-{
-    real deepest = component(ray.direction, deepest_axis(ray.direction));
-    RayFrame frame;
-    frame.origin = ray.origin;
-    frame.axis = deepest_axis(ray.direction);
-    Vec3 turned = turned_from(ray.direction, frame.axis);
-    PRECISE real shear_x = turned.x * real(-1048576.0f);
-    PRECISE real shear_y = turned.y * real(-1048576.0f);
-    PRECISE real shear_z = turned.z * real(1048576.0f);
-    frame.shear = VEC3(shear_x, shear_y, shear_z);
-    frame.inverse =
-        VEC3(depth_per_unit(magnitude(deepest), ray.direction.x), depth_per_unit(magnitude(deepest), ray.direction.y),
-             depth_per_unit(magnitude(deepest), ray.direction.z));
-    PRECISE real offset_x = ray.origin.x * frame.inverse.x;
-    PRECISE real offset_y = ray.origin.y * frame.inverse.y;
-    PRECISE real offset_z = ray.origin.z * frame.inverse.z;
-    frame.offset = VEC3(offset_x, offset_y, offset_z);
-    return frame;
-}
-
-// The ray of a frame, exactly: products with powers of two are not rounded. A GPU has no registers for it beside the
-// frame.
-KERNEL_FN Ray ray_of(RayFrame frame)
-{
-    PRECISE real a = frame.shear.x * real(-9.5367431640625e-7f); // 2^-20
-    PRECISE real b = frame.shear.y * real(-9.5367431640625e-7f);
-    PRECISE real c = frame.shear.z * real(9.5367431640625e-7f);
-    real x = frame.axis == 0u ? c : frame.axis == 1u ? b : a;
-    real y = frame.axis == 0u ? a : frame.axis == 1u ? c : b;
-    real z = frame.axis == 0u ? b : frame.axis == 1u ? a : c;
-    return make_ray(frame.origin, VEC3(x, y, z));
-}
-
 // end: ray parameter. A value above 2^64 means no end; a value below 2^-60 means the origin.
 KERNEL_FN Nearest nothing_before(Ray ray, real end)
 {
@@ -103,22 +47,6 @@ KERNEL_FN Nearest nothing_before(Ray ray, real end)
     nearest.triangle = NO_HIT;
     nearest.at = 0u;
     return nearest;
-}
-
-// A vertex is needed only as its two coordinates and its depth: a GPU has no registers for more of three vertices.
-KERNEL_FN Seen seen_by(RayFrame frame, uint4 quad)
-{
-    Vec3 offset = sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), frame.origin);
-    Vec3 turned = turned_from(offset, frame.axis);
-    real forwards = frame.shear.z < real(0.0f) ? real(-1099511627776.0f) : real(1099511627776.0f); // 2^40
-    PRECISE real x = turned.x * frame.shear.z + turned.z * frame.shear.x;
-    PRECISE real y = turned.y * frame.shear.z + turned.z * frame.shear.y;
-    PRECISE real depth = turned.z * forwards;
-    Seen seen;
-    seen.at.x = x;
-    seen.at.y = y;
-    seen.depth = depth;
-    return seen;
 }
 
 // Quotients that are compared must have the same bits everywhere; division does not guarantee that. a: normal, 2^-126
@@ -132,39 +60,27 @@ KERNEL_FN real reciprocal(real a)
     return third;
 }
 
-KERNEL_FN bool has_two_signs(real a, real b, real c)
+// The nearer of a hit and leaf triangle `at`, given the sum of its sides and the sum of its depths times 2^40, weighted
+// by the sides. Of equally near triangles the first in the input wins, in any order of the tests.
+KERNEL_FN Nearest nearer(Nearest nearest, real determinant, real weighted, uint triangle, uint at)
 {
-    return minimum(minimum(a, b), c) < real(0.0f) && maximum(maximum(a, b), c) > real(0.0f);
-}
-
-// Tests leaf triangle `at`. Of equally near triangles the first in the input wins, in any order of the tests.
-// Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; here without a division.
-KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
-{
-    COUNT_TRIANGLE();
-    uint4 quad = FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at);
-    Seen a = seen_by(frame, quad);
-    Seen b = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 1u));
-    Seen c = seen_by(frame, FETCH(scene, leaf_triangles, LEAF_TRIANGLE_QUADS * at + 2u));
-    if (has_two_signs(rough_side(b.at, c.at), rough_side(c.at, a.at), rough_side(a.at, b.at))) return nearest;
-
-    real u = fine_side(b.at, c.at);
-    real v = fine_side(c.at, a.at);
-    real w = fine_side(a.at, b.at);
-    PRECISE real determinant = u + v + w;
-    if (has_two_signs(u, v, w) || determinant == real(0.0f)) return nearest;
-    PRECISE real weighted = u * a.depth + v * b.depth + w * c.depth;
     PRECISE real inverse = reciprocal(magnitude(determinant));
     PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
     PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
-    bool nearer = depth < nearest.depth || (depth == nearest.depth && quad.w < nearest.triangle);
-    if (scaled < LEAST_DEPTH || !nearer) return nearest;
+    bool is_nearer = depth < nearest.depth || (depth == nearest.depth && triangle < nearest.triangle);
+    if (scaled < LEAST_DEPTH || !is_nearer) return nearest;
     Nearest found;
     found.depth = depth;
-    found.triangle = quad.w;
+    found.triangle = triangle;
     found.at = at;
     return found;
 }
+
+#ifdef HOST_SSE2
+#include "kernels/bvh/triangle_sse2.h"
+#else
+#include "kernels/bvh/triangle.h"
+#endif
 
 KERNEL_FN Hit hit_of(SceneView scene, Ray ray, Nearest nearest)
 {

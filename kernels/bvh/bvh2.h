@@ -5,6 +5,9 @@
 // The bottom of the stack: a leaf that ends the loop.
 #define BVH2_END 0xFFFFFFFFu
 
+#ifdef HOST_SSE2
+#include "kernels/bvh/bvh2_boxes_sse2.h"
+#else
 // Depth at which the ray enters a box, 0 inside, or NEVER.
 KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, uint y_low, uint y_high, uint z_low,
                          uint z_high)
@@ -19,6 +22,7 @@ KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, ui
     real far = minimum(minimum(maximum(x0, x1), maximum(y0, y1)), minimum(maximum(z0, z1), limit));
     return near <= with_slack(far) ? near : NEVER;
 }
+#endif
 
 // A traversal is text, not functions, because kernels have no pointers to its stack: trace_ray() has it, and so have
 // lanes that go on with another ray (refill_cuda.h). The loop's body is bvh2_loop.h.

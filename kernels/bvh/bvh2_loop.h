@@ -4,6 +4,9 @@
     if ((child & BVH2_LEAF) == 0u) {
         do {
             COUNT_NODE();
+#ifdef HOST_SSE2
+#include "kernels/bvh/bvh2_node_sse2.h"
+#else
             uint4 xy_a = FETCH(scene, nodes, BVH2_NODE_QUADS * child);
             uint4 xy_b = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 1u);
             uint4 z = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 2u);
@@ -16,6 +19,7 @@
             uint later = b_first ? children.x : children.y;
             SET_ENTRY(scene, stack, waiting, later, as_bits(maximum(a, b)))
             waiting += maximum(a, b) < NEVER ? 1u : 0u;
+#endif
         } while ((child & BVH2_LEAF) == 0u);
     }
     if (child != BVH2_END) {

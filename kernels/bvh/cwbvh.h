@@ -6,6 +6,18 @@
 // triangles.
 #define CWBVH_INNER_HITS 0xFF000000u
 
+// A node as a ray meets it.
+STRUCT(Visit)
+{
+    uint hits;
+    uint inner;     // bit i: the child in slot i is inner
+    uint children;  // number of the first inner child
+    uint triangles; // number of the first leaf triangle
+};
+
+#ifdef HOST_SSE2
+#include "kernels/bvh/cwbvh_node_sse2.h"
+#else
 // Depth of the node's grid: plane q of an axis lies at q * step + start.
 STRUCT(GridFrame)
 {
@@ -52,15 +64,6 @@ KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, ui
     return hits;
 }
 
-// A node as a ray meets it.
-STRUCT(Visit)
-{
-    uint hits;
-    uint inner;     // bit i: the child in slot i is inner
-    uint children;  // number of the first inner child
-    uint triangles; // number of the first leaf triangle
-};
-
 KERNEL_FN Visit visit_of(SceneView scene, RayFrame frame, real limit, uint turn, uint node)
 {
     COUNT_NODE();
@@ -91,6 +94,7 @@ KERNEL_FN uint turn_of(RayFrame frame)
     return (frame.inverse.x < real(0.0f) ? 0u : 4u) | (frame.inverse.y < real(0.0f) ? 0u : 2u) |
            (frame.inverse.z < real(0.0f) ? 0u : 1u);
 }
+#endif
 
 // A traversal is text, as that of bvh2.h; the loop's body is cwbvh_loop.h.
 #define TRAVERSAL_ENTRIES CWBVH_STACK
