@@ -124,6 +124,12 @@ const VerbHelp verb_help[] = {
      "has what a ray visits, its time, the build and the memory, and the exponents of the power laws of the number of "
      "occlusive faces that fit them. It is not in the paper, and made only if it is named. It traces every 64th view "
      "unless --views is given.\n\n"
+     "rivals: what this repository says about the speed of tets and BVHs, measured again by rules that the authors of "
+     "the BVHs would accept (docs/rivals.md): a ratio is to the fastest BVH of the device, on the same rays, over "
+     "scenes that suit tets and scenes that do not. It is a run of its own, as 'bench' does it: all views together, "
+     "with --samples, --sample-time and --budget as there. Default scenes: bunny, armadillo, atrium, city, terrain, "
+     "spheres and grass, as far as they are available. 'tetrace show FILE.json --out page.md' writes the page "
+     "again.\n\n"
      "figure6: time over tets traversed, one point a view, their correlation, and pictures of the two extreme "
      "views.\n\n"
      "Each view, and each batch of searches, is timed as by 'bench': GPUs' rows interleaved with each other, then the "
@@ -140,6 +146,7 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce growth --sizes 1500,25000,400000,1000000 --backend openmp,embree\n"
+     "  tetrace reproduce rivals --out rivals.json    15 minutes on two cores; with --scene bunny, 3\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",
      "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the compilers "

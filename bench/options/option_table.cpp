@@ -37,7 +37,7 @@ std::vector<OptionRow> reproduce_options()
     return {
         {"Tables", "TABLE", "LIST",
          "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
-             ". Default: all except growth, which is not in the paper.",
+             ". Default: all except growth and rivals, which are not in the paper; rivals is a run of its own.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--builds", "LIST",
          "Which builds of the scenes: 'ours', a CDT as the options of scenes say; 'paper', of banana, bunny and "
@@ -204,7 +204,8 @@ std::vector<OptionRow> ray_options()
          with_rays & ~bit(Verb::trace), true,
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; of 'check' and 'trace' 256x256.",
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; of 'check' and 'trace' 256x256, of "
+         "'reproduce rivals' 512x512.",
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
@@ -258,12 +259,15 @@ std::vector<OptionRow> judging_options()
          "passes: a GPU traces all views in less than a millisecond, before its clocks have settled. Passes follow "
          "each other without the host, and a rate is that of a pass. 0: a sample is one pass. Default: 0.1.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
-        {"Measuring", "--samples", "N", "Samples a row and view, or batch of searches, 3 to 10000. Default: 5.",
+        {"Measuring", "--samples", "N",
+         "Samples a row and view, or batch of searches, 3 to 10000. Default: 5. For rivals as for 'bench': a row's, "
+         "10.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--sample-time", "TIME",
          "A sample of a view, or batch of searches, lasts at least this long on its device (seconds, or a number "
          "followed by s; a minute at most), or 4096 passes, whose rate is that of a pass. Less than for 'bench', since "
-         "each of up to 1,282 views has samples of its own. 0: a sample is one pass. Default: 0.005.",
+         "each of up to 1,282 views has samples of its own. 0: a sample is one pass. Default: 0.005; for rivals, whose "
+         "samples are of all views, 0.1.",
          bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
@@ -271,6 +275,10 @@ std::vector<OptionRow> judging_options()
          "skipped, and the result names the budget that they need. A run takes at most a quarter longer. Loading "
          "scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
+        {"Measuring", "--budget", "TIME",
+         "For rivals: wall-clock time for verifying and timing all rows, as for 'bench'. Building scenes, loading them "
+         "and opening devices does not count. Default: 10m.",
+         bit(Verb::reproduce), false, set_seconds("--budget", &Options::budget_s)},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
          "none is skipped or unsupported.",

@@ -167,6 +167,25 @@ void check_together(const Options& options)
     if (options.verb == Verb::dump) check_dump(options);
 }
 
+/// `reproduce rivals` is a run of `bench` over given rows; the other tables are of views one after the other.
+constexpr std::string_view only_of_rivals[] = {"--budget"};
+constexpr std::string_view not_of_rivals[] = {"--builds", "--searches", "--sizes", "--resume", "--shard", "--wait"};
+
+void check_rivals(const Options& options, const CLI::App& app)
+{
+    const bool is_rivals = std::ranges::find(options.targets, PaperTarget::rivals) != options.targets.end();
+    if (is_rivals && options.targets.size() > 1)
+        throw Error(ErrorKind::usage, "reproduce: rivals is a run of its own; name it alone");
+    const auto reject = [&](std::string_view name, const char* what) {
+        if (app.get_option(std::string(name))->count() > 0)
+            throw Error(ErrorKind::usage, fmt::format("{} {}", name, what));
+    };
+    for (const std::string_view name : only_of_rivals)
+        if (!is_rivals) reject(name, "is for 'reproduce rivals'; the other tables have no budget, but --resume");
+    for (const std::string_view name : not_of_rivals)
+        if (is_rivals) reject(name, "is not for 'reproduce rivals', which is one run of one process");
+}
+
 /// A verb's defaults.
 Options defaults_of(Verb verb)
 {
@@ -181,6 +200,23 @@ Options defaults_of(Verb verb)
     options.tets = {TetsKind::cdt}; // as in the paper; --builds adds others
     options.samples = 5;
     options.sample_s = 0.005; // of each of 1,282 views
+    return options;
+}
+
+bool asks_for_rivals(Verb verb, const CLI::App& app)
+{
+    if (verb != Verb::reproduce) return false;
+    const auto& tables = app.get_option("TABLE")->results();
+    return std::ranges::find(tables, name_of(PaperTarget::rivals)) != tables.end();
+}
+
+/// Those of `bench`, but for more rows in as many minutes.
+Options defaults_of_rivals()
+{
+    Options options;
+    options.verb = Verb::reproduce;
+    options.width = options.height = 512;
+    options.budget_s = 600;
     return options;
 }
 
@@ -208,8 +244,10 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     } catch (const CLI::ParseError& problem) {
         reject_command_line(verb, std::string(problem.what()).append(guess(verb, arguments)));
     }
+    if (asks_for_rivals(verb, app)) options = defaults_of_rivals();
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) apply_row(options, row, app);
+    if (verb == Verb::reproduce) check_rivals(options, app);
     set_files(options, files);
     options.words = {std::string(name_of(verb))};
     options.words.insert(options.words.end(), arguments.begin(), arguments.end());

@@ -33,6 +33,25 @@ void check_anonymous(const Options& options, const BenchmarkFlags& flags)
 
 } // namespace
 
+BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, const BenchmarkFlags& flags,
+                      const ImageSeen& image_seen)
+{
+    BenchResult result;
+    result.missing_scenes = missing_default_scenes(options);
+    Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
+    result.run = open_and_verify(keys, options, image_seen, budget);
+    result.measurement = measure_rows(result.run.rows, options, flags, budget);
+    result.devices = devices_of(result.run.rows);
+    measure_devices(result.devices, session_options(options));
+    result.comparisons = compare_rows(result.run.rows);
+    result.missing_devices = missing_devices(options);
+    result.scenes = scene_records(result.run, options);
+    result.threads = resolved_threads(options);
+    result.samples_asked = options.samples;
+    result.budget_s = options.budget_s;
+    return result;
+}
+
 int bench_command(const Options& options)
 {
     BenchmarkFlags flags = read_benchmark_flags(options.benchmark_flags);
@@ -46,22 +65,9 @@ int bench_command(const Options& options)
     check_output(options);
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
-    BenchResult result;
-    result.missing_scenes = missing_default_scenes(options);
-    Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
     ViewJournal journal(options);
-    result.run = open_and_verify(
-        keys, options, [&](const SeenImage& image) { journal.see(image); }, budget);
+    const BenchResult result = run_bench(keys, options, flags, [&](const SeenImage& image) { journal.see(image); });
     journal.write();
-    result.measurement = measure_rows(result.run.rows, options, flags, budget);
-    result.devices = devices_of(result.run.rows);
-    measure_devices(result.devices, session_options(options));
-    result.comparisons = compare_rows(result.run.rows);
-    result.missing_devices = missing_devices(options);
-    result.scenes = scene_records(result.run, options);
-    result.threads = resolved_threads(options);
-    result.samples_asked = options.samples;
-    result.budget_s = options.budget_s;
     const Report report = bench_report(result, options);
     // Google Benchmark has already written its own form to standard output, where it was asked to.
     if (!flags.format)

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "bench/options/benchmark_flags.h"
 #include "bench/options/options.h"
-#include "bench/rows/row_run.h"
+#include "bench/output/bench_report.h"
 
 #include <optional>
 #include <string>
@@ -24,6 +25,11 @@ int compare_command(const Options& options);
 int show_command(const Options& options);
 int report_command(const Options& options);
 int merge_command(const Options& options);
+
+/// Opens, verifies and times the rows of `bench`, or of another run like it, and measures their devices. Throws as
+/// open_and_verify() and measure_rows() do.
+[[nodiscard]] BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options,
+                                    const BenchmarkFlags& flags, const ImageSeen& image_seen = {});
 
 /// Whether the row fails `check`. A row without an answer does not fail by itself (see exit_code and --require).
 [[nodiscard]] bool fails_check(const RowRun& row, const Options& options);

@@ -134,7 +134,10 @@ bool is_shared(const Options& options)
 {
     const bool takes_shards =
         options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::reproduce;
-    return takes_shards && !options.shard && !options.list && !options.defects;
+    const auto& targets = options.targets;
+    const bool is_one_process =
+        options.list || options.defects || std::ranges::find(targets, PaperTarget::rivals) != targets.end();
+    return takes_shards && !options.shard && !is_one_process;
 }
 
 int run_rank(const Rank& rank, const Options& asked, const std::function<int(const Options&)>& run_verb)

@@ -1,6 +1,8 @@
 #include "bench/options/identity.h"
 #include "bench/reproduce/tables/pictures.h"
 #include "bench/reproduce/yardsticks.h"
+#include "bench/rivals/rival_run.h"
+#include "bench/rivals/rival_tables.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/reproduction.h"
@@ -163,10 +165,27 @@ void run_all_searches(Reproduction& all, const Options& options, Keeping& keepin
     add_devices(all, run, options, keeping.yardsticks);
 }
 
+/// A run of `bench` over the scenes and rows of the claims, which are then judged.
+int reproduce_rivals(const Options& asked)
+{
+    check_output(asked);
+    std::vector<std::string> missing;
+    const Options options = rival_options(asked, missing);
+    for (const std::string& sentence : missing)
+        say(sentence);
+    BenchResult result = run_bench(rival_rows(options), options, read_benchmark_flags({}));
+    result.missing_scenes = missing;
+    const auto tables = rival_tables(result.run.rows, leaves_out_rows(options));
+    deliver(options, rival_report(result, tables, options));
+    require_answers(result.run.rows, "measured");
+    return exit_code(result.run.rows, true);
+}
+
 } // namespace
 
 int reproduce_command(const Options& asked)
 {
+    if (wants(asked, PaperTarget::rivals)) return reproduce_rivals(asked);
     Reproduction all;
     const Options options = with_defaults(asked, all.missing_scenes);
     check_output(options);

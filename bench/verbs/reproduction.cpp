@@ -92,7 +92,7 @@ Options with_defaults(Options options, std::vector<std::string>& missing)
 {
     if (options.targets.empty())
         for (const PaperTarget target : values_of<PaperTarget>())
-            if (target != PaperTarget::growth) options.targets.push_back(target);
+            if (target != PaperTarget::growth && target != PaperTarget::rivals) options.targets.push_back(target);
     add_methods(options);
     if (!options.scenes.empty() || !wants_scenes(options)) return options;
     for (const char* const name : {"banana", "bunny", "armadillo"}) {
@@ -152,16 +152,28 @@ void make_tables(Reproduction& all, const Options& options)
     }
 }
 
+Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables, const Options& options)
+{
+    Steadiness steadiness{result.measurement.load, result.measurement.pulses};
+    for (const RowRun& row : result.run.rows)
+        steadiness.count(row);
+    const PaperTables all = {tables,
+                             {},
+                             result.missing_scenes,
+                             result.missing_devices,
+                             is_timed(result) ? trust_text(steadiness) : std::string()};
+    Report report{tables_sheet(all), tidy_table(tables, {}), bench_report(result, options).json, tables_markdown(all)};
+    for (const PaperTable& table : tables)
+        report.json["tetrace"]["tables"].push_back(table_json(table));
+    if (options.out) report.sheet.labelled("Result", options.out->string());
+    return report;
+}
+
 Report reproduction_report(const Reproduction& all, const Options& options)
 {
-    Report report{tables_sheet({all.tables, all.figures, all.missing_scenes, all.missing_devices, trust_of(all)}),
-                  tidy_table(all.tables, all.figures),
-                  reproduction_json(all, options),
-                  {}};
-    for (const PaperTable& table : all.tables)
-        report.markdown += table_markdown(table);
-    for (const PaperFigure& figure : all.figures)
-        report.markdown += figure_markdown(figure);
+    const PaperTables shown = {all.tables, all.figures, all.missing_scenes, all.missing_devices, trust_of(all)};
+    Report report{tables_sheet(shown), tidy_table(all.tables, all.figures), reproduction_json(all, options),
+                  tables_markdown(shown)};
     if (options.out) report.sheet.labelled("Result", options.out->string());
     return report;
 }

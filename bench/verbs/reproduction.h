@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/output/bench_answer.h"
+#include "bench/output/bench_report.h"
 #include "bench/output/report.h"
 #include "bench/reproduce/scene_run.h"
 #include "bench/reproduce/search_run.h"
@@ -45,6 +46,10 @@ void check_labels(const std::vector<SceneBuild>& builds);
 void make_tables(Reproduction& all, const Options& options);
 
 [[nodiscard]] Report reproduction_report(const Reproduction& all, const Options& options);
+
+/// The page of `reproduce rivals`: these tables, and in JSON all that `bench` records too.
+[[nodiscard]] Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables,
+                                  const Options& options);
 
 /// Tells all timed rows what the pulse and the load of the whole run say about their rates. They must have been
 /// watched.

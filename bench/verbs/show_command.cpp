@@ -35,6 +35,7 @@ Report shown(const ResultFile& file, const Options& options)
         all.trust = trust_of(file);
         report.sheet.append(tables_sheet(all));
         report.table = tidy_table(all.tables, all.figures);
+        report.markdown = fmt::format("{}\n\n{}", made_by(file), tables_markdown(all));
     } else if (file.head.verb == "trace") {
         ShownTrace trace = shown_trace(file.section());
         report.sheet.append(trace.sheet);
@@ -49,7 +50,8 @@ Report shown(const ResultFile& file, const Options& options)
         report.table = std::move(again.table);
     }
     check_columns(options, report.sheet.column_keys());
-    report.markdown = report.sheet.markdown({.columns = options.columns});
+    if (report.markdown.empty() || !options.columns.empty())
+        report.markdown = report.sheet.markdown({.columns = options.columns});
     return report;
 }
 

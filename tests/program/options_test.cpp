@@ -72,7 +72,8 @@ TEST(Options, an_unknown_option_is_answered_with_the_accepted_ones)
     const std::string text = rejection({"bench", "--scenes", "cubes"});
     EXPECT_TRUE(contains(text, "--scenes"));
     // Rows of other verbs have these names, or the beginning of one.
-    const std::set<std::string> of_bench_too = {"--out", "--format", "--samples", "--sample-time", "--view"};
+    const std::set<std::string> of_bench_too = {"--out",         "--format", "--samples",
+                                                "--sample-time", "--budget", "--view"};
     for (const OptionRow& row : option_table())
         EXPECT_EQ(bool(contains(text, row.name)), takes(Verb::bench, row) || of_bench_too.count(row.name) > 0)
             << row.name;
@@ -284,7 +285,23 @@ TEST(Options, reproduce_takes_tables_wherever_they_stand_and_the_papers_views)
     EXPECT_EQ(options.scenes, std::vector<std::string>{"cubes"});
     EXPECT_EQ(options.camera_set, CameraSet::flight);
     EXPECT_TRUE(options.resume);
-    EXPECT_TRUE(contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6 or growth"));
+    EXPECT_TRUE(
+        contains(rejection({"reproduce", "table1"}), "table3, table4, table5, table6, figure6, growth or rivals"));
+}
+
+TEST(Options, rivals_are_measured_as_bench_measures)
+{
+    const Options options = parse_options({"reproduce", "rivals"}), bench = parse_options({"bench"});
+    EXPECT_EQ(options.camera_set, bench.camera_set);
+    EXPECT_EQ(options.tets, bench.tets);
+    EXPECT_EQ(options.samples, bench.samples);
+    EXPECT_EQ(options.sample_s, bench.sample_s);
+    EXPECT_TRUE(options.structures.empty()) << "BVHs too";
+    EXPECT_EQ(parse_options({"reproduce", "rivals", "--budget", "30s"}).budget_s, 30);
+    EXPECT_TRUE(contains(rejection({"reproduce", "rivals,table4"}), "name it alone"));
+    for (const char* const option : {"--resume", "--shard=1/2", "--sizes=4", "--searches=10x32", "--builds=ours"})
+        EXPECT_TRUE(contains(rejection({"reproduce", "rivals", option}), "is not for 'reproduce rivals'")) << option;
+    EXPECT_TRUE(contains(rejection({"reproduce", "table6", "--budget", "30s"}), "--budget is for 'reproduce rivals'"));
 }
 
 TEST(Options, all_builds_are_traced_unless_some_are_named)

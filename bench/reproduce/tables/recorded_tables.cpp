@@ -104,6 +104,14 @@ PaperFigure read_figure(const ResultValue& value)
     return figure;
 }
 
+void add_closing_lines(Sheet& sheet, const PaperTables& all)
+{
+    for (const auto& sentences : {all.missing_scenes, all.missing_devices})
+        for (const std::string& sentence : sentences)
+            sheet.labelled("Missing", sentence);
+    if (!all.trust.empty()) sheet.labelled("Trust", all.trust);
+}
+
 } // namespace
 
 Sheet tables_sheet(const PaperTables& all)
@@ -113,11 +121,20 @@ Sheet tables_sheet(const PaperTables& all)
         sheet.append(table_sheet(table));
     for (const PaperFigure& figure : all.figures)
         sheet.append(figure_sheet(figure));
-    for (const auto& sentences : {all.missing_scenes, all.missing_devices})
-        for (const std::string& sentence : sentences)
-            sheet.labelled("Missing", sentence);
-    if (!all.trust.empty()) sheet.labelled("Trust", all.trust);
+    add_closing_lines(sheet, all);
     return sheet;
+}
+
+std::string tables_markdown(const PaperTables& all)
+{
+    std::string text;
+    for (const PaperTable& table : all.tables)
+        text += table_markdown(table);
+    for (const PaperFigure& figure : all.figures)
+        text += figure_markdown(figure);
+    Sheet closing;
+    add_closing_lines(closing, all);
+    return text + closing.markdown();
 }
 
 PaperTables read_tables(const ResultValue& section)

@@ -16,6 +16,9 @@ struct PaperTables {
 /// What `reproduce` prints, and `show` prints again.
 [[nodiscard]] Sheet tables_sheet(const PaperTables& all);
 
+/// The same as Markdown, in which claims are tables.
+[[nodiscard]] std::string tables_markdown(const PaperTables& all);
+
 /// The tables of a result's section `tetrace`: the reverse of table_json() and figure_json(). Throws
 /// Error{invalid_input} naming the key that is missing or of another kind.
 [[nodiscard]] PaperTables read_tables(const ResultValue& section);

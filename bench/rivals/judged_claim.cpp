@@ -1,0 +1,193 @@
+#include "bench/rivals/judged_claim.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/rivals/pay_off.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tetrace {
+
+namespace {
+
+/// Also if the scene could not be loaded.
+bool may_have_tets(const Contest& contest, TetsKind kind)
+{
+    return std::ranges::any_of(contest.rows, [&](const RowRun* row) {
+        return row->scene == nullptr || row->scene->loaded().scene.build.optimised.tets == kind;
+    });
+}
+
+bool is_about(const RivalClaim& claim, const Contest& contest)
+{
+    const auto is_it = [&](std::string_view name) { return is_scene(contest.scene, name); };
+    return contest.place == claim.place && std::ranges::find(claim.rays, contest.rays) != claim.rays.end() &&
+           (claim.scenes.empty() || std::ranges::any_of(claim.scenes, is_it)) &&
+           (claim.backend.empty() || contest.rows.front()->key.backend == claim.backend) &&
+           (!claim.tets || may_have_tets(contest, *claim.tets));
+}
+
+/// Why the rows have no rate; empty if one has, or if there are none.
+std::string reason_without_rate(const std::vector<const RowRun*>& rows)
+{
+    if (rows.empty() || fastest(rows) != nullptr) return {};
+    const RowRun& first = *rows.front();
+    const Status status = status_of(first);
+    return status == Status::ok || status == Status::flawed ? std::string("not timed")
+                                                            : fmt::format("{}: {}", name_of(status), reason_of(first));
+}
+
+bool is_noisy_row(const RowRun& row)
+{
+    return figures_of(row)->noisy;
+}
+
+/// A rival that the device has, but that was not timed, could be the fastest.
+void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
+{
+    for (const RowRun* row : rows_of(contest, judged.claim->rival))
+        if (!figures_of(*row) && status_of(*row) != Status::unsupported)
+            judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
+                                                   row_label(row->key), reason_without_rate({row})));
+    const bool needs_embree = contest.place == DeviceKind::cpu && judged.claim->rival != Rival::our_single;
+    if (needs_embree &&
+        std::ranges::none_of(contest.rows, [](const RowRun* row) { return row->key.kernel.layout == Layout::embree; }))
+        judged.obstacles.push_back(
+            fmt::format("{}: Embree, whose rays could be faster, has no rows in this run", title_of(contest)));
+}
+
+void add_contest(JudgedClaim& judged, const Contest& contest)
+{
+    const auto walks = rows_of(contest, judged.claim->walk), rivals = rows_of(contest, judged.claim->rival);
+    const RowRun *const walk = fastest(walks), *const rival = fastest(rivals);
+    const auto add_missing = [&](std::string_view what, const std::vector<const RowRun*>& rows) {
+        const std::string reason = rows.empty() ? "no such row was selected" : reason_without_rate(rows);
+        judged.obstacles.push_back(fmt::format("{}: no rate of {}: {}", title_of(contest), what, reason));
+    };
+    if (walk == nullptr) add_missing(name_of(judged.claim->walk), walks);
+    if (rival == nullptr) add_missing(name_of(judged.claim->rival), rivals);
+    if (walk == nullptr || rival == nullptr) return;
+    add_untimed_rivals(judged, contest);
+    const auto value = judged.claim->measure == Measure::rate ? std::optional(rate_ratio(*walk, *rival))
+                                                              : tracing_until_paid(*walk, *rival);
+    if (!value) {
+        judged.obstacles.push_back(fmt::format("{}: a build time is not known", title_of(contest)));
+        return;
+    }
+    judged.numbers.push_back({&contest, walk, rival, *value});
+    for (const RowRun* row : {walk, rival})
+        if (is_noisy_row(*row))
+            judged.obstacles.push_back(fmt::format("{}: {} is noisy, so measure again on a quieter machine",
+                                                   title_of(contest), row_label(row->key)));
+}
+
+void add_missing_scenes(JudgedClaim& judged, const std::vector<const Contest*>& contests)
+{
+    for (const std::string_view name : judged.claim->scenes)
+        if (std::ranges::none_of(contests, [&](const Contest* contest) { return is_scene(contest->scene, name); }))
+            judged.missing.emplace_back(name);
+    if (contests.empty() && judged.missing.empty())
+        judged.obstacles.emplace_back("no row of this run is on such a device, with such rays");
+}
+
+/// The measure such that more of it speaks for the claim.
+Estimate in_favour(const RivalClaim& claim, const Estimate& value)
+{
+    if (!claim.is_below) return value;
+    const auto negated = [](const std::optional<double>& bound) {
+        return bound ? std::optional(-*bound) : std::nullopt;
+    };
+    return {-value.value, negated(value.high), negated(value.low), value.exact};
+}
+
+ClaimVerdict verdict_of(const JudgedClaim& judged, bool of_noisy_rows_too)
+{
+    std::vector<Estimate> values;
+    for (const ClaimNumber& one : judged.numbers)
+        if (of_noisy_rows_too || (!is_noisy_row(*one.walk) && !is_noisy_row(*one.rival)))
+            values.push_back(in_favour(*judged.claim, one.value));
+    const double boundary = judged.claim->boundary;
+    return judge_above(values, judged.claim->is_below ? -boundary : boundary);
+}
+
+std::string place_text(const RivalClaim& claim)
+{
+    switch (claim.place) {
+    case DeviceKind::cpu: return "on the processor";
+    case DeviceKind::gpu: return "on each GPU";
+    case DeviceKind::emulated: return fmt::format("on {} if that is emulated by the processor", claim.backend);
+    }
+    return {};
+}
+
+std::string names_of(const std::vector<RayKind>& kinds)
+{
+    std::vector<std::string_view> names;
+    for (const RayKind kind : kinds)
+        names.push_back(name_of(kind));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+} // namespace
+
+JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, bool is_filtered)
+{
+    JudgedClaim judged;
+    judged.claim = &claim;
+    std::vector<const Contest*> about;
+    for (const Contest& contest : contests)
+        if (is_about(claim, contest)) about.push_back(&contest);
+    add_missing_scenes(judged, about);
+    for (const Contest* contest : about)
+        add_contest(judged, *contest);
+    if (is_filtered && !judged.numbers.empty())
+        judged.obstacles.emplace_back("--method or --layout left out rows, of which one could be the fastest");
+    if (verdict_of(judged, false) == ClaimVerdict::does_not_hold)
+        judged.verdict = ClaimVerdict::does_not_hold;
+    else if (judged.obstacles.empty())
+        judged.verdict = verdict_of(judged, true);
+    return judged;
+}
+
+std::string number_text(const RivalClaim& claim, const Estimate& value)
+{
+    if (claim.measure == Measure::rate) return estimate_text(value);
+    return std::isinf(value.value) ? std::string("never") : fmt::format("{} s", estimate_text(value));
+}
+
+std::string rule_of(const RivalClaim& claim)
+{
+    const char* const side = claim.is_below ? "below" : "above";
+    const std::string what =
+        claim.measure == Measure::rate
+            ? fmt::format("the rate of {} over that of {} is {} {:.4g}", name_of(claim.walk), name_of(claim.rival),
+                          side, claim.boundary)
+            : fmt::format("the seconds of tracing by {} until the tets have paid, against {}, are {} {:.4g}",
+                          name_of(claim.walk), name_of(claim.rival), side, claim.boundary);
+    return fmt::format("{} {}, for {} rays of {}", what, place_text(claim), names_of(claim.rays),
+                       claim.scenes.empty() ? std::string("every scene")
+                                            : fmt::format("{}", fmt::join(claim.scenes, ", ")));
+}
+
+Claim to_claim(const JudgedClaim& judged)
+{
+    const RivalClaim& claim = *judged.claim;
+    Claim result{std::string(claim.id), fmt::format("{} ({})", claim.text, claim.made_in), judged.verdict,
+                 fmt::format("Then {} ({}).", claim.then, claim.old->name)};
+    for (const ClaimNumber& one : judged.numbers)
+        result.evidence += fmt::format("{} {} {}", &one == judged.numbers.data() ? " Now" : ",",
+                                       number_text(claim, one.value), title_of(*one.contest));
+    result.evidence += fmt::format("{} It holds if {}.", judged.numbers.empty() ? "" : ".", rule_of(claim));
+    for (const ClaimNumber& one : judged.numbers)
+        result.evidence +=
+            fmt::format(" {}: {} over {}.", title_of(*one.contest), rated_label(*one.walk), rated_label(*one.rival));
+    for (const std::string& obstacle : judged.obstacles)
+        result.evidence += fmt::format(" {}.", obstacle);
+    if (!judged.missing.empty())
+        result.evidence += fmt::format(" No such rows of {} in this run.", fmt::join(judged.missing, ", "));
+    return result;
+}
+
+} // namespace tetrace

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "bench/reproduce/claims.h"
+#include "bench/rivals/contest.h"
+
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// A claim's measure in one contest.
+struct ClaimNumber {
+    const Contest* contest = nullptr;
+    const RowRun *walk = nullptr, *rival = nullptr; ///< both with rates
+    Estimate value;
+};
+
+/// A claim with its verdict, and what decided it.
+struct JudgedClaim {
+    const RivalClaim* claim = nullptr;
+    ClaimVerdict verdict = ClaimVerdict::not_testable;
+    std::vector<ClaimNumber> numbers;   ///< one for each contest that has both rows
+    std::vector<std::string> obstacles; ///< reasons why it cannot be said to hold, a phrase each
+    std::vector<std::string> missing;   ///< scenes of the claim without such rows
+};
+
+/// Judges a claim by the contests that it is about. It holds only if every number's interval is on the right side of
+/// the boundary and there is no obstacle: a rival without a rate could be the fastest, and a noisy row decides nothing.
+/// One number whose interval is on the wrong side refutes it, unless one of its two rows is noisy. Scenes that were not
+/// traced are named, and the others decide.
+/// is_filtered: whether --method or --layout left out rows, of which one could be the fastest.
+[[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, bool is_filtered);
+
+/// "0.91 [0.90, 0.92]"; seconds have their unit, and infinite ones are "never".
+[[nodiscard]] std::string number_text(const RivalClaim& claim, const Estimate& value);
+
+/// The rule that decides the claim, as a clause.
+[[nodiscard]] std::string rule_of(const RivalClaim& claim);
+
+/// The claim as results record it: its text says where it was made, and its evidence has the old figure,
+/// the new ones, the rule, and the rows.
+[[nodiscard]] Claim to_claim(const JudgedClaim& judged);
+
+} // namespace tetrace

@@ -1,0 +1,83 @@
+#include "bench/rivals/rival_run.h"
+
+#include "bench/measuring/scene_rows.h"
+#include "bench/rivals/rival_claims.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+const Backend& backend_of(const RowKey& key)
+{
+    return **std::ranges::find_if(all_backends(), [&](const Backend* one) { return one->name() == key.backend; });
+}
+
+const RivalScene* find_scene(const std::string& label)
+{
+    const auto found =
+        std::ranges::find_if(rival_scenes(), [&](const RivalScene& scene) { return is_scene(label, scene.name); });
+    return found == rival_scenes().end() ? nullptr : &*found;
+}
+
+bool has_rays(const RivalScene* scene, RayKind rays)
+{
+    if (scene != nullptr && scene->has_all_rays) return true;
+    return rays == RayKind::primary || rays == RayKind::diffuse || rays == RayKind::random;
+}
+
+bool is_wanted(const RowKey& key, const Options& options)
+{
+    const RivalScene* const scene = find_scene(key.scene);
+    if (!has_rays(scene, key.rays)) return false;
+    const bool is_emulated = backend_of(key).devices().at(key.device).kind == DeviceKind::emulated;
+    if (is_emulated && (key.rays != RayKind::primary || (scene != nullptr && !scene->has_all_rays))) return false;
+    if (key.kernel.method != Method::maria || !options.methods.empty()) return true;
+    return key.rays == RayKind::primary && (key.kernel.layout == Layout::tet80 || !options.layouts.empty());
+}
+
+/// The same kernel in its form for AVX2; a row of another backend has none.
+void add_native(std::vector<RowKey>& rows, RowKey key)
+{
+    if (!on_reference(key) || key.kernel.schedule != Schedule::tiles) return;
+    key.kernel.schedule = Schedule::native;
+    if (backend_of(key).has_kernel(key.kernel)) rows.push_back(std::move(key));
+}
+
+} // namespace
+
+Options rival_options(Options options, std::vector<std::string>& missing)
+{
+    if (!options.scenes.empty()) return options;
+    for (const RivalScene& scene : rival_scenes()) {
+        const std::string name(scene.name), reason = why_not_available(name);
+        if (reason.empty())
+            options.scenes.push_back(name);
+        else
+            missing.push_back(fmt::format("{} is left out: {}", name, reason));
+    }
+    return options;
+}
+
+std::vector<RowKey> rival_rows(const Options& options)
+{
+    Options selecting = options;
+    selecting.verb = Verb::bench; // whose defaults have packets
+    selecting.rays = values_of<RayKind>();
+    std::vector<RowKey> rows;
+    for (const RowKey& key : selected_rows(selecting, [](const std::string&) { return true; }))
+        if (is_wanted(key, options)) {
+            rows.push_back(key);
+            add_native(rows, key);
+        }
+    return rows;
+}
+
+bool leaves_out_rows(const Options& options)
+{
+    return !options.methods.empty() || !options.layouts.empty();
+}
+
+} // namespace tetrace

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "bench/options/options.h"
+#include "bench/rows/rows.h"
+
+#include <string>
+#include <vector>
+
+namespace tetrace {
+
+/// The options of `reproduce rivals` with its scenes, unless some are named: those of rival_scenes() that are available
+/// here. missing: gets a sentence for each of them that is not.
+[[nodiscard]] Options rival_options(Options options, std::vector<std::string>& missing);
+
+/// The rows of the run. Each scene has primary rays and the other kinds that rival_scenes() gives it; a scene that is
+/// not listed has diffuse and random rays. On openmp each kernel of one ray at a time also has its form for AVX2
+/// (schedule native). Emulated devices have only primary rays, on scenes with all kinds of rays and on those that are
+/// not listed. Unless --method names it, maria has one layout and only primary rays. Throws Error{usage} as
+/// selected_rows() does.
+[[nodiscard]] std::vector<RowKey> rival_rows(const Options& options);
+
+/// Whether the options leave out rows that could be the fastest.
+[[nodiscard]] bool leaves_out_rows(const Options& options);
+
+} // namespace tetrace

@@ -1,0 +1,193 @@
+#include "bench/rivals/rival_tables.h"
+
+#include "bench/measuring/figures.h"
+#include "bench/rivals/pay_off.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+
+namespace tetrace {
+
+namespace {
+
+constexpr const char* page = "docs/rivals.md";
+
+const char* place_title(DeviceKind place)
+{
+    switch (place) {
+    case DeviceKind::cpu: return "processors";
+    case DeviceKind::gpu: return "GPUs";
+    case DeviceKind::emulated: return "emulated GPUs";
+    }
+    return "";
+}
+
+PaperCell count_cell(const std::vector<Claim>& claims, ClaimVerdict verdict)
+{
+    return exact_cell(static_cast<double>(std::ranges::count(claims, verdict, &Claim::verdict)));
+}
+
+/// Where the old figures are from, a sentence for each measurement.
+std::vector<std::string> old_runs(const std::vector<RivalClaim>& claims)
+{
+    std::vector<std::string> sentences;
+    for (const RivalClaim& claim : claims) {
+        const std::string sentence = fmt::format("{}: {}.", claim.old->name, claim.old->what);
+        if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(sentence);
+    }
+    return sentences;
+}
+
+template <class Numerator, class Denominator>
+PaperCell ratio_cell(const Contest& contest, Numerator walk, Denominator rival)
+{
+    const RowRun *const first = fastest(rows_of(contest, walk)), *const second = fastest(rows_of(contest, rival));
+    if (first == nullptr || second == nullptr) return {};
+    return Quantity{rate_ratio(*first, *second), {}};
+}
+
+/// Without the kind of rays, which has a column of its own.
+std::string title_of(RowKey key)
+{
+    key.rays = RayKind::primary;
+    return kernel_title(key);
+}
+
+PaperCell label_cell(const RowRun* row)
+{
+    return row == nullptr ? PaperCell() : PaperCell(fmt::format("{}, {}", title_of(row->key), device_label(row->key)));
+}
+
+/// A percentage of the rays that hit, by the first row with an answer.
+PaperCell hit_cell(const Contest& contest)
+{
+    for (const RowRun* row : contest.rows)
+        if (const Traced* result = traced(*row); result != nullptr && result->totals.rays > 0)
+            return exact_cell(100 * static_cast<double>(result->totals.hits) /
+                              static_cast<double>(result->totals.rays));
+    return {};
+}
+
+PaperCell build_cell(const RowRun* row)
+{
+    const auto cost = row == nullptr ? std::nullopt : total_cost(*row);
+    return cost ? exact_cell(cost->once_s) : PaperCell();
+}
+
+/// Billions of rays.
+PaperCell paid_cell(const RowRun* walk, const RowRun* bvh)
+{
+    const auto rays = walk == nullptr || bvh == nullptr ? std::nullopt : rays_until_paid(*walk, *bvh);
+    if (!rays) return {};
+    return std::isinf(*rays) ? PaperCell(std::string("never")) : exact_cell(1e-9 * *rays);
+}
+
+PaperTable scenes_table(const std::vector<Contest>& contests)
+{
+    PaperTable table{
+        "rivals-scenes",
+        "where tets win and where they lose",
+        page,
+        {{"scene", "scene"},
+         {"rays", "rays"},
+         {"device", "device"},
+         {"hit", "rays that hit", "%", 0},
+         {"ratio", "fastest walk / fastest BVH"},
+         {"packets_over_embree", "packets / Embree's best"},
+         {"tet64_over_single", "tet64 / best BVH of one ray at a time"},
+         {"walk", "fastest walk"},
+         {"bvh", "fastest BVH"},
+         {"tets_build_s", "tets built in", "s", 2},
+         {"bvh_build_s", "BVH built in", "s", 2},
+         {"paid_after", "tets have paid after", "G rays", 2}},
+        {"A ratio is of rates: above 1 the walk through tets is faster. Its interval is of the samples of this run; "
+         "runs differ by more. Builds are with all threads, packing included. 'Paid' is for the fastest walk against "
+         "the fastest BVH."}};
+    for (const Contest& contest : contests) {
+        const RowRun *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
+                                                                             fastest(rows_of(contest, Rival::any));
+        table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), contest.device, hit_cell(contest),
+                              ratio_cell(contest, Walk::any, Rival::any),
+                              ratio_cell(contest, Walk::packets, Rival::embree),
+                              ratio_cell(contest, Walk::tet64, Rival::single), label_cell(walk), label_cell(bvh),
+                              build_cell(walk), build_cell(bvh), paid_cell(walk, bvh)});
+    }
+    return table;
+}
+
+std::string status_text(const RowRun& row)
+{
+    const auto figures = figures_of(row);
+    std::string text(name_of(status_of(row)));
+    if (figures && figures->noisy) text += ", noisy";
+    const std::string reason = reason_of(row);
+    return reason.empty() ? text : text + ": " + reason;
+}
+
+void add_row(PaperTable& table, const Contest& contest, const RowRun& row, const RowRun* bvh)
+{
+    const auto figures = figures_of(row);
+    const auto number = [&](double value) { return figures ? exact_cell(value) : PaperCell(); };
+    PaperCell over_bvh;
+    if (figures && bvh != nullptr) over_bvh = Quantity{rate_ratio(row, *bvh), {}};
+    table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), title_of(row.key), device_label(row.key),
+                          number(figures ? figures->mrays_per_s : 0),
+                          number(figures ? 100 * figures->kernel_s.spread() : 0), over_bvh, status_text(row)});
+}
+
+PaperTable rows_table(const std::vector<Contest>& contests)
+{
+    PaperTable table{"rivals-rows",
+                     "every row, and its rate over that of the fastest BVH of its device",
+                     page,
+                     {{"scene", "scene"},
+                      {"rays", "rays"},
+                      {"row", "row"},
+                      {"device", "device"},
+                      {"mrays_per_s", "Mrays/s"},
+                      {"spread", "spread", "%", 1},
+                      {"over_bvh", "x fastest BVH"},
+                      {"status", "status"}},
+                     {}};
+    for (const Contest& contest : contests) {
+        const RowRun* const bvh = fastest(rows_of(contest, Rival::any));
+        for (const RowRun* row : contest.rows)
+            add_row(table, contest, *row, bvh);
+    }
+    return table;
+}
+
+} // namespace
+
+PaperTable claims_table(const std::vector<Contest>& contests, bool is_filtered, const std::vector<RivalClaim>& claims)
+{
+    std::map<DeviceKind, std::vector<Claim>> by_place;
+    PaperTable table{
+        "rivals",
+        "what this repository says about tets and BVHs, measured again",
+        page,
+        {{"device", "claims about"}, {"holds", "hold"}, {"fails", "do not hold"}, {"untested", "not testable here"}},
+        {}};
+    for (Column& column : table.columns)
+        column.decimals = 0;
+    for (const RivalClaim& claim : claims) {
+        table.claims.push_back(to_claim(judge(claim, contests, is_filtered)));
+        by_place[claim.place].push_back(table.claims.back());
+    }
+    for (const auto& [place, list] : by_place)
+        table.rows.push_back({std::string(place_title(place)), count_cell(list, ClaimVerdict::holds),
+                              count_cell(list, ClaimVerdict::does_not_hold),
+                              count_cell(list, ClaimVerdict::not_testable)});
+    table.notes = old_runs(claims);
+    return table;
+}
+
+std::vector<PaperTable> rival_tables(const std::vector<RowRun>& rows, bool is_filtered)
+{
+    const auto contests = contests_of(rows);
+    return {claims_table(contests, is_filtered), scenes_table(contests), rows_table(contests)};
+}
+
+} // namespace tetrace

@@ -1,0 +1,250 @@
+#include "bench/rivals/rival_tables.h"
+#include "tests/support/row_runs.h"
+
+#include <gtest/gtest.h>
+
+using namespace tetrace;
+using namespace tetrace::test;
+
+namespace {
+
+constexpr OldRun old_run = {"a machine", "some views on a machine"};
+
+/// "half32 is faster than our BVHs on bunny".
+RivalClaim claim_of(Walk walk = Walk::half32, Rival rival = Rival::our_single, double boundary = 1)
+{
+    return {"a-claim", "a walk is faster", "README.md", "1.50 bunny", &old_run,           walk,
+            rival,     DeviceKind::cpu,    {},          {"bunny"},    {RayKind::primary}, boundary};
+}
+
+KernelId kernel(Method method, Layout layout, Schedule schedule = Schedule::tiles)
+{
+    return {structure_of(layout), method, layout, MathMode::exact, schedule};
+}
+
+/// A row on the host, or on an emulated device of another backend, that takes so long for 1,000 rays.
+RowRun row_of(const KernelId& kernel, double seconds, const std::string& backend = "openmp",
+              const std::string& scene = "bunny")
+{
+    RowRun row;
+    row.key = {scene, backend, kernel};
+    row.backend = &reference_backend();
+    row.device.usable = true;
+    row.device.kind = backend == "openmp" || backend == "embree" ? DeviceKind::cpu : DeviceKind::emulated;
+    Traced result;
+    result.totals.rays = 1000;
+    result.totals.hits = 250;
+    row.outcome = result;
+    row.samples_s = {0.99 * seconds, seconds, 1.01 * seconds, seconds, 0.99 * seconds, 1.01 * seconds};
+    return row;
+}
+
+const KernelId half32 = kernel(Method::project, Layout::half32), tet64 = kernel(Method::project, Layout::tet64),
+               packets = kernel(Method::project, Layout::half32, Schedule::packets),
+               bvh2 = kernel(Method::single, Layout::bvh2), cwbvh = kernel(Method::single, Layout::cwbvh),
+               native_bvh2 = kernel(Method::single, Layout::bvh2, Schedule::native);
+
+RowRun embree(Method method, double seconds)
+{
+    RowRun row = row_of(kernel(method, Layout::embree), seconds, "embree");
+    row.key.kernel.math = MathMode::fast; // of the list's
+    return row;
+}
+
+JudgedClaim judged(const RivalClaim& claim, const std::vector<RowRun>& rows, bool is_filtered = false)
+{
+    static RivalClaim kept; // a judged claim points to it
+    kept = claim;
+    static std::vector<Contest> contests;
+    contests = contests_of(rows);
+    return judge(kept, contests, is_filtered);
+}
+
+ClaimVerdict verdict_of(const RivalClaim& claim, const std::vector<RowRun>& rows)
+{
+    return judged(claim, rows).verdict;
+}
+
+std::string evidence_of(const RivalClaim& claim, const std::vector<RowRun>& rows)
+{
+    return to_claim(judged(claim, rows)).evidence;
+}
+
+constexpr auto holds = ClaimVerdict::holds, fails_to_hold = ClaimVerdict::does_not_hold,
+               untested = ClaimVerdict::not_testable;
+
+} // namespace
+
+TEST(Rivals, a_claim_holds_if_the_ratio_to_the_fastest_rival_is_above_its_boundary)
+{
+    const auto rows = list(row_of(half32, 1), row_of(bvh2, 2), row_of(cwbvh, 3));
+    EXPECT_EQ(verdict_of(claim_of(), rows), holds);
+    EXPECT_EQ(verdict_of(claim_of(Walk::half32, Rival::our_single, 1.9), rows), holds);
+    EXPECT_EQ(verdict_of(claim_of(Walk::half32, Rival::our_single, 2.1), rows), fails_to_hold)
+        << "3 times as fast as cwbvh, but bvh2 is faster";
+    EXPECT_EQ(verdict_of(claim_of(Walk::half32, Rival::our_single, 2), rows), untested) << "2 is in the interval";
+}
+
+TEST(Rivals, the_rival_has_its_form_for_processors)
+{
+    EXPECT_EQ(verdict_of(claim_of(), list(row_of(half32, 1), row_of(bvh2, 2), row_of(native_bvh2, 0.5))),
+              fails_to_hold);
+}
+
+TEST(Rivals, the_fastest_bvh_of_a_processor_is_any_entry_point_of_embree)
+{
+    const auto any = claim_of(Walk::packets, Rival::any);
+    EXPECT_EQ(verdict_of(any, list(row_of(packets, 1), row_of(bvh2, 9), embree(Method::single, 5),
+                                   embree(Method::packet16, 2))),
+              holds);
+    EXPECT_EQ(verdict_of(any, list(row_of(packets, 1), row_of(bvh2, 9), embree(Method::single, 0.5),
+                                   embree(Method::packet16, 2))),
+              fails_to_hold);
+}
+
+TEST(Rivals, without_embree_nothing_is_faster_than_the_fastest_bvh_of_a_processor)
+{
+    const auto any = claim_of(Walk::packets, Rival::any);
+    const auto rows = list(row_of(packets, 1), row_of(bvh2, 9));
+    EXPECT_EQ(verdict_of(any, rows), untested);
+    EXPECT_NE(evidence_of(any, rows).find("Embree"), std::string::npos);
+    EXPECT_EQ(verdict_of(any, list(row_of(packets, 1), row_of(bvh2, 0.5))), fails_to_hold)
+        << "a slower walk is refuted all the same";
+}
+
+TEST(Rivals, a_rival_that_was_skipped_could_be_the_fastest)
+{
+    auto rows = list(row_of(half32, 1), row_of(bvh2, 2), row_of(cwbvh, 3));
+    rows[2].samples_s.clear();
+    rows[2].outcome = Skipped{Status::skipped, "no time"};
+    EXPECT_EQ(verdict_of(claim_of(), rows), untested);
+    EXPECT_NE(evidence_of(claim_of(), rows).find("no time"), std::string::npos);
+    rows[2].outcome = Skipped{Status::unsupported, "no AVX2"};
+    EXPECT_EQ(verdict_of(claim_of(), rows), holds) << "a device without the rival has no faster one";
+}
+
+TEST(Rivals, a_noisy_row_decides_nothing)
+{
+    auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
+    rows[1].disturbance = "others";
+    EXPECT_EQ(verdict_of(claim_of(), rows), untested);
+    EXPECT_NE(evidence_of(claim_of(), rows).find("noisy"), std::string::npos);
+    EXPECT_EQ(verdict_of(claim_of(Walk::half32, Rival::our_single, 3), rows), untested);
+}
+
+TEST(Rivals, a_missing_walk_is_named_with_its_reason)
+{
+    auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
+    rows[0].samples_s.clear();
+    rows[0].outcome = Failed{ErrorKind::unsupported, "TetGen gave up"};
+    EXPECT_EQ(verdict_of(claim_of(), rows), untested);
+    EXPECT_NE(evidence_of(claim_of(), rows).find("TetGen gave up"), std::string::npos);
+    EXPECT_NE(evidence_of(claim_of(), list(row_of(bvh2, 2))).find("no such row"), std::string::npos);
+}
+
+TEST(Rivals, scenes_that_were_not_traced_are_named_and_the_others_decide)
+{
+    RivalClaim claim = claim_of();
+    claim.scenes = {"bunny", "armadillo"};
+    EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1), row_of(bvh2, 2))), holds);
+    EXPECT_NE(evidence_of(claim, list(row_of(half32, 1), row_of(bvh2, 2))).find("armadillo in this run"),
+              std::string::npos);
+    EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1), row_of(bvh2, 2), row_of(half32, 2, "openmp", "armadillo"),
+                                     row_of(bvh2, 1, "openmp", "armadillo"))),
+              fails_to_hold)
+        << "one scene refutes it";
+    EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1, "openmp", "banana"), row_of(bvh2, 2, "openmp", "banana"))),
+              untested);
+}
+
+TEST(Rivals, a_scene_of_another_size_or_of_a_bundle_is_the_same_scene)
+{
+    for (const char* const label : {"bunny", "bunny@5000", "bunny-rays"})
+        EXPECT_EQ(verdict_of(claim_of(), list(row_of(half32, 1, "openmp", label), row_of(bvh2, 2, "openmp", label))),
+                  holds)
+            << label;
+    EXPECT_FALSE(is_scene("bunny-2", "bunny"));
+    EXPECT_FALSE(is_scene("bunnies", "bunny"));
+}
+
+TEST(Rivals, emulated_devices_are_compared_only_with_their_own_rows)
+{
+    RivalClaim claim = claim_of(Walk::tet64, Rival::any);
+    claim.place = DeviceKind::emulated;
+    claim.backend = "vulkan";
+    const auto rows = list(row_of(tet64, 2, "vulkan"), row_of(bvh2, 3, "vulkan"), row_of(bvh2, 1, "opencl"),
+                           row_of(tet64, 2, "opencl"), row_of(bvh2, 1));
+    EXPECT_EQ(verdict_of(claim, rows), holds);
+    claim.backend = "opencl";
+    EXPECT_EQ(verdict_of(claim, rows), fails_to_hold);
+    claim.backend = "cuda-host";
+    EXPECT_EQ(verdict_of(claim, rows), untested);
+}
+
+TEST(Rivals, other_rays_are_another_contest)
+{
+    auto rows = list(row_of(half32, 1), row_of(bvh2, 2), row_of(bvh2, 0.5));
+    rows[2].key.rays = RayKind::random;
+    EXPECT_EQ(contests_of(rows).size(), 2u);
+    EXPECT_EQ(verdict_of(claim_of(), rows), holds);
+    RivalClaim random = claim_of();
+    random.rays = {RayKind::random};
+    EXPECT_EQ(verdict_of(random, rows), untested);
+}
+
+TEST(Rivals, a_claim_of_losing_holds_below_its_boundary)
+{
+    RivalClaim claim = claim_of();
+    claim.is_below = true;
+    EXPECT_EQ(verdict_of(claim, list(row_of(half32, 2), row_of(bvh2, 1))), holds);
+    EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1), row_of(bvh2, 2))), fails_to_hold);
+    EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1), row_of(bvh2, 1))), untested);
+}
+
+TEST(Rivals, rows_that_a_user_left_out_could_be_faster)
+{
+    const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
+    EXPECT_EQ(judged(claim_of(), rows, true).verdict, untested);
+    EXPECT_EQ(judged(claim_of(Walk::half32, Rival::our_single, 3), rows, true).verdict, fails_to_hold);
+}
+
+TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
+{
+    const std::string evidence = evidence_of(claim_of(), list(row_of(half32, 1), row_of(bvh2, 2)));
+    EXPECT_NE(evidence.find("Then 1.50 bunny (a machine)."), std::string::npos) << evidence;
+    EXPECT_NE(evidence.find("Now 2 ["), std::string::npos) << evidence;
+    EXPECT_NE(evidence.find("is above 1 "), std::string::npos) << "the rule: " << evidence;
+    const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
+    const PaperTable table = claims_table(contests_of(rows), false, {claim_of()});
+    EXPECT_EQ(table.notes, std::vector<std::string>{"a machine: some views on a machine."});
+    EXPECT_EQ(std::get<Quantity>(table.rows.at(0).at(1)).ours.value, 1) << "one holds";
+}
+
+TEST(Rivals, every_claim_has_a_name_of_its_own_and_a_scene_of_the_run_or_of_the_paper)
+{
+    std::vector<std::string_view> ids;
+    for (const RivalClaim& claim : rival_claims()) {
+        EXPECT_EQ(std::count(ids.begin(), ids.end(), claim.id), 0) << claim.id;
+        ids.push_back(claim.id);
+        EXPECT_GT(claim.boundary, 0);
+        EXPECT_FALSE(claim.rays.empty());
+        for (const std::string_view name : claim.scenes)
+            EXPECT_TRUE(name == "banana" ||
+                        std::ranges::find(rival_scenes(), name, &RivalScene::name) != rival_scenes().end())
+                << name;
+    }
+}
+
+TEST(Rivals, every_row_has_its_ratio_to_the_fastest_bvh)
+{
+    const auto rows = list(row_of(packets, 1), row_of(bvh2, 4), embree(Method::packet16, 2));
+    const auto tables = rival_tables(rows, false);
+    ASSERT_EQ(tables.size(), 3u);
+    const auto& table = tables.at(2);
+    ASSERT_EQ(table.rows.size(), 3u);
+    const std::size_t column = 6;
+    ASSERT_EQ(table.columns.at(column).key, "over_bvh");
+    EXPECT_NEAR(std::get<Quantity>(table.rows.at(0).at(column)).ours.value, 2, 1e-9);
+    EXPECT_NEAR(std::get<Quantity>(table.rows.at(1).at(column)).ours.value, 0.5, 1e-9);
+    EXPECT_NEAR(std::get<Quantity>(table.rows.at(2).at(column)).ours.value, 1, 1e-9);
+}
