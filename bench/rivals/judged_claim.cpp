@@ -153,8 +153,11 @@ JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests,
 
 std::string number_text(const RivalClaim& claim, const Estimate& value)
 {
-    if (claim.measure == Measure::rate) return estimate_text(value);
-    return std::isinf(value.value) ? std::string("never") : fmt::format("{} s", estimate_text(value));
+    if (std::isinf(value.value)) return "never";
+    const auto text = [](double number) { return std::isinf(number) ? "never" : fmt::format("{:.2f}", number); };
+    const std::string interval =
+        value.low && value.high ? fmt::format(" [{}, {}]", text(*value.low), text(*value.high)) : std::string();
+    return text(value.value) + interval + (claim.measure == Measure::break_even ? " s" : "");
 }
 
 std::string rule_of(const RivalClaim& claim)

@@ -31,7 +31,7 @@ struct JudgedClaim {
 /// is_filtered: whether --method or --layout left out rows, of which one could be the fastest.
 [[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, bool is_filtered);
 
-/// "0.91 [0.90, 0.92]"; seconds have their unit, and infinite ones are "never".
+/// "0.91 [0.90, 0.92]"; seconds end in their unit, and infinite ones are "never".
 [[nodiscard]] std::string number_text(const RivalClaim& claim, const Estimate& value);
 
 /// The rule that decides the claim, as a clause.

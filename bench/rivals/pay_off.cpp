@@ -12,14 +12,13 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// If the walk takes `more_s` longer to build and has `ratio` times the rate.
+} // namespace
+
 double seconds_until_paid(double more_s, double ratio)
 {
-    if (more_s <= 0) return 0;
+    if (more_s <= 0 && ratio >= 1) return 0;
     return ratio > 1 ? more_s / (ratio - 1) : never;
 }
-
-} // namespace
 
 std::optional<TotalCost> total_cost(const RowRun& row)
 {

@@ -8,6 +8,10 @@
 
 namespace tetrace {
 
+/// Seconds of tracing with a structure that takes so much longer to build than another, and has `ratio` times its rate,
+/// after which it has made up for the build; infinite: never.
+[[nodiscard]] double seconds_until_paid(double more_s, double ratio);
+
 /// What a timed row takes: building and packing once, and each ray. Empty if its session is closed.
 [[nodiscard]] std::optional<TotalCost> total_cost(const RowRun& row);
 

@@ -35,7 +35,8 @@ bool is_wanted(const RowKey& key, const Options& options)
     const bool is_emulated = backend_of(key).devices().at(key.device).kind == DeviceKind::emulated;
     if (is_emulated && (key.rays != RayKind::primary || (scene != nullptr && !scene->has_all_rays))) return false;
     if (key.kernel.method != Method::maria || !options.methods.empty()) return true;
-    return key.rays == RayKind::primary && (key.kernel.layout == Layout::tet80 || !options.layouts.empty());
+    return !is_emulated && key.rays == RayKind::primary &&
+           (key.kernel.layout == Layout::tet80 || !options.layouts.empty());
 }
 
 /// The same kernel in its form for AVX2; a row of another backend has none.

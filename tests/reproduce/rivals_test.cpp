@@ -1,3 +1,4 @@
+#include "bench/rivals/pay_off.h"
 #include "bench/rivals/rival_tables.h"
 #include "tests/support/row_runs.h"
 
@@ -201,6 +202,21 @@ TEST(Rivals, a_claim_of_losing_holds_below_its_boundary)
     EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1), row_of(bvh2, 1))), untested);
 }
 
+TEST(Rivals, tets_have_paid_once_faster_rays_have_made_up_for_the_build)
+{
+    RivalClaim claim = claim_of();
+    claim.measure = Measure::break_even;
+    claim.is_below = true;
+    const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
+    EXPECT_EQ(verdict_of(claim, rows), untested) << "without sessions no build time is known";
+    EXPECT_NE(evidence_of(claim, rows).find("a build time is not known"), std::string::npos);
+    EXPECT_NEAR(seconds_until_paid(4.4, 1.29), 4.4 / 0.29, 1e-9);
+    EXPECT_EQ(seconds_until_paid(4.4, 1), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(seconds_until_paid(-1, 2), 0) << "a faster build, and faster rays";
+    EXPECT_EQ(number_text(claim, {15.172, 14, 16.5}), "15.17 [14.00, 16.50] s");
+    EXPECT_EQ(number_text(claim, {std::numeric_limits<double>::infinity(), 3, {}}), "never");
+}
+
 TEST(Rivals, rows_that_a_user_left_out_could_be_faster)
 {
     const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
@@ -212,7 +228,7 @@ TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
 {
     const std::string evidence = evidence_of(claim_of(), list(row_of(half32, 1), row_of(bvh2, 2)));
     EXPECT_NE(evidence.find("Then 1.50 bunny (a machine)."), std::string::npos) << evidence;
-    EXPECT_NE(evidence.find("Now 2 ["), std::string::npos) << evidence;
+    EXPECT_NE(evidence.find("Now 2.00 [1.9"), std::string::npos) << evidence;
     EXPECT_NE(evidence.find("is above 1 "), std::string::npos) << "the rule: " << evidence;
     const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
     const PaperTable table = claims_table(contests_of(rows), false, {claim_of()});
