@@ -14,9 +14,11 @@ namespace tetrace {
 
 namespace {
 
-CatalogueEntry procedural_row(const std::string& name, const std::string& description, const ProceduralMesh& mesh)
+CatalogueEntry procedural_row(const std::string& name, const std::string& description, const ProceduralMesh& mesh,
+                              std::vector<Aim> views = {})
 {
-    return {name, SceneSource::procedural, fmt::format("{}; {}@N has about N", description, name), "", {}, mesh};
+    return {name, SceneSource::procedural, fmt::format("{}; {}@N has about N", description, name), "", {},
+            mesh, std::move(views)};
 }
 
 } // namespace
@@ -42,15 +44,35 @@ const std::vector<CatalogueEntry>& catalogue()
          "data/meshes/armadillo.off",
          {"armadillo.off", "armadillo.ply", "Armadillo.ply"}},
         procedural_row("atrium", "court with arcades, walls, stair and statue, mostly open surfaces, 60,000 triangles",
-                       {8'000, 4'000'000, [] { return make_atrium(60'000); }, make_atrium}),
+                       {8'000, 4'000'000, [] { return make_atrium(60'000); }, make_atrium},
+                       {{{0.5007, -0.1558, -0.0445}, {-0.2893, -0.1558, 0.0223}},
+                        {{-0.5786, -0.1892, 0.3227}, {0.6677, -0.089, -0.4228}},
+                        {{0.5898, 0.1335, -0.1113}, {-0.5119, -0.178, 0.089}},
+                        {{-0.4451, -0.2114, -0.0445}, {-0.2226, -0.1669, 0.1001}}}),
         procedural_row("city", "houses with rooms and windows, and one detailed object, 80,000 triangles",
-                       {4'000, 4'000'000, [] { return make_city(80'000); }, make_city}),
+                       {4'000, 4'000'000, [] { return make_city(80'000); }, make_city},
+                       {{{-0.0942, -0.1394, -0.6705}, {-0.0866, -0.0866, 0.6969}},
+                        {{0.1055, 0, -0.4709}, {-0.1695, -0.1582, 0.4332}},
+                        {{0.0339, -0.1488, -0.0151}, {0, -0.1537, 0}},
+                        {{-0.1488, -0.1092, -0.0019}, {0, -0.1544, 0}}}),
         procedural_row("terrain", "fractal height field, open, 180,000 triangles",
-                       {500, 4'000'000, [] { return make_terrain(180'000); }, make_terrain}),
+                       {500, 4'000'000, [] { return make_terrain(180'000); }, make_terrain},
+                       {{{-0.6158, 0.0544, -0.6158}, {0.5278, -0.0687, 0.2639}},
+                        {{0.6158, 0.0808, 0.5278}, {-0.3519, -0.0951, -0.1759}},
+                        {{0, 0.3623, -0.4398}, {0.044, -0.1215, 0.088}},
+                        {{-0.3519, 0.0632, 0.6158}, {0, -0.0599, -0.3519}}}),
         procedural_row("spheres", "1,000 spheres of very different sizes, far apart, 128,000 triangles",
-                       {8'000, 4'000'000, [] { return make_spheres(128'000); }, make_spheres}),
+                       {8'000, 4'000'000, [] { return make_spheres(128'000); }, make_spheres},
+                       {{{0.0291, 0.0289, 0.0292}, {0.5781, 0.1156, 0.1737}},
+                        {{-0.5199, 0.1734, 0.5493}, {0.1736, -0.1156, -0.1731}},
+                        {{0.2313, -0.3467, -0.2308}, {-0.1732, 0.2312, 0.1737}},
+                        {{0.5665, 0.549, 0.0003}, {0.0002, 0, 0.0003}}}),
         procedural_row("grass", "22,500 thin blades on a floor, 68,012 triangles",
-                       {2'000, 4'000'000, [] { return make_grass(68'012); }, make_grass}),
+                       {2'000, 4'000'000, [] { return make_grass(68'012); }, make_grass},
+                       {{{-0.4416, -0.0067, -0.3533}, {0.3533, -0.0111, 0.1767}},
+                        {{0, 0.086, 0.53}, {-0.0265, -0.0376, 0.3356}},
+                        {{0.1767, 0.0065, -0.4416}, {-0.53, -0.02, 0.3533}},
+                        {{0.3533, 0.1567, 0.3533}, {0.212, -0.0376, 0.212}}}),
         {"lattice",
          SceneSource::lattice,
          fmt::format("grid of cubes of any size with solid ones scattered in it; lattice:N has N along an axis, {} "
@@ -135,12 +157,23 @@ std::string why_not_available(const std::string& name)
 
 std::vector<std::string> default_scenes()
 {
+    const bool can_build = !find_builder().empty();
     std::vector<std::string> scenes;
     for (const char* name : {"bunny", "armadillo"})
         if (why_not_available(name).empty()) scenes.emplace_back(name);
-    if (!scenes.empty()) return scenes;
-    scenes.emplace_back("cubes");
-    if (!find_builder().empty()) scenes.emplace_back("banana");
+    if (scenes.empty()) {
+        scenes.emplace_back("cubes");
+        if (can_build) scenes.emplace_back("banana");
+    }
+    if (can_build) scenes.emplace_back("atrium");
+    return scenes;
+}
+
+std::vector<std::string> all_scenes()
+{
+    std::vector<std::string> scenes;
+    for (const CatalogueEntry& entry : catalogue())
+        if (entry.source != SceneSource::lattice && why_not_available(entry.name).empty()) scenes.push_back(entry.name);
     return scenes;
 }
 

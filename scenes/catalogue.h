@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/mesh/scene.h"
+#include "core/rays/aim.h"
 
 #include <filesystem>
 #include <optional>
@@ -32,6 +33,7 @@ struct CatalogueEntry {
     std::string archive_member;          ///< path inside the package's data archive; empty where the scene is made here
     std::vector<std::string> file_names; ///< what the mesh may be called in a folder that the user names
     std::optional<ProceduralMesh> procedural = {}; ///< if that is the source
+    std::vector<Aim> views = {};                   ///< its own, of camera set `frame`: own_view_count of them, or none
 };
 [[nodiscard]] const std::vector<CatalogueEntry>& catalogue();
 
@@ -97,7 +99,11 @@ struct SceneRequest {
 /// Empty where the scene's mesh is available here, else the reason and what would bring it.
 [[nodiscard]] std::string why_not_available(const std::string& name);
 
-/// The scenes of `make bench`: bunny and armadillo where their meshes are installed, else the embedded ones.
+/// The scenes of `make bench`: bunny and armadillo if their meshes are installed, else `cubes` and `banana`; and
+/// `atrium`. Without a builder, only those that need none or may be in the cache: bunny and armadillo, or `cubes`.
 [[nodiscard]] std::vector<std::string> default_scenes();
+
+/// Every scene of the catalogue that is available here, except `lattice`, whose size is the user's choice.
+[[nodiscard]] std::vector<std::string> all_scenes();
 
 } // namespace tetrace

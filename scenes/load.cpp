@@ -324,11 +324,15 @@ LoadedScene load_mesh_scene(const SceneRequest& request, const fs::path& mesh, c
 LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
 {
     if (const auto resolution = lattice_resolution(request.name)) return load_lattice(request, *resolution, progress);
+    if (const auto procedural = find_procedural(request.name)) {
+        LoadedScene loaded = load_mesh_scene(request, mesh_file(*procedural), progress);
+        loaded.views = procedural->entry.views;
+        return loaded;
+    }
     if (const CatalogueEntry* entry = find_in_catalogue(request.name)) {
         if (entry->source == SceneSource::cubes) return load_cubes(request, progress);
         return load_mesh_scene(request, mesh_file(*entry), progress);
     }
-    if (const auto scene = find_procedural(request.name)) return load_mesh_scene(request, mesh_file(*scene), progress);
     const fs::path path = request.name;
     std::error_code ignored; // what cannot be looked at is no file for us
     if (!fs::exists(path, ignored)) refuse_name(request.name);

@@ -12,6 +12,7 @@ struct LoadedScene {
     bool from_cache = false;
     bool interrupted = false;   ///< Ctrl-C came while it was built (BuildOptions::keep_unfinished)
     std::filesystem::path file; ///< the `.tet` file; empty for `cubes` and `lattice`
+    std::vector<Aim> views;     ///< CatalogueEntry::views
     std::vector<std::string>
         messages; ///< for the user: a damaged cache file rebuilt, triangles dropped, options not used
 };

@@ -67,6 +67,12 @@ ApplyOption set_path(const std::string& option, std::optional<std::filesystem::p
     };
 }
 
+void append_scenes(Options& options, const std::string& text)
+{
+    const std::vector<std::string> named = text == "all" ? all_scenes() : std::vector{text};
+    options.scenes.insert(options.scenes.end(), named.begin(), named.end());
+}
+
 void set_cameras(Options& options, const std::string& text)
 {
     if (text.ends_with(".json")) {

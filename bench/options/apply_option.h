@@ -47,6 +47,9 @@ template <class T>
 [[nodiscard]] ApplyOption append_text(std::vector<std::string> Options::*list);
 /// A file's name, not empty.
 [[nodiscard]] ApplyOption set_path(const std::string& option, std::optional<std::filesystem::path> Options::*path);
+/// 'all' is every scene that is available (all_scenes()).
+void append_scenes(Options& options, const std::string& text);
+
 /// A set of tetrace's by its name, or the user's own from a file.
 void set_cameras(Options& options, const std::string& text);
 /// The file of --out; "-" means none.

@@ -328,7 +328,7 @@ std::string program_text()
                            "NO_COLOR is set, and tables and sentences that fit them.",
                            page_width(), 0);
     text += "\nExamples\n"
-            "  tetrace bench                             the main job: bunny and armadillo, and Embree\n"
+            "  tetrace bench                             the main job: bunny, armadillo, atrium, and Embree\n"
             "  tetrace check --scene cubes               is everything right on this machine?\n"
             "  tetrace build --scene dragon.ply          your own mesh\n\n";
     return text + exit_codes();

@@ -64,9 +64,9 @@ std::vector<OptionRow> scene_options()
          "A name of the catalogue ('tetrace scenes' lists it; atrium@N is atrium with about N triangles, and so are "
          "banana, city, terrain, spheres and grass; lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N "
          "= 138), a mesh file (PLY, OBJ, OFF, STL, glTF), or "
-         "a .tet file. May be repeated, or a list with commas. Default: bunny and armadillo, or the embedded scenes if "
-         "those are missing.",
-         building, true, append_text(&Options::scenes)},
+         "a .tet file. May be repeated, or a list with commas. 'all' is every scene of the catalogue that is available "
+         "except lattice. Default: bunny, armadillo and atrium; cubes, banana and atrium if the first two are missing.",
+         building, true, append_scenes},
         {"Scenes", "--repair", "",
          "Cut triangles of a mesh that cross, overlap or touch along their exact intersections. Without it such a mesh "
          "is refused. face_id in results still names the file's triangles.",
@@ -194,9 +194,10 @@ std::vector<OptionRow> ray_options()
     const unsigned with_rays = reproducing | bit(Verb::build);
     return {
         {"Rays", "--camera-set", "SET",
-         "'smoke', 4 views; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; "
-         "or "
-         "a file that ends in .json, with cameras of your own (docs/cameras.md). Default: smoke.",
+         "'frame', 4 views that the scene fills: cameras of its own for atrium, city, terrain, spheres and grass, and "
+         "close views for any other mesh; 'smoke', 4 views at 2 radii, of which a closed object fills a sixth; "
+         "'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or "
+         "a file that ends in .json, with cameras of your own (docs/cameras.md). Default: frame.",
          tracing | bit(Verb::build), false, set_cameras},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "

@@ -4,7 +4,7 @@
 #include "bench/options/shard.h"
 #include "core/isolation/isolation.h"
 #include "core/pack/kernel_id.h"
-#include "core/rays/camera.h"
+#include "core/rays/camera_set.h"
 #include "scenes/catalogue.h"
 
 #include <cstdint>
@@ -127,7 +127,7 @@ struct Options {
     std::string filter;               ///< regular expression on row names, see name_filter.h; empty: all
     bool list = false;
 
-    CameraSet camera_set = CameraSet::smoke;
+    CameraSet camera_set = CameraSet::frame;
     std::optional<OwnCameras> own_cameras; ///< in place of camera_set
     std::string views;                     ///< as parse_views() takes it; empty: all of the set
     std::uint32_t width = 1024, height = 1024;

@@ -57,7 +57,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
-    if (options.own_cameras) object["camera_set_hash"] = hash_text(options.own_cameras->hash());
+    if (const auto& hash = scene.camera_set_hash()) object["camera_set_hash"] = hash_text(*hash);
     if (build.repair.asked) object["repair"] = repair_json(build.repair);
     if (build.optimised.asked == TetsKind::rays) object["optimised"] = optimised_json(build.optimised);
     if (const auto& walk = scene.start_walk())

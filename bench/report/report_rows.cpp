@@ -71,8 +71,8 @@ std::string kernel_of(const ResultValue& value, const ResultRow& row)
 
 bool same_rays(const ResultScene& a, const ResultScene& b)
 {
-    return a.name == b.name && a.hash == b.hash && a.camera_set == b.camera_set && a.views == b.views &&
-           a.width == b.width && a.height == b.height;
+    return a.name == b.name && a.hash == b.hash && a.camera_set == b.camera_set &&
+           a.camera_set_hash == b.camera_set_hash && a.views == b.views && a.width == b.width && a.height == b.height;
 }
 
 RowGroup& group_for(std::vector<RowGroup>& groups, const ResultScene& scene, const ReportRow& row)

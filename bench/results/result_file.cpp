@@ -135,7 +135,7 @@ ResultScene read_scene(const ResultValue& value)
     scene.name = value.at("name").line();
     scene.hash = value.at("hash").hash();
     scene.camera_set = value.at("camera_set").line();
-    if (const auto hash = value.find("camera_set_hash")) scene.camera_set += " " + hash->hash();
+    if (const auto hash = value.find("camera_set_hash")) scene.camera_set_hash = hash->hash();
     for (const ResultValue& view : value.at("views").items())
         scene.views.push_back(view.count());
     scene.width = value.at("width").count();

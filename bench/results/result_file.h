@@ -29,8 +29,9 @@ struct ResultHead {
 /// A scene of a result with the rays that were traced through it.
 struct ResultScene {
     std::string name;
-    std::string hash;       ///< of all that decides a ray's answer
-    std::string camera_set; ///< a name; of the user's own, their hash after it
+    std::string hash;            ///< of all that decides a ray's answer
+    std::string camera_set;      ///< a name
+    std::string camera_set_hash; ///< of its numbers; empty if the name determines them
     std::vector<std::uint64_t> views;
     std::uint64_t width = 0, height = 0;
 };

@@ -11,7 +11,9 @@ namespace {
 
 std::string rays_text(const ResultScene& scene)
 {
-    return fmt::format("{} views of {} at {}x{}", scene.views.size(), scene.camera_set, scene.width, scene.height);
+    const std::string hash = scene.camera_set_hash.empty() ? "" : " " + scene.camera_set_hash;
+    return fmt::format("{} views of {}{} at {}x{}", scene.views.size(), scene.camera_set, hash, scene.width,
+                       scene.height);
 }
 
 std::string other_rays(const ResultScene& a, const ResultScene& b)

@@ -16,9 +16,13 @@ SceneWork::SceneWork(LoadedScene loaded, const Options& options, std::string arg
       width_(options.width), height_(options.height), view_numbers_(selected_views(options)),
       threads_(resolved_threads(options))
 {
-    const BoundingSphere sphere = bounding_sphere(loaded_.scene.mesh);
-    const auto cameras =
-        options.own_cameras ? options.own_cameras->cameras(sphere) : make_cameras(options.camera_set, sphere);
+    const TriangleMesh& mesh = loaded_.scene.mesh;
+    const auto cameras = options.own_cameras ? options.own_cameras->cameras(bounding_sphere(mesh))
+                                             : make_cameras(options.camera_set, mesh, loaded_.views);
+    if (options.own_cameras)
+        camera_set_hash_ = options.own_cameras->hash();
+    else if (options.camera_set == CameraSet::frame)
+        camera_set_hash_ = hash_of_cameras(cameras);
     std::vector<Float3> origins;
     for (const std::uint32_t number : view_numbers_) {
         views_.push_back(make_view(cameras.at(number), width_, height_));

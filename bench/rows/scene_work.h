@@ -36,6 +36,8 @@ public:
     [[nodiscard]] const std::string& arguments() const { return arguments_; }
     [[nodiscard]] const TetMeshCounts& counts() const { return counts_; }
     [[nodiscard]] const std::vector<std::uint32_t>& view_numbers() const { return view_numbers_; }
+    /// Of the numbers of the whole camera set, if its name does not determine them: the user's own, and `frame`.
+    [[nodiscard]] const std::optional<std::uint64_t>& camera_set_hash() const { return camera_set_hash_; }
     [[nodiscard]] const std::vector<View>& views() const { return views_; }
     [[nodiscard]] std::uint32_t width() const { return width_; }
     [[nodiscard]] std::uint32_t height() const { return height_; }
@@ -72,6 +74,7 @@ private:
     TetMeshCounts counts_;
     std::uint32_t width_, height_;
     std::vector<std::uint32_t> view_numbers_;
+    std::optional<std::uint64_t> camera_set_hash_;
     std::vector<View> views_;
     std::vector<std::uint32_t> start_tets_; ///< as the tet mesh numbers them
     double locate_s_ = 0;

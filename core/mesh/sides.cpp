@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr double camera_radii = 3; // core/rays/camera.h: the farthest is 2.9 away; core/rays/aim.h: own ones 3
+constexpr double camera_radii = 3; // core/rays/camera_set.h: the farthest is 2.9 away; core/rays/aim.h: own ones 3
 constexpr double bounds_needed = 3;
 
 double least_distance(const Scene& scene)

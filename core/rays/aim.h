@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/mesh/triangle_mesh.h"
 #include "core/rays/camera.h"
 
 #include <string>

@@ -94,5 +94,20 @@ TEST_F(OwnCameras, that_are_not_as_documented_are_refused_by_their_entry)
     EXPECT_TRUE(contains(refused_view(R"({"origin": [0, 0, 2], "fov": 50})"),
                          "views[1]: has a key 'fov'; accepted: origin, target or up"));
     EXPECT_EQ(trace("missing.json").code, 3);
-    EXPECT_TRUE(contains(trace("smok").errors, "smoke, orbit or flight, or a file that ends in .json"));
+    EXPECT_TRUE(contains(trace("smok").errors, "frame, smoke, orbit or flight, or a file that ends in .json"));
+}
+
+// The mesh decides the cameras of `frame`, so their name does not.
+TEST_F(OwnCameras, of_frame_are_pinned_by_a_hash_and_those_of_smoke_by_their_name)
+{
+    const auto scene_of = [&](const std::string& options) {
+        EXPECT_EQ(bench("--layout bvh2 --backend openmp --out result.json " + options).code, 0);
+        return Json::parse(file("result.json"))["tetrace"]["scenes"][0];
+    };
+    const Json frame = scene_of(""), same = scene_of("--camera-set frame");
+    EXPECT_EQ(frame["camera_set"], "frame") << "the default";
+    EXPECT_EQ(frame["camera_set_hash"].get<std::string>().size(), 16u);
+    EXPECT_EQ(frame["camera_set_hash"], same["camera_set_hash"]);
+    EXPECT_EQ(frame["views"], (std::vector<int>{0, 1, 2, 3}));
+    EXPECT_FALSE(scene_of("--camera-set smoke").contains("camera_set_hash"));
 }

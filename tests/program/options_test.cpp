@@ -43,11 +43,17 @@ TEST(Options, slips_of_the_hand_get_a_guess)
     EXPECT_EQ(did_you_mean("ab", {"abc", "cb"}), "") << "of short names everything is near";
 }
 
+TEST(Options, all_scenes_are_those_of_the_catalogue)
+{
+    EXPECT_EQ(parse_options({"bench", "--scene", "all"}).scenes, all_scenes());
+    EXPECT_TRUE(contains(rejection({"trace", "--scene", "all", "--pixel", "1,1"}), "trace: --scene takes one scene"));
+}
+
 TEST(Options, defaults_are_those_of_the_main_job)
 {
     const Options options = parse_options({"bench"});
     EXPECT_TRUE(options.scenes.empty());
-    EXPECT_EQ(options.camera_set, CameraSet::smoke);
+    EXPECT_EQ(options.camera_set, CameraSet::frame);
     EXPECT_EQ(options.width, 1024u);
     EXPECT_EQ(options.height, 1024u);
     EXPECT_EQ(options.samples, 10u);
@@ -88,7 +94,7 @@ TEST(Options, an_unknown_value_is_answered_with_the_accepted_ones)
     EXPECT_EQ(parse_options({"bench", "--method", "stp,ms06"}).methods,
               (std::vector<Method>{Method::stp, Method::ms06}));
     EXPECT_TRUE(contains(rejection({"bench", "--backend", "metal"}), "openmp, opencl, vulkan, cuda, cuda-host"));
-    EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "smoke, orbit or flight"));
+    EXPECT_TRUE(contains(rejection({"bench", "--camera-set", "Orbit"}), "frame, smoke, orbit or flight"));
     EXPECT_TRUE(contains(rejection({"bench", "--format", "xml"}), "table, json, csv or markdown"));
     EXPECT_TRUE(contains(rejection({"bench", "--order", "morton"}), "chains, hilbert, reached or input"));
     EXPECT_TRUE(contains(rejection({"draw"}), "devices, scenes, build, bench, check, render, reproduce, inspect, "

@@ -117,11 +117,24 @@ TEST_F(Catalogue, says_how_to_get_a_mesh_that_is_not_here)
     EXPECT_EQ(why_not_available("city@5000"), "");
 }
 
-TEST_F(Catalogue, runs_bunny_and_armadillo_by_default_where_they_are)
+TEST_F(Catalogue, runs_bunny_armadillo_and_atrium_by_default)
 {
+    using Names = std::vector<std::string>;
+    write_file(folder / "builder", "");
+    fs::permissions(folder / "builder", fs::perms::owner_all);
+    const ScopedVariable builder("TETRACE_BUILDER", folder / "builder");
+    {
+        const ScopedVariable missing("TETRACE_MESHES", folder / "none");
+        EXPECT_EQ(default_scenes(), (Names{"cubes", "banana", "atrium"}));
+        EXPECT_EQ(all_scenes(), (Names{"cubes", "banana", "atrium", "city", "terrain", "spheres", "grass"}));
+    }
     const ScopedVariable given("TETRACE_MESHES", meshes);
     make_archive(archive, "x", "y");
-    EXPECT_EQ(default_scenes(), (std::vector<std::string>{"bunny", "armadillo"}));
+    EXPECT_EQ(default_scenes(), (Names{"bunny", "armadillo", "atrium"}));
+    EXPECT_EQ(all_scenes(),
+              (Names{"cubes", "banana", "bunny", "armadillo", "atrium", "city", "terrain", "spheres", "grass"}));
+    const ScopedVariable no_builder("TETRACE_BUILDER", folder / "none");
+    EXPECT_EQ(default_scenes(), (Names{"bunny", "armadillo"}));
 }
 
 TEST_F(Catalogue, refuses_a_damaged_archive)

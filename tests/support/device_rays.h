@@ -3,7 +3,7 @@
 #include "backends/openmp/backend.h"
 #include "core/base/ulps.h"
 #include "core/mesh/locate.h"
-#include "core/rays/camera.h"
+#include "core/rays/camera_set.h"
 #include "scenes/procedural.h"
 
 #include <gtest/gtest.h>
@@ -45,12 +45,12 @@ public:
     /// From 2 radii away, outside the domain.
     [[nodiscard]] TraceJob from_outside(std::uint32_t width, std::uint32_t height, std::size_t view = 1) const
     {
-        return job(make_cameras(CameraSet::smoke, sphere_).at(view), width, height);
+        return job(make_cameras(CameraSet::smoke, scene_.mesh).at(view), width, height);
     }
     /// From near the middle of the scene: rays start in the tet that holds the camera.
     [[nodiscard]] TraceJob from_inside(std::uint32_t width, std::uint32_t height) const
     {
-        Camera camera = make_cameras(CameraSet::smoke, sphere_).front();
+        Camera camera = make_cameras(CameraSet::smoke, scene_.mesh).front();
         camera.origin = {static_cast<float>(sphere_.centre.x + 0.0078125), static_cast<float>(sphere_.centre.y),
                          static_cast<float>(sphere_.centre.z - 0.0078125)};
         return job(camera, width, height);

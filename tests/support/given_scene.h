@@ -3,7 +3,7 @@
 #include "backends/openmp/backend.h"
 #include "core/device/given_quads.h"
 #include "core/mesh/locate.h"
-#include "core/rays/camera.h"
+#include "core/rays/camera_set.h"
 #include "core/rays/ray_set.h"
 #include "scenes/procedural.h"
 
@@ -27,7 +27,7 @@ struct GivenScene {
         : scene(make_cubes(resolution)), packed(pack(scene, Layout::tet80, order)),
           mesh_of_packed(inverse_of(packed.packed_of_mesh))
     {
-        Camera camera = make_cameras(CameraSet::smoke, bounding_sphere(scene.mesh)).front();
+        Camera camera = make_cameras(CameraSet::smoke, scene.mesh).front();
         if (inside) camera.origin = {0.03125F, 0.015625F, -0.0078125F};
         job.view = make_view(camera, size, size);
         const Start start = find_start(scene, job.view.origin);

@@ -31,7 +31,7 @@ struct Traced {
 
     explicit Traced(Float3 camera_shift = {})
     {
-        Camera camera = make_cameras(CameraSet::smoke, bounding_sphere(scene.mesh)).front();
+        Camera camera = make_cameras(CameraSet::smoke, scene.mesh).front();
         for (int axis = 0; axis < 3; ++axis)
             camera.origin[axis] += camera_shift[axis];
         job.view = make_view(camera, size, size);
