@@ -39,6 +39,13 @@ KERNEL_FN Hit trace_ray(SceneView scene, TraceParams params, Ray ray, real end)
 {
     RayFrame frame = frame_of(ray);
     Nearest nearest = nothing_before(ray, end);
+#ifdef HOST_SSE2
+    // Before the compiler has the rest of the frame computed; for other rays the loop tests the root again.
+    if (entries_of(node_of(scene, 0u), frame, nearest.depth).met == 0u) {
+        COUNT_NODE();
+        return make_no_hit(NO_HIT, NO_TET, 0u);
+    }
+#endif
     STACK(stack, STACK_ENTRIES(TRAVERSAL_ENTRIES));
     TRAVERSAL_AT_ROOT(uint)
     do {

@@ -36,9 +36,9 @@ STRUCT(RayFrame)
     __m128 inverse; // the depth of one unit along each axis
     __m128 offset;  // origin * inverse
     Lanes3 origins;
-    Lanes3 across;  // a point's products with these, from the origin on, are its x and y times 2^20, as in shear.h,
-    Lanes3 upwards; // and its depth times 2^40
-    Lanes3 forwards;
+    Lanes3 across; // a point's products with these, from the origin on, are its x and y times 2^20, as in shear.h,
+    Lanes3 upwards;
+    __m128 forwards; // its products with this add up to its depth times 2^40
 };
 
 KERNEL_FN RayFrame frame_of(Ray ray)
@@ -72,7 +72,7 @@ KERNEL_FN RayFrame frame_of(Ray ray)
             each_in_all_lanes(origin),
             each_in_all_lanes(across),
             each_in_all_lanes(upwards),
-            each_in_all_lanes(forwards)};
+            forwards};
 }
 
 KERNEL_FN Ray ray_of(const RayFrame& frame)
@@ -125,7 +125,8 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, const RayFrame& frame, Neares
 
     const __m128 fine = (plus - minus) + (lost_in_lanes(x, next_y, plus) - lost_in_lanes(y, next_x, minus));
     const __m128 sides = next_lanes(fine); // opposite a, b, c
-    const Lanes3 side = each_in_all_lanes(sides), part = each_in_all_lanes(sides * dot_lanes(offset, frame.forwards));
+    const Lanes3 side = each_in_all_lanes(sides),
+                 part = each_in_all_lanes(sides * dot_lanes(offset, each_in_all_lanes(frame.forwards)));
     const real determinant = _mm_cvtss_f32(side.x + side.y + side.z);
     if (has_two_signs(fine) || determinant == 0.0f) return nearest;
     return nearer(nearest, determinant, _mm_cvtss_f32(part.x + part.y + part.z), quad.w, at);
