@@ -1,12 +1,12 @@
-// The boxes of a node of bvh2 for processors: by AVX2 all at once, else with the children's planes side by side. The
-// depths are those of box_entry().
+// The boxes of a node of bvh2 for processors, in four lanes: x and y of one child, then of the other. Depths have the
+// bits of box_entry() (docs/spec/bvhs.md, B13).
 
 // Where a ray enters a node's boxes.
 STRUCT(Entries)
 {
     real a;
     real b;
-    uint met; // 1: the first box; 2: the second
+    uint met; // 1: the first box; 4: the second; 5: both
 };
 
 KERNEL_FN const float* node_of(SceneView scene, uint node)

@@ -1,4 +1,4 @@
-// A node in bvh2's loop, where a processor predicts which child is next (docs/spec/devices.md, W10).
+// A node in bvh2's loop for processors, which predict which child is next (docs/spec/devices.md, W10).
 {
     const Entries entries = entries_of(node_of(scene, child), frame, nearest.depth);
     const uint4& children = FETCH(scene, nodes, BVH2_NODE_QUADS * child + 3u);

@@ -78,8 +78,8 @@ KERNEL_FN Slots planes_of(const unsigned char* bytes)
 {
     return _mm_cvtepi32_ps(words_of(bytes));
 }
-// SSE2 shifts all lanes by one number, so lanes are shifted by products with powers of two. 2^31 is beyond a signed
-// number, for which the conversion has that very word.
+// SSE2 shifts all lanes by one number, so lanes are shifted by products with powers of two. 2^31 is too large for a
+// signed number, for which the conversion has that very word.
 KERNEL_FN uint hits_of_slots(Slots near, Slots far, uint turn, const unsigned char* meta)
 {
     const __m128i child = words_of(meta), inner = _mm_set1_epi32(24);
