@@ -38,6 +38,18 @@ MeanSteps mean_steps(const RayTotals& totals)
             quotient(totals.miss_steps, totals.misses)};
 }
 
+RayShares ray_shares(const Traced& traced)
+{
+    const auto share_of = [&](std::uint64_t count) {
+        return static_cast<double>(count) / static_cast<double>(traced.totals.rays);
+    };
+    RayShares shares;
+    if (traced.totals.rays == 0) return shares;
+    if (traced.entering) shares.enter = share_of(*traced.entering);
+    shares.hit = share_of(traced.totals.hits);
+    return shares;
+}
+
 std::optional<Figures> figures_of(const RowRun& row)
 {
     const Status status = status_of(row);
@@ -49,6 +61,7 @@ std::optional<Figures> figures_of(const RowRun& row)
     const double seconds = figures.kernel_s.median;
     add_wall(figures, row);
     figures.mrays_per_s = 1e-6 * static_cast<double>(totals.rays) / seconds;
+    if (totals.hits > 0) figures.mhits_per_s = 1e-6 * static_cast<double>(totals.hits) / seconds;
     if (totals.steps() == 0) return figures;
     figures.msteps_per_s = 1e-6 * static_cast<double>(totals.steps()) / seconds;
     if (const double bytes = bytes_per_step(row.key.kernel); bytes > 0)

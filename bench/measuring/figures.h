@@ -12,6 +12,7 @@ namespace tetrace {
 struct Figures {
     Statistics kernel_s; ///< device seconds for all selected views
     double mrays_per_s = 0;
+    std::optional<double> mhits_per_s;  ///< of the rays that hit
     std::optional<double> msteps_per_s; ///< structure cdt only
     std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
     std::optional<double> wall_s;       ///< from launch to the end of wait by the host's clock, all views; median
@@ -32,6 +33,13 @@ struct MeanSteps {
     std::optional<double> all, hit, miss;
 };
 [[nodiscard]] MeanSteps mean_steps(const RayTotals& totals);
+
+/// Of a row's rays, from 0 to 1; empty if there are no rays, or the number is not known.
+struct RayShares {
+    std::optional<double> enter; ///< the domain's box
+    std::optional<double> hit;
+};
+[[nodiscard]] RayShares ray_shares(const Traced& traced);
 
 /// The row's Mrays/s over those of Embree's single rays on the same scene; empty where either has none, and for rows
 /// that do not run on the host, as Embree does.

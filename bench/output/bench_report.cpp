@@ -39,6 +39,23 @@ std::string timed_sentence(const BenchResult& result)
     return text + few;
 }
 
+/// "rays: 45 % enter the domain, 16 % hit", kind after kind; nothing else says how much of a rate is rays that miss the
+/// scene.
+std::string share_sentences(const std::string& scene, const std::vector<RowRun>& rows)
+{
+    std::string text;
+    std::set<RayKind> told;
+    for (const RowRun* row : rows_of(scene, rows)) {
+        const Traced* result = traced(*row);
+        const RayShares shares = result != nullptr ? ray_shares(*result) : RayShares{};
+        if (!shares.hit || !told.insert(row->key.rays).second) continue;
+        const std::string kind = row->key.rays == RayKind::primary ? "" : fmt::format("{} ", name_of(row->key.rays));
+        const std::string enter = shares.enter ? percent_text(*shares.enter) + " enter the domain, " : "";
+        text += fmt::format("{}rays: {}{} hit\n", kind, enter, percent_text(*shares.hit));
+    }
+    return text;
+}
+
 /// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.
 std::string steps_sentences(const std::string& scene, const std::vector<RowRun>& rows)
 {
@@ -214,6 +231,7 @@ Sheet bench_sheet(const BenchResult& result)
         const ResultValue value(scene, "scene");
         const std::string name = value.at("name").line();
         sheet.heading(scene_headline(value));
+        sheet.line(share_sentences(name, result.run.rows));
         sheet.line(steps_sentences(name, result.run.rows));
         sheet.prose(visits_sentences(name, result.run.rows));
         sheet.gap();

@@ -2,6 +2,7 @@
 #include "bench/report/charts/bar_chart.h"
 #include "bench/report/html/svg.h"
 #include "bench/report/sections.h"
+#include "bench/terminal/text.h"
 
 #include <algorithm>
 #include <array>
@@ -25,6 +26,17 @@ std::string scene_title(const RowGroup& group)
     return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
                        scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height,
                        group.rays);
+}
+
+/// "45 % of these rays enter the domain, and 16 % hit."
+std::string shares_text(const RowGroup& group)
+{
+    for (const ReportRow* row : group.rows) {
+        if (!row->hit_share) continue;
+        const std::string hit = percent_text(*row->hit_share) + (row->enter_share ? " hit." : " of these rays hit.");
+        return row->enter_share ? percent_text(*row->enter_share) + " of these rays enter the domain, and " + hit : hit;
+    }
+    return {};
 }
 
 /// The devices of a group, with the results that they come from.
@@ -136,7 +148,8 @@ Section rate_section(const ReportInput& input)
              ++end)
             charts += figure(group_title(groups[end], input.files.size()),
                              draw(chart_of(groups[end], input.files.size())), "");
-        section.content += heading(title) + side_by_side(charts);
+        const std::string shares = shares_text(groups[begin]);
+        section.content += heading(title) + (shares.empty() ? Html() : note(shares)) + side_by_side(charts);
         begin = end;
     }
     const Html unrated = rows_without_rate(input);

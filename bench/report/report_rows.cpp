@@ -30,6 +30,22 @@ std::optional<double> launch_share(const ResultValue& times)
     return std::max(0.0, overhead->number()) / *wall; // from two clocks: their difference may be negative
 }
 
+/// Older results lack the rays that enter; the hits of all are counted.
+void read_shares(ReportRow& row, const ResultValue& value)
+{
+    const auto counts = value.find("counts");
+    const auto rays = counts ? counts->find("rays") : std::nullopt;
+    if (!rays || rays->count() == 0) return;
+    const auto share_of = [&](const char* key) -> std::optional<double> {
+        const auto count = counts->find(key);
+        if (!count) return std::nullopt;
+        if (count->count() > rays->count()) count->reject("exceeds the number of rays");
+        return static_cast<double>(count->count()) / static_cast<double>(rays->count());
+    };
+    row.enter_share = share_of("entering");
+    row.hit_share = share_of("hits");
+}
+
 std::optional<RowRate> rate_of(const ResultValue& row, const std::vector<double>& samples_s)
 {
     const auto rates = row.find("rates");
@@ -116,6 +132,7 @@ std::vector<ReportRow> report_rows(const ResultFile& result, std::size_t file)
         row.api = result.rows[i].api();
         row.device = result.head.shown(result.rows[i].device);
         row.rays = items[i].at("rays").line();
+        read_shares(row, items[i]);
         row.rate = rate_of(items[i], result.rows[i].samples_s);
         if (row.rate && !row.row->device_kind) items[i].reject("has a rate and no device");
         rows.push_back(std::move(row));

@@ -27,6 +27,7 @@ struct ReportRow {
     std::string api;             ///< "vulkan", "vulkan:1"
     std::string rays;            ///< kind
     std::string device;          ///< the row's, but of the processor the machine's name
+    std::optional<double> enter_share, hit_share; ///< of its rays: that enter the domain, and that hit
     std::optional<RowRate> rate; ///< only of rows with a device
 
     [[nodiscard]] const std::string& name() const { return row->name; }

@@ -65,6 +65,7 @@ json verdict_json(const ImageVerdict& verdict)
                    {"verdicts", verdicts_json(verdict.verdicts)},
                    {"hit_hash", hash_text(verdict.hit_hash)},
                    {"seconds", {verdict.kernel_s, verdict.wall_s, verdict.download_s}}};
+    if (verdict.entering) object["entering"] = *verdict.entering;
     if (verdict.visits.rays > 0)
         object["visits"] = {verdict.visits.rays, verdict.visits.nodes, verdict.visits.triangles};
     if (verdict.lost_at_device_cap > 0) object["lost_at_device_cap"] = verdict.lost_at_device_cap;
@@ -77,6 +78,7 @@ ImageVerdict verdict_from(const json& object)
 {
     ImageVerdict verdict;
     verdict.totals = totals_from(object.at("totals"));
+    if (object.contains("entering")) verdict.entering = number_from(object["entering"]);
     verdict.verdicts = verdicts_from(object.at("verdicts"));
     verdict.hit_hash = hash_from(object.at("hit_hash"));
     if (object.contains("visits")) {

@@ -79,6 +79,7 @@ void Visits::add(const Visits& other)
 void Traced::add(const ImageVerdict& image)
 {
     totals.add(image.totals);
+    if (image.entering) entering = entering.value_or(0) + *image.entering;
     visits.add(image.visits);
     verdicts.add(image.verdicts);
     compared = compared || image.compared;

@@ -42,6 +42,7 @@ struct Visits {
 /// Result of verifying one image.
 struct ImageVerdict {
     RayTotals totals;
+    std::optional<std::uint64_t> entering = {}; ///< as in Traced
     Visits visits;
     Verdicts verdicts;
     bool compared = false; ///< as in Traced, and so are the members down to first_different
@@ -57,6 +58,7 @@ struct ImageVerdict {
 /// Result of the untimed pass over all selected views.
 struct Traced {
     RayTotals totals;
+    std::optional<std::uint64_t> entering = {}; ///< rays that enter the domain's box, see enters(); empty: not known
     Visits visits; ///< see count_visits()
     Verdicts verdicts;
     bool compared = false;          ///< with openmp; openmp's own rows and Embree's have nothing to compare with

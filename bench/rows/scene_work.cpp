@@ -4,6 +4,7 @@
 #include "bench/terminal/progress.h"
 #include "core/base/stopwatch.h"
 #include "core/pack/pack_bvh.h"
+#include "core/rays/entering.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -58,6 +59,17 @@ const BuiltBvh& SceneWork::bvh()
 {
     if (!bvh_) bvh_ = build_bvh(loaded_.scene.mesh, threads_);
     return *bvh_;
+}
+
+std::uint64_t SceneWork::entering(RayKind kind, RayOrder order, std::size_t view)
+{
+    const auto [entry, is_new] = entering_.try_emplace({kind, view});
+    if (!is_new) return entry->second;
+    const Domain& domain = loaded_.scene.domain;
+    entry->second = kind == RayKind::primary
+                        ? count_entering(domain, views_.at(view), width_, height_)
+                        : count_entering(domain, given_rays_.set(*this, kind, order, view).rays);
+    return entry->second;
 }
 
 TraceJob SceneWork::job(std::size_t index, const PackedScene* packed, const Device& device) const

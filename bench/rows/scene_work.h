@@ -57,6 +57,9 @@ public:
     /// The given rays, for rows of other kinds than primary.
     [[nodiscard]] RayStore& given_rays() { return given_rays_; }
 
+    /// The number of a view's rays of a kind that enter the domain, counted at the first call. order: of given rays.
+    [[nodiscard]] std::uint64_t entering(RayKind kind, RayOrder order, std::size_t view);
+
     /// The tet of the scene that contains a view's origin; NO_TET where the origin is outside the domain.
     [[nodiscard]] std::uint32_t start_tet(std::size_t view) const { return start_tets_.at(view); }
 
@@ -83,6 +86,7 @@ private:
     std::optional<BuiltBvh> bvh_;
     std::map<std::pair<Layout, TetOrder>, Packed> packed_;
     RayStore given_rays_;
+    std::map<std::pair<RayKind, std::size_t>, std::uint64_t> entering_; ///< by kind and view
 };
 
 /// Loads a scene, prints its messages, and prepares it. label: its name in rows; empty: its scene_label().

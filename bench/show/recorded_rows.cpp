@@ -184,6 +184,7 @@ Traced traced_from(const ResultValue& value, const ResultRow& row, bool with_ray
 {
     Traced traced;
     traced.totals = totals_from(value.at("counts"));
+    if (const auto entering = value.at("counts").find("entering")) traced.entering = entering->count();
     if (const auto visits = value.find("visits"))
         traced.visits = {traced.totals.rays, visits->at("nodes").count(), visits->at("triangles").count()};
     if (const auto verification = value.find("verification")) {

@@ -89,6 +89,13 @@ std::string size_text(std::uint64_t bytes)
     return bytes < 100'000 ? fmt::format("{:.1f} kB", size / 1e3) : fmt::format("{:.1f} MB", size / 1e6);
 }
 
+std::string percent_text(double share)
+{
+    if (share > 0 && share < 0.01) return "<1 %";
+    if (share < 1 && share > 0.99) return ">99 %";
+    return fmt::format("{:.0f} %", 100 * share);
+}
+
 std::string seconds_text(double seconds)
 {
     if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);

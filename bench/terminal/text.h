@@ -19,6 +19,9 @@ namespace tetrace {
 /// A size in MB (10^6 bytes) with one decimal, or kB below 100 kB.
 [[nodiscard]] std::string size_text(std::uint64_t bytes);
 
+/// A share from 0 to 1 in whole percent: "45 %". "<1 %" and ">99 %" are what is not quite none, or all.
+[[nodiscard]] std::string percent_text(double share);
+
 /// Seconds in a readable form: "0.8 s", "12 s", "3 min 05 s".
 [[nodiscard]] std::string seconds_text(double seconds);
 

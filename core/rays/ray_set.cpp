@@ -5,6 +5,7 @@
 #include "core/base/hash.h"
 #include "core/base/random_words.h"
 #include "core/pack/packed_scene.h"
+#include "core/rays/entering.h"
 #include "core/rays/ray_start.h"
 
 #include <algorithm>
@@ -68,20 +69,6 @@ LineSphere sphere_round(const Domain& domain)
     return {(low + high) * 0.5, length(high - low) * (0.5 * 1.0625)}; // no point of it is in the box
 }
 
-bool meets_box(const Domain& domain, Double3 origin, Double3 direction)
-{
-    double from = 0, to = HUGE_VAL;
-    const Double3 low = to_double(domain.low()), high = to_double(domain.high());
-    const auto clip = [&](double o, double d, double l, double h) {
-        if (d == 0) return o > l && o < h;
-        from = std::max(from, ((d > 0 ? l : h) - o) / d);
-        to = std::min(to, ((d > 0 ? h : l) - o) / d);
-        return true;
-    };
-    return clip(origin.x, direction.x, low.x, high.x) && clip(origin.y, direction.y, low.y, high.y) &&
-           clip(origin.z, direction.z, low.z, high.z) && from < to;
-}
-
 GivenRay random_given(const RaySource& source, std::uint32_t pixel)
 {
     const LineSphere sphere = sphere_round(source.scene.domain);
@@ -92,7 +79,7 @@ GivenRay random_given(const RaySource& source, std::uint32_t pixel)
         if (length(to - from) < 0x1p-10) continue; // a chord of the sphere that short is far from the box
         const Float3 origin = snap_to_grid(to_float(sphere.centre + from * sphere.radius));
         const Float3 direction = clean_direction(normalized(to - from));
-        if (meets_box(source.scene.domain, to_double(origin), to_double(direction)))
+        if (enters(source.scene.domain, to_double(origin), to_double(direction)))
             return {origin, direction, NO_END, NO_LINK, FREE_FACE, pixel};
     }
 }

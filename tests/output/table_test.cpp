@@ -160,6 +160,11 @@ TEST(Text, numbers_and_sizes_read_well)
     EXPECT_EQ(with_commas(999), "999");
     EXPECT_EQ(with_commas(1000), "1,000");
     EXPECT_EQ(with_commas(1234567), "1,234,567");
+    EXPECT_EQ(percent_text(0), "0 %");
+    EXPECT_EQ(percent_text(0.001), "<1 %");
+    EXPECT_EQ(percent_text(0.455), "46 %");
+    EXPECT_EQ(percent_text(0.999), ">99 %");
+    EXPECT_EQ(percent_text(1), "100 %");
     EXPECT_EQ(size_text(1500), "1.5 kB");
     EXPECT_EQ(size_text(16'800'000), "16.8 MB");
     EXPECT_EQ(seconds_text(0.84), "0.8 s");

@@ -45,7 +45,33 @@ TEST(Figures, rates_are_counts_over_the_median)
     ASSERT_TRUE(figures.has_value());
     EXPECT_DOUBLE_EQ(figures->kernel_s.median, 0.5);
     EXPECT_DOUBLE_EQ(figures->mrays_per_s, 8);
+    EXPECT_DOUBLE_EQ(figures->mhits_per_s.value(), 2);
     EXPECT_DOUBLE_EQ(figures->msteps_per_s.value(), 80);
+}
+
+TEST(Figures, shares_are_of_all_rays_and_left_out_if_they_are_not_known)
+{
+    Traced result = *traced(timed_row());
+    EXPECT_DOUBLE_EQ(ray_shares(result).hit.value(), 0.25);
+    EXPECT_FALSE(ray_shares(result).enter.has_value());
+    result.entering = 3'000'000;
+    EXPECT_DOUBLE_EQ(ray_shares(result).enter.value(), 0.75);
+    EXPECT_FALSE(ray_shares(Traced{}).hit.has_value()) << "no rays";
+    RowRun misses = timed_row();
+    std::get<Traced>(misses.outcome).totals.hits = 0;
+    EXPECT_FALSE(figures_of(misses)->mhits_per_s.has_value()) << "no rate is 0";
+}
+
+TEST(Figures, entering_rays_add_up_over_the_views)
+{
+    Traced result;
+    ImageVerdict image;
+    image.totals.rays = 4;
+    image.entering = 3;
+    result.add(image);
+    image.entering = 0;
+    result.add(image);
+    EXPECT_EQ(result.entering, 3u);
 }
 
 // Three vertices and a face: 36 + 8 bytes in tet80, four rows of 16 in tet96; a fourth vertex is 12 or 16 bytes more.
