@@ -2,9 +2,11 @@
 
 #include "bench/measuring/figures.h"
 #include "bench/rows/physical_device.h"
+#include "bench/statistics/break_even.h"
 #include "bench/statistics/median_ratio.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace tetrace {
 
@@ -49,7 +51,62 @@ Comparison compared(const RowRun& reference, const RowRun& row)
     return comparison;
 }
 
+std::string arena_of(const RowRun& row, std::size_t hardware)
+{
+    const RowKey& key = row.key;
+    const std::string device = row.device.kind == DeviceKind::emulated ? fmt::format("{}:{}", key.backend, key.device)
+                                                                       : fmt::format("{} {}", hardware, key.threads);
+    return fmt::format("{} {} {} {}", key.scene, name_of(key.rays), name_of(key.ray_order), device);
+}
+
+TotalCost total_cost(const SetupCost& cost, double mrays_per_s)
+{
+    return {cost.once_s(), 1e-6 / mrays_per_s};
+}
+
 } // namespace
+
+Contenders contenders_of(const std::vector<RowRun>& rows)
+{
+    const auto hardware = hardware_of(rows);
+    Contenders found;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto figures = figures_of(rows[i]);
+        if (!figures) continue;
+        const KernelId& kernel = rows[i].key.kernel;
+        found.list.push_back({row_label(rows[i].key), arena_of(rows[i], hardware[i]),
+                              kernel.structure == Structure::bvh, kernel.layout == Layout::embree,
+                              is_single_ray(kernel), figures->mrays_per_s});
+        found.index.push_back(i);
+    }
+    return found;
+}
+
+std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRun>& rows)
+{
+    const Contenders contenders = contenders_of(rows);
+    std::vector<std::optional<Comparison>> result(rows.size());
+    for (std::size_t i = 0; i < contenders.list.size(); ++i) {
+        const auto best = best_bvh(contenders.list, i);
+        if (!best) continue;
+        const RowRun& bvh = rows[contenders.index[*best]];
+        result[contenders.index[i]] = *best == i ? Comparison{&bvh, 1, {}} : compared(bvh, rows[contenders.index[i]]);
+    }
+    return result;
+}
+
+std::optional<PaidBuild> paid_build(const RowRun& row, const std::optional<Comparison>& best_bvh)
+{
+    if (!best_bvh || row.key.kernel.structure != Structure::cdt) return std::nullopt;
+    const auto tets = setup_cost(row), bvh = setup_cost(*best_bvh->reference);
+    if (!tets || !bvh) return std::nullopt;
+    if (best_bvh->interval && best_bvh->interval->contains(1)) return PaidBuild{PaidBuild::When::unclear};
+    const TotalCost ours = total_cost(*tets, figures_of(row)->mrays_per_s);
+    const BreakEven even = break_even(ours, total_cost(*bvh, figures_of(*best_bvh->reference)->mrays_per_s));
+    if (even.ahead != BreakEven::Ahead::first) return PaidBuild{PaidBuild::When::never};
+    if (!even.rays) return PaidBuild{PaidBuild::When::at_once};
+    return PaidBuild{PaidBuild::When::later, *even.rays, *even.rays * ours.ray_s};
+}
 
 std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& rows)
 {

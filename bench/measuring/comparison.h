@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/rows/best_bvh.h"
 #include "bench/rows/row_run.h"
 #include "bench/statistics/rank_interval.h"
 
@@ -20,5 +21,32 @@ struct Comparison {
 /// under the first API that has it. A GPU's rows and the host's, which include emulations, are therefore never
 /// compared. Empty for references themselves, Embree's rows, and rows without a rate.
 [[nodiscard]] std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& rows);
+
+/// The timed rows as the comparison of tets with BVHs sees them; index: of each in `rows`. An arena is the host (of
+/// openmp and Embree), a GPU under all its APIs, or one emulated device of one backend.
+struct Contenders {
+    std::vector<Contender> list;
+    std::vector<std::size_t> index;
+};
+[[nodiscard]] Contenders contenders_of(const std::vector<RowRun>& rows);
+
+/// Each row compared with the fastest BVH of its arena, row by row. That BVH's own ratio is 1, without an interval.
+/// Empty for rows without a rate or a BVH to compare with.
+[[nodiscard]] std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRun>& rows);
+
+/// When building a row's tets has paid against the fastest BVH of its arena, both builds counted.
+struct PaidBuild {
+    enum class When { at_once, later, never, unclear };
+    When when = When::never;
+    double rays = 0;      ///< of later: after so many
+    double tracing_s = 0; ///< of later: seconds that the row takes for them
+};
+template <>
+inline constexpr auto enum_names<PaidBuild::When> = names_up_to<PaidBuild::When::unclear>("at once", "later", "never",
+                                                                                          "unclear");
+
+/// best_bvh: the row's comparison with it. unclear: the interval of the ratio contains 1. Empty for rows of BVHs, and
+/// if a build time is not known.
+[[nodiscard]] std::optional<PaidBuild> paid_build(const RowRun& row, const std::optional<Comparison>& best_bvh);
 
 } // namespace tetrace

@@ -17,15 +17,9 @@ struct Contest {
     const RowRun* any = nullptr;
     std::vector<const RowRun*> rows; ///< timed ones
 
-    /// The fastest, or the fastest of a structure; null where there is none.
-    [[nodiscard]] const RowRun* best(std::optional<Structure> structure = {}) const
+    [[nodiscard]] const RowRun& fastest() const
     {
-        const RowRun* found = nullptr;
-        for (const RowRun* row : rows)
-            if ((!structure || row->key.kernel.structure == *structure) &&
-                (found == nullptr || rate_of(*row) > rate_of(*found)))
-                found = row;
-        return found;
+        return **std::ranges::max_element(rows, {}, [](const RowRun* row) { return rate_of(*row); });
     }
     [[nodiscard]] static double rate_of(const RowRun& row) { return figures_of(row)->mrays_per_s; }
 };
@@ -79,13 +73,56 @@ std::string joined(const std::vector<Contest>& contests, const Phrase& phrase)
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+/// The rows of a contest, all in one arena.
+std::vector<Contender> contenders_of(const Contest& contest)
+{
+    std::vector<Contender> list;
+    for (const RowRun* row : contest.rows) {
+        const KernelId& kernel = row->key.kernel;
+        list.push_back({row_text(*row), "", kernel.structure == Structure::bvh, kernel.layout == Layout::embree,
+                        is_single_ray(kernel), Contest::rate_of(*row)});
+    }
+    return list;
+}
+
+/// The fastest walk through tets, of all or of those that trace one ray at a time.
+std::optional<std::size_t> best_walk(const std::vector<Contender>& rows, bool single)
+{
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (!rows[i].is_bvh && (rows[i].is_single || !single) &&
+            (!best || rows[i].mrays_per_s > rows[*best].mrays_per_s))
+            best = i;
+    return best;
+}
+
+/// "1.84 of the rate of the fastest BVH, bvh packet16 on embree".
+std::string over_bvh_text(const std::vector<Contender>& rows, std::size_t walk, std::size_t bvh)
+{
+    return fmt::format("{:.2f} of the rate of {}", rows[walk].mrays_per_s / rows[bvh].mrays_per_s, bvh_text(rows, bvh));
+}
+
+/// One ray at a time, over our fastest such BVH and over Embree's single rays; empty if all rows are ours and do so.
+std::string single_text(const std::vector<Contender>& rows)
+{
+    if (std::ranges::all_of(rows, [](const Contender& row) { return row.is_single && !row.is_embree; })) return {};
+    const auto walk = best_walk(rows, true);
+    if (!walk) return {};
+    std::vector<std::string> parts;
+    for (const BvhKind kind : {BvhKind::our_single, BvhKind::embree_single})
+        if (const auto bvh = best_bvh(rows, *walk, kind)) parts.push_back(over_bvh_text(rows, *walk, *bvh));
+    if (parts.empty()) return {};
+    return fmt::format("; one ray at a time, {} has {}", rows[*walk].name, fmt::join(parts, " and "));
+}
+
 std::string structures_text(const std::vector<Contest>& contests)
 {
     return joined(contests, [](const Contest& contest) -> std::string {
-        const RowRun *cdt = contest.best(Structure::cdt), *bvh = contest.best(Structure::bvh);
-        if (cdt == nullptr || bvh == nullptr) return {};
-        return fmt::format("the fastest walk through tets has {:.2f} of the rate of the fastest BVH, {}",
-                           Contest::rate_of(*cdt) / Contest::rate_of(*bvh), row_text(*bvh));
+        const auto rows = contenders_of(contest);
+        const auto walk = best_walk(rows, false), bvh = walk ? best_bvh(rows, *walk) : std::nullopt;
+        if (!bvh) return {};
+        return fmt::format("the fastest walk through tets, {}, has {}{}", rows[*walk].name,
+                           over_bvh_text(rows, *walk, *bvh), single_text(rows));
     });
 }
 
@@ -133,7 +170,7 @@ Sheet answer_of(const BenchResult& result)
     Sheet sheet;
     if (!contests.empty())
         sheet.labelled("Fastest", joined(contests, [](const Contest& contest) {
-                                      const RowRun& best = *contest.best();
+                                      const RowRun& best = contest.fastest();
                                       return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
                                   }) + ".");
     std::string compared = structures_text(contests);

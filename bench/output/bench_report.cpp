@@ -91,7 +91,10 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowRun>
 
 const char* const rate_columns =
     "x openmp (x cuda and so on): rate over that of the same kernel with openmp, on a GPU with cuda, on the same "
-    "hardware; medians, with their 95 % interval. x single: rate over that of Embree's single rays. of copy: what a "
+    "hardware; medians, with their 95 % interval, of samples. x best BVH: the same over the fastest BVH on the device, "
+    "named below. x single: rate over that of Embree's single rays. build paid: after so many billion rays, and so "
+    "many "
+    "seconds of tracing them, building the tets has paid against the fastest BVH, both builds counted. of copy: what a "
     "step loads, times steps, over the bandwidth of copies, on the row's device, in the level of memory that holds the "
     "scene. spread: interquartile range over median, "
     "noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 times its "
@@ -178,10 +181,12 @@ std::string scene_headline(const ResultValue& scene)
         how += ", unfinished";
     if (const std::string switches = text_of("switches"); !switches.empty()) how += ", -" + switches;
     if (scene.at("from_cache").flag()) how += ", cached";
-    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({})\n", scene.at("name").line(),
+    const auto bvh = scene.find("bvh_build_s");
+    return fmt::format("{}: {} tets, {} occlusive + {} free faces, {}built in {} ({}){}\n", scene.at("name").line(),
                        with_commas(scene.at("tets").count()), with_commas(scene.at("occlusive_faces").count()),
                        with_commas(scene.at("free_faces").count()), size ? size_text(size->count()) + ", " : "",
-                       seconds_text(scene.at("build_s").number()), how);
+                       seconds_text(scene.at("build_s").number()), how,
+                       bvh ? fmt::format(", its BVH in {}", seconds_text(bvh->number())) : "");
 }
 
 std::string verdict_sentence(const std::vector<RowRun>& rows)

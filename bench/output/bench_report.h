@@ -15,6 +15,7 @@ struct BenchResult {
     Measurement measurement;
     std::vector<RowDevice> devices;
     std::vector<std::optional<Comparison>> comparisons; ///< row by row
+    std::vector<std::optional<Comparison>> best_bvhs;   ///< row by row, with the fastest BVH
     std::vector<std::string> missing_scenes;            ///< sentences, see missing_default_scenes()
     std::vector<std::string> missing_devices;           ///< sentences, see missing_devices()
     std::vector<nlohmann::json> scenes;                 ///< as results record them

@@ -71,6 +71,8 @@ std::vector<RowFacts> facts_of(const BenchResult& result)
     for (const RowRun& row : result.run.rows) {
         RowFacts& facts = all.emplace_back(row);
         facts.comparison = result.comparisons.at(all.size() - 1);
+        facts.best_bvh = result.best_bvhs.at(all.size() - 1);
+        facts.paid_build = paid_build(row, facts.best_bvh);
         facts.ratio_to_single = ratio_to_single(row, result.run.rows);
         facts.copy_shares = copy_shares(row, result.devices);
     }

@@ -200,7 +200,7 @@ std::string promise_text(const ResultComparison& comparison)
     const std::size_t compared = comparison.count(RowOutcome::compared);
     const double error = comparison.error();
     std::string text = fmt::format("rates of B over those of A, by medians: above 1, B is faster; in brackets the "
-                                   "interval. Where nothing changed, "
+                                   "interval, of samples. If nothing changed, "
                                    "the chance that any of these rows is called FASTER or SLOWER is at most {:.2g} %",
                                    100 * error);
     if (error > 1.000001 * comparison_error || error == 0)

@@ -21,6 +21,8 @@ struct RowFacts {
     std::optional<Figures> figures;
     // Set only by `bench`, which has all rows and devices.
     std::optional<Comparison> comparison;
+    std::optional<Comparison> best_bvh; ///< with the fastest BVH of its arena
+    std::optional<PaidBuild> paid_build;
     std::optional<double> ratio_to_single;
     std::optional<CopyShares> copy_shares;
     // Set only by `check`.
@@ -28,8 +30,8 @@ struct RowFacts {
 };
 
 /// Reads a field. It is built from a function of one part of a row, or from a member of that part: RowFacts, RowKey,
-/// RowRun, SetupTimes, Traced, Visits, Figures, CopyShares or Comparison. The field has no value (null) where the row
-/// lacks the part, and where an optional result is empty.
+/// RowRun, SetupTimes, Traced, Visits, Figures, CopyShares, PaidBuild or Comparison (with the row's reference). The
+/// field has no value (null) where the row lacks the part, and where an optional result is empty.
 class FieldValue {
 public:
     template <class Read>
@@ -69,6 +71,8 @@ private:
             return read_part(facts.figures ? &*facts.figures : nullptr);
         else if constexpr (std::is_invocable_v<Read, const CopyShares&>)
             return read_part(facts.copy_shares ? &*facts.copy_shares : nullptr);
+        else if constexpr (std::is_invocable_v<Read, const PaidBuild&>)
+            return read_part(facts.paid_build ? &*facts.paid_build : nullptr);
         else {
             static_assert(std::is_invocable_v<Read, const Comparison&>, "a field is read from a part of a row");
             return read_part(facts.comparison ? &*facts.comparison : nullptr);

@@ -1,9 +1,10 @@
 #include "bench/output/row_fields.h"
 
 #include "bench/output/device_json.h"
+#include "bench/output/fields/comparison_fields.h"
+#include "bench/output/fields/field_parts.h"
 #include "bench/rows/ray_json.h"
 #include "bench/rows/row_tracing.h"
-#include "bench/statistics/median_ratio.h"
 #include "core/base/hash.h"
 
 #include <fmt/format.h>
@@ -12,45 +13,8 @@ namespace tetrace {
 
 namespace {
 
+using namespace field_parts;
 using nlohmann::json;
-
-constexpr bool required = true, optional = false;
-
-Recorded recorded(const char* schema, bool always = optional, const char* what = nullptr)
-{
-    return {schema, always, what};
-}
-
-/// The field's column in one table.
-struct ColumnOf {
-    Place place;
-
-    PlacedColumn operator()(const Shown& shown) const { return {place, shown}; }
-    PlacedColumn operator()(const char* title, const char* unit = "", int decimals = 2,
-                            Cell (*cell)(const json&) = plain_cell) const
-    {
-        return {place, {title, unit, decimals, cell}};
-    }
-};
-constexpr ColumnOf csv{&RowField::csv}, check{&RowField::check}, rates{&RowField::rates}, times{&RowField::times},
-    report{&RowField::report};
-
-Cell milliseconds(const json& value)
-{
-    return value.is_null() ? Cell() : Cell(1e3 * value.get<double>());
-}
-
-Cell megabytes(const json& value)
-{
-    return value.is_null() ? Cell() : Cell(1e-6 * value.get<double>());
-}
-
-template <int decimals>
-Cell percent(const json& value)
-{
-    return value.is_null() ? Cell()
-                           : Cell(fmt::format("{:{}.{}f} %", 100 * value.get<double>(), 3 + decimals, decimals));
-}
 
 json text_or_nothing(const std::string& text)
 {
@@ -88,14 +52,6 @@ std::string status_text(const RowFacts& facts)
     std::string text(status_name(*facts.row));
     if (status_of(*facts.row) == Status::flawed) text += ": " + reason_of(*facts.row);
     return text + tree + (noisy ? ", noisy" : "");
-}
-
-/// Reads an end of the ratio's interval.
-auto end_of_interval(double FactorInterval::*end)
-{
-    return [=](const Comparison& comparison) {
-        return comparison.interval ? std::optional(*comparison.interval.*end) : std::nullopt;
-    };
 }
 
 json compile_and_build_s(const SetupTimes& setup)
@@ -172,7 +128,7 @@ std::vector<RowField> identity_fields()
     };
 }
 
-/// Its speed, alone and compared with others.
+/// Its speed alone; comparison_fields() follow.
 std::vector<RowField> rate_fields()
 {
     return {
@@ -190,35 +146,13 @@ std::vector<RowField> rate_fields()
          recorded("not_negative"), csv("steps per hit")},
         {"counts", "mean_steps_miss", [](const Traced& trace) { return mean_steps(trace.totals).miss; },
          recorded("not_negative"), csv("steps per miss")},
-        {"", "comparison",
-         [](const Comparison& comparison) {
-             const auto& interval = comparison.interval;
-             return fmt::format("{:5.2f}", comparison.ratio) +
-                    (interval ? fmt::format(" [{:.2f}, {:.2f}]", interval->low, interval->high) : "");
-         },
-         rates("x {reference}")},
-        {ratio_group, "row",
-         [](const RowFacts& facts) { return facts.comparison ? json(row_name(facts.row->key)) : json(); },
-         recorded("line", required)},
-        {ratio_group, "ratio", &Comparison::ratio,
-         recorded("positive", required,
-                  "the reference's median device seconds over the row's: above 1 the row is faster"),
-         csv("ratio to reference")},
-        {ratio_group, "low", end_of_interval(&FactorInterval::low),
-         recorded("positive", optional, "of the interval; left out where a row has fewer than 5 samples"),
-         csv({.title = "low", .key = "ratio_low"})},
-        {ratio_group, "high", end_of_interval(&FactorInterval::high), recorded("positive"),
-         csv({.title = "high", .key = "ratio_high"})},
-        {ratio_group, "confidence",
-         [](const Comparison& comparison) {
-             return comparison.interval ? std::optional(ratio_confidence) : std::nullopt;
-         },
-         recorded(R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })")},
-        {ratio_group, "reference", [](const Comparison& comparison) { return row_name(comparison.reference->key); },
-         recorded("line", required), csv("reference")},
-        {"rates", "ratio_to_single", &RowFacts::ratio_to_single,
-         recorded("positive", optional, "to Embree's single rays on the same scene, same run; of rows on the host"),
-         csv("ratio to Embree single"), rates({.title = "x single", .rank = 4})},
+    };
+}
+
+/// Its bandwidth.
+std::vector<RowField> bandwidth_fields()
+{
+    return {
         {"rates", "estimated_gb_per_s", &Figures::gb_per_s,
          recorded("positive", optional, "steps times bytes_per_step"), csv("estimated", "GB/s", 1)},
         {"rates", "bytes_per_step",
@@ -263,6 +197,14 @@ std::vector<RowField> time_fields()
          times("upload", "ms", 1, milliseconds), report("upload", "", 1, milliseconds)},
         {"times", "pack_s", [](const RowRun& row) { return row.packed != nullptr ? json(row.packed->pack_s) : json(); },
          recorded("not_negative")},
+        {"times", "build_s",
+         [](const RowRun& row) {
+             const auto cost = setup_cost(row);
+             return cost ? json(cost->build_s) : json();
+         },
+         recorded("not_negative", optional,
+                  "what the row's structure took to build: TetGen and our optimiser, also if the scene came from the "
+                  "cache; the builder of our BVHs; Embree, or a GPU's driver")},
         {"times", "bvh_build_s", bvh_build_s,
          recorded("not_negative", optional,
                   "of our BVHs, which share one tree; of layout rt the driver's, by the device's clock")},
@@ -399,7 +341,8 @@ const std::vector<RowField>& row_fields()
 {
     static const std::vector<RowField> all = [] {
         std::vector<RowField> fields;
-        for (const auto& part : {identity_fields(), rate_fields(), time_fields(), answer_fields()})
+        for (const auto& part : {identity_fields(), rate_fields(), comparison_fields(), bandwidth_fields(),
+                                 time_fields(), answer_fields()})
             fields.insert(fields.end(), part.begin(), part.end());
         return fields;
     }();

@@ -75,10 +75,12 @@ std::vector<nlohmann::json> scene_records(const SceneRows& run, const Options& o
     std::vector<nlohmann::json> records;
     for (const auto& scene : run.scenes) {
         nlohmann::json& record = records.emplace_back(scene_json(*scene, options));
-        for (const RowRun* row : rows_of(scene->label(), run.rows))
-            if (row->packed != nullptr && row->key.kernel.structure == Structure::cdt &&
-                !record.contains("packed_bytes"))
+        for (const RowRun* row : rows_of(scene->label(), run.rows)) {
+            if (row->packed == nullptr) continue;
+            if (row->key.kernel.structure == Structure::cdt && !record.contains("packed_bytes"))
                 record["packed_bytes"] = row->packed->data.bytes();
+            if (row->packed->bvh_build_s) record["bvh_build_s"] = *row->packed->bvh_build_s;
+        }
     }
     return records;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <set>
+#include <span>
 
 namespace tetrace {
 
@@ -28,14 +29,16 @@ std::string scene_title(const RowGroup& group)
                        group.rays);
 }
 
-/// "45 % of these rays enter the domain, and 16 % hit."
-std::string shares_text(const RowGroup& group)
+/// "45 % of these rays enter the domain, and 16 % hit.", of groups that traced the same rays.
+std::string shares_text(std::span<const RowGroup> groups)
 {
-    for (const ReportRow* row : group.rows) {
-        if (!row->hit_share) continue;
-        const std::string hit = percent_text(*row->hit_share) + (row->enter_share ? " hit." : " of these rays hit.");
-        return row->enter_share ? percent_text(*row->enter_share) + " of these rays enter the domain, and " + hit : hit;
-    }
+    for (const RowGroup& group : groups)
+        for (const ReportRow* row : group.rows) {
+            if (!row->hit_share) continue;
+            const std::string hit = percent_text(*row->hit_share);
+            if (!row->enter_share) return hit + " of these rays hit.";
+            return percent_text(*row->enter_share) + " of these rays enter the domain, and " + hit + " hit.";
+        }
     return {};
 }
 
@@ -148,7 +151,7 @@ Section rate_section(const ReportInput& input)
              ++end)
             charts += figure(group_title(groups[end], input.files.size()),
                              draw(chart_of(groups[end], input.files.size())), "");
-        const std::string shares = shares_text(groups[begin]);
+        const std::string shares = shares_text(std::span(groups).subspan(begin, end - begin));
         section.content += heading(title) + (shares.empty() ? Html() : note(shares)) + side_by_side(charts);
         begin = end;
     }

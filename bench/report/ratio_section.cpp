@@ -10,7 +10,8 @@ namespace {
 
 const char* const how_to_read_ratios =
     "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
-    "with the 95 % interval of the ratio. A hollow dot's interval holds 1: no difference can be told. Rows with fewer "
+    "with the 95 % interval of the ratio, of samples. A hollow dot's interval holds 1: no difference can be told. Rows "
+    "with fewer "
     "than 5 samples have no interval, and are not shown.";
 
 /// Identifies one chart.
@@ -69,6 +70,42 @@ Html chart_of(const RatioGroup& group, const ReportInput& input)
                   "");
 }
 
+/// "1.84 [1.80, 1.88]".
+std::string interval_text(const ResultValue& rates)
+{
+    std::string text = fmt::format("{:.2f}", ratio_at(rates, "ratio_to_best_bvh"));
+    if (rates.find("ratio_to_best_bvh_low"))
+        text += fmt::format(" [{:.2f}, {:.2f}]", ratio_at(rates, "ratio_to_best_bvh_low"),
+                            ratio_at(rates, "ratio_to_best_bvh_high"));
+    return text;
+}
+
+/// Each row of tets over the fastest BVH, which is named; older results lack it.
+Html tets_over_bvhs(const ReportInput& input)
+{
+    HtmlTable table({{"result"}, {"scene"}, {"row"}, {"device"}, {"over the fastest BVH", "", true}, {"which is"}});
+    const std::size_t files = input.files.size();
+    std::vector<std::vector<ResultValue>> values;
+    for (const ResultFile& file : input.files) {
+        const auto rows = file.section().find("rows");
+        values.push_back(rows ? rows->items() : std::vector<ResultValue>());
+    }
+    for (const ReportRow& row : input.rows) {
+        const auto rates = values.at(row.file).at(row.index).find("rates");
+        if (!rates || !rates->find("best_bvh") || !row.kernel.starts_with("cdt ")) continue;
+        const ReportRow& bvh = row_named(input, row.file, rates->at("best_bvh"));
+        table.add({text(file_letter(row.file, files)), text(row.row->scene),
+                   text(row.kernel_and_rays() + " " + row.api), text(row.device), text(interval_text(*rates)),
+                   text(bvh.kernel + " " + bvh.api)});
+    }
+    if (table.empty()) return {};
+    return heading("Tets over the fastest BVH") +
+           note("The rate of each walk through tets over that of the fastest BVH on the same rays and device: on a "
+                "processor ours and Embree's, all of its entry points; on a GPU those of all its APIs, its driver's "
+                "included; an emulated device's own. With the 95 % interval of the ratio, of samples.") +
+           table.html();
+}
+
 } // namespace
 
 Section ratio_section(const ReportInput& input)
@@ -79,17 +116,18 @@ Section ratio_section(const ReportInput& input)
             for (const ResultValue& ratio : ratios->items())
                 if (ratio.find("low")) add_ratio(groups, input, file, ratio);
     Section section{"ratios", "APIs beside each other", {}};
-    section.is_empty = groups.empty();
+    const Html over_bvhs = tets_over_bvhs(input);
+    section.is_empty = groups.empty() && over_bvhs.empty();
     if (groups.empty()) {
         section.content =
-            paragraph("These results compare no APIs: 'tetrace bench' does where a kernel ran under two on "
-                      "one piece of hardware.");
+            over_bvhs + paragraph("These results compare no APIs: 'tetrace bench' does where a kernel ran under two on "
+                                  "one piece of hardware.");
         return section;
     }
     Html charts;
     for (const RatioGroup& group : groups)
         charts += chart_of(group, input);
-    section.content = note(how_to_read_ratios) + side_by_side(charts);
+    section.content = note(how_to_read_ratios) + side_by_side(charts) + over_bvhs;
     return section;
 }
 

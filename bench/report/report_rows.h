@@ -23,12 +23,12 @@ struct ReportRow {
     std::size_t file = 0;  ///< its index on the command line
     std::size_t index = 0; ///< in its file
     const ResultRow* row = nullptr;
-    std::string kernel;          ///< "cdt maria tet80", and whatever differs from the defaults
-    std::string api;             ///< "vulkan", "vulkan:1"
-    std::string rays;            ///< kind
-    std::string device;          ///< the row's, but of the processor the machine's name
+    std::string kernel;                           ///< "cdt maria tet80", and whatever differs from the defaults
+    std::string api;                              ///< "vulkan", "vulkan:1"
+    std::string rays;                             ///< kind
+    std::string device;                           ///< the row's, but of the processor the machine's name
     std::optional<double> enter_share, hit_share; ///< of its rays: that enter the domain, and that hit
-    std::optional<RowRate> rate; ///< only of rows with a device
+    std::optional<RowRate> rate;                  ///< only of rows with a device
 
     [[nodiscard]] const std::string& name() const { return row->name; }
     /// For a row with a device. Rows that may be ranked with each other ran on devices of one kind.

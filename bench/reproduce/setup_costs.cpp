@@ -28,21 +28,6 @@ bool is_whole_cost(const json& entry)
 
 } // namespace
 
-std::optional<SetupCost> setup_cost(const RowRun& row)
-{
-    if (row.session == nullptr) return std::nullopt;
-    SetupCost cost;
-    cost.bytes = row.session->bytes();
-    if (row.packed == nullptr) {
-        const SetupTimes setup = row.session->setup_times();
-        cost.build_s = setup.build_s > 0 ? setup.build_s : setup.compile_s; // a driver's; Embree's
-        return cost;
-    }
-    cost.build_s = row.packed->bvh_build_s.value_or(row.scene->loaded().scene.build.build_s);
-    cost.pack_s = row.packed->pack_s;
-    return cost;
-}
-
 SetupCosts::SetupCosts(Journal* journal) : journal_(journal)
 {
     if (journal == nullptr) return;

@@ -128,6 +128,22 @@ bool is_timed(const RowRun& row)
     return row.session != nullptr && (status == Status::ok || status == Status::flawed);
 }
 
+std::optional<SetupCost> setup_cost(const RowRun& row)
+{
+    if (row.recorded_cost) return row.recorded_cost;
+    if (row.session == nullptr || row.scene == nullptr) return std::nullopt;
+    SetupCost cost;
+    cost.bytes = row.session->bytes();
+    if (row.packed == nullptr) {
+        const SetupTimes setup = row.session->setup_times();
+        cost.build_s = setup.build_s > 0 ? setup.build_s : setup.compile_s; // a driver's; Embree's
+        return cost;
+    }
+    cost.build_s = row.packed->bvh_build_s.value_or(row.scene->loaded().scene.build.build_s);
+    cost.pack_s = row.packed->pack_s;
+    return cost;
+}
+
 std::string reason_of(const RowRun& row)
 {
     if (!row.recorded_reason.empty()) return row.recorded_reason;

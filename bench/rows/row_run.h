@@ -59,7 +59,7 @@ struct ImageVerdict {
 struct Traced {
     RayTotals totals;
     std::optional<std::uint64_t> entering = {}; ///< rays that enter the domain's box, see enters(); empty: not known
-    Visits visits; ///< see count_visits()
+    Visits visits;                              ///< see count_visits()
     Verdicts verdicts;
     bool compared = false;          ///< with openmp; openmp's own rows and Embree's have nothing to compare with
     std::uint64_t different = 0;    ///< rays that differ from openmp's by more than the device's self-test allows
@@ -88,6 +88,16 @@ struct Failed {
 };
 using Outcome = std::variant<Traced, Skipped, Failed>;
 
+/// What a row pays once, before its first ray, and the memory that it occupies from then on. Compiling kernels and
+/// copying to the device are left out: they are costs of the API, not of the structure.
+struct SetupCost {
+    double build_s = 0;      ///< TetGen and our optimiser, the BVH's builder, Embree, or a GPU's driver
+    double pack_s = 0;       ///< from the built structure to the bytes that are copied; none for Embree
+    std::uint64_t bytes = 0; ///< of the session
+
+    [[nodiscard]] double once_s() const { return build_s + pack_s; }
+};
+
 /// A row from its selection to its result. A failure becomes its outcome.
 struct RowRun {
     RowKey key;
@@ -99,8 +109,9 @@ struct RowRun {
     std::unique_ptr<Session> session;
     std::optional<std::size_t> view_of_rays; ///< view whose rays the session has been given; see prepare_view()
     Outcome outcome = Traced{};
-    std::string recorded_reason = {}; ///< of a row that was read from a result, in place of its outcome's
-    double warm_s = 0;                ///< wall seconds of the warm-up pass
+    std::string recorded_reason = {};            ///< of a row that was read from a result, in place of its outcome's
+    std::optional<SetupCost> recorded_cost = {}; ///< of such a row: its setup_cost()
+    double warm_s = 0;                           ///< wall seconds of the warm-up pass
     std::uint32_t passes = 1; ///< of a sample, which traces all views so often; of `reproduce` the most of any view
     std::vector<double> samples_s;          ///< device seconds for all selected views, a pass, one value a repetition
     std::vector<double> wall_samples_s;     ///< the same by the host's clock, from launch to the end of wait
@@ -112,6 +123,8 @@ struct RowRun {
 [[nodiscard]] Status status_of(const RowRun& row);
 /// Whether samples of the row are taken: it is open, and ok or flawed.
 [[nodiscard]] bool is_timed(const RowRun& row);
+/// What setting a row up cost: of one whose session is open, or that was read from a result which has it.
+[[nodiscard]] std::optional<SetupCost> setup_cost(const RowRun& row);
 /// The reason, in one line; empty where the status is ok.
 [[nodiscard]] std::string reason_of(const RowRun& row);
 /// "cpu", "gpu" or "emulated"; empty where the row has no device because its scene could not be loaded.

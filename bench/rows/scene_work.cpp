@@ -66,9 +66,8 @@ std::uint64_t SceneWork::entering(RayKind kind, RayOrder order, std::size_t view
     const auto [entry, is_new] = entering_.try_emplace({kind, view});
     if (!is_new) return entry->second;
     const Domain& domain = loaded_.scene.domain;
-    entry->second = kind == RayKind::primary
-                        ? count_entering(domain, views_.at(view), width_, height_)
-                        : count_entering(domain, given_rays_.set(*this, kind, order, view).rays);
+    entry->second = kind == RayKind::primary ? count_entering(domain, views_.at(view), width_, height_)
+                                             : count_entering(domain, given_rays_.set(*this, kind, order, view).rays);
     return entry->second;
 }
 

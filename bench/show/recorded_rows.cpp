@@ -251,6 +251,9 @@ void read_times(RowRun& run, const ResultValue& value)
         if (const auto disturbed = times->find("disturbed")) run.disturbance = disturbed->line();
     }
     run.session = std::make_unique<RecordedSession>(setup, count_at(value, "bytes"));
+    if (const auto times = value.find("times"))
+        if (const auto build = times->find("build_s"))
+            run.recorded_cost = SetupCost{build->number(), number_at(*times, "pack_s"), count_at(value, "bytes")};
 }
 
 RowRun row_from(const ResultValue& value, const ResultRow& row, bool with_rays)

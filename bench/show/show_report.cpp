@@ -80,6 +80,7 @@ RunAgain bench_again(const ResultFile& file)
     result.run.rows = read_rows(file);
     result.devices = read_devices(file, result.run.rows);
     result.comparisons = compare_rows(result.run.rows);
+    result.best_bvhs = compare_with_best_bvh(result.run.rows);
     result.scenes = scenes_of(section);
     result.missing_scenes = sentences_at(section, "missing_scenes");
     result.missing_devices = sentences_at(section, "missing_devices");

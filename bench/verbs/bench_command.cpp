@@ -44,6 +44,7 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     result.devices = devices_of(result.run.rows);
     measure_devices(result.devices, session_options(options));
     result.comparisons = compare_rows(result.run.rows);
+    result.best_bvhs = compare_with_best_bvh(result.run.rows);
     result.missing_devices = missing_devices(options);
     result.scenes = scene_records(result.run, options);
     result.threads = resolved_threads(options);

@@ -77,6 +77,7 @@ Merged merged_bench(const Shards& shards, const Options& options)
     result.run.rows = merged_rows(shards, selected_views(options));
     result.devices = read_devices(shards.front().result, result.run.rows);
     result.comparisons = compare_rows(result.run.rows);
+    result.best_bvhs = compare_with_best_bvh(result.run.rows);
     result.scenes = scenes_of(shards, selected_views(options));
     result.missing_scenes = sentences_of(shards, "missing_scenes");
     result.missing_devices = sentences_of(shards, "missing_devices");

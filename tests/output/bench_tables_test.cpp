@@ -27,7 +27,13 @@ protected:
         result_.devices = devices_of(result_.run.rows);
         for (RowDevice& device : result_.devices)
             device.yardstick = Yardstick{123.4e9, 123.4e-6};
+        compare();
+    }
+
+    void compare()
+    {
         result_.comparisons = compare_rows(result_.run.rows);
+        result_.best_bvhs = compare_with_best_bvh(result_.run.rows);
     }
 
     void add_row(FakeBackend& backend, Layout layout)
@@ -87,14 +93,17 @@ TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
     bvh.outcome = result_.run.rows[3].outcome;
     bvh.samples_s = {5, 5, 5, 5, 5};
     result_.run.rows.push_back(std::move(bvh));
-    result_.comparisons = compare_rows(result_.run.rows);
+    compare();
     result_.measurement.wall_s = 1;
     result_.measurement.load = MachineLoad{0.05, 2.1, 2};
     const auto unwrapped = [&] { return std::regex_replace(answer_of(result_).text(), std::regex("\\s+"), " "); };
     const std::string quiet = unwrapped();
     EXPECT_TRUE(contains(quiet, "bunny (CPU): bvh bvh2 on openmp, 800.0 Mrays/s")) << quiet;
     EXPECT_TRUE(contains(quiet, "bunny (H200): ")) << quiet;
-    EXPECT_TRUE(contains(quiet, "the fastest walk through tets has 0.50 of the rate of the fastest BVH")) << quiet;
+    EXPECT_TRUE(
+        contains(quiet, "the fastest walk through tets, cdt maria tet80 on openmp (noisy), has 0.50 of the rate of the "
+                        "fastest BVH, bvh bvh2 on openmp"))
+        << quiet;
     EXPECT_TRUE(
         contains(quiet, "APIs by openmp's rate, medians over the kernels: cuda-host 1.00, opencl 1.00, vulkan 1.00"))
         << quiet;
@@ -123,6 +132,40 @@ TEST_F(BenchTables, a_scene_says_how_many_of_its_rays_enter_the_domain_and_hit)
     EXPECT_TRUE(contains(bench_sheet(result_).text(), "\nrays: 12 % hit\n")) << "of an older result";
 }
 
+TEST_F(BenchTables, walks_of_one_ray_are_compared_with_bvhs_of_one_ray_as_well)
+{
+    const auto add = [&](const KernelId& kernel, double seconds) {
+        RowRun row;
+        row.key = result_.run.rows[3].key; // openmp's
+        row.key.kernel = kernel;
+        row.backend = &openmp_;
+        row.device = openmp_.devices()[0];
+        row.outcome = result_.run.rows[3].outcome;
+        row.samples_s = std::vector<double>(5, seconds);
+        result_.run.rows.push_back(std::move(row));
+    };
+    add({.method = Method::project, .layout = Layout::half32, .schedule = Schedule::packets}, 2);
+    add({Structure::bvh, Method::single, Layout::bvh2}, 20);
+    add({Structure::bvh, Method::single, Layout::cwbvh}, 40);
+    add({Structure::bvh, Method::single, Layout::embree}, 8);
+    add({Structure::bvh, Method::packet16, Layout::embree}, 4);
+    compare();
+    const std::string text = std::regex_replace(answer_of(result_).text(), std::regex("\\s+"), " ");
+    EXPECT_TRUE(contains(text,
+                         "the fastest walk through tets, cdt project half32 packets on openmp, has 2.00 of the "
+                         "rate of the fastest BVH, bvh packet16 on openmp; one ray at a time, cdt maria tet80 on "
+                         "openmp (noisy) has 2.00 of the rate of bvh bvh2 on openmp and 0.80 of the rate of bvh single "
+                         "on openmp"))
+        << text;
+    const std::string table = rate_table("bunny", result_).text(2, 160);
+    EXPECT_TRUE(contains(table, "x best BVH")) << table;
+    EXPECT_TRUE(contains(table, "0.40 [")) << "maria over packet16\n" << table;
+    const nlohmann::json row = row_json(facts_of(result_).at(3));
+    EXPECT_EQ(row.at("rates").at("best_bvh"), row_name(result_.run.rows.back().key));
+    EXPECT_DOUBLE_EQ(row.at("rates").at("ratio_to_best_bvh"), 0.4);
+    EXPECT_FALSE(row.contains("break_even")) << "no build time is known";
+}
+
 TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)
 {
     const std::string text = rate_table("bunny", result_).text();
@@ -135,7 +178,8 @@ TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)
 
 TEST_F(BenchTables, fit_a_page_of_110_columns)
 {
-    EXPECT_LE(widest(rate_table("bunny", result_).text(2)), 110u) << rate_table("bunny", result_).text(2);
+    const std::string rates = rate_table("bunny", result_).text(2, 110);
+    EXPECT_LE(widest(rates), 110u) << rates;
     EXPECT_LE(widest(time_table(result_).text(2)), 110u);
     EXPECT_LE(widest(device_table(result_.devices).text(2)), 110u);
 }

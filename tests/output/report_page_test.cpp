@@ -49,14 +49,51 @@ TEST_F(ReportPage, begins_with_the_papers_claim_on_this_machine)
     const std::string faster = answer_of(with_bvh(2));
     EXPECT_TRUE(contains(faster,
                          "cubes on a device of cuda: rays go through the tets 2.00 times as fast as through the "
-                         "BVH"))
+                         "fastest BVH, bvh bvh2 on cuda"))
         << faster;
     using Rows = std::multiset<std::string>;
     EXPECT_EQ(rows_of(faster, "mark "), (Rows{"row/cuda", "row/bvh"}));
-    EXPECT_TRUE(contains(answer_of(with_bvh(8)), "through the tets 2.00 times as slowly as through the BVH"));
+    EXPECT_TRUE(contains(answer_of(with_bvh(8)),
+                         "through the tets 2.00 times as slowly as through the fastest BVH, bvh bvh2 on cuda"));
     const std::string page = page_of({with_bvh(2)});
     EXPECT_LT(page.find("id=\"answer\""), page.find("<nav>")) << "before everything else";
     EXPECT_TRUE(contains(answer_of(bench_json()), "no section")) << "there is no BVH to compare with";
+}
+
+TEST_F(ReportPage, names_the_fastest_bvh_beside_every_ratio_of_tets_to_it)
+{
+    json result = with_bvh(2);
+    json& rows = result["tetrace"]["rows"];
+    json rt = rows.back();
+    rt.update({{"name", "row/rt"}, {"layout", "rt"}, {"backend", "vulkan"}});
+    rt["rates"]["mrays_per_s"] = 3.0;
+    rows.push_back(rt);
+    EXPECT_TRUE(contains(section_of(page_of({result}), "answer"),
+                         "1.33 times as fast as through the fastest BVH, bvh rt on vulkan"))
+        << "of another API on the same GPU";
+    EXPECT_FALSE(contains(section_of(page_of({result}), "ratios"), "fastest BVH"))
+        << "an older result has no such ratio";
+    rows[1]["rates"].update({{"best_bvh", "row/rt"}, {"ratio_to_best_bvh", 1.333}});
+    EXPECT_TRUE(contains(section_of(page_of({result}), "ratios"), "1.33<")) << "without an interval";
+    rows[1]["rates"].update({{"ratio_to_best_bvh_low", 1.25}, {"ratio_to_best_bvh_high", 1.5}});
+    const std::string ratios = section_of(page_of({result}), "ratios");
+    EXPECT_TRUE(contains(ratios, "1.33 [1.25, 1.50]")) << ratios;
+    EXPECT_TRUE(contains(ratios, "bvh rt vulkan")) << ratios;
+    rows[1]["rates"]["best_bvh"] = "row/none";
+    EXPECT_TRUE(contains(error_of_page(result), "there is no row of that name"));
+}
+
+TEST_F(ReportPage, says_how_many_rays_enter_and_hit)
+{
+    json result = bench_json();
+    EXPECT_FALSE(contains(section_of(page_of({result}), "rates"), "of these rays"));
+    json& counts = result["tetrace"]["rows"][1]["counts"];
+    counts.update({{"rays", 1000}, {"hits", 160}});
+    EXPECT_TRUE(contains(section_of(page_of({result}), "rates"), "16 % of these rays hit."));
+    counts["entering"] = 450;
+    EXPECT_TRUE(contains(section_of(page_of({result}), "rates"), "45 % of these rays enter the domain, and 16 % hit."));
+    counts["entering"] = 1001;
+    EXPECT_TRUE(contains(error_of_page(result), "counts.entering: exceeds the number of rays"));
 }
 
 TEST_F(ReportPage, every_device_and_scene_has_its_answer_and_emulated_ones_have_none)

@@ -81,6 +81,16 @@ struct RowPair {
 /// The pairs whose CDT row is its device's fastest, by the time of all views.
 [[nodiscard]] std::vector<RowPair> fastest_pairs(const SceneRun& run);
 
+/// Each device's fastest row of tets with the fastest BVH of that device, as `bench` finds it (compare_with_best_bvh()):
+/// on a processor ours and Embree's, on a GPU those of all its APIs.
+[[nodiscard]] std::vector<RowPair> best_bvh_pairs(const SceneRun& run);
+
+/// The pair of a row of tets with that BVH; empty if there is none.
+[[nodiscard]] std::optional<RowPair> best_bvh_pair(const SceneRun& run, std::size_t cdt);
+
+/// The pair's BVH by bvh_text(): "the fastest BVH, bvh packet16 on embree".
+[[nodiscard]] std::string bvh_text(const RowPair& pair);
+
 /// The number of rays from which the CDT, or the BVH, takes less time in total, including its build; first is the CDT.
 /// Empty where the interval of the ratio of their times contains 1, or a build time is unknown.
 [[nodiscard]] std::optional<BreakEven> break_even(const RowPair& pair);
@@ -90,7 +100,7 @@ struct RowPair {
 
 /// What the paper claims of these pairs, on a GPU and on the CPU: which structure is faster on each of its scenes,
 /// whose times have the larger amplitude over the views, and whose depend less on the size of the scene. And what we
-/// claim: tets for rays are faster than both of our BVHs, on each scene that has them.
+/// claim: tets for rays are faster than the fastest BVH of the device, on each scene that has them.
 [[nodiscard]] std::vector<Claim> pair_claims(const SceneRuns& runs);
 
 /// Table 6: frames of 1024 x 1024 a second, build time and memory of the CDT and of each BVH.
