@@ -81,8 +81,8 @@ struct RowPair {
 /// The pairs whose CDT row is its device's fastest, by the time of all views.
 [[nodiscard]] std::vector<RowPair> fastest_pairs(const SceneRun& run);
 
-/// Each device's fastest row of tets with the fastest BVH of that device, as `bench` finds it (compare_with_best_bvh()):
-/// on a processor ours and Embree's, on a GPU those of all its APIs.
+/// Each device's fastest row of tets with the fastest BVH of that device, as `bench` finds it
+/// (compare_with_best_bvh()): on a processor ours and Embree's, on a GPU those of all its APIs.
 [[nodiscard]] std::vector<RowPair> best_bvh_pairs(const SceneRun& run);
 
 /// The pair of a row of tets with that BVH; empty if there is none.
