@@ -4,6 +4,7 @@
 #include "bench/truth/judge.h"
 #include "bench/truth/walk_path.h"
 #include "core/mesh/locate.h"
+#include "core/rays/camera_set.h"
 #include "scenes/procedural.h"
 #include "tests/support/unpack.h"
 
