@@ -51,7 +51,7 @@ first:
 	cmake --preset release -G Ninja -DBUILD_TESTING=OFF -DTETRACE_COMPILES=$(first_layouts)
 	cmake --build --preset release -j $(JOBS) --target tetrace-first
 	@echo "A first table, of one scene in small images. Then the rest is built, and all of it measured."
-	build/release/bin/tetrace-first bench --scene bunny --layout $(first_layouts),embree --size 256 --samples 7 --budget 40s
+	build/release/bin/tetrace-first bench --scene bunny --layout $(first_layouts),embree,embree_medium,embree_robust --size 256 --samples 7 --budget 40s
 
 bundle: build
 	cmake --preset release -DTETRACE_CUDA_CODE=all

@@ -1,10 +1,10 @@
 #include "backends/embree/accelerator.h"
 
+#include "backends/embree/queries.h"
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 
 #include <algorithm>
-#include <string>
 
 namespace tetrace::embree {
 namespace {
@@ -16,7 +16,26 @@ void check(RTCDevice device, const char* doing)
         throw Error(ErrorKind::internal, std::string("Embree, ") + doing + ": error " + std::to_string(error));
 }
 
-void attach_mesh(RTCDevice device, RTCScene scene, const TriangleMesh& mesh)
+/// Lets Embree use whatever the processor has. Left alone, it keeps some Xeons to narrower trees, for the sake of
+/// programs that use no wide instructions themselves (docs/embree.md).
+#if defined(__x86_64__)
+constexpr const char* frequency_level = "frequency_level=simd512";
+#else
+constexpr const char* frequency_level = "";
+#endif
+
+RTCDevice new_device(unsigned threads)
+{
+    std::string config = frequency_level;
+    if (threads != 0) config += (config.empty() ? "threads=" : ",threads=") + std::to_string(threads);
+    const RTCDevice device = rtcNewDevice(config.c_str());
+    if (device == nullptr)
+        throw Error(ErrorKind::internal,
+                    "Embree: no device could be made: error " + std::to_string(rtcGetDeviceError(nullptr)));
+    return device;
+}
+
+void attach_mesh(RTCDevice device, RTCScene scene, const TriangleMesh& mesh, RTCBuildQuality quality)
 {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -32,7 +51,7 @@ void attach_mesh(RTCDevice device, RTCScene scene, const TriangleMesh& mesh)
     }
     for (const auto& triangle : mesh.triangles)
         triangles = std::copy(triangle.begin(), triangle.end(), triangles);
-    rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+    rtcSetGeometryBuildQuality(geometry, quality);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -46,17 +65,24 @@ bool Accelerator::count_bytes(void* accelerator, ssize_t bytes, bool)
     return true;
 }
 
-Accelerator::Accelerator(const TriangleMesh& mesh, bool robust, unsigned threads)
+Tree tree_of(Layout layout)
 {
-    const std::string config = threads == 0 ? "" : "threads=" + std::to_string(threads);
-    device_ = rtcNewDevice(config.c_str());
-    if (device_ == nullptr) throw Error(ErrorKind::internal, "Embree: no device could be made");
+    switch (layout) {
+    case Layout::embree_medium: return Tree::medium;
+    case Layout::embree_robust: return Tree::robust;
+    default: return Tree::high;
+    }
+}
+
+Accelerator::Accelerator(const TriangleMesh& mesh, Tree tree, unsigned threads) : device_(new_device(threads))
+{
+    const RTCBuildQuality quality = tree == Tree::medium ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH;
     rtcSetDeviceMemoryMonitorFunction(device_, &Accelerator::count_bytes, this);
     scene_ = rtcNewScene(device_);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-    rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(scene_, quality);
+    rtcSetSceneFlags(scene_, tree == Tree::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     try {
-        attach_mesh(device_, scene_, mesh);
+        attach_mesh(device_, scene_, mesh, quality);
         const Stopwatch watch;
         rtcCommitScene(scene_);
         build_s_ = watch.seconds();
@@ -74,71 +100,38 @@ Accelerator::~Accelerator()
     rtcReleaseDevice(device_);
 }
 
-namespace {
+std::string version_text()
+{
+    const std::string version = "Embree " RTC_VERSION_STRING;
+    return *frequency_level == '\0' ? version : version + ", " + frequency_level;
+}
 
-// A query's options, and the order in which the two major versions take options and rays.
-#if TETRACE_EMBREE_MAJOR >= 4
-template <class Arguments>
-Arguments with_coherence(Arguments arguments, Coherence coherence)
+Abilities abilities()
 {
-    arguments.flags = coherence == Coherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    return arguments;
-}
-RTCIntersectArguments to_intersect(Coherence coherence)
-{
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    return with_coherence(arguments, coherence);
-}
-RTCOccludedArguments to_occlude(Coherence coherence)
-{
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    return with_coherence(arguments, coherence);
-}
-#define QUERY(rays, arguments) rays, arguments
-#else
-RTCIntersectContext to_intersect(Coherence coherence)
-{
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags =
-        coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    return context;
-}
-constexpr auto to_occlude = to_intersect;
-#define QUERY(rays, context) context, rays
+    const RTCDevice device = new_device(1);
+    const auto has = [&](RTCDeviceProperty property) { return rtcGetDeviceProperty(device, property) != 0; };
+    Abilities result;
+    result.version = RTC_VERSION_MAJOR;
+    result.native_width = has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+                          : has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                          : has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) ? 4
+                                                                           : 1;
+#if TETRACE_EMBREE_MAJOR < 4
+    result.has_streams = has(RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED);
 #endif
-
-} // namespace
-
-void Accelerator::intersect(RTCRayHit& ray, Coherence coherence) const
-{
-    auto how = to_intersect(coherence);
-    rtcIntersect1(scene_, QUERY(&ray, &how));
+    rtcReleaseDevice(device);
+    return result;
 }
 
-void Accelerator::intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const
+std::string why_not_traced(const Abilities& abilities, Method method)
 {
-    auto how = to_intersect(coherence);
-    rtcIntersect16(valid, scene_, QUERY(&rays, &how));
-}
-
-void Accelerator::occluded(RTCRay& ray, Coherence coherence) const
-{
-    auto how = to_occlude(coherence);
-    rtcOccluded1(scene_, QUERY(&ray, &how));
-}
-
-void Accelerator::occluded16(const int* valid, RTCRay16& rays, Coherence coherence) const
-{
-    auto how = to_occlude(coherence);
-    rtcOccluded16(valid, scene_, QUERY(&rays, &how));
-}
-
-const char* version_text()
-{
-    return "Embree " RTC_VERSION_STRING;
+    if (method == Method::stream && abilities.version >= 4) return no_streams;
+    if (method == Method::stream && !abilities.has_streams) return "this build of Embree has no ray streams";
+    const unsigned width = packet_width(method), native = abilities.native_width;
+    if (width <= native || (abilities.version < 4 && native > 1)) return {};
+    return "Embree " + std::to_string(abilities.version) + " would trace packets of " + std::to_string(width) +
+           " as single rays: its native width on this processor is " + std::to_string(native) +
+           (native > 4 ? " (method packet" + std::to_string(native) + ")" : "");
 }
 
 } // namespace tetrace::embree

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "core/mesh/triangle_mesh.h"
+#include "core/pack/kernel_id.h"
 
 #include <atomic>
 #include <cstdint>
+#include <string>
 
 #if TETRACE_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -13,33 +15,21 @@
 
 namespace tetrace::embree {
 
-/// The options of a query to Embree; the two major versions spell them differently.
-enum class Coherence { coherent, incoherent };
+/// How Embree builds its tree; no tree is the fastest in every scene (docs/embree.md).
+enum class Tree {
+    high,   ///< build quality high: with spatial splits
+    medium, ///< build quality medium: without
+    robust, ///< scene flag robust: watertight, in Embree 3 and 4 without spatial splits
+};
 
-/// A query of one ray, from parameter `near` to `end`.
-[[nodiscard]] inline RTCRayHit query_of(Float3 origin, Float3 direction, float near, float end)
-{
-    RTCRayHit query{};
-    query.ray.org_x = origin.x;
-    query.ray.org_y = origin.y;
-    query.ray.org_z = origin.z;
-    query.ray.dir_x = direction.x;
-    query.ray.dir_y = direction.y;
-    query.ray.dir_z = direction.z;
-    query.ray.tnear = near;
-    query.ray.tfar = end;
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
-    return query;
-}
+/// The tree of a layout of Embree's.
+[[nodiscard]] Tree tree_of(Layout layout);
 
-/// A triangle mesh in an Embree scene of its own device, built with quality high.
+/// A triangle mesh in an Embree scene of its own device.
 class Accelerator {
 public:
-    /// robust: Embree's watertight mode, which tests compare the oracle with. threads: of the build.
-    /// Throws Error{internal} with Embree's reason.
-    Accelerator(const TriangleMesh& mesh, bool robust, unsigned threads);
+    /// threads: of the build. Throws Error{internal} with Embree's reason.
+    Accelerator(const TriangleMesh& mesh, Tree tree, unsigned threads);
     ~Accelerator();
     Accelerator(const Accelerator&) = delete;
     Accelerator& operator=(const Accelerator&) = delete;
@@ -47,11 +37,8 @@ public:
     [[nodiscard]] double build_s() const { return build_s_; }
     [[nodiscard]] std::uint64_t bytes() const { return static_cast<std::uint64_t>(bytes_.load()); }
 
-    void intersect(RTCRayHit& ray, Coherence coherence) const;
-    void intersect16(const int* valid, RTCRayHit16& rays, Coherence coherence) const;
-    /// Whether anything is hit: if so, a ray's tfar becomes -inf.
-    void occluded(RTCRay& ray, Coherence coherence) const;
-    void occluded16(const int* valid, RTCRay16& rays, Coherence coherence) const;
+    /// For queries (queries.h).
+    [[nodiscard]] RTCScene scene() const { return scene_; }
 
 private:
     static bool count_bytes(void* accelerator, ssize_t bytes, bool post);
@@ -62,7 +49,20 @@ private:
     double build_s_ = 0;
 };
 
-/// "Embree 3.13.5"
-[[nodiscard]] const char* version_text();
+/// The version, and what its devices are configured with: "Embree 3.13.5, frequency_level=simd512".
+[[nodiscard]] std::string version_text();
+
+/// What an Embree library traces together on this processor.
+struct Abilities {
+    int version = 0;           ///< major
+    unsigned native_width = 1; ///< rays of the widest packet that it does not split; 1: it traces rays one by one
+    bool has_streams = false;
+};
+/// Those of the library that this program is linked with. Throws Error{internal} with Embree's reason.
+[[nodiscard]] Abilities abilities();
+
+/// Empty if rays are traced by the method as its name says, or by narrower packets; else the reason
+/// (docs/embree.md).
+[[nodiscard]] std::string why_not_traced(const Abilities& abilities, Method method);
 
 } // namespace tetrace::embree

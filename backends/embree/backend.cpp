@@ -9,12 +9,13 @@
 namespace tetrace {
 namespace {
 
-Device embree_device()
+Device embree_device(const embree::Abilities& abilities)
 {
     Device device = host_device();
     device.driver = embree::version_text();
     device.implementation = "embree";
     device.threads = static_cast<unsigned>(omp_get_max_threads());
+    device.group_width = abilities.native_width;
     return device;
 }
 
@@ -27,12 +28,13 @@ public:
 
     [[nodiscard]] bool has_kernel(const KernelId& kernel) const override
     {
-        return kernel.structure == Structure::bvh && kernel.layout == Layout::embree && has_task(kernel);
+        return kernel.structure == Structure::bvh && is_embree(kernel.layout) && has_task(kernel);
     }
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
     {
-        return has_kernel(kernel) ? "" : "Embree traces its own BVH only";
+        if (!has_kernel(kernel)) return "Embree traces its own BVH only";
+        return embree::why_not_traced(abilities_, kernel.method);
     }
 
     [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId& kernel, const SceneData& scene,
@@ -41,14 +43,16 @@ public:
         if (const auto reason = why_not(0, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
         const unsigned threads = options.threads != 0 ? options.threads : devices_.front().threads;
         return std::make_unique<embree::EmbreeSession>(
-            kernel.method, kernel.task, std::make_shared<embree::Accelerator>(*scene.mesh, false, threads), threads);
+            kernel, abilities_.native_width,
+            std::make_shared<embree::Accelerator>(*scene.mesh, embree::tree_of(kernel.layout), threads), threads);
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Quad>) override { return {}; }
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:
-    std::vector<Device> devices_ = {embree_device()};
+    embree::Abilities abilities_ = embree::abilities();
+    std::vector<Device> devices_ = {embree_device(abilities_)};
 };
 
 } // namespace

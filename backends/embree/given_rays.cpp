@@ -1,6 +1,6 @@
 #include "backends/embree/given_rays.h"
 
-#include "core/rays/ray_set.h"
+#include "backends/embree/batch.h"
 
 #include <bit>
 #include <cstddef>
@@ -10,19 +10,12 @@ namespace tetrace::embree {
 
 namespace {
 
-constexpr std::size_t packet_rays = 16;
+/// Rays of a stream. Occlusion queries sort a stream by octants, so more rays are better: with 64, shadow and ao rays
+/// have 0.92 to 0.99 of the rate that they have with 256; diffuse rays 0.98 to 1.02 (Embree 3.13, AVX-512).
+constexpr unsigned stream_rays = 256;
 
-tetrace::Hit nearest_hit(unsigned primitive, float t, float u, float v)
-{
-    if (primitive == RTC_INVALID_GEOMETRY_ID) return {NO_HIT, NO_TET, 0, 0, 0, 0};
-    return {primitive, NO_TET, t, u, v, 0};
-}
-
-/// Embree sets the end of a ray that is occluded to -inf.
-tetrace::Hit any_hit(float end)
-{
-    return {end < 0 ? SOME_HIT : NO_HIT, NO_TET, 0, 0, 0, 0};
-}
+/// Given rays share no path, whatever their order (docs/embree.md).
+constexpr Coherence coherence_of_given = Coherence::incoherent;
 
 Float3 vector_of(const Quad& quad)
 {
@@ -35,48 +28,59 @@ struct Rays {
     bool any_hit;
 };
 
-tetrace::Hit trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number)
+void trace_single(const Accelerator& accelerator, const Rays& rays, std::size_t number, std::span<tetrace::Hit> hits)
 {
     const Quad& origin = rays.origins[number];
     RTCRayHit query =
         query_of(vector_of(origin), vector_of(rays.directions[number]), 0, std::bit_cast<float>(origin.w));
     if (rays.any_hit) {
-        accelerator.occluded(query.ray, Coherence::incoherent);
-        return any_hit(query.ray.tfar);
+        occlude(accelerator.scene(), query.ray, coherence_of_given);
+        hits[number] = any_hit(query.ray.tfar);
+    } else {
+        intersect(accelerator.scene(), query, coherence_of_given);
+        hits[number] = nearest_hit(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
     }
-    accelerator.intersect(query, Coherence::incoherent);
-    return nearest_hit(query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v);
 }
 
-void trace_sixteen(const Accelerator& accelerator, const Rays& rays, std::size_t first, std::span<tetrace::Hit> hits)
+template <unsigned width, unsigned packets>
+void trace_batch(const Accelerator& accelerator, const Rays& rays, std::size_t first, std::span<tetrace::Hit> hits)
 {
-    alignas(64) int valid[packet_rays];
-    RTCRayHit16 query{};
-    for (std::size_t i = 0; i < packet_rays; ++i) {
-        valid[i] = first + i < hits.size() ? -1 : 0;
-        if (valid[i] == 0) continue;
-        const Quad& direction = rays.directions[first + i];
-        const Quad& origin = rays.origins[first + i];
-        query.ray.org_x[i] = std::bit_cast<float>(origin.x);
-        query.ray.org_y[i] = std::bit_cast<float>(origin.y);
-        query.ray.org_z[i] = std::bit_cast<float>(origin.z);
-        query.ray.dir_x[i] = std::bit_cast<float>(direction.x);
-        query.ray.dir_y[i] = std::bit_cast<float>(direction.y);
-        query.ray.dir_z[i] = std::bit_cast<float>(direction.z);
-        query.ray.tfar[i] = std::bit_cast<float>(origin.w);
-        query.ray.mask[i] = ~0u;
-        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        query.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    Batch<width, packets> batch;
+    for (unsigned packet = 0; packet < packets; ++packet)
+        for (unsigned lane = 0; lane < width; ++lane) {
+            const std::size_t number = first + packet * width + lane;
+            if (number >= hits.size()) {
+                batch.clear(packet, lane);
+                continue;
+            }
+            const Quad& origin = rays.origins[number];
+            batch.set(packet, lane, vector_of(origin), vector_of(rays.directions[number]),
+                      std::bit_cast<float>(origin.w));
+        }
+    batch.trace(accelerator.scene(), rays.any_hit, coherence_of_given);
+    for (unsigned packet = 0; packet < packets; ++packet)
+        for (unsigned lane = 0; lane < width; ++lane)
+            if (const std::size_t number = first + packet * width + lane; number < hits.size())
+                hits[number] = batch.hit(packet, lane, rays.any_hit);
+}
+
+/// A call of Embree, and how many rays it traces.
+struct Call {
+    std::size_t rays;
+    void (*trace)(const Accelerator&, const Rays&, std::size_t first, std::span<tetrace::Hit> hits);
+};
+
+template <unsigned width, unsigned packets>
+constexpr Call call_with = {width* packets, trace_batch<width, packets>};
+
+Call call_of(Method method)
+{
+    switch (method) {
+    case Method::packet8: return call_with<8, 1>;
+    case Method::packet16: return call_with<16, 1>;
+    case Method::stream: return call_with<8, stream_rays / 8>;
+    default: return {1, trace_single};
     }
-    if (rays.any_hit)
-        accelerator.occluded16(valid, query.ray, Coherence::incoherent);
-    else
-        accelerator.intersect16(valid, query, Coherence::incoherent);
-    for (std::size_t i = 0; i < packet_rays && first + i < hits.size(); ++i)
-        hits[first + i] = rays.any_hit
-                              ? any_hit(query.ray.tfar[i])
-                              : nearest_hit(query.hit.primID[i], query.ray.tfar[i], query.hit.u[i], query.hit.v[i]);
 }
 
 } // namespace
@@ -86,15 +90,10 @@ void trace_given(const Accelerator& accelerator, Method method, const TraceJob& 
 {
     const std::size_t count = hits.size();
     const Rays rays{quads.first(count), quads.subspan(count, count), job.any_hit};
-    const bool in_packets = method == Method::packet16;
-    const std::size_t step = in_packets ? packet_rays : 1;
-#pragma omp parallel for schedule(dynamic, 64) num_threads(static_cast <int>(threads))
-    for (std::size_t ray = 0; ray < count; ray += step) {
-        if (in_packets)
-            trace_sixteen(accelerator, rays, ray, hits);
-        else
-            hits[ray] = trace_single(accelerator, rays, ray);
-    }
+    const Call call = call_of(method);
+#pragma omp parallel for schedule(dynamic, 1024 / call.rays) num_threads(static_cast <int>(threads))
+    for (std::size_t ray = 0; ray < count; ray += call.rays)
+        call.trace(accelerator, rays, ray, hits);
 }
 
 } // namespace tetrace::embree

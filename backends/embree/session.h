@@ -11,7 +11,9 @@ namespace tetrace::embree {
 /// Rays through Embree: primary rays in the same tiles and with the same bits as the walk's, or given rays.
 class EmbreeSession : public HostSession {
 public:
-    EmbreeSession(Method method, Task task, std::shared_ptr<const Accelerator> accelerator, unsigned threads);
+    /// native_width: see Abilities.
+    EmbreeSession(const KernelId& kernel, unsigned native_width, std::shared_ptr<const Accelerator> accelerator,
+                  unsigned threads);
     void set_rays(std::span<const Quad> quads) override { rays_.assign(quads.begin(), quads.end()); }
     [[nodiscard]] SetupTimes setup_times() const override { return {accelerator_->build_s(), 0.0, false}; }
     [[nodiscard]] std::uint64_t bytes() const override { return accelerator_->bytes(); }
@@ -19,15 +21,15 @@ public:
 private:
     void run(const TraceJob& job, std::span<std::uint32_t> output) override;
 
-    Method method_;
-    Task task_;
+    KernelId kernel_;
+    unsigned native_width_;
     std::vector<Quad> rays_;
     std::shared_ptr<const Accelerator> accelerator_;
     unsigned threads_;
 };
 
-/// Traces a whole image into hits, row after row.
-void trace_image(const Accelerator& accelerator, Method method, const TraceJob& job, std::span<Hit> hits,
-                 unsigned threads);
+/// Traces a whole image into hits, row after row. native_width: see Abilities.
+void trace_image(const Accelerator& accelerator, Method method, unsigned native_width, const TraceJob& job,
+                 std::span<Hit> hits, unsigned threads);
 
 } // namespace tetrace::embree

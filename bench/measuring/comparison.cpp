@@ -75,8 +75,8 @@ Contenders contenders_of(const std::vector<RowRun>& rows)
         if (!figures) continue;
         const KernelId& kernel = rows[i].key.kernel;
         found.list.push_back({row_label(rows[i].key), arena_of(rows[i], hardware[i]),
-                              kernel.structure == Structure::bvh, kernel.layout == Layout::embree,
-                              is_single_ray(kernel), figures->mrays_per_s});
+                              kernel.structure == Structure::bvh, is_embree(kernel.layout), is_single_ray(kernel),
+                              figures->mrays_per_s});
         found.index.push_back(i);
     }
     return found;

@@ -3,6 +3,8 @@
 #include "bench/rows/physical_device.h"
 #include "core/pack/traits.h"
 
+#include <algorithm>
+
 namespace tetrace {
 
 namespace {
@@ -73,12 +75,13 @@ std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRu
 {
     if (!runs_on_host(row.device)) return std::nullopt;
     const auto figures = figures_of(row);
+    double fastest = 0;
     for (const RowRun& other : rows)
-        if (other.key.kernel.layout == Layout::embree && other.key.kernel.method == Method::single &&
+        if (is_embree(other.key.kernel.layout) && other.key.kernel.method == Method::single &&
             same_rays(other.key, row.key))
-            if (const auto single = figures_of(other); figures && single)
-                return figures->mrays_per_s / single->mrays_per_s;
-    return std::nullopt;
+            if (const auto single = figures_of(other)) fastest = std::max(fastest, single->mrays_per_s);
+    if (!figures || fastest == 0) return std::nullopt;
+    return figures->mrays_per_s / fastest;
 }
 
 } // namespace tetrace

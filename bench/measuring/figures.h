@@ -41,7 +41,8 @@ struct RayShares {
 };
 [[nodiscard]] RayShares ray_shares(const Traced& traced);
 
-/// The row's Mrays/s over those of Embree's single rays on the same scene; empty where either has none, and for rows
+/// The row's Mrays/s over those of Embree's single rays on the same scene, through the faster of its trees; empty where
+/// either has none, and for rows
 /// that do not run on the host, as Embree does.
 [[nodiscard]] std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows);
 

@@ -130,7 +130,8 @@ std::vector<OptionRow> row_options()
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
-             " (the number of rays that a BVH gets at once), or 'all'. Default: maria, project on half32 and "
+             " (how many rays Embree's BVHs get at once: one, a packet, or a stream of packets, which only Embree 3 "
+             "has; other BVHs have single alone), or 'all'. Default: maria, project on half32 and "
              "tet64, and the methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria "
              "with BVHs, and "
              "through tets for rays project on half32 and tet64.",
@@ -139,7 +140,9 @@ std::vector<OptionRow> row_options()
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with project), "
          "bvh2 or "
-         "cwbvh (our BVHs), embree (built by Embree itself), or rt (built by Vulkan's driver for its own rays). "
+         "cwbvh (our BVHs), embree, embree_medium or embree_robust (built by Embree itself, with quality high or "
+         "medium, "
+         "or with flag robust), or rt (built by Vulkan's driver for its own rays). "
          "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
          "where rt is named here, in a filter, or by '--schedule pipeline'.",
          reproducing | selecting | bit(Verb::dump), true,

@@ -79,7 +79,7 @@ std::vector<Contender> contenders_of(const Contest& contest)
     std::vector<Contender> list;
     for (const RowRun* row : contest.rows) {
         const KernelId& kernel = row->key.kernel;
-        list.push_back({row_text(*row), "", kernel.structure == Structure::bvh, kernel.layout == Layout::embree,
+        list.push_back({row_text(*row), "", kernel.structure == Structure::bvh, is_embree(kernel.layout),
                         is_single_ray(kernel), Contest::rate_of(*row)});
     }
     return list;

@@ -42,16 +42,28 @@ json fall_back(const RowRun& row)
     return row.packed != nullptr ? text_or_nothing(row.packed->fall_back) : json();
 }
 
-/// With facts for which the terminal has no column: the reason of a flawed row, that its tree is a fall-back, and that
-/// a row is noisy, which is not ok.
+/// Rays of the packets that Embree splits the row's packets into, since the processor has no wider ones; nothing where
+/// it does not.
+json narrower_packets(const RowRun& row)
+{
+    const unsigned native = row.device.group_width;
+    const bool is_split =
+        is_embree(row.key.kernel.layout) && native > 0 && native < packet_width(row.key.kernel.method);
+    return is_split && traced(row) != nullptr ? json(native) : json();
+}
+
+/// With facts for which the terminal has no column: the reason of a flawed row, that its tree is a fall-back or its
+/// packets are narrower, and that a row is noisy, which is not ok.
 std::string status_text(const RowFacts& facts)
 {
     const bool noisy = facts.figures && facts.figures->noisy;
-    const std::string tree = fall_back(*facts.row).is_null() ? "" : ", fall-back tree";
-    if (noisy && status_of(*facts.row) == Status::ok) return "noisy" + tree;
+    std::string remarks = fall_back(*facts.row).is_null() ? "" : ", fall-back tree";
+    if (const json packets = narrower_packets(*facts.row); !packets.is_null())
+        remarks += fmt::format(", in packets of {}", packets.get<unsigned>());
+    if (noisy && status_of(*facts.row) == Status::ok) return "noisy" + remarks;
     std::string text(status_name(*facts.row));
     if (status_of(*facts.row) == Status::flawed) text += ": " + reason_of(*facts.row);
-    return text + tree + (noisy ? ", noisy" : "");
+    return text + remarks + (noisy ? ", noisy" : "");
 }
 
 json compile_and_build_s(const SetupTimes& setup)
@@ -123,6 +135,10 @@ std::vector<RowField> identity_fields()
         {"", "reason", reason_or_nothing, recorded("text"), csv("reason")},
         {"", "fall_back", fall_back,
          recorded("line", optional, "of our BVHs: why it is not the heuristic's best tree")},
+        {"", "narrower_packets", narrower_packets,
+         recorded("count", optional,
+                  "of Embree's packets: rays of the packets that it splits them into, where the processor has no wider "
+                  "ones")},
         {"", "self_test", [](const RowRun& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },
          recorded("self_test", optional, "how the device computes in the row's math mode")},
     };

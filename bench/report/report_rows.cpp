@@ -77,7 +77,7 @@ std::string kernel_of(const ResultValue& value, const ResultRow& row)
 {
     const std::string structure = value.at("structure").line(), method = value.at("method").line();
     const std::string layout = value.at("layout").line();
-    if (layout == "embree") return structure + " " + method;
+    if (layout.starts_with("embree")) return structure + " " + embree_title(method, layout);
     if (layout == "rt") return structure + " " + layout;
     const auto ray_order = value.find("ray_order");
     return fmt::format("{} {}{}{}{}{}{}", structure, structure == "cdt" ? method + " " : "", layout,

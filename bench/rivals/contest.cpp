@@ -20,7 +20,7 @@ using Place = std::tuple<DeviceKind, std::size_t, std::string>;
 std::optional<Place> place_of(const RowRun& row, std::size_t hardware)
 {
     if (row.backend == nullptr) {
-        if (!on_reference(row.key) && row.key.kernel.layout != Layout::embree) return std::nullopt;
+        if (!on_reference(row.key) && !is_embree(row.key.kernel.layout)) return std::nullopt;
         return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}};
     }
     const bool is_emulated = row.device.kind == DeviceKind::emulated;
@@ -92,8 +92,8 @@ bool is_of(const RowRun& row, Rival rival)
     if (kernel.structure != Structure::bvh) return false;
     switch (rival) {
     case Rival::our_single: return is_portable(kernel) && is_single_ray(kernel);
-    case Rival::embree_single: return kernel.layout == Layout::embree && kernel.method == Method::single;
-    case Rival::embree: return kernel.layout == Layout::embree;
+    case Rival::embree_single: return is_embree(kernel.layout) && kernel.method == Method::single;
+    case Rival::embree: return is_embree(kernel.layout);
     case Rival::single: return is_single_ray(kernel);
     case Rival::any: return true;
     }

@@ -53,7 +53,7 @@ void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
                                                    row_label(row->key), reason_without_rate({row})));
     const bool needs_embree = contest.place == DeviceKind::cpu && judged.claim->rival != Rival::our_single;
     if (needs_embree &&
-        std::ranges::none_of(contest.rows, [](const RowRun* row) { return row->key.kernel.layout == Layout::embree; }))
+        std::ranges::none_of(contest.rows, [](const RowRun* row) { return is_embree(row->key.kernel.layout); }))
         judged.obstacles.push_back(
             fmt::format("{}: Embree, whose rays could be faster, has no rows in this run", title_of(contest)));
 }

@@ -14,7 +14,7 @@ bool is_of(BvhKind kind, const Contender& row)
 
 bool is_single_ray(const KernelId& kernel)
 {
-    if (kernel.layout == Layout::embree) return kernel.method == Method::single;
+    if (is_embree(kernel.layout)) return kernel.method == Method::single;
     return kernel.schedule != Schedule::packets;
 }
 

@@ -354,9 +354,12 @@ std::string kernel_title(const RowKey& key)
 {
     const KernelId& kernel = key.kernel;
     std::string title(name_of(kernel.structure));
-    const bool is_embree = kernel.layout == Layout::embree;
-    if (kernel.structure == Structure::cdt || is_embree) title.append(" ").append(name_of(kernel.method));
-    if (!is_embree) title.append(" ").append(name_of(kernel.layout));
+    if (kernel.structure == Structure::cdt) title.append(" ").append(name_of(kernel.method));
+    title += ' ';
+    if (is_embree(kernel.layout))
+        title += embree_title(name_of(kernel.method), name_of(kernel.layout));
+    else
+        title += name_of(kernel.layout);
     if (is_portable(kernel) && kernel.math == MathMode::fast) title += " fast";
     if (key.order != TetOrder::chains) title.append(" ").append(name_of(key.order)).append(" order");
     if (kernel.schedule != Schedule::tiles) title.append(" ").append(name_of(kernel.schedule));

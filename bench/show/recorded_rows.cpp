@@ -95,6 +95,7 @@ Device device_from(const ResultValue& value)
     device.implementation = printable_line(value.text_at("implementation"));
     device.uuid = printable_line(value.text_at("uuid"));
     device.pci = printable_line(value.text_at("pci"));
+    device.group_width = static_cast<unsigned>(std::min<std::uint64_t>(count_at(value, "group_width"), UINT32_MAX));
     return device;
 }
 

@@ -111,6 +111,22 @@ Structure structure_of(Layout layout)
     return family == Family::cdt || family == Family::compact ? Structure::cdt : Structure::bvh;
 }
 
+bool is_embree(Layout layout)
+{
+    return layout == Layout::embree || layout == Layout::embree_medium || layout == Layout::embree_robust;
+}
+
+unsigned packet_width(Method method)
+{
+    return method == Method::packet8 ? 8 : method == Method::packet16 ? 16 : 0;
+}
+
+std::string embree_title(std::string_view method, std::string_view layout)
+{
+    const std::size_t tree = layout.find('_');
+    return std::string(method) + (tree == std::string_view::npos ? "" : " " + std::string(layout.substr(tree + 1)));
+}
+
 bool is_compact(Layout layout)
 {
     return traits_of(layout).family == Family::compact;

@@ -90,6 +90,12 @@ struct KernelId {
 
 /// The structure that a layout packs.
 [[nodiscard]] Structure structure_of(Layout layout);
+/// Whether a layout is a BVH that Embree builds.
+[[nodiscard]] bool is_embree(Layout layout);
+/// The rays of a packet of a method of BVHs; 0 of the others, a stream too.
+[[nodiscard]] unsigned packet_width(Method method);
+/// How a row of Embree's is called: its method, and its tree unless that is of quality high: "packet16 robust".
+[[nodiscard]] std::string embree_title(std::string_view method, std::string_view layout);
 /// Whether a layout's tets share their vertices and do not name their corners: only method project walks them.
 [[nodiscard]] bool is_compact(Layout layout);
 /// Whether the kernel is one of kernels/, the same source on every backend; those of Embree and of drivers are not.

@@ -166,6 +166,30 @@ TEST_F(BenchTables, walks_of_one_ray_are_compared_with_bvhs_of_one_ray_as_well)
     EXPECT_FALSE(row.contains("break_even")) << "no build time is known";
 }
 
+TEST_F(BenchTables, the_fastest_bvh_is_that_of_all_bvh_rows_of_the_hardware)
+{
+    const std::vector<double> samples = {8, 5, 2, 4};
+    const KernelId kernels[] = {
+        {.structure = Structure::bvh, .method = Method::single, .layout = Layout::bvh2},
+        {Structure::bvh, Method::packet16, Layout::embree, MathMode::fast},
+        {Structure::bvh, Method::stream, Layout::embree_robust, MathMode::fast},
+        {Structure::bvh, Method::packet8, Layout::embree_medium, MathMode::fast},
+    };
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        RowRun bvh;
+        bvh.key = result_.run.rows[3].key; // openmp's
+        bvh.key.kernel = kernels[i];
+        bvh.backend = &openmp_;
+        bvh.device = openmp_.devices()[0];
+        bvh.outcome = result_.run.rows[3].outcome;
+        bvh.samples_s = std::vector<double>(5, samples[i]);
+        result_.run.rows.push_back(std::move(bvh));
+    }
+    compare();
+    const std::string text = std::regex_replace(answer_of(result_).text(), std::regex("\\s+"), " ");
+    EXPECT_TRUE(contains(text, "has 0.20 of the rate of the fastest BVH, bvh stream robust on openmp")) << text;
+}
+
 TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)
 {
     const std::string text = rate_table("bunny", result_).text();
@@ -255,6 +279,27 @@ TEST_F(BenchTables, a_row_whose_tree_is_a_fall_back_says_so_in_json_and_in_its_s
     packed.fall_back = "it is too deep";
     EXPECT_EQ(row_json(RowFacts(result_.run.rows[0])).at("fall_back"), "it is too deep");
     EXPECT_TRUE(contains(rate_table("bunny", result_).text(), "fall-back tree"));
+}
+
+TEST_F(BenchTables, a_row_of_embrees_packets_names_the_narrower_ones_that_they_are_split_into)
+{
+    RowRun& row = result_.run.rows[0];
+    const auto packets = [&](Method method, unsigned native_width) {
+        row.key.kernel = {
+            .structure = Structure::bvh, .method = method, .layout = Layout::embree_robust, .math = MathMode::fast};
+        row.device.group_width = native_width;
+        const nlohmann::json object = row_json(RowFacts(row));
+        const unsigned narrower = object.value("narrower_packets", 0u);
+        EXPECT_EQ(contains(rate_table("bunny", result_).text(), "in packets of"), narrower != 0);
+        return narrower;
+    };
+    EXPECT_EQ(packets(Method::packet16, 8), 8u);
+    EXPECT_TRUE(contains(rate_table("bunny", result_).text(), "noisy, in packets of 8"));
+    EXPECT_EQ(packets(Method::packet8, 4), 4u);
+    EXPECT_EQ(packets(Method::packet16, 16), 0u);
+    EXPECT_EQ(packets(Method::packet8, 16), 0u);
+    EXPECT_EQ(packets(Method::packet16, 0), 0u) << "of an older result: not known";
+    EXPECT_EQ(packets(Method::stream, 8), 0u);
 }
 
 TEST_F(BenchTables, a_row_without_an_answer_has_no_empty_group_in_json)

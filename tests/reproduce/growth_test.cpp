@@ -2,6 +2,7 @@
 #include "bench/reproduce/tables/tables.h"
 #include "bench/statistics/power_law.h"
 #include "core/base/error.h"
+#include "tests/reproduce/embree_rows.h"
 #include "tests/reproduce/timed_runs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -13,6 +14,9 @@ using namespace tetrace;
 using namespace tetrace::test;
 
 namespace {
+
+/// Rows of a size, and those with a line in a figure: maria in two layouts, bvh2, cwbvh, and Embree's.
+const std::size_t all_rows = 4 + embree_rows(), all_lines = 4 + traced_embree_rows();
 
 const std::vector<double> sizes = {1500, 6000, 25000, 100000, 400000};
 
@@ -162,7 +166,7 @@ TEST(Growth, each_row_has_the_exponent_of_its_own_times)
 {
     Sizes all;
     const std::size_t rows = all.runs.front().rows.size();
-    ASSERT_EQ(rows, 6u) << "maria in two layouts, bvh2, cwbvh, and Embree's two";
+    ASSERT_EQ(rows, all_rows);
     for (std::size_t row = 0; row < rows; ++row)
         all.set_times(row, 1e-8 * static_cast<double>(row + 1), 0.1 * static_cast<double>(row));
     const PaperTable table = growth_exponents(all.all());
@@ -181,7 +185,7 @@ TEST(Growth, the_table_has_what_rays_visit_of_the_structures_that_have_it)
     all.set_times(0, 2e-8, 0);
     all.runs.front().costs[0] = SetupCost{3, 0.5, 7'000'000};
     const PaperTable table = growth_table(all.all());
-    ASSERT_EQ(table.rows.size(), 3u * 6);
+    ASSERT_EQ(table.rows.size(), 3 * all_rows);
     EXPECT_EQ(number(table, 0, "occlusive_faces").ours.value, Sizes::faces(all.runs.front()));
     EXPECT_NEAR(number(table, 0, "ns_a_ray").ours.value, 20, 1e-9);
     EXPECT_NEAR(number(table, 0, "mrays_per_s").ours.value, 50, 1e-9);
@@ -201,13 +205,13 @@ TEST(Growth, the_table_has_what_rays_visit_of_the_structures_that_have_it)
 TEST(Growth, a_size_without_a_rate_has_no_part_in_the_fit)
 {
     Sizes all;
-    for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t row = 0; row < all_rows; ++row)
         all.set_times(row, 1e-8, 0.5);
     all.runs.back().rows[2].outcome = Failed{ErrorKind::internal, "lost"};
     const PaperTable exponents = growth_exponents(all.all());
     EXPECT_TRUE(is_empty(exponents, 2, "time")) << "two sizes are left";
     EXPECT_NEAR(number(exponents, 3, "time").ours.value, 0.5, 1e-9);
-    EXPECT_TRUE(is_empty(growth_table(all.all()), 2 * 6 + 2, "ns_a_ray"));
+    EXPECT_TRUE(is_empty(growth_table(all.all()), 2 * all_rows + 2, "ns_a_ray"));
 }
 
 TEST(Growth, the_papers_claim_about_size_is_decided_by_the_exponents)
@@ -218,7 +222,7 @@ TEST(Growth, the_papers_claim_about_size_is_decided_by_the_exponents)
             if (one.id == "growth-bvh-depends-less-on-size-cpu") return one;
         throw std::runtime_error("no such claim");
     };
-    for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t row = 0; row < all_rows; ++row)
         all.set_times(row, 1e-8, row < 2 ? 0.4 : 0.1); // the first two are the CDT
     EXPECT_EQ(claim().verdict, ClaimVerdict::holds) << claim().evidence;
     for (std::size_t row = 0; row < 2; ++row)
@@ -232,7 +236,7 @@ TEST(Growth, tets_for_rays_are_lines_of_their_own_beside_the_same_bvhs)
 {
     Sizes all, rays(rays_build);
     ASSERT_EQ(rays.runs.front().rows.size(), 4u) << "maria and project in two layouts each: the BVHs are the same";
-    for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t row = 0; row < all_rows; ++row)
         all.set_times(row, 1e-8, row < 2 ? 0.4 : 0.1);
     for (std::size_t row = 0; row < 4; ++row)
         rays.set_times(row, 1e-8, 0);
@@ -240,9 +244,9 @@ TEST(Growth, tets_for_rays_are_lines_of_their_own_beside_the_same_bvhs)
     const SceneRuns of_rays = rays.all();
     both.insert(both.end(), of_rays.begin(), of_rays.end());
     const PaperTable table = growth_exponents(both);
-    ASSERT_EQ(table.rows.size(), 10u);
-    EXPECT_EQ(std::get<std::string>(table.rows[6][1]), "rays");
-    EXPECT_NEAR(number(table, 6, "time").ours.value, 0, 1e-9);
+    ASSERT_EQ(table.rows.size(), all_rows + 4);
+    EXPECT_EQ(std::get<std::string>(table.rows[all_rows][1]), "rays");
+    EXPECT_NEAR(number(table, all_rows, "time").ours.value, 0, 1e-9);
     EXPECT_NEAR(number(table, 0, "time").ours.value, 0.4, 1e-9);
     const auto verdict = [](const PaperTable& one, const std::string& id) { return claim_of(one, id).verdict; };
     EXPECT_EQ(verdict(table, "growth-bvh-depends-less-on-size-cpu"), ClaimVerdict::holds) << "it is about the CDT";
@@ -258,10 +262,10 @@ TEST(Growth, tets_for_rays_are_lines_of_their_own_beside_the_same_bvhs)
     EXPECT_EQ(verdict(growth_exponents(of_rays), ours), ClaimVerdict::not_testable) << "no nodes";
     EXPECT_EQ(growth_exponents(all.all()).claims.size() + 1, table.claims.size());
     const auto figures = growth_figures(both);
-    ASSERT_EQ(figures[0].series.size(), 10u);
-    EXPECT_EQ(figures[0].series[6].name, "tets for rays tet80 openmp");
-    EXPECT_EQ(figures[0].series[8].name, "tets for rays half32 openmp");
-    EXPECT_EQ(figures[0].series[9].name, "tets for rays tet64 openmp");
+    ASSERT_EQ(figures[0].series.size(), all_lines + 4);
+    EXPECT_EQ(figures[0].series[all_lines].name, "tets for rays tet80 openmp");
+    EXPECT_EQ(figures[0].series[all_lines + 2].name, "tets for rays half32 openmp");
+    EXPECT_EQ(figures[0].series[all_lines + 3].name, "tets for rays tet64 openmp");
     ASSERT_EQ(figures[1].series.size(), 6u);
     EXPECT_EQ(figures[1].series[5].name, "tets for rays");
 }
@@ -272,7 +276,7 @@ TEST(Growth, figures_are_lines_over_the_faces_with_logarithmic_axes)
     const auto figures = growth_figures(all.all());
     ASSERT_EQ(figures.size(), 2u);
     EXPECT_EQ(figures[0].id, "growth-cubes-time-cpu");
-    EXPECT_EQ(figures[0].series.size(), 6u);
+    EXPECT_EQ(figures[0].series.size(), all_lines);
     EXPECT_TRUE(figures[0].x.logarithmic && figures[0].y.logarithmic);
     EXPECT_EQ(figure_json(figures[0])["y"]["scale"], "logarithmic");
     EXPECT_EQ(figures[1].id, "growth-cubes-visits");

@@ -45,9 +45,9 @@ const KernelId half32 = kernel(Method::project, Layout::half32), tet64 = kernel(
                bvh2 = kernel(Method::single, Layout::bvh2), cwbvh = kernel(Method::single, Layout::cwbvh),
                native_bvh2 = kernel(Method::single, Layout::bvh2, Schedule::native);
 
-RowRun embree(Method method, double seconds)
+RowRun embree(Method method, double seconds, Layout layout = Layout::embree)
 {
-    RowRun row = row_of(kernel(method, Layout::embree), seconds, "embree");
+    RowRun row = row_of(kernel(method, layout), seconds, "embree");
     row.key.kernel.math = MathMode::fast; // of the list's
     return row;
 }
@@ -100,6 +100,9 @@ TEST(Rivals, the_fastest_bvh_of_a_processor_is_any_entry_point_of_embree)
               holds);
     EXPECT_EQ(verdict_of(any, list(row_of(packets, 1), row_of(bvh2, 9), embree(Method::single, 0.5),
                                    embree(Method::packet16, 2))),
+              fails_to_hold);
+    EXPECT_EQ(verdict_of(any, list(row_of(packets, 1), row_of(bvh2, 9), embree(Method::packet16, 2),
+                                   embree(Method::stream, 0.5, Layout::embree_robust))),
               fails_to_hold);
 }
 

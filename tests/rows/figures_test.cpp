@@ -128,6 +128,21 @@ TEST(Figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_sc
     EXPECT_FALSE(ratio_to_single(rows[1], rows).has_value());
 }
 
+TEST(Figures, the_ratio_is_over_the_faster_of_embrees_single_rays)
+{
+    std::vector<RowRun> rows;
+    rows.push_back(timed_row());
+    for (const Layout layout : {Layout::embree, Layout::embree_medium}) {
+        rows.push_back(single_row(rows[0].key.scene));
+        rows.back().key.kernel.layout = layout;
+    }
+    rows[1].samples_s = {0.25, 0.25, 0.25};
+    EXPECT_DOUBLE_EQ(ratio_to_single(rows[0], rows).value(), 0.25);
+    EXPECT_DOUBLE_EQ(ratio_to_single(rows[1], rows).value(), 0.5);
+    rows[2].key.kernel.method = Method::packet16;
+    EXPECT_DOUBLE_EQ(ratio_to_single(rows[0], rows).value(), 0.5) << "packets are no single rays";
+}
+
 TEST(Figures, the_ratio_is_over_single_rays_of_the_same_kind_and_order)
 {
     std::vector<RowRun> rows;
@@ -241,7 +256,7 @@ TEST(ExitCodes, a_method_that_does_not_claim_robustness_fails_only_where_a_devic
         EXPECT_FALSE(claims_robustness({.method = method, .math = MathMode::fast})) << "held to no proof";
     EXPECT_TRUE(claims_robustness({.method = Method::project}));
     EXPECT_TRUE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = Layout::cwbvh}));
-    for (const Layout theirs : {Layout::embree, Layout::rt})
+    for (const Layout theirs : {Layout::embree, Layout::embree_medium, Layout::embree_robust, Layout::rt})
         EXPECT_FALSE(claims_robustness({.structure = Structure::bvh, .method = Method::single, .layout = theirs}));
 }
 

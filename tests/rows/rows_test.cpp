@@ -216,7 +216,16 @@ TEST(Rows, the_default_is_maria_and_projects_records_beside_bvhs_and_embree)
                                         "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",
-                                        "bvh/packet16/embree/bunny/primary/math:fast/api:embree"}));
+                                        "bvh/packet8/embree/bunny/primary/math:fast/api:embree",
+                                        "bvh/packet16/embree/bunny/primary/math:fast/api:embree",
+                                        "bvh/stream/embree/bunny/primary/math:fast/api:embree",
+                                        "bvh/single/embree_medium/bunny/primary/math:fast/api:embree",
+                                        "bvh/packet8/embree_medium/bunny/primary/math:fast/api:embree",
+                                        "bvh/packet16/embree_medium/bunny/primary/math:fast/api:embree",
+                                        "bvh/stream/embree_medium/bunny/primary/math:fast/api:embree",
+                                        "bvh/packet8/embree_robust/bunny/primary/math:fast/api:embree",
+                                        "bvh/packet16/embree_robust/bunny/primary/math:fast/api:embree",
+                                        "bvh/stream/embree_robust/bunny/primary/math:fast/api:embree"}));
 }
 
 TEST(Rows, the_papers_tables_have_no_packets)
@@ -233,7 +242,7 @@ TEST(Rows, every_method_has_rows_where_all_are_asked_for)
             all.push_back(name_of(kernel) + "/a/primary/math:exact/api:openmp");
     EXPECT_EQ(all.front(), "cdt/plane/tet80/a/primary/math:exact/api:openmp");
     EXPECT_EQ(all.back(), "cdt/project/tet80/a/primary/math:exact/api:openmp");
-    for (const char* const method : {"single", "packet16"})
+    for (const char* const method : {"single", "packet8", "packet16", "stream"})
         all.push_back(std::string("bvh/") + method + "/embree/a/primary/math:fast/api:embree");
     EXPECT_EQ(names({"bench", "--method", "all", "--layout", "tet80,embree"}, {"a"}), all);
     EXPECT_EQ(names({"check", "--method", "plucker"}, {"a"}).size(), 2u);
@@ -245,7 +254,9 @@ TEST(Rows, options_select_and_rows_go_scene_after_scene)
               (std::vector<std::string>{"cdt/maria/tet96/a/primary/math:exact/api:openmp",
                                         "cdt/maria/tet96/b/primary/math:exact/api:openmp"}));
     EXPECT_EQ(names({"bench", "--backend", "embree", "--method", "packet16"}, {"a"}),
-              std::vector<std::string>{"bvh/packet16/embree/a/primary/math:fast/api:embree"});
+              (std::vector<std::string>{"bvh/packet16/embree/a/primary/math:fast/api:embree",
+                                        "bvh/packet16/embree_medium/a/primary/math:fast/api:embree",
+                                        "bvh/packet16/embree_robust/a/primary/math:fast/api:embree"}));
 }
 
 TEST(Rows, embree_has_one_row_whatever_the_math_modes_and_orders)
@@ -254,7 +265,7 @@ TEST(Rows, embree_has_one_row_whatever_the_math_modes_and_orders)
         names({"bench", "--math", "exact,fast", "--order", "input,chains", "--layout", "tet80,embree"}, {"a"});
     EXPECT_EQ(std::count_if(list.begin(), list.end(),
                             [](const auto& name) { return name.find("api:embree") + 10 == name.size(); }),
-              2);
+              4);
     EXPECT_NE(std::find(list.begin(), list.end(), "cdt/maria/tet80/a/primary/math:exact/order:input/api:openmp"),
               list.end());
     EXPECT_NE(std::find(list.begin(), list.end(), "cdt/maria/tet80/a/primary/math:exact/api:openmp"), list.end());
@@ -267,7 +278,7 @@ TEST(Rows, values_given_twice_give_a_row_once)
 
 TEST(Rows, the_filter_is_a_search_in_names)
 {
-    EXPECT_EQ(names({"bench", "--filter", "tet80|packet16"}, {"a"}).size(), 2u);
+    EXPECT_EQ(names({"bench", "--filter", "tet80|packet16/embree/"}, {"a"}).size(), 2u);
     EXPECT_EQ(names({"bench", "--filter", "/b/.*openmp$"}, {"a", "b"}).size(), 7u);
 }
 
@@ -278,7 +289,7 @@ TEST(Rows, an_empty_selection_is_an_error_that_says_so)
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_NE(std::string(error.what()).find("matches none of the 9 rows"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("matches none of the 18 rows"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("cdt/maria/tet96/a"), std::string::npos) << error.what();
     }
     try {
@@ -331,11 +342,13 @@ TEST(Rows, kinds_and_orders_of_given_rays_are_rows_of_the_kernels_that_take_rays
 
 TEST(Rows, bvhs_of_ours_have_math_modes_and_schedules_and_embrees_do_not)
 {
-    const auto bvhs = names({"bench", "--structure", "bvh", "--math", "exact,fast"}, {"s"});
-    EXPECT_EQ(bvhs, (std::vector<std::string>{"bvh/single/bvh2/s/primary/math:exact/api:openmp",
-                                              "bvh/single/cwbvh/s/primary/math:exact/api:openmp",
-                                              "bvh/single/bvh2/s/primary/math:fast/api:openmp",
-                                              "bvh/single/cwbvh/s/primary/math:fast/api:openmp",
-                                              "bvh/single/embree/s/primary/math:fast/api:embree",
-                                              "bvh/packet16/embree/s/primary/math:fast/api:embree"}));
+    const auto bvhs =
+        names({"bench", "--structure", "bvh", "--layout", "bvh2,cwbvh,embree", "--math", "exact,fast"}, {"s"});
+    EXPECT_EQ(
+        bvhs,
+        (std::vector<std::string>{
+            "bvh/single/bvh2/s/primary/math:exact/api:openmp", "bvh/single/cwbvh/s/primary/math:exact/api:openmp",
+            "bvh/single/bvh2/s/primary/math:fast/api:openmp", "bvh/single/cwbvh/s/primary/math:fast/api:openmp",
+            "bvh/single/embree/s/primary/math:fast/api:embree", "bvh/packet8/embree/s/primary/math:fast/api:embree",
+            "bvh/packet16/embree/s/primary/math:fast/api:embree", "bvh/stream/embree/s/primary/math:fast/api:embree"}));
 }

@@ -1,6 +1,6 @@
 // How good is the oracle? Right answers near edges and silhouettes are falsified, and it must catch them all, but those
 // that have a witness. TETRACE_CAMPAIGN is how many rays a mesh gets.
-#include "backends/embree/accelerator.h"
+#include "backends/embree/queries.h"
 #include "bench/truth/judge.h"
 #include "core/base/exact.h"
 #include "scenes/load.h"
@@ -38,7 +38,8 @@ std::uint32_t wanted(std::uint32_t otherwise)
 class Campaign {
 public:
     explicit Campaign(const TriangleMesh& mesh)
-        : mesh_(mesh), rays_(mesh), search_(mesh), settler_(mesh, search_), judge_(mesh, 1), embree_(mesh, true, 0)
+        : mesh_(mesh), rays_(mesh), search_(mesh), settler_(mesh, search_), judge_(mesh, 1),
+          embree_(mesh, embree::Tree::robust, 0)
     {
     }
 
@@ -86,7 +87,7 @@ private:
         std::vector<std::uint32_t> found;
         for (float near = 0; found.size() < 3;) {
             RTCRayHit query = embree::query_of(ray.origin, ray.direction, near, NO_END);
-            embree_.intersect(query, embree::Coherence::incoherent);
+            embree::intersect(embree_.scene(), query, embree::Coherence::incoherent);
             if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
             found.push_back(query.hit.primID);
             near = query.ray.tfar * (1 + 0x1p-16f);
@@ -186,7 +187,7 @@ private:
             const Double3 shift = random_direction({stream, i, 0, 0}) * (reach * (i % 8) / 8);
             const Float3 origin = snap_to_grid(to_float(to_double(ray.origin) + shift));
             RTCRayHit query = embree::query_of(origin, ray.direction, 0, NO_END);
-            embree_.intersect(query, embree::Coherence::incoherent);
+            embree::intersect(embree_.scene(), query, embree::Coherence::incoherent);
             if (hit.face_id != (query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? NO_HIT : query.hit.primID)) continue;
             if (settler_.settle({origin, ray.direction}, {}, hit.face_id, 0x1p-40).kind != Settlement::Kind::exact)
                 continue;

@@ -152,7 +152,7 @@ std::vector<PaperCell> exponent_cells(const GrowthLine& line)
 std::string line_name(const GrowthLine& line)
 {
     const KernelId& kernel = line.row->key.kernel;
-    if (kernel.layout == Layout::embree) return fmt::format("Embree {}", name_of(kernel.method));
+    if (is_embree(kernel.layout)) return "Embree " + embree_title(name_of(kernel.method), name_of(kernel.layout));
     const std::string name = kernel.structure == Structure::cdt
                                  ? fmt::format("{} {}", tets_name(*line.run), name_of(kernel.layout))
                                  : std::string(name_of(kernel.layout));

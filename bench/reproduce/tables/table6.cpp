@@ -27,11 +27,6 @@ bool is_compared(const SceneRun& run, const RowRun& row)
     return is_for_rays(run) && kernel.method == Method::project && kernel.schedule != Schedule::packets;
 }
 
-bool is_embree(const RowRun& row)
-{
-    return row.key.kernel.layout == Layout::embree;
-}
-
 /// On one device in one math mode; a driver's own BVH has no mode to choose.
 bool run_alike(const RowRun& a, const RowRun& b)
 {
@@ -41,7 +36,7 @@ bool run_alike(const RowRun& a, const RowRun& b)
 
 bool run_beside(const RowRun& cdt, const RowRun& bvh)
 {
-    return is_embree(bvh) ? on_reference(cdt.key) : run_alike(cdt, bvh);
+    return is_embree(bvh.key.kernel.layout) ? on_reference(cdt.key) : run_alike(cdt, bvh);
 }
 
 double total_s(const SceneRun& run, std::size_t row)
@@ -209,12 +204,14 @@ std::vector<PaperCell> pair_cells(const RowPair& pair)
             ahead_text(pair)};
 }
 
-/// "cwbvh opencl:1", preceded by "single" or "packet16" for Embree's; without the device where all have the same one.
+/// "cwbvh opencl:1", or "Embree packet16"; without the device where all have the same one.
 std::string curve_name(const RowPair& pair, bool with_device)
 {
     const RowRun& bvh = pair.run->rows[pair.bvh];
-    std::string name = is_embree(bvh) ? fmt::format("Embree {}", name_of(bvh.key.kernel.method))
-                                      : std::string(name_of(bvh.key.kernel.layout));
+    const std::string_view layout = name_of(bvh.key.kernel.layout);
+    std::string name = is_embree(bvh.key.kernel.layout)
+                           ? "Embree " + embree_title(name_of(bvh.key.kernel.method), layout)
+                           : std::string(layout);
     if (with_device) name += ' ' + device_label(pair.run->rows[pair.cdt].key);
     return name;
 }
