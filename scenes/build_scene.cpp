@@ -36,6 +36,7 @@ bool can_execute(const fs::path& path)
 }
 
 constexpr const char* builder_name = "tetrace-builder";
+constexpr double least_mesh_only_s = 60;
 constexpr double to_check_and_write_s = 120; // what an interrupted optimiser has reached; a second Ctrl-C ends it
 
 fs::path in_search_path()
@@ -151,12 +152,12 @@ std::string finding(const Report& report)
     return report.last_words.empty() ? "" : fmt::format(", its last words: {}", report.last_words);
 }
 
-[[noreturn]] void fail(const std::string& doing, const Ending& ending, const Report& report, double wall_s)
+Error failure(const std::string& doing, const Ending& ending, const Report& report, double wall_s)
 {
     const bool remedy_needed = !ending.builder_knows || report.errors.empty();
-    throw Error(ending.kind,
-                fmt::format("{}: {}{} (last stage: {}, {:.1f} s){}{}", doing, ending.what, finding(report),
-                            report.stage, wall_s, remedy_needed ? "; " : "", remedy_needed ? ending.remedy : ""));
+    return {ending.kind,
+            fmt::format("{}: {}{} (last stage: {}, {:.1f} s){}{}", doing, ending.what, finding(report), report.stage,
+                        wall_s, remedy_needed ? "; " : "", remedy_needed ? ending.remedy : "")};
 }
 
 [[noreturn]] void fail_without_builder(const std::string& label)
@@ -204,6 +205,12 @@ struct Run {
         return outcome.end == ChildOutcome::End::exited &&
                (outcome.code == BUILDER_TETGEN_REFUSED || outcome.code == BUILDER_ABSURD_OUTPUT);
     }
+    /// Whether there may be a scene of the mesh alone: nothing was found wrong with the mesh.
+    [[nodiscard]] bool only_tets_failed() const
+    {
+        return tetgen_failed() || outcome.end == ChildOutcome::End::timed_out ||
+               (outcome.end == ChildOutcome::End::exited && outcome.code == BUILDER_OUT_OF_MEMORY);
+    }
 };
 
 Run run_builder(const fs::path& builder, const std::vector<std::string>& arguments, const std::string& label,
@@ -239,8 +246,8 @@ fs::path find_builder()
     return can_execute(beside) ? beside : in_search_path();
 }
 
-bool build_scene(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
-                 const Progress& progress, std::vector<std::string>& notes)
+BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::string& label, const BuildOptions& options,
+                     const Progress& progress, std::vector<std::string>& notes)
 {
     const fs::path builder = find_builder();
     if (builder.empty()) fail_without_builder(label);
@@ -257,9 +264,20 @@ bool build_scene(const fs::path& mesh, const fs::path& out, const std::string& l
         run = run_builder(builder, arguments_of(mesh, out, label, tried), label, tried, progress);
     }
     notes.insert(notes.end(), run.report.notes.begin(), run.report.notes.end());
-    if (run.is_good()) return run.outcome.interrupted;
-    fail(fmt::format("building scene {} from {} with switches {}", label, mesh.string(), failed + tried.switches),
-         ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
+    if (run.is_good()) return {run.outcome.interrupted, std::nullopt};
+    const Error error = failure(
+        fmt::format("building scene {} from {} with switches {}", label, mesh.string(), failed + tried.switches),
+        ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
+    if (!options.mesh_will_do || !run.only_tets_failed()) throw error;
+    BuildOptions mesh_only = options;
+    mesh_only.time_limit_s = std::max(options.time_limit_s, least_mesh_only_s);
+    std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only);
+    arguments.emplace_back("--mesh-only");
+    const Run second = run_builder(builder, arguments, label, mesh_only, progress);
+    if (second.outcome.end == ChildOutcome::End::interrupted)
+        throw Error(ErrorKind::interrupted, fmt::format("building scene {}: interrupted", label));
+    if (!second.is_good()) throw error;
+    return {second.outcome.interrupted, error};
 }
 
 std::vector<std::string> fallback_switches(const BuildOptions& options)

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
 #include "scenes/catalogue.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,15 +20,22 @@ namespace tetrace {
 /// stay apart (M) and a finer tolerance (T), or without Y and q.
 [[nodiscard]] std::vector<std::string> fallback_switches(const BuildOptions& options);
 
+/// A build that left a scene.
+struct BuildEnd {
+    bool interrupted = false;     ///< Ctrl-C came; with keep_unfinished there may be a scene nevertheless
+    std::optional<Error> no_tets; ///< with mesh_will_do: why the scene has no tets
+};
+
 /// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. Where TetGen fails, runs it again
 /// with each of fallback_switches() in what is left of the time, or a tenth of it, until one of them will do.
-/// notes: the builder's remarks are appended. progress: called with the stage about ten times a second.
-/// Returns whether Ctrl-C came; with keep_unfinished there may be a scene nevertheless, finished or not.
-/// Throws Error; its text says how the builder ended, its switches, its last stage and what to try. Kinds: missing (no
-/// builder, or a file that it needs), interrupted (Ctrl-C), internal (a fault of the builder), usage (switches or
-/// divisions that it does not accept), else invalid_input.
-[[nodiscard]] bool build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out,
-                               const std::string& label, const BuildOptions& options, const Progress& progress,
-                               std::vector<std::string>& notes);
+/// If TetGen fails with all of them, crashes, or reaches the limit of time or memory, and the mesh will do, the builder
+/// is run once more for the mesh alone, within the same limits, but at least a minute. notes: the builder's remarks are
+/// appended. progress: called with the stage about ten times a second. Throws Error; its text says how the builder
+/// ended, its switches, its last stage and what to try. Kinds: missing (no builder, or a file that it needs),
+/// interrupted (Ctrl-C), internal (a fault of the builder), usage (switches or divisions that it does not accept), else
+/// invalid_input.
+[[nodiscard]] BuildEnd build_scene(const std::filesystem::path& mesh, const std::filesystem::path& out,
+                                   const std::string& label, const BuildOptions& options, const Progress& progress,
+                                   std::vector<std::string>& notes);
 
 } // namespace tetrace

@@ -75,6 +75,7 @@ struct BuildOptions {
     double time_limit_s = 600;     ///< for the builder
     double optimise_s = 0;         ///< for its optimiser; 0: half of time_limit_s
     std::uint64_t memory_limit_bytes = std::uint64_t{8} << 30;
+    bool mesh_will_do = false;    ///< whether a scene without tets is loaded if TetGen fails or reaches a limit
     bool keep_unfinished = false; ///< whether Ctrl-C lets the optimiser end with what it has reached
 };
 

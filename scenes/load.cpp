@@ -201,15 +201,21 @@ void MeshSceneLoader::build()
 {
     const WorkFolder work(file_);
     const fs::path made = work.path() / "scene.tet";
-    loaded_.interrupted = build_scene(mesh_, made, label_, request_.build, progress_, loaded_.messages);
+    const BuildEnd end = build_scene(mesh_, made, label_, request_.build, progress_, loaded_.messages);
+    loaded_.interrupted = end.interrupted;
+    loaded_.no_tets = end.no_tets;
     tell(fmt::format("checking {}", label_));
     try {
-        loaded_.scene = read_scene(made);
+        loaded_.scene = read_scene(made, end.no_tets ? SceneFileKind::mesh_only : SceneFileKind::whole);
     } catch (const Error& error) {
         throw Error(ErrorKind::internal,
                     fmt::format("building scene {} with switches {}: the builder reported success, but "
                                 "its file cannot be used: {}",
                                 label_, request_.build.switches, error.what()));
+    }
+    if (end.no_tets) { // the next run tries again
+        file_.clear();
+        return;
     }
     const std::string difference = mismatch(loaded_.scene);
     if (!difference.empty())

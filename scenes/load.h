@@ -1,8 +1,11 @@
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/mesh/scene.h"
 #include "scenes/catalogue.h"
+
+#include <optional>
 
 namespace tetrace {
 
@@ -10,9 +13,10 @@ struct LoadedScene {
     Scene scene;
     std::uint64_t hash = 0; ///< scene_hash(scene)
     bool from_cache = false;
-    bool interrupted = false;   ///< Ctrl-C came while it was built (BuildOptions::keep_unfinished)
-    std::filesystem::path file; ///< the `.tet` file; empty for `cubes` and `lattice`
-    std::vector<Aim> views;     ///< CatalogueEntry::views
+    bool interrupted = false;     ///< Ctrl-C came while it was built (BuildOptions::keep_unfinished)
+    std::filesystem::path file;   ///< the `.tet` file; empty for `cubes`, `lattice` and without tets
+    std::optional<Error> no_tets; ///< why the scene has no tets, and is not cached (BuildOptions::mesh_will_do)
+    std::vector<Aim> views;       ///< CatalogueEntry::views
     std::vector<std::string>
         messages; ///< for the user: a damaged cache file rebuilt, triangles dropped, options not used
 };
@@ -22,7 +26,8 @@ struct LoadedScene {
 /// its own, and never taken for the whole one. Throws Error{usage} for a name that is neither in the catalogue nor a
 /// path (lists the accepted ones) and for switches that the builder does not accept, Error{missing} for a file or a
 /// mesh that is not available here, Error{invalid_input} with the builder's finding, Error{interrupted} after Ctrl-C
-/// (the builder is ended too).
+/// (the builder is ended too). With BuildOptions::mesh_will_do, TetGen's failures are not thrown but returned, with a
+/// scene that has no tets.
 [[nodiscard]] LoadedScene load_scene(const SceneRequest& request, const Progress& progress);
 
 } // namespace tetrace

@@ -82,7 +82,7 @@ std::vector<float> joined_lines(const Domain& domain)
 /// One file being read; every failure names it, the section and the reason.
 class SceneReader {
 public:
-    explicit SceneReader(const std::filesystem::path& path);
+    SceneReader(const std::filesystem::path& path, SceneFileKind kind);
     ~SceneReader() { ::close(file_); }
     SceneReader(const SceneReader&) = delete;
     SceneReader& operator=(const SceneReader&) = delete;
@@ -102,13 +102,14 @@ private:
     [[noreturn]] void refuse(std::string_view section, std::string_view reason) const;
 
     std::filesystem::path path_;
+    SceneFileKind kind_;
     int file_ = -1;
     std::uint64_t file_bytes_ = 0;
     FileHeader header_{};
     Table table_{};
 };
 
-SceneReader::SceneReader(const std::filesystem::path& path) : path_(path)
+SceneReader::SceneReader(const std::filesystem::path& path, SceneFileKind kind) : path_(path), kind_(kind)
 {
     // Without O_NONBLOCK a named pipe would hang here until somebody writes to it.
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -171,7 +172,11 @@ void SceneReader::check_table() const
         if (entry.offset != end || entry.bytes > file_bytes_ - end) refuse(kinds[i].name, "it lies outside the file");
         if (entry.bytes % kinds[i].element_bytes != 0 || entry.bytes / kinds[i].element_bytes != entry.elements)
             refuse(kinds[i].name, "its bytes and its number of elements do not agree");
-        if (entry.elements == 0 && i != origins) refuse(kinds[i].name, "it is empty; every scene has some");
+        const bool is_of_tets = i == tet_vertices || i == tets;
+        const bool should_be_empty = kind_ == SceneFileKind::mesh_only && is_of_tets;
+        if (entry.elements == 0 && i != origins && !should_be_empty)
+            refuse(kinds[i].name, "it is empty; every scene has some");
+        if (entry.elements != 0 && should_be_empty) refuse(kinds[i].name, "it is not empty, as it should be");
         end += entry.bytes;
     }
     if (end != file_bytes_) refuse("file", fmt::format("{} bytes follow the last section", file_bytes_ - end));
@@ -228,7 +233,8 @@ void SceneReader::check_mesh(const Scene& scene) const
             if (vertex >= scene.mesh.vertices.size())
                 refuse("triangles",
                        fmt::format("triangle {} names vertex {} of {}", i, vertex, scene.mesh.vertices.size()));
-    if (const auto defect = find_defect(scene.tets, scene.mesh.triangles.size())) refuse("tets", defect->what);
+    if (kind_ == SceneFileKind::whole)
+        if (const auto defect = find_defect(scene.tets, scene.mesh.triangles.size())) refuse("tets", defect->what);
     if (scene_hash(scene) != header_.scene_hash) refuse("header", "the scene's hash is not the one that it states");
 }
 
@@ -258,7 +264,7 @@ Scene SceneReader::read()
     scene.tets.tets = read_section<Tet>(tets);
     set_lines(scene.domain, read_section<float>(domain_lines));
     check_mesh(scene);
-    check_domain(scene);
+    if (kind_ == SceneFileKind::whole) check_domain(scene);
     return scene;
 }
 
@@ -299,10 +305,10 @@ void write_scene(const std::filesystem::path& path, const Scene& scene)
     file.commit();
 }
 
-Scene read_scene(const std::filesystem::path& path)
+Scene read_scene(const std::filesystem::path& path, SceneFileKind kind)
 {
     try {
-        return SceneReader(path).read();
+        return SceneReader(path, kind).read();
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::unsupported, fmt::format("reading scene {}: not enough memory for it", path.string()));
     }

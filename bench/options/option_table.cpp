@@ -204,7 +204,7 @@ std::vector<OptionRow> ray_options()
          tracing | bit(Verb::build), false, set_cameras},
         {"Rays", "--views", "LIST",
          "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
-         "Default: all.",
+         "Default: all; of 'bench' without --scene and with frame, 0 and 1.",
          with_rays & ~bit(Verb::trace), true,
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH",

@@ -220,6 +220,14 @@ Options defaults_of_rivals()
     return options;
 }
 
+/// The main job has three scenes: two views of each take as long as four views of two did.
+void choose_default_views(Options& options)
+{
+    const bool is_main_job = options.verb == Verb::bench && options.scenes.empty() && !options.own_cameras &&
+                             options.camera_set == CameraSet::frame;
+    if (is_main_job && options.views.empty()) options.views = "0,1";
+}
+
 /// What shards of one run may differ in, and what `merge` gives anew: where output goes, and on what they run.
 constexpr std::string_view own_options[] = {"--shard", "--wait",    "--out",    "--format",  "--resume", "--label",
                                             "--junit", "--picture", "--device", "--threads", "--columns"};
@@ -249,6 +257,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
         if (takes(verb, row)) apply_row(options, row, app);
     if (verb == Verb::reproduce) check_rivals(options, app);
     set_files(options, files);
+    choose_default_views(options);
     options.words = {std::string(name_of(verb))};
     options.words.insert(options.words.end(), arguments.begin(), arguments.end());
     options.arguments = without_options(options.words, own_options);
@@ -326,6 +335,7 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;
     build.optimise_s = options.optimise_s;
+    build.mesh_will_do = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render;
     build.keep_unfinished = options.verb == Verb::build;
     build.memory_limit_bytes = options.memory_limit_bytes;
     std::vector<SceneRequest> requests;

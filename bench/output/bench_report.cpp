@@ -173,6 +173,9 @@ std::string scene_headline(const ResultValue& scene)
         const auto value = scene.find(key);
         return value ? value->line() : std::string();
     };
+    if (scene.find("no_tets"))
+        return fmt::format("{}: no tets, {} triangles\n", scene.at("name").line(),
+                           with_commas(scene.at("triangles").count()));
     const auto size = scene.find("packed_bytes"), optimised = scene.find("optimised");
     const std::uint64_t divisions = scene.at("divisions").count();
     std::string how = fmt::format("{} {}x{}", scene.at("domain").line(), divisions, divisions);

@@ -1,6 +1,7 @@
 #include "bench/output/row_json.h"
 
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 
 namespace tetrace {
 
@@ -57,6 +58,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
                              {"width", scene.width()},
                              {"height", scene.height()},
                              {"locate_s", scene.locate_s()}};
+    if (loaded.no_tets) object["no_tets"] = printable_text(loaded.no_tets->what());
     if (const auto& hash = scene.camera_set_hash()) object["camera_set_hash"] = hash_text(*hash);
     if (build.repair.asked) object["repair"] = repair_json(build.repair);
     if (build.optimised.asked == TetsKind::rays) object["optimised"] = optimised_json(build.optimised);

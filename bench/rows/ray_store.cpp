@@ -9,10 +9,17 @@ namespace tetrace {
 
 namespace {
 
-/// The packed form and the kernel that trace the primary hits from which other rays are made.
+/// The kernel that traces the primary hits from which other rays are made; through a BVH if the scene has no tets.
+KernelId reference_kernel(const SceneWork& scene)
+{
+    if (!scene.loaded().no_tets) return {};
+    return {.structure = Structure::bvh, .method = Method::single, .layout = Layout::bvh2};
+}
+
+/// What it traces.
 const PackedScene& reference_scene(SceneWork& scene)
 {
-    return scene.packed(KernelId{}.layout, TetOrder::chains).data;
+    return scene.packed(reference_kernel(scene).layout, TetOrder::chains).data;
 }
 
 } // namespace
@@ -22,8 +29,8 @@ const std::vector<Hit>& RayStore::primary_hits(SceneWork& scene, std::size_t vie
     const auto [entry, is_new] = primary_hits_.try_emplace(view);
     if (!is_new) return entry->second;
     const PackedScene& packed = reference_scene(scene);
-    const auto session =
-        reference_backend().open(0, {}, {&scene.loaded().scene.mesh, &packed}, {.threads = scene.threads()});
+    const auto session = reference_backend().open(0, reference_kernel(scene), {&scene.loaded().scene.mesh, &packed},
+                                                  {.threads = scene.threads()});
     entry->second.resize(scene.rays_per_view());
     static_cast<void>(session->trace(scene.job(view, &packed), entry->second));
     return entry->second;

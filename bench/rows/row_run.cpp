@@ -46,6 +46,8 @@ void open_session(RowRun& row, const SceneData& data, const Options& options)
 void open_on_scene(RowRun& row, const Options& options)
 {
     if (!find_device(row, all_backends())) return;
+    const auto& no_tets = row.scene->loaded().no_tets;
+    if (no_tets && row.key.kernel.structure == Structure::cdt) throw Error(*no_tets);
     if (is_portable(row.key.kernel)) row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
     open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->data : nullptr}, options);
 }

@@ -90,6 +90,9 @@ SceneWork load_work(const SceneRequest& request, const Options& options, const s
     loaded.scene.name = label.empty() ? scene_label(request.name) : label;
     for (const std::string& message : loaded.messages)
         say(fmt::format("{}: {}", loaded.scene.name, message));
+    if (loaded.no_tets)
+        say(fmt::format("{}: {}; its rows of structure bvh run without tets", loaded.scene.name,
+                        loaded.no_tets->what()));
     progress_line().show("preparing " + loaded.scene.name, -1);
     return {std::move(loaded), options, scene_arguments(request, options)};
 }

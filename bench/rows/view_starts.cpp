@@ -24,7 +24,7 @@ ViewStarts locate_each(const Scene& scene, const std::vector<Float3>& origins)
 ViewStarts find_starts(const Scene& scene, const std::vector<Float3>& origins)
 {
     const ViewStarts exact = locate_each(scene, origins);
-    if (scene.domain.kind != DomainKind::wide) return exact;
+    if (scene.domain.kind != DomainKind::wide || scene.tets.tets.empty()) return exact;
     ViewStarts found;
     MovingStart camera(scene, usual_move_limit(scene.domain));
     const Stopwatch watch;

@@ -110,7 +110,7 @@ Start find_start(const Scene& scene, Float3 origin)
 
 Start find_start(const Scene& scene, Float3 origin, const Locator& locator)
 {
-    if (!scene.domain.contains(origin)) return {origin, NO_TET};
+    if (!scene.domain.contains(origin) || scene.tets.tets.empty()) return {origin, NO_TET};
     const std::uint32_t tet = locator(origin);
     Start best{origin, tet};
     double most = tet == NO_TET ? 0 : clearance(scene.tets, tet, origin);

@@ -44,7 +44,7 @@ using Locator = std::function<std::uint32_t(Float3)>;
 
 /// Locates a camera. A camera nearer than 2^-16 to a face of its tet is within the rounding of a walk's decisions. It
 /// moves by at most 2^-12 in each coordinate, to the candidate with the most clearance. All structures trace from the
-/// moved origin.
+/// moved origin. A scene without tets has no such tet.
 [[nodiscard]] Start find_start(const Scene& scene, Float3 origin);
 /// The same by another way to find tets. The result does not depend on which of the tets that hold a point the locator
 /// names, as long as is_inside() says yes to it.

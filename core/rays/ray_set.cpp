@@ -123,15 +123,22 @@ public:
     {
         if (kind_ == RayKind::primary) return primary_given(source_, pixel);
         if (kind_ == RayKind::random) return random_given(source_, pixel);
-        Hit hit = source_.hits[pixel];
+        const Hit hit = source_.hits[pixel];
         if (hit.face_id >= source_.scene.mesh.triangles.size()) return std::nullopt; // a miss, or lost
-        hit.tet = scene_tet(hit);
-        const RayStart start = ray_start(source_.scene, hit);
+        const RayStart start = start_of(hit, pixel);
         if (kind_ == RayKind::shadow) return shadow_given(source_, start, hit.face_id, pixel);
         return cosine_given(kind_, source_, start, end_, hit.face_id, pixel);
     }
 
 private:
+    [[nodiscard]] RayStart start_of(Hit hit, std::uint32_t pixel) const
+    {
+        if (source_.scene.tets.tets.empty())
+            return ray_start(source_.scene.mesh, hit,
+                             ray_kernel::pixel_direction(source_.view, pixel % source_.width, pixel / source_.width));
+        hit.tet = scene_tet(hit);
+        return ray_start(source_.scene, hit);
+    }
     [[nodiscard]] std::uint32_t scene_tet(const Hit& hit) const
     {
         if (hit.tet >= source_.mesh_of_packed.size())

@@ -20,7 +20,7 @@ struct GivenRay {
     Float3 direction;       ///< components 0 or at least 2^-20 in magnitude, as in kernels/ray.h
     float end;              ///< ray parameter of its end, NO_END where it has none
     std::uint32_t link;     ///< tet << 2 | face that it starts on or enters by, numbered as in the scene; NO_LINK from
-                            ///< outside the domain
+                            ///< outside the domain, and in a scene without tets
     std::uint32_t triangle; ///< input triangle that it starts on, or FREE_FACE
     std::uint32_t pixel;    ///< y * width + x that it was made for
 
@@ -46,7 +46,8 @@ struct RaySource {
     View view; ///< its origin as find_start() has moved it
     std::uint32_t width, height;
     std::uint32_t start_tet; ///< that holds the origin, numbered as in the scene; NO_TET: outside the domain
-    /// Answers of openmp cdt/maria in math mode exact, row after row; primary and random rays need none.
+    /// Answers of openmp cdt/maria in math mode exact, row after row, or of bvh2 if the scene has no tets; primary and
+    /// random rays need none.
     std::span<const Hit> hits;
     std::span<const std::uint32_t> mesh_of_packed; ///< the scene's number of each tet of `hits`
 };

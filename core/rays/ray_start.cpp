@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tetrace {
 namespace {
@@ -91,6 +92,17 @@ RayStart ray_start(const Scene& scene, const Hit& hit)
         throw Error(ErrorKind::internal, "making rays: tet " + std::to_string(hit.tet) + " has no face of triangle " +
                                              std::to_string(hit.face_id) + " that it was hit on");
     start.origin = snap_to_grid(to_float(moved_inside(start.corners, start.inward, point)));
+    return start;
+}
+
+RayStart ray_start(const TriangleMesh& mesh, const Hit& hit, Float3 direction)
+{
+    RayStart start{{}, NO_LINK, {}, {}};
+    for (std::size_t i = 0; i < 3; ++i)
+        start.corners[i] = to_double(mesh.vertices[mesh.triangles.at(hit.face_id)[i]]);
+    if (dot(normal_of(start.corners), to_double(direction)) > 0) std::swap(start.corners[1], start.corners[2]);
+    start.inward = normal_of(start.corners);
+    start.origin = snap_to_grid(to_float(moved_inside(start.corners, start.inward, hit_point(mesh, hit))));
     return start;
 }
 

@@ -28,6 +28,9 @@ inline constexpr double least_sine = 0x1p-6;
 /// Throws Error{internal} where the tet has no face of that triangle.
 [[nodiscard]] RayStart ray_start(const Scene& scene, const Hit& hit);
 
+/// The same without tets: on the triangle that was hit, on the side that a ray of this direction came from; no link.
+[[nodiscard]] RayStart ray_start(const TriangleMesh& mesh, const Hit& hit, Float3 direction);
+
 /// Whether a ray from there goes into the tet at an angle of at least least_sine, and its line meets the face's plane
 /// inside the face, 2^-19 away from its edges: then a walk enters by that face, however it rounds.
 [[nodiscard]] bool enters(const RayStart& start, Float3 direction);

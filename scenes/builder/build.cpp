@@ -235,6 +235,7 @@ PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& ta
     add_domain(scene, options);
     prepared.surface = domain_surface(scene.domain);
     scene.build.optimised.asked = options.tets;
+    if (options.mesh_only) return prepared;
     prepared.limits = {options.tets == TetsKind::rays ? options.effort : 0, options.optimise_for_s};
     if (prepared.limits.effort > 0 && options.switches.find('q') == std::string::npos)
         prepared.points = graded_points(scene.mesh, scene.domain);

@@ -24,6 +24,7 @@ struct BuilderOptions {
     bool repair = false; ///< cut triangles that cross
     TetsKind tets = TetsKind::cdt;
     int effort = default_effort; ///< of the optimiser, for TetsKind::rays
+    bool mesh_only = false;      ///< no tets: the mesh is read, cleaned and placed in its domain
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 

@@ -108,6 +108,8 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     app.add_option("--switches", options.switches, "TetGen's switches; default: pq5Y")->type_name("SWITCHES");
     app.add_flag("--repair", options.repair,
                  "cut triangles that cross along their intersections, in place of refusing");
+    app.add_flag("--mesh-only", options.mesh_only,
+                 "write a scene without tets, which BVHs can be built of; TetGen does not run");
     std::string tets(name_of(options.tets));
     const std::string cdt(name_of(TetsKind::cdt)), rays(name_of(TetsKind::rays));
     app.add_option("--tets", tets,
@@ -147,6 +149,13 @@ void require_out_folder(const std::filesystem::path& out)
                     fmt::format("writing {}: there is no folder {}; make it first", out.string(), folder.string()));
 }
 
+void write_mesh_only(const std::filesystem::path& out, PreparedScene& prepared)
+{
+    prepared.scene.build.switches.clear();
+    prepared.scene.build.build_s = prepared.watch.seconds();
+    write_scene(out, prepared.scene);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -160,6 +169,7 @@ int main(int argc, char** argv)
         prepared = prepare_scene(options, talk());
     });
     if (code != BUILDER_GOOD) return code;
+    if (options.mesh_only) return guarded([&] { write_mesh_only(options.out, prepared); });
 
     say("stage", "TetGen " + options.switches);
     std::set_terminate(explain_tetgen_failure); // and no handler round the call: see run_tetgen

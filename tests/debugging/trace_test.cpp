@@ -10,7 +10,7 @@ namespace {
 
 class Trace : public ProgramTest {
 protected:
-    const std::string cubes_ = "trace --scene cubes --resolution 6 --size 24 ";
+    const std::string cubes_ = "trace --scene cubes --resolution 6 --size 24 --camera-set smoke ";
 
     Json traced(const std::string& arguments, int code = 0)
     {
@@ -101,7 +101,7 @@ TEST_F(Trace, shows_of_a_bvh_the_answers_and_what_openmp_visits)
 
 TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
 {
-    const std::string scene = "--scene cubes --resolution 6 --size 24 --backend openmp ";
+    const std::string scene = "--scene cubes --resolution 6 --size 24 --camera-set smoke --backend openmp ";
     expect_refused(scene + "--pixel 24,0", "--pixel: 24,0 is outside the image, whose pixels go from 0,0 to 23,23");
     expect_refused(scene + "--pixel 0,24", "is outside the image");
     expect_refused(scene + "--pixel 3", "X,Y");

@@ -189,3 +189,40 @@ TEST_F(Meshes, whose_tets_are_still_tetgens_are_listed_so_with_the_reason)
     EXPECT_EQ(made["scene_record"]["optimised"]["reason"], "the optimiser was stopped before it had bettered any");
     EXPECT_FALSE(contains(ended.out, "the optimiser in ")) << "it has no operations to list";
 }
+
+// The limit of time ends the builder before it has tets.
+TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
+{
+    for (const std::string domain : {"tight", "wide"}) {
+        const Ended ended =
+            run("check --scene banana --domain " + domain +
+                " --time-limit 0.01 --size 32 --rays primary,shadow,ao,diffuse,random --structure cdt,bvh "
+                "--layout half32,bvh2,cwbvh,embree --backend openmp,embree --out a.json");
+        EXPECT_EQ(ended.code, 2) << "of the rows without tets: " << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "the time limit of 0.01 s was reached")) << ended.errors;
+        EXPECT_TRUE(contains(ended.errors, "its rows of structure bvh run without tets")) << ended.errors;
+        std::size_t through_bvhs = 0, without_tets = 0;
+        for (const auto& row : rows()) {
+            if (row["structure"] == "cdt") {
+                ++without_tets;
+                EXPECT_EQ(row["status"],
+                          row["schedule"] == "packets" && row["status"] == "unsupported" ? "unsupported" : "error");
+                continue;
+            }
+            ++through_bvhs;
+            EXPECT_EQ(row["status"], "ok") << row["name"] << row["reason"];
+            EXPECT_GT(row["counts"][row["rays"] == "primary" ? "hits" : "rays"], 0) << row["name"];
+        }
+        EXPECT_GE(through_bvhs, 15u) << "three layouts and five kinds of rays";
+        EXPECT_GE(without_tets, 5u);
+    }
+    const Ended bench =
+        run("bench --scene banana --time-limit 0.01 --size 32 --samples 3 --sample-time 0 --backend openmp "
+            "--layout half32,bvh2 --out a.json");
+    EXPECT_EQ(bench.code, 2) << bench.errors;
+    EXPECT_TRUE(contains(bench.out, "banana: no tets, 25,000 triangles")) << bench.out;
+    EXPECT_TRUE(contains(nlohmann::json::parse(file("a.json"))["tetrace"]["scenes"][0]["no_tets"].get<std::string>(),
+                         "the time limit of 0.01 s"));
+    EXPECT_EQ(run("build --scene banana --time-limit 0.01").code, 2) << "nothing is built";
+    EXPECT_EQ(run("render --scene banana --time-limit 0.01 --size 32 --views 0 --structure bvh --out a.ppm").code, 0);
+}

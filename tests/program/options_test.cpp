@@ -54,6 +54,9 @@ TEST(Options, defaults_are_those_of_the_main_job)
     const Options options = parse_options({"bench"});
     EXPECT_TRUE(options.scenes.empty());
     EXPECT_EQ(options.camera_set, CameraSet::frame);
+    EXPECT_EQ(selected_views(options), (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(selected_views(parse_options({"bench", "--scene", "cubes"})).size(), 4u);
+    EXPECT_EQ(selected_views(parse_options({"bench", "--camera-set", "smoke"})).size(), 4u);
     EXPECT_EQ(options.width, 1024u);
     EXPECT_EQ(options.height, 1024u);
     EXPECT_EQ(options.samples, 10u);

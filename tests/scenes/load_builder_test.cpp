@@ -103,6 +103,41 @@ TEST_F(Load, maps_each_exit_code_to_its_own_error)
     }
 }
 
+TEST_F(Load, gives_the_mesh_alone_if_only_tetgen_fails_and_the_mesh_will_do)
+{
+    Scene mesh_alone = expected();
+    mesh_alone.tets = {};
+    write_scene(folder / "mesh.tet", mesh_alone);
+    const std::string alone =
+        "case \"$*\" in *--mesh-only*) cp " + (folder / "mesh.tet").string() + " \"$4\"; exit 0;; esac; ";
+    request.build.switches = "p"; // no others are tried
+    request.build.mesh_will_do = true;
+    for (const std::string& failure :
+         {"exit " + std::to_string(BUILDER_TETGEN_REFUSED), "exit " + std::to_string(BUILDER_ABSURD_OUTPUT),
+          "exit " + std::to_string(BUILDER_OUT_OF_MEMORY), std::string("kill -SEGV $$"), std::string("sleep 60")}) {
+        request.build.time_limit_s = failure == "sleep 60" ? 0.3 : 600;
+        use_builder(alone + failure);
+        for (int run = 0; run < 2; ++run) { // it is not cached
+            const std::size_t before = builder_runs();
+            const LoadedScene loaded = load();
+            EXPECT_EQ(builder_runs(), before + 2) << failure;
+            ASSERT_TRUE(loaded.no_tets) << failure;
+            EXPECT_TRUE(contains(loaded.no_tets->what(), "building scene thing from ")) << loaded.no_tets->what();
+            EXPECT_EQ(loaded.scene, mesh_alone);
+            EXPECT_EQ(loaded.hash, scene_hash(mesh_alone));
+            EXPECT_TRUE(loaded.file.empty());
+        }
+        request.build.mesh_will_do = false;
+        EXPECT_EQ(error_of([&] { (void)load(); }).find("invalid_input: building scene thing"), 0u) << failure;
+        request.build.mesh_will_do = true;
+    }
+    request.build.time_limit_s = 600;
+    for (const int code : {BUILDER_BAD_MESH, BUILDER_SELF_INTERSECTION, BUILDER_INTERNAL, BUILDER_USAGE})
+        EXPECT_NE(error_with(alone + "exit " + std::to_string(code)), "") << "not TetGen's fault";
+    EXPECT_TRUE(contains(error_with("exit " + std::to_string(BUILDER_TETGEN_REFUSED)), "TetGen refused the mesh"))
+        << "and the mesh alone fails, too";
+}
+
 TEST_F(Load, gives_a_remedy_where_the_builder_has_none)
 {
     for (const int code : {BUILDER_BAD_MESH, BUILDER_SELF_INTERSECTION, BUILDER_TETGEN_REFUSED, BUILDER_ABSURD_OUTPUT})

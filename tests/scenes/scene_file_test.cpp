@@ -250,6 +250,18 @@ TEST_F(SceneFile, refuses_content_that_no_scene_has)
     EXPECT_TRUE(contains(error_of_written(path, bad), "section `information`"));
 }
 
+TEST_F(SceneFile, has_no_tets_only_if_none_are_expected)
+{
+    const Scene whole = sample_scene();
+    Scene mesh_only = whole;
+    mesh_only.tets = {};
+    write_scene(path, mesh_only);
+    EXPECT_EQ(read_scene(path, SceneFileKind::mesh_only), mesh_only);
+    EXPECT_TRUE(contains(error_of([&] { (void)read_scene(path); }), "it is empty; every scene has some"));
+    write_scene(path, whole);
+    EXPECT_TRUE(contains(error_of([&] { (void)read_scene(path, SceneFileKind::mesh_only); }), "it is not empty"));
+}
+
 TEST_F(SceneFile, refuses_a_scene_of_nothing)
 {
     const auto expect_empty = [&](const auto& spoil, const std::string& section) {
