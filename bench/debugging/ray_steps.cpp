@@ -143,7 +143,7 @@ Hit trace_alone(RowRun& row, const TraceJob& image, std::size_t view, std::size_
     }
     RaySet set = rays_of(*row.scene, row.key, view);
     set.rays.assign(TILE_WIDTH, GivenRay(set.rays[number]));
-    row.view_of_rays.reset();
+    row.views_of_rays.clear();
     row.session->set_rays(row.key.kernel.structure == Structure::cdt
                               ? given_quads(set, row.packed->data)
                               : given_quads_offset(set, row.scene->loaded().scene.mesh));

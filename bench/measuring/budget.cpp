@@ -1,5 +1,6 @@
 #include "bench/measuring/budget.h"
 
+#include "bench/measuring/sampling/sampler.h"
 #include "bench/measuring/verify.h"
 #include "bench/terminal/progress.h"
 #include "bench/terminal/text.h"
@@ -51,7 +52,7 @@ TraceJob prepare_probe(RowRun& row, std::size_t view, unsigned step)
     std::vector<Quad> first;
     for (std::size_t list = 0; list < quads.size(); list += all)
         first.insert(first.end(), &quads[list], &quads[list] + rays);
-    row.view_of_rays.reset();
+    row.views_of_rays.clear();
     row.session->set_rays(first);
     return given_job(rays, job.max_steps, job.any_hit);
 }
@@ -97,7 +98,7 @@ std::string budget_text(double seconds)
 
 Budget::Budget(double seconds, Clock clock) : seconds_(seconds), clock_(std::move(clock)), start_s_(clock_()) {}
 
-void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s)
+void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, unsigned runs)
 {
     start_s_ = now();
     if (std::isinf(seconds_)) return;
@@ -110,7 +111,8 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s)
         if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
         if (!is_alive(row)) continue;
         entry.views = static_cast<double>(row.scene->views().size());
-        entry.views_left = entry.views + 1 + entry.views;
+        entry.views_left = entry.views + 1 + entry.views * runs;
+        entry.runs = runs;
         entry.samples = std::min(samples, fewest_samples);
         entry.sample_s = sample_s;
         entries_.push_back(entry);
@@ -127,7 +129,8 @@ double Budget::Entry::need_s() const
 {
     const double pass_s = view_s * views;
     const double each_s = pass_s < sample_s ? std::min(sample_s + 2 * pass_s, (most_passes + 1) * pass_s) : pass_s;
-    return views_left * view_s + samples * each_s;
+    const unsigned latencies = latency_passes(static_cast<unsigned>(samples), passes_for(sample_s, pass_s));
+    return views_left * view_s + runs * (samples * each_s + (views > 1 ? latencies * pass_s : 0));
 }
 
 void Budget::traced(const RowRun& row, std::size_t views, double seconds)

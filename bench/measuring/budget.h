@@ -13,10 +13,10 @@ namespace tetrace {
 inline constexpr std::uint32_t most_passes = 4096;
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
-/// more, a warm-up pass, and fewest_samples samples. Where the rows need more than is left, the slowest end as
-/// skipped; their text gives their cost and the --budget that runs them. The others get all the time that they need,
-/// whatever the order of the rows. openmp's rows that others are compared with are skipped last, and only once rows are
-/// being timed.
+/// more, a warm-up pass, and fewest_samples samples with their passes of single launches (latency_passes()). Where the
+/// rows need more than is left, the slowest end as skipped; their text gives their cost and the --budget that runs
+/// them. The others get all the time that they need, whatever the order of the rows. openmp's rows that others are
+/// compared with are skipped last, and only once rows are being timed.
 ///
 /// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
 /// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
@@ -32,9 +32,9 @@ public:
 
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
-    /// samples: the number asked for. sample_s: that each lasts at least. Throws Error{usage} where no row fits, or not
-    /// all of openmp's rows that others are compared with.
-    void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0);
+    /// samples: the number asked for, in each of so many runs. sample_s: that each lasts at least. Throws Error{usage}
+    /// where no row fits, or not all of openmp's rows that others are compared with.
+    void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
 
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);
@@ -52,7 +52,7 @@ private:
         bool is_reference = false; ///< others are compared with it
         double view_s = 0;         ///< expected
         double views_left = 0;     ///< to verify and to warm up
-        double views = 0, samples = 0, sample_s = 0;
+        double views = 0, samples = 0, sample_s = 0, runs = 1;
         double seen_s = 0, seen_views = 0;
 
         [[nodiscard]] double need_s() const;

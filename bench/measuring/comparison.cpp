@@ -42,14 +42,32 @@ const RowRun* find_reference(const std::vector<RowRun>& rows, const std::vector<
     return first;
 }
 
-Comparison compared(const RowRun& reference, const RowRun& row)
+std::size_t fewest_in_run(const std::vector<std::vector<double>>& runs)
 {
-    const MedianRatio rate = ratio_of_medians(reference.samples_s, row.samples_s);
-    Comparison comparison{&reference, rate.value, {}};
-    if (std::min(reference.samples_s.size(), row.samples_s.size()) >= fewest_samples)
+    return std::ranges::min(runs, {}, &std::vector<double>::size).size();
+}
+
+} // namespace
+
+Comparison compare_rates(const RowRun& reference, const RowRun& row)
+{
+    const auto above = samples_of_runs(reference), below = samples_of_runs(row);
+    const bool spans_runs = above.size() > 1 && above.size() == below.size();
+    const MedianRatio rate =
+        spans_runs ? ratio_over_runs(above, below) : ratio_of_medians(reference.samples_s, row.samples_s);
+    Comparison comparison{&reference, rate.value, {}, spans_runs ? above.size() : 1};
+    if (std::min(fewest_in_run(above), fewest_in_run(below)) >= fewest_samples)
         comparison.interval = FactorInterval{rate.low, rate.high};
     return comparison;
 }
+
+std::string interval_text(const Comparison& comparison)
+{
+    const auto& interval = comparison.interval;
+    return interval ? fmt::format("[{:.2f}, {:.2f}]", interval->low, interval->high) : "";
+}
+
+namespace {
 
 std::string arena_of(const RowRun& row, std::size_t hardware)
 {
@@ -90,7 +108,8 @@ std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<R
         const auto best = best_bvh(contenders.list, i);
         if (!best) continue;
         const RowRun& bvh = rows[contenders.index[*best]];
-        result[contenders.index[i]] = *best == i ? Comparison{&bvh, 1, {}} : compared(bvh, rows[contenders.index[i]]);
+        result[contenders.index[i]] =
+            *best == i ? Comparison{&bvh, 1, {}} : compare_rates(bvh, rows[contenders.index[i]]);
     }
     return result;
 }
@@ -116,7 +135,7 @@ std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& r
         if (!is_portable(rows[i].key.kernel) || !figures_of(rows[i])) continue;
         const RowRun* reference = find_reference(rows, hardware, i);
         if (reference == nullptr || reference == &rows[i]) continue;
-        result[i] = compared(*reference, rows[i]);
+        result[i] = compare_rates(*reference, rows[i]);
     }
     return result;
 }

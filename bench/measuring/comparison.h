@@ -5,6 +5,7 @@
 #include "bench/statistics/rank_interval.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tetrace {
@@ -13,8 +14,15 @@ namespace tetrace {
 struct Comparison {
     const RowRun* reference = nullptr;
     double ratio = 0; ///< row's rate over reference's, from medians of device seconds; above 1 the row is faster
-    std::optional<FactorInterval> interval; ///< of the ratio, 95 %; empty where either has fewer than fewest_samples
+    std::optional<FactorInterval> interval; ///< of the ratio; empty if either has fewer than fewest_samples in a run
+    std::size_t runs = 1; ///< that the interval spans, see ratio_over_runs(); of 1 it is of the samples, 95 %
 };
+
+/// The row's rate over reference's. Precondition: both have samples.
+[[nodiscard]] Comparison compare_rates(const RowRun& reference, const RowRun& row);
+
+/// "[0.95, 1.03]"; empty if there is no interval.
+[[nodiscard]] std::string interval_text(const Comparison& comparison);
 
 /// The reference of each row, row by row: the same kernel on the same scene and the same hardware (see
 /// physical_devices()), with schedule tiles. On the host the reference runs under openmp; on a GPU under cuda, else

@@ -1,6 +1,7 @@
 #include "bench/measuring/figures.h"
 
 #include "bench/rows/physical_device.h"
+#include "bench/statistics/launch_line.h"
 #include "core/pack/traits.h"
 
 #include <algorithm>
@@ -24,6 +25,21 @@ void add_wall(Figures& figures, const RowRun& row)
         overheads.push_back(row.wall_samples_s[i] - row.samples_s[i]);
     figures.wall_s = quantile(row.wall_samples_s, 0.5);
     figures.overhead_s = quantile(std::move(overheads), 0.5);
+}
+
+/// Empty unless views had a launch each.
+void add_latency(Figures& figures, const RowRun& row)
+{
+    const auto& [joined, single] = row.launches;
+    const std::vector<double>& samples_s = joined == single ? row.samples_s : row.latency_samples_s;
+    if (samples_s.empty() || single == 0) return;
+    const double pass_s = quantile(samples_s, 0.5), mrays = 1e-6 * static_cast<double>(traced(row)->totals.rays);
+    figures.latency_s = pass_s / single;
+    figures.latency_mrays_per_s = mrays / pass_s;
+    const LaunchLine line =
+        launch_line({static_cast<double>(joined), row.samples_s}, {static_cast<double>(single), samples_s}, mrays);
+    figures.fixed_s = line.fixed_s;
+    figures.s_per_mray = line.s_per_unit;
 }
 
 } // namespace
@@ -62,6 +78,7 @@ std::optional<Figures> figures_of(const RowRun& row)
     figures.noisy = figures.kernel_s.noisy() || !row.disturbance.empty();
     const double seconds = figures.kernel_s.median;
     add_wall(figures, row);
+    add_latency(figures, row);
     figures.mrays_per_s = 1e-6 * static_cast<double>(totals.rays) / seconds;
     if (totals.hits > 0) figures.mhits_per_s = 1e-6 * static_cast<double>(totals.hits) / seconds;
     if (totals.steps() == 0) return figures;

@@ -10,14 +10,18 @@ namespace tetrace {
 
 /// Figures of a timed row; rows without a rate have none.
 struct Figures {
-    Statistics kernel_s; ///< device seconds for all selected views
-    double mrays_per_s = 0;
+    Statistics kernel_s;                ///< device seconds for all selected views, traced together
+    double mrays_per_s = 0;             ///< throughput
     std::optional<double> mhits_per_s;  ///< of the rays that hit
     std::optional<double> msteps_per_s; ///< structure cdt only
     std::optional<double> gb_per_s;     ///< estimated: steps times bytes_per_step()
     std::optional<double> wall_s;       ///< from launch to the end of wait by the host's clock, all views; median
     std::optional<double> overhead_s;   ///< launching and waiting: median of the samples' wall minus device seconds
-    bool noisy = false;                 ///< the samples' spread, or what disturbed them, speaks against the rate
+    std::optional<double> latency_s;    ///< device seconds of a view that is traced alone, mean of the views; median
+    std::optional<double> latency_mrays_per_s;
+    std::optional<double> fixed_s;    ///< of a launch; empty if it is not above the noise, see launch_line()
+    std::optional<double> s_per_mray; ///< of a million rays, without fixed_s if that is known
+    bool noisy = false;               ///< the samples' spread, or what disturbed them, speaks against the rate
 };
 
 /// Empty unless the row is ok or flawed and has samples.

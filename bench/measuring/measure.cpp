@@ -2,6 +2,7 @@
 
 #include "bench/measuring/reporters.h"
 #include "bench/measuring/sampling/sampler.h"
+#include "bench/rows/physical_device.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
@@ -9,10 +10,14 @@
 #include "core/base/printable.h"
 #include "core/base/stopwatch.h"
 #include "core/base/whole_file.h"
+#include "core/isolation/isolated_backend.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <functional>
 #include <iostream>
+#include <map>
+#include <numeric>
 #include <sstream>
 #include <unistd.h>
 
@@ -32,6 +37,8 @@ struct Sweep {
     const Budget* budget; ///< whose clock is read
     Pulses* pulses;
     const Sampler* sampler;
+    unsigned samples; ///< per row and run
+    unsigned run = 0;
     double done = 0, all = 1;
 };
 
@@ -43,52 +50,91 @@ struct Pass {
 /// What happens in a pass besides.
 struct Besides {
     std::function<void(double)> tell_progress;
-    std::vector<Hit>* hits = nullptr;          ///< receives each view's hits
-    std::function<void()> in_last_launch = {}; ///< called while the last view is traced
+    std::function<void(const ViewBatch&, std::span<const Hit>)> see = {}; ///< given each launch's hits
+    std::function<void()> in_last_launch = {};                            ///< called during the last launch
 };
 
-/// passes: of each view; the seconds are those of all of them.
-Pass trace_views(RowRun& row, std::uint32_t passes, const Budget& budget, const Besides& besides)
+/// batches: a launch for each. passes: of each batch; the seconds are those of all of them.
+Pass trace_batches(RowRun& row, const std::vector<ViewBatch>& batches, std::uint32_t passes, const Budget& budget,
+                   const Besides& besides)
 {
-    const std::size_t views = row.scene->views().size();
     Pass pass;
-    for (std::size_t view = 0; view < views; ++view) {
+    std::vector<Hit> hits;
+    for (std::size_t i = 0; i < batches.size(); ++i) {
         // Not inside a timed interval: a sample may take minutes, and drawing adds nothing to a row's time.
-        besides.tell_progress(static_cast<double>(view) / static_cast<double>(views));
-        const std::size_t rays = ray_count(row, view);
-        if (rays == 0) continue; // given rays, of which this view has none
-        TraceJob job = prepare_view(row, view);
-        job.passes = passes;
-        const bool is_last = besides.in_last_launch && view == last_view_with_rays(row);
-        const auto [kernel_s, wall_s] =
-            timed_launch(*row.session, job, budget.clock(), is_last ? besides.in_last_launch : std::function<void()>());
+        besides.tell_progress(static_cast<double>(i) / static_cast<double>(batches.size()));
+        std::vector<TraceJob> jobs = prepare_batch(row, batches[i]);
+        for (TraceJob& job : jobs)
+            job.passes = passes;
+        const bool is_last = i + 1 == batches.size();
+        const auto [kernel_s, wall_s] = timed_launch(*row.session, jobs, budget.clock(),
+                                                     is_last ? besides.in_last_launch : std::function<void()>());
         pass.kernel_s += kernel_s;
         pass.wall_s += wall_s;
-        if (besides.hits == nullptr) continue;
-        besides.hits->resize(rays);
-        row.session->read_back(*besides.hits);
+        if (!besides.see) continue;
+        hits.assign(ray_count(row, batches[i]), Hit{POISON, POISON, 0, 0, 0, 0});
+        row.session->read_back(hits);
         pass.download_s += row.session->download_s();
+        besides.see(batches[i], hits);
     }
     return pass;
 }
 
+/// A device that answers differently under repetition, or to jobs in flight together, must lose its rate.
+void check_hits(const RowRun& row, const ViewBatch& views, std::span<const Hit> hits)
+{
+    for (const std::size_t view : views) {
+        const auto of_view = hits.first(ray_count(row, view));
+        hits = hits.subspan(of_view.size());
+        if (hash_of(of_view) != traced(row)->view_hashes.at(view))
+            throw Error(ErrorKind::internal, fmt::format("the hits of view {} changed between verifying and measuring",
+                                                         row.scene->view_numbers()[view]));
+    }
+}
+
+/// Joins the views of each timed row for the launches of its samples. Rows keep their outputs in the memory that they
+/// share.
+void join_views_of(std::vector<RowRun>& rows)
+{
+    std::vector<Device> devices;
+    for (const RowRun& row : rows)
+        devices.push_back(row.device);
+    const auto hardware = physical_devices(devices);
+    std::map<std::size_t, std::size_t> timed;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (is_timed(rows[i])) ++timed[hardware[i]];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        RowRun& row = rows[i];
+        if (!is_timed(row)) continue;
+        row.batches = joined_views(row, batch_limit(row, timed[hardware[i]]));
+        row.launches = {static_cast<std::uint32_t>(row.batches.size()),
+                        static_cast<std::uint32_t>(single_views(row).size())};
+    }
+}
+
 /// Verification has already paid the costs of a row's first passes: compiling at the first launch, finding the launch
 /// size, touching memory. One more pass just before the samples wakes the device up, shows what a sample costs, and
-/// times the download.
+/// times the download. A GPU gets a joined one too, which finds the size of joined launches.
 void warm_up(RowRun& row, const Sampler& sampler, Budget& budget, const std::function<void(double)>& tell_progress)
 {
     guarded(row, [&] {
-        std::vector<Hit> hits;
-        const Pass pass = trace_views(row, 1, budget, {tell_progress, &hits});
+        const auto ignore = [](const ViewBatch&, std::span<const Hit>) {};
+        Pass pass = trace_batches(row, single_views(row), 1, budget, {tell_progress, ignore});
         std::get<Traced>(row.outcome).download_s = pass.download_s;
+        budget.traced(row, row.scene->views().size(), pass.wall_s);
+        if (!runs_on_host(row.device)) pass = trace_batches(row, row.batches, 1, budget, {tell_progress});
         sampler.warmed_up(row, pass.kernel_s);
         row.warm_s = pass.wall_s + (row.passes > 1 ? row.passes * pass.kernel_s : 0);
-        budget.traced(row, row.scene->views().size(), pass.wall_s);
     });
 }
 
-/// Seconds of one sample of every row.
-double warm_up_rows(std::vector<RowRun>& rows, const Sampler& sampler, Budget& budget)
+/// Expected seconds of the timed part.
+struct TimedPart {
+    double sweep_s = 0;   ///< one sample of every row
+    double latency_s = 0; ///< the passes with a launch for each view
+};
+
+TimedPart warm_up_rows(std::vector<RowRun>& rows, unsigned samples, const Sampler& sampler, Budget& budget)
 {
     double done = 0;
     for (RowRun& row : rows) {
@@ -101,27 +147,39 @@ double warm_up_rows(std::vector<RowRun>& rows, const Sampler& sampler, Budget& b
         done += 1;
     }
     budget.review_timed();
-    double sweep_s = 0;
-    for (const RowRun& row : rows)
-        if (is_timed(row)) sweep_s += row.warm_s;
-    return sweep_s;
+    TimedPart part;
+    for (const RowRun& row : rows) {
+        if (!is_timed(row)) continue;
+        part.sweep_s += row.warm_s;
+        if (row.launches.joined < row.launches.single)
+            part.latency_s += latency_passes(samples, row.passes) * row.warm_s / (row.passes > 1 ? row.passes + 1 : 1);
+    }
+    return part;
 }
 
 /// Seconds of a pass.
 double take_sample(RowRun& row, const Sweep& sweep)
 {
     sweep.pulses->take_if_due();
+    const auto tell = [&](double done) {
+        progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
+                             row.key.scene + ", " + row_label(row.key));
+    };
+    Besides besides{tell};
+    const std::size_t taken = row.samples_s.size() - sweep.run * sweep.samples;
+    if (taken + 1 == sweep.samples) // the last one
+        besides.see = [&](const ViewBatch& views, std::span<const Hit> hits) { check_hits(row, views, hits); };
     const auto trace = [&](std::uint32_t passes, const std::function<void()>& meanwhile) {
-        const auto tell = [&](double done) {
-            progress_line().show("measuring", (sweep.done + done) / sweep.all, -1,
-                                 row.key.scene + ", " + row_label(row.key));
-        };
-        const Pass pass = trace_views(row, passes, *sweep.budget, {tell, nullptr, meanwhile});
+        besides.in_last_launch = meanwhile;
+        const Pass pass = trace_batches(row, row.batches, passes, *sweep.budget, besides);
         return LaunchTimes{pass.kernel_s, pass.wall_s};
     };
     const Sample sample = sweep.sampler->take(row, trace);
     sweep.pulses->sampled(row, sample.begin_s, sample.end_s);
     row.wall_samples_s.push_back(sample.pass.wall_s);
+    const bool has_latency = row.launches.joined == row.launches.single; // its samples have a launch for each view
+    if (!has_latency && taken < latency_passes(sweep.samples, row.passes))
+        row.latency_samples_s.push_back(trace_batches(row, single_views(row), 1, *sweep.budget, {tell}).kernel_s);
     return sample.pass.kernel_s;
 }
 
@@ -205,13 +263,28 @@ void require_printed(const BenchmarkFlags& flags)
                                               "check that there is space left, or use --benchmark_out FILE");
 }
 
-/// A device that answers differently under repetition must lose its rate.
-void check_last_view(RowRun& row)
+/// All are closed before the first is opened again.
+void reopen_rows(std::vector<RowRun>& rows, const Options& options)
 {
-    std::vector<Hit> hits(ray_count(row, last_view_with_rays(row)), Hit{POISON, POISON, 0, 0, 0, 0});
-    row.session->read_back(hits);
-    if (hash_of(hits) != traced(row)->last_view_hash)
-        throw Error(ErrorKind::internal, "the hits of the last view changed between verifying and measuring");
+    std::vector<RowRun*> timed;
+    for (RowRun& row : rows)
+        if (is_timed(row)) timed.push_back(&row);
+    for (RowRun* const row : timed)
+        row->session.reset();
+    for (const RowRun* const row : timed)
+        if (auto* const isolated = dynamic_cast<IsolatedBackend*>(row->backend)) isolated->restart();
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+        progress_line().show("opening again", static_cast<double>(i) / static_cast<double>(timed.size()), -1,
+                             row_label(timed[i]->key));
+        reopen_row(*timed[i], options);
+    }
+}
+
+/// Of the run that has just been measured.
+void count_samples(RowRun& row)
+{
+    row.run_samples.push_back(row.samples_s.size() -
+                              std::accumulate(row.run_samples.begin(), row.run_samples.end(), std::size_t{0}));
 }
 
 void check_rows_after(std::vector<RowRun>& rows)
@@ -220,7 +293,6 @@ void check_rows_after(std::vector<RowRun>& rows)
         if (is_timed(row))
             guarded(row, [&] {
                 if (row.samples_s.empty()) throw Error(ErrorKind::internal, "Google Benchmark took no sample of it");
-                check_last_view(row);
             });
 }
 
@@ -240,25 +312,39 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const LoadMeter meter;
     Monitors monitors(find_monitor);
     const Sampler sampler(options.sample_s, budget, &monitors);
-    const double sweep_s = warm_up_rows(rows, sampler, budget);
-    result.samples = flags.repetitions.value_or(affordable_samples(options.samples, sweep_s, budget.left_s()));
+    join_views_of(rows);
+    result.runs = options.runs;
+    const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
+    const double for_samples_s = budget.left_s() - result.runs * part.latency_s - (result.runs - 1) * part.sweep_s;
+    result.samples =
+        flags.repetitions.value_or(affordable_samples(options.samples, result.runs * part.sweep_s, for_samples_s));
     result.lowered = !flags.repetitions && result.samples < options.samples;
     const auto timed = std::ranges::count_if(rows, is_timed);
     if (timed == 0) return result;
     const auto groups = sample_groups(rows);
     const Stopwatch watch;
     Pulses pulses(rows, host ? host : host_pulse(resolved_threads(options)), budget.clock());
-    Sweep sweep{&budget, &pulses, &sampler, 0, static_cast<double>(timed) * result.samples};
+    Sweep sweep{&budget, &pulses, &sampler, result.samples};
+    sweep.all = static_cast<double>(timed) * result.samples * result.runs;
     for (const RowRun& row : rows)
         if (is_timed(row)) (void)monitors.of(row); // starting one takes a second: not while a GPU waits for its sample
     std::ostringstream json;
-    const auto display = make_display(flags, json, groups.size());
-    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, groups.size());
+    const std::size_t reports = groups.size() * result.runs;
+    const auto display = make_display(flags, json, reports);
+    const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, reports);
     pulses.take();
-    for (const auto& group : groups) {
-        register_rows(group, result.samples, sweep);
-        // The filter was applied to the rows themselves, under the reported names.
-        benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+    for (; sweep.run < result.runs; ++sweep.run) {
+        if (sweep.run > 0) {
+            reopen_rows(rows, options);
+            static_cast<void>(warm_up_rows(rows, options.samples, sampler, budget));
+        }
+        for (const auto& group : groups) {
+            register_rows(group, result.samples, sweep);
+            // The filter was applied to the rows themselves, under the reported names.
+            benchmark::RunSpecifiedBenchmarks(display.get(), file.get(), "all");
+        }
+        for (RowRun& row : rows)
+            if (is_timed(row)) count_samples(row);
     }
     pulses.take();
     result.load = meter.load();

@@ -15,7 +15,8 @@ namespace tetrace {
 
 /// Result of the timed part; the samples are in the rows.
 struct Measurement {
-    unsigned samples = 0;            ///< a row
+    unsigned samples = 0; ///< per row and run
+    unsigned runs = 1;
     bool lowered = false;            ///< fewer than asked for, because of the budget
     nlohmann::json google_benchmark; ///< its own JSON: context and benchmarks; null where nothing was timed
     double wall_s = 0;
@@ -29,11 +30,13 @@ struct Measurement {
 
 /// Takes samples of every row that is ok or flawed, with Google Benchmark, interleaved at random, after an untimed pass
 /// of each: those on GPUs with each other, then those on the host, so that no GPU rests while a processor works. One
-/// sample traces all selected views, again and again for --sample-time; its seconds are the sum of the device's, a
-/// pass. Afterwards the hits of the last view must still equal the verified ones. Rows that fail end with their reason,
-/// and so do rows for which the budget has no time. GPUs are asked for their clocks, power and throttling during
-/// each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their rates. Writes the file
-/// of --benchmark_out. host: its pulse; openmp::pulse_s() where it is empty. find_monitor: of a row's GPU. Throws
+/// sample traces all selected views, in one launch or in as few as memory allows (joined_views()), again and again for
+/// --sample-time; its seconds are the device's, per pass. The hits of each view in the last sample must still equal the
+/// verified ones. Some samples are followed by a pass with a launch for each view (latency_passes()). Rows that fail
+/// end with their reason, and so do rows for which the budget has no time. GPUs are asked for their clocks, power and
+/// throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
+/// rates. Writes the file of --benchmark_out. With options.runs above 1 all of it is done that often, each time with
+/// new sessions. host: its pulse; openmp::pulse_s() where it is empty. find_monitor: of a row's GPU. Throws
 /// Error{invalid_input} where that file, or what Google Benchmark prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget(), const Pulses::Work& host = {},

@@ -43,7 +43,6 @@ Pulses::Pulses(Work host, Clock clock) : clock_(std::move(clock))
 
 Pulses::Pulses(std::vector<RowRun>& rows, Work host, Clock clock) : Pulses(std::move(host), std::move(clock))
 {
-    // The hits stay those that a sample leaves behind.
     watch(rows, [this](RowRun& row) {
         return median_launch_s(
             row, [&] { return prepare_view(row, last_view_with_rays(row)); }, clock_);

@@ -269,8 +269,7 @@ ImageVerdict verify_view(Verifier& verifier, RowRun& row, std::size_t view)
     const ImageVerdict image = verifier.verify(row, view);
     Traced& result = std::get<Traced>(row.outcome);
     result.add(image);
-    if (image.totals.rays > 0) result.last_view_hash = image.hit_hash;
-    if (view == 0) result.first_view_hash = image.hit_hash;
+    result.view_hashes.push_back(image.hit_hash);
     result.hit_hash = hash_of(verifier.hits(), result.hit_hash);
     return image;
 }
@@ -281,7 +280,7 @@ void verify_again(Verifier& verifier, RowRun& row)
     if (traced(row)->totals.rays == 0)
         throw Error(ErrorKind::unsupported,
                     fmt::format("no primary ray hits, so that there is no ray of kind {}", name_of(row.key.rays)));
-    if (verifier.trace(row, 0) != traced(row)->first_view_hash)
+    if (verifier.trace(row, 0) != traced(row)->view_hashes.front())
         throw Error(ErrorKind::wrong_result, fmt::format("the hits of view {} changed when it was traced again",
                                                          row.scene->view_numbers().front()));
 }

@@ -28,6 +28,9 @@ void forget_answers(RowRun& row)
 {
     row.samples_s.clear();
     row.wall_samples_s.clear();
+    row.latency_samples_s.clear();
+    row.run_samples.clear();
+    row.launches = {};
     if (traced(row) == nullptr) {
         row.session.reset();
         return;
@@ -128,7 +131,14 @@ void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
     for (const auto& rows : shards)
         for (const RowRun& part : rows)
             if (part.key == row.key) parts.push_back(&part);
-    for (std::vector<double> RowRun::*samples : {&RowRun::samples_s, &RowRun::wall_samples_s}) {
+    for (const RowRun* part : parts) {
+        row.launches.joined += part->launches.joined;
+        row.launches.single += part->launches.single;
+    }
+    const auto is_same = [&](const RowRun* part) { return part->run_samples == parts.front()->run_samples; };
+    row.run_samples = std::ranges::all_of(parts, is_same) ? parts.front()->run_samples : std::vector<std::size_t>();
+    for (std::vector<double> RowRun::*samples :
+         {&RowRun::samples_s, &RowRun::wall_samples_s, &RowRun::latency_samples_s}) {
         std::vector<double> sum = parts.front()->*samples;
         for (std::size_t i = 1; i < parts.size(); ++i) {
             sum.resize(std::min(sum.size(), (parts[i]->*samples).size()));

@@ -254,9 +254,17 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples a row, 3 to 10000; a sample traces all selected views, again and again for --sample-time. Fewer than "
+         "Samples per row, 3 to 10000; a sample traces all selected views together, again and again for --sample-time. "
+         "Fewer than "
          "5 give no interval, neither here nor in 'compare'. Default: 10.",
          bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
+        {"Measuring", "--runs", "N",
+         "Measures N times, 1 to 100: each run opens every row's session again, warms it up and takes --samples. Times "
+         "differ more between runs than within one (memory, driver, machine), so that intervals of ratios then span "
+         "the "
+         "runs: their range, or from 5 runs on a 95 % interval by resampling runs and samples. Default: 1, whose "
+         "intervals are of its samples alone.",
+         bit(Verb::bench), false, set_count("--runs", &Options::runs, 1, 100)},
         {"Measuring", "--sample-time", "TIME",
          "A sample lasts at least this long on its device (seconds, or a number followed by s; a minute at most), or "
          "4096 "

@@ -96,21 +96,24 @@ std::optional<std::size_t> best_walk(const std::vector<Contender>& rows, bool si
     return best;
 }
 
-/// "1.84 of the rate of the fastest BVH, bvh packet16 on embree".
-std::string over_bvh_text(const std::vector<Contender>& rows, std::size_t walk, std::size_t bvh)
+/// "1.84 [1.80, 1.88] of the rate of the fastest BVH, bvh packet16 on embree". rows: of the contest.
+std::string over_bvh_text(const Contest& contest, const std::vector<Contender>& rows, std::size_t walk, std::size_t bvh)
 {
-    return fmt::format("{:.2f} of the rate of {}", rows[walk].mrays_per_s / rows[bvh].mrays_per_s, bvh_text(rows, bvh));
+    const Comparison comparison = compare_rates(*contest.rows[bvh], *contest.rows[walk]);
+    const std::string interval = interval_text(comparison);
+    return fmt::format("{:.2f}{} of the rate of {}", comparison.ratio, interval.empty() ? "" : " " + interval,
+                       bvh_text(rows, bvh));
 }
 
 /// One ray at a time, over our fastest such BVH and over Embree's single rays; empty if all rows are ours and do so.
-std::string single_text(const std::vector<Contender>& rows)
+std::string single_text(const Contest& contest, const std::vector<Contender>& rows)
 {
     if (std::ranges::all_of(rows, [](const Contender& row) { return row.is_single && !row.is_embree; })) return {};
     const auto walk = best_walk(rows, true);
     if (!walk) return {};
     std::vector<std::string> parts;
     for (const BvhKind kind : {BvhKind::our_single, BvhKind::embree_single})
-        if (const auto bvh = best_bvh(rows, *walk, kind)) parts.push_back(over_bvh_text(rows, *walk, *bvh));
+        if (const auto bvh = best_bvh(rows, *walk, kind)) parts.push_back(over_bvh_text(contest, rows, *walk, *bvh));
     if (parts.empty()) return {};
     return fmt::format("; one ray at a time, {} has {}", rows[*walk].name, fmt::join(parts, " and "));
 }
@@ -122,7 +125,7 @@ std::string structures_text(const std::vector<Contest>& contests)
         const auto walk = best_walk(rows, false), bvh = walk ? best_bvh(rows, *walk) : std::nullopt;
         if (!bvh) return {};
         return fmt::format("the fastest walk through tets, {}, has {}{}", rows[*walk].name,
-                           over_bvh_text(rows, *walk, *bvh), single_text(rows));
+                           over_bvh_text(contest, rows, *walk, *bvh), single_text(contest, rows));
     });
 }
 

@@ -5,6 +5,7 @@
 #include "bench/output/bench_tables.h"
 #include "bench/output/device_json.h"
 #include "bench/output/row_json.h"
+#include "bench/statistics/median_ratio.h"
 #include "bench/terminal/text.h"
 
 #include <algorithm>
@@ -25,16 +26,18 @@ std::string timed_sentence(const BenchResult& result)
     const std::string in_all =
         measurement.wall_s > 0 ? fmt::format(", {} in all", seconds_text(measurement.wall_s)) : "";
     const char* const few = measurement.samples < fewest_samples ? " Fewer than 5 samples give no interval." : "";
-    std::string text = fmt::format("medians of {} samples a row{}, rows interleaved at random{}.", measurement.samples,
-                                   instead, in_all);
+    std::string text = fmt::format("medians of {}{} samples per row{}, rows interleaved at random{}.",
+                                   measurement.runs > 1 ? fmt::format("{} runs of ", measurement.runs) : "",
+                                   measurement.samples, instead, in_all);
     if (!result.scenes.empty()) {
         const ResultValue scene(result.scenes.front(), "scene");
         std::uint32_t passes = 1;
         for (const RowRun& row : result.run.rows)
             passes = std::max(passes, row.passes);
-        text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads{}.", scene.at("views").items().size(),
-                            scene.at("camera_set").line(), scene.at("width").count(), scene.at("height").count(),
-                            result.threads, passes > 1 ? fmt::format(", up to {} times in turn", passes) : "");
+        text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads, traced together{}.",
+                            scene.at("views").items().size(), scene.at("camera_set").line(), scene.at("width").count(),
+                            scene.at("height").count(), result.threads,
+                            passes > 1 ? fmt::format(", up to {} times in turn", passes) : "");
     }
     return text + few;
 }
@@ -90,21 +93,32 @@ std::string visits_sentences(const std::string& scene, const std::vector<RowRun>
 }
 
 const char* const rate_columns =
-    "x openmp (x cuda and so on): rate over that of the same kernel with openmp, on a GPU with cuda, on the same "
-    "hardware; medians, with their 95 % interval, of samples. x best BVH: the same over the fastest BVH on the device, "
-    "named below. x single: rate over that of Embree's single rays. build paid: after so many billion rays, and so "
-    "many "
-    "seconds of tracing them, building the tets has paid against the fastest BVH, both builds counted. of copy: what a "
+    "Mrays/s: throughput, with the views of a sample in flight together. x openmp (x cuda and so on): rate over that "
+    "of the same kernel with openmp, on a GPU with cuda, on the same hardware; medians, with {}. x best BVH: the same "
+    "over the fastest BVH on the device, named below. x single: rate over that of Embree's single rays. build paid: "
+    "after so many billion rays, and so many seconds of tracing them, building the tets has paid against the fastest "
+    "BVH, both builds counted. of copy: what a "
     "step loads, times steps, over the bandwidth of copies, on the row's device, in the level of memory that holds the "
     "scene. spread: interquartile range over median, "
     "noisy above 5 %. noisy, too: the pulse, a fixed piece of work repeated through the run, took 1.25 times its "
     "fastest, or others used more than a tenth of the processors.";
 
+/// What the intervals of ratios are of.
+std::string interval_meaning(unsigned runs)
+{
+    if (runs == 1) return "their 95 % interval of samples in one run (--runs has intervals over runs)";
+    return runs < resampled_runs ? fmt::format("the range over {} runs", runs)
+                                 : fmt::format("their 95 % interval over {} runs", runs);
+}
+
 const char* const time_columns =
     "compile (with the building of Embree's BVH, or a driver's) and upload are paid once; first: wall of the first "
     "pass, in which devices compile what they left; then, for all views, kernel: device seconds; launch: wall less "
-    "kernel, launching and waiting; download: hits to the host; wall: launch to end. Medians of the samples but for "
-    "download.";
+    "kernel, launching and waiting; download: hits to the host; wall: launch to end. latency: kernel of one view that "
+    "is "
+    "launched alone; fixed: what each launch costs, by the line through launches of one view and of all, if it is "
+    "above "
+    "the noise. Medians of the samples but for download.";
 
 Sheet closing_lines(const BenchResult& result)
 {
@@ -112,7 +126,7 @@ Sheet closing_lines(const BenchResult& result)
     sheet.labelled("Verified", verdict_sentence(result.run.rows));
     if (is_timed(result)) {
         sheet.labelled("Timed", timed_sentence(result));
-        sheet.labelled("Rates", rate_columns);
+        sheet.labelled("Rates", fmt::format(fmt::runtime(rate_columns), interval_meaning(result.measurement.runs)));
         sheet.labelled("Times", time_columns);
     }
     for (const auto& sentences : {result.missing_devices, result.missing_scenes})
@@ -133,7 +147,8 @@ std::string failure_text(const RowRun& row, Status status)
 nlohmann::json bench_json(const BenchResult& result, const Options& options)
 {
     nlohmann::json section = result_head(options);
-    section["samples_a_row"] = result.measurement.samples;
+    section["samples_a_row"] = result.measurement.samples * result.measurement.runs;
+    if (result.measurement.runs > 1) section["runs"] = result.measurement.runs;
     section["samples_lowered"] = result.measurement.lowered;
     if (result.measurement.lowered) {
         section["samples_asked"] = result.samples_asked;

@@ -149,8 +149,11 @@ std::vector<RowField> rate_fields()
 {
     return {
         {"rates", "mrays_per_s", &Figures::mrays_per_s,
-         recorded("positive", required, "of the median sample, as all rates"), csv("rate", "Mrays/s"),
-         rates({.title = "Mrays/s", .rank = 0})},
+         recorded("positive", required, "throughput: of the median sample, as all rates, which traces views together"),
+         csv("rate", "Mrays/s"), rates({.title = "Mrays/s", .rank = 0})},
+        {"rates", "latency_mrays_per_s", &Figures::latency_mrays_per_s,
+         recorded("positive", optional, "with a launch for each view, one after the other"),
+         csv("latency rate", "Mrays/s")},
         {"rates", "mhits_per_s", &Figures::mhits_per_s,
          recorded("positive", optional, "millions of rays per second that hit: mrays_per_s times counts.hit_share"),
          csv("rate", "Mhits/s"), rates({.title = "Mhits/s", .rank = 6})},
@@ -230,7 +233,41 @@ std::vector<RowField> time_fields()
         {"times", "first_wall_s", &Traced::wall_s, recorded("not_negative", required), csv("first", "s", 6),
          times("first", "ms", 1, milliseconds), report("first", "", 1, milliseconds)},
         {"times", "samples_s", unless_empty(&RowRun::samples_s),
-         recorded("durations", optional, "kernel alone, all views, a pass")},
+         recorded("durations", optional, "kernel alone, all views, per pass")},
+        {"times", "runs",
+         [](const RowRun& row) {
+             if (row.run_samples.size() < 2 || row.samples_s.empty()) return json();
+             json medians;
+             for (const auto& run : samples_of_runs(row))
+                 medians.push_back(quantile(run, 0.5));
+             return medians;
+         },
+         recorded("durations", optional, "medians of the runs, whose samples follow each other in samples_s"),
+         csv("runs", "", 0, [](const json& runs) { return runs.is_null() ? Cell() : Cell(runs.size()); })},
+        {"times", "launches",
+         [](const RowRun& row) { return row.launches.joined > 0 ? json(row.launches.joined) : json(); },
+         recorded(R"({ "type": "integer", "minimum": 1 })", optional,
+                  "of a pass of a sample: 1, or as few as memory allows"),
+         csv("launches")},
+        {"times", "latency_launches",
+         [](const RowRun& row) { return row.launches.single > 0 ? json(row.launches.single) : json(); },
+         recorded(R"({ "type": "integer", "minimum": 1 })", optional,
+                  "of a pass of latency_samples_s: views with rays")},
+        {"times", "latency_samples_s", unless_empty(&RowRun::latency_samples_s),
+         recorded("durations", optional,
+                  "as samples_s, with a launch for each view; left out if samples_s are the same")},
+        {"times", "latency_s", &Figures::latency_s,
+         recorded("positive", optional, "of a view that is launched alone: mean of the views, median"),
+         csv("latency", "s", 6), times("latency", "ms", 3, milliseconds), report("latency", "", 3, milliseconds)},
+        {"times", "fixed_s", &Figures::fixed_s,
+         recorded(
+             "positive", optional,
+             "of each launch, by the line through samples_s and latency_samples_s; left out if it is not above the "
+             "noise"),
+         csv("fixed", "s", 9), times("fixed", "ms", 3, milliseconds), report("fixed", "", 3, milliseconds)},
+        {"times", "s_per_mray", &Figures::s_per_mray,
+         recorded("positive", optional, "of a million rays, by the same line; with fixed_s if that is left out"),
+         csv("per Mray", "s", 9)},
         {"times", "passes", [](const RowRun& row) { return row.passes > 1 ? json(row.passes) : json(); },
          recorded(R"({ "type": "integer", "minimum": 2 })", optional,
                   "of a sample, which traces all views so often; of `reproduce` the most of any view or batch; left "

@@ -39,8 +39,6 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
             row.wall_samples_s[s] += image.wall_samples_s[s];
         }
     }
-    sum.first_view_hash = images.front().verdict.hit_hash;
-    sum.last_view_hash = images.back().verdict.hit_hash;
     row.outcome = std::move(sum);
 }
 

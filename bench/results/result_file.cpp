@@ -192,8 +192,10 @@ ResultRow read_any_row(const ResultValue& value)
         if (const auto index = value.find("device_index")) row.device_index = index->count();
     }
     row.samples_s = read_samples(value);
-    if (const auto times = value.find("times"))
+    if (const auto times = value.find("times")) {
         if (const auto pulse = times->find("pulse")) row.pulse_ratio = pulse->number();
+        if (const auto launches = times->find("launches")) row.launches = launches->count();
+    }
     return row;
 }
 

@@ -53,6 +53,7 @@ struct ResultRow {
     std::string views_hash;            ///< empty in results before 2026-11-23 as well
     std::optional<double> mrays_per_s; ///< of the median sample; of searches, millions of those
     std::optional<double> pulse_ratio; ///< of the pulse beside its samples to the run's fastest
+    std::uint64_t launches = 0;        ///< of a pass of a sample; 0: one for each view
     std::vector<double> samples_s;     ///< device seconds, each from 1e-12 to 1e12; empty where the row was not timed
 
     [[nodiscard]] std::string api() const { return api_name(backend, device_index); }

@@ -3,6 +3,7 @@
 #include "bench/rows/device_abilities.h"
 #include "core/base/hash.h"
 #include "core/base/printable.h"
+#include "core/device/open_checks.h"
 #include "scenes/cache.h"
 
 #include <algorithm>
@@ -40,7 +41,13 @@ void open_session(RowRun& row, const SceneData& data, const Options& options)
 {
     SessionOptions session = session_options(options);
     if (row.key.threads != 0) session.threads = row.key.threads;
+    row.max_buffer_bytes = largest_buffer(row.device, session);
     row.session = row.backend->open(row.key.device, row.key.kernel, data, session);
+}
+
+SceneData scene_data(const RowRun& row)
+{
+    return {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->data : nullptr};
 }
 
 void open_on_scene(RowRun& row, const Options& options)
@@ -49,7 +56,7 @@ void open_on_scene(RowRun& row, const Options& options)
     const auto& no_tets = row.scene->loaded().no_tets;
     if (no_tets && row.key.kernel.structure == Structure::cdt) throw Error(*no_tets);
     if (is_portable(row.key.kernel)) row.packed = &row.scene->packed(row.key.kernel.layout, row.key.order);
-    open_session(row, {&row.scene->loaded().scene.mesh, row.packed ? &row.packed->data : nullptr}, options);
+    open_session(row, scene_data(row), options);
 }
 
 std::string traced_reason(const RowRun& row, const Traced& traced)
@@ -107,6 +114,19 @@ std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<R
     for (const RowRun& row : rows)
         if (row.key.scene == scene) found.push_back(&row);
     return found;
+}
+
+std::vector<std::vector<double>> samples_of_runs(const RowRun& row)
+{
+    std::vector<std::vector<double>> runs;
+    auto next = row.samples_s.begin();
+    for (const std::size_t samples : row.run_samples) {
+        const auto end = next + static_cast<std::ptrdiff_t>(samples);
+        runs.emplace_back(next, end);
+        next = end;
+    }
+    if (runs.empty()) runs.push_back(row.samples_s);
+    return runs;
 }
 
 const Traced* traced(const RowRun& row)
@@ -205,6 +225,12 @@ RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options)
     row.scene = &scene;
     guarded(row, [&] { open_on_scene(row, options); });
     return row;
+}
+
+void reopen_row(RowRun& row, const Options& options)
+{
+    row.views_of_rays.clear();
+    guarded(row, [&] { open_session(row, scene_data(row), options); });
 }
 
 RowRun open_row(const RowKey& key, const Packed& tets, const Options& options, const std::vector<Backend*>& backends)

@@ -66,13 +66,12 @@ struct Traced {
     std::uint64_t inexact = 0;      ///< rays that differ from openmp's in some bit, allowed or not
     std::uint64_t largest_ulps = 0; ///< of t, u and v, among those allowed
     std::optional<DifferingRay> first_different;
-    std::uint64_t lost_at_device_cap = 0; ///< lost rays with Device::most_steps steps, fewer than the proof allows
-    std::uint64_t hit_hash = 0;           ///< of all hits, view after view; 0 where shards had them, not known
-    std::uint64_t views_hash = 0;         ///< of the hashes of the views, one after the other; shards know it too
-    std::uint64_t first_view_hash = 0;
-    std::uint64_t last_view_hash = 0;
-    double kernel_s = 0; ///< device seconds of this first pass
-    double wall_s = 0;   ///< launch to end, by the host's clock
+    std::uint64_t lost_at_device_cap = 0;   ///< lost rays with Device::most_steps steps, fewer than the proof allows
+    std::uint64_t hit_hash = 0;             ///< of all hits, view after view; 0 where shards had them, not known
+    std::uint64_t views_hash = 0;           ///< of the hashes of the views, one after the other; shards know it too
+    std::vector<std::uint64_t> view_hashes; ///< of each view's hits
+    double kernel_s = 0;                    ///< device seconds of this first pass
+    double wall_s = 0;                      ///< launch to end, by the host's clock
     double download_s = 0;
 
     /// Adds an image, except for hit_hash: images are added in the order of views.
@@ -98,6 +97,15 @@ struct SetupCost {
     [[nodiscard]] double once_s() const { return build_s + pack_s; }
 };
 
+/// Views that one launch traces together: indices in SceneWork::views(), ascending.
+using ViewBatch = std::vector<std::size_t>;
+
+/// Launches that trace all selected views once.
+struct LaunchCounts {
+    std::uint32_t joined = 0; ///< if views are traced together; 0: not known
+    std::uint32_t single = 0; ///< if each view has a launch of its own
+};
+
 /// A row from its selection to its result. A failure becomes its outcome.
 struct RowRun {
     RowKey key;
@@ -107,14 +115,19 @@ struct RowRun {
     std::optional<SelfTest> self_test; ///< of the device in the row's math mode; empty: it runs none of our kernels
     const Packed* packed = nullptr;    ///< null for kernels that are not portable
     std::unique_ptr<Session> session;
-    std::optional<std::size_t> view_of_rays; ///< view whose rays the session has been given; see prepare_view()
+    std::uint64_t max_buffer_bytes = 0; ///< that the session may make; 0: no limit
+    ViewBatch views_of_rays;            ///< views whose rays the session has been given; see prepare_batch()
     Outcome outcome = Traced{};
     std::string recorded_reason = {};            ///< of a row that was read from a result, in place of its outcome's
     std::optional<SetupCost> recorded_cost = {}; ///< of such a row: its setup_cost()
     double warm_s = 0;                           ///< wall seconds of the warm-up pass
     std::uint32_t passes = 1; ///< of a sample, which traces all views so often; of `reproduce` the most of any view
-    std::vector<double> samples_s;          ///< device seconds for all selected views, a pass, one value a repetition
+    std::vector<ViewBatch> batches;         ///< of a pass of a sample: one launch each
+    LaunchCounts launches;                  ///< of a pass
+    std::vector<double> samples_s;          ///< device seconds of a pass over all views, traced together, per sample
     std::vector<double> wall_samples_s;     ///< the same by the host's clock, from launch to the end of wait
+    std::vector<std::size_t> run_samples;   ///< number of samples_s of each run; empty if the row is not timed
+    std::vector<double> latency_samples_s;  ///< device seconds of a pass with a launch for each view
     std::optional<GpuReadings> gpu = {};    ///< of a row on a GPU that tells something
     std::optional<double> pulse_ratio = {}; ///< of the pulse beside the samples to its fastest, their median
     std::string disturbance = {};           ///< why the rate is not to be trusted, see disturbance_text()
@@ -131,6 +144,8 @@ struct RowRun {
 [[nodiscard]] std::string device_kind_text(const RowRun& row);
 /// The rows of a scene, by its label.
 [[nodiscard]] std::vector<const RowRun*> rows_of(const std::string& scene, const std::vector<RowRun>& rows);
+/// The samples of each run of the measurement.
+[[nodiscard]] std::vector<std::vector<double>> samples_of_runs(const RowRun& row);
 /// The result of tracing; null where the row failed or was skipped.
 [[nodiscard]] const Traced* traced(const RowRun& row);
 
@@ -139,6 +154,9 @@ struct RowRun {
 
 /// Opens a row's session on its device. Throws only Error{interrupted}.
 [[nodiscard]] RowRun open_row(const RowKey& key, SceneWork& scene, const Options& options);
+
+/// Opens the session of a row anew, after it was closed. A failure becomes the row's outcome.
+void reopen_row(RowRun& row, const Options& options);
 
 /// Opens the session of a row of task search on a device of one of the backends. The tets must outlive it. Throws as
 /// the other overload does.

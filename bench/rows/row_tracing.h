@@ -21,12 +21,30 @@ namespace tetrace {
 /// The job of a view.
 [[nodiscard]] TraceJob job_of(const RowRun& row, std::size_t view);
 
-/// The same for the row's open session. Where the session has another view's rays, gives it this view's first.
+/// The same for the row's open session. If the session has other views' rays, gives it this view's first.
 /// Throws what Session::set_rays() throws.
 [[nodiscard]] TraceJob prepare_view(RowRun& row, std::size_t view);
 
 /// The last view of which the row has rays. Precondition: there is one.
 [[nodiscard]] std::size_t last_view_with_rays(const RowRun& row);
+
+/// Bytes that the hits of a launch may have, and so may its given rays: at most 512 MiB and the largest buffer of the
+/// row's session, and of the device's memory a third, which `rows` rows share.
+[[nodiscard]] std::uint64_t batch_limit(const RowRun& row, std::size_t rows);
+
+/// The views with rays in as few batches as the limit allows; a view that exceeds it alone is a batch.
+[[nodiscard]] std::vector<ViewBatch> joined_views(const RowRun& row, std::uint64_t limit_bytes);
+
+/// The views with rays, each in a batch of its own.
+[[nodiscard]] std::vector<ViewBatch> single_views(const RowRun& row);
+
+/// Number of rays of all views of a batch.
+[[nodiscard]] std::size_t ray_count(const RowRun& row, const ViewBatch& views);
+
+/// The jobs of a launch that traces a batch with the row's open session: one for each view, or one for all given rays,
+/// view after view. Their hits are those of the views, one after the other. If the session has other views' rays,
+/// gives it those of the batch first. Throws what Session::set_rays() throws.
+[[nodiscard]] std::vector<TraceJob> prepare_batch(RowRun& row, const ViewBatch& views);
 
 /// Traces a view and waits; returns device seconds. hits: receives ray_count() hits.
 [[nodiscard]] double trace_view(RowRun& row, std::size_t view, std::span<Hit> hits);
@@ -42,8 +60,11 @@ using Clock = std::function<double()>;
 /// The steady clock, starting now.
 [[nodiscard]] Clock host_clock();
 
-/// Launches a job and waits; reads nothing back. clock: the host's; tests of budgets pass their own. meanwhile: called
-/// between the two, where a device of its own is at work.
+/// Launches jobs together and waits; reads nothing back. clock: the host's; tests of budgets pass their own. meanwhile:
+/// called between the two, while the device is at work.
+[[nodiscard]] LaunchTimes timed_launch(Session& session, std::span<const TraceJob> jobs,
+                                       const Clock& clock = host_clock(), const std::function<void()>& meanwhile = {});
+/// The same for one job.
 [[nodiscard]] LaunchTimes timed_launch(Session& session, const TraceJob& job, const Clock& clock = host_clock(),
                                        const std::function<void()>& meanwhile = {});
 

@@ -244,9 +244,17 @@ void read_times(RowRun& run, const ResultValue& value)
         setup.upload_s = number_at(*times, "upload_s");
         setup.compile_cached = times->find("compile_cached") && times->at("compile_cached").flag();
         if (run.key.kernel.layout == Layout::rt) setup.build_s = number_at(*times, "bvh_build_s");
+        const std::size_t row_samples = run.samples_s.size();
         if (const auto walls = times->find("wall_samples_s"))
             for (const ResultValue& wall : walls->items())
                 run.wall_samples_s.push_back(wall.number());
+        if (const auto runs = times->find("runs"); runs && row_samples % runs->items().size() == 0)
+            run.run_samples.assign(runs->items().size(), row_samples / runs->items().size());
+        if (const auto singles = times->find("latency_samples_s"))
+            for (const ResultValue& single : singles->items())
+                run.latency_samples_s.push_back(single.number());
+        run.launches = {static_cast<std::uint32_t>(count_at(*times, "launches")),
+                        static_cast<std::uint32_t>(count_at(*times, "latency_launches"))};
         if (const auto passes = times->find("passes")) run.passes = static_cast<std::uint32_t>(passes->count());
         if (const auto pulse = times->find("pulse")) run.pulse_ratio = pulse->number();
         if (const auto disturbed = times->find("disturbed")) run.disturbance = disturbed->line();

@@ -85,7 +85,8 @@ RunAgain bench_again(const ResultFile& file)
     result.missing_scenes = sentences_at(section, "missing_scenes");
     result.missing_devices = sentences_at(section, "missing_devices");
     result.threads = small_count(section.at("threads"));
-    result.measurement.samples = small_count(section.at("samples_a_row"));
+    if (const auto runs = section.find("runs")) result.measurement.runs = std::max(1u, small_count(*runs));
+    result.measurement.samples = small_count(section.at("samples_a_row")) / result.measurement.runs;
     result.measurement.lowered = section.at("samples_lowered").flag();
     const Steadiness steadiness = read_steadiness(section);
     result.measurement.load = steadiness.load;

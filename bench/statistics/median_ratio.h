@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace tetrace {
@@ -24,5 +25,19 @@ struct MedianRatio {
 /// Throws Error{internal} for no samples, or one that is not positive and finite.
 [[nodiscard]] MedianRatio ratio_of_medians(const std::vector<double>& numerator,
                                            const std::vector<double>& denominator);
+
+/// The least number of runs whose interval comes from resampling.
+inline constexpr std::size_t resampled_runs = 5;
+
+/// The same of several runs, each with samples of both: the ratio of the medians of all samples, with an interval that
+/// spans the runs. A run's samples share what differs between runs (places in memory, the driver's state), so that
+/// only runs count as independent. From resampled_runs on, a 95 % interval by the hierarchical bootstrap: runs are
+/// drawn with replacement, and in each run drawn its samples. With fewer runs, it is the range of their own ratios,
+/// which holds the median over all runs in 50, 75 and 87.5 % of cases for 2, 3 and 4 runs. Source: Kalibera and Jones
+/// (2013): repetition at the highest level that varies; Davison and Hinkley, "Bootstrap Methods and their Application"
+/// (1997), on hierarchical data. Throws Error{internal} for no runs, lists of different lengths, and as
+/// ratio_of_medians().
+[[nodiscard]] MedianRatio ratio_over_runs(const std::vector<std::vector<double>>& numerator,
+                                          const std::vector<std::vector<double>>& denominator);
 
 } // namespace tetrace

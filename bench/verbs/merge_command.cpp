@@ -82,8 +82,12 @@ Merged merged_bench(const Shards& shards, const Options& options)
     result.missing_scenes = sentences_of(shards, "missing_scenes");
     result.missing_devices = sentences_of(shards, "missing_devices");
     result.threads = options.threads;
-    for (const RowRun& row : result.run.rows)
-        result.measurement.samples = std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size()));
+    for (const RowRun& row : result.run.rows) {
+        const auto runs = static_cast<unsigned>(std::max<std::size_t>(row.run_samples.size(), 1));
+        result.measurement.runs = std::max(result.measurement.runs, runs);
+        result.measurement.samples =
+            std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
+    }
     return {bench_report(result, options), exit_code(result.run.rows, true),
             error_of([&] { require_answers(result.run.rows, "measured"); })};
 }

@@ -15,6 +15,9 @@ public:
     /// inner: answers here what no driver is needed for; the process finds it by its name.
     IsolatedBackend(const Backend& inner, DriverProcesses processes);
 
+    /// Ends the processes, so that the next sessions have drivers in a new state. No session may be open.
+    void restart() { children_.assign(children_.size(), nullptr); }
+
     [[nodiscard]] std::string name() const override { return inner_->name(); }
     [[nodiscard]] std::string clock() const override { return inner_->clock(); }
     [[nodiscard]] const std::vector<Device>& devices() const override;

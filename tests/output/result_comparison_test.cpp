@@ -218,6 +218,22 @@ TEST_F(ResultComparisons, rows_of_different_work_are_listed_with_the_reason_and_
     EXPECT_TRUE(comparison.regressions(false).empty()) << "nor is it a regression";
 }
 
+TEST_F(ResultComparisons, views_of_a_gpu_that_are_launched_together_and_alone_are_different_work)
+{
+    for (const char* const type : {"gpu", "cpu"}) {
+        Json before = result_of({timed_row("one", 1), timed_row("two", 1)});
+        before["tetrace"]["rows"][1]["device"] = {{"name", "a device"}, {"type", type}};
+        Json after = before;
+        after["tetrace"]["rows"][1]["times"]["launches"] = 1;
+        const ComparedRow row = compare(before, after).rows[1];
+        EXPECT_EQ(row.outcome == RowOutcome::different, std::string(type) == "gpu");
+        if (row.outcome == RowOutcome::different) {
+            EXPECT_EQ(row.note(), "a launch for each view in A, all views in 1 launch in B");
+        }
+        EXPECT_EQ(compare(after, after).rows[1].verdict(), "SAME");
+    }
+}
+
 TEST_F(ResultComparisons, is_refused_where_all_rows_did_different_work)
 {
     const std::string hash = difference([](Json& tetrace) { tetrace["scenes"][0]["hash"] = "0000000000000000"; });

@@ -49,6 +49,26 @@ TEST(Comparison, of_fewer_than_five_samples_has_no_interval)
     EXPECT_NEAR(compare_rows(rows)[1]->ratio, 0.5, 0.01);
 }
 
+TEST(Comparison, of_several_runs_has_an_interval_over_them)
+{
+    auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 4));
+    const std::vector<double> run = rows[1].samples_s;
+    for (const double factor : {1.0, 1.25, 1.0})
+        for (RowRun& row : rows) {
+            if (row.run_samples.empty()) row.samples_s.clear();
+            for (const double seconds : run)
+                row.samples_s.push_back(&row == &rows[0] ? seconds / 2 : seconds * factor);
+            row.run_samples.push_back(run.size());
+        }
+    const auto found = compare_rows(rows)[1];
+    EXPECT_EQ(found->runs, 3u);
+    EXPECT_NEAR(found->interval->low, 0.4, 1e-9);
+    EXPECT_NEAR(found->interval->high, 0.5, 1e-9);
+    EXPECT_EQ(interval_text(*found), "[0.40, 0.50]");
+    rows[0].run_samples = {18};
+    EXPECT_EQ(compare_rows(rows)[1]->runs, 1u) << "the reference has no such runs";
+}
+
 TEST(Comparison, without_cuda_a_gpus_first_api_is_the_reference)
 {
     const auto rows = list(row_on("opencl", DeviceKind::gpu, 2, "a"), row_on("vulkan", DeviceKind::gpu, 1, "a"));

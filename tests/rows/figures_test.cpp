@@ -98,6 +98,25 @@ TEST(Figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
     EXPECT_FALSE(mean_steps(traced(single_row("a"))->totals).all.has_value());
 }
 
+TEST(Figures, latency_is_of_launches_of_one_view_and_the_fixed_cost_of_the_line_through_both)
+{
+    RowRun row = timed_row();
+    EXPECT_FALSE(figures_of(row)->latency_s.has_value());
+    row.launches = {1, 4};
+    row.samples_s = {0.5, 0.51, 0.5, 0.49, 0.5, 0.5};
+    row.latency_samples_s = {0.8, 0.81, 0.8, 0.79, 0.8};
+    const auto figures = figures_of(row);
+    EXPECT_DOUBLE_EQ(figures->mrays_per_s, 8) << "throughput";
+    EXPECT_DOUBLE_EQ(figures->latency_s.value(), 0.2) << "of one of four views";
+    EXPECT_DOUBLE_EQ(figures->latency_mrays_per_s.value(), 5);
+    EXPECT_NEAR(figures->fixed_s.value(), 0.1, 1e-12) << "0.3 s in three more launches";
+    EXPECT_NEAR(figures->s_per_mray.value(), 0.1, 1e-12) << "0.4 s of 4 million rays";
+    row.launches = {4, 4};
+    row.latency_samples_s.clear();
+    EXPECT_DOUBLE_EQ(figures_of(row)->latency_s.value(), 0.125) << "its samples have a launch for each view";
+    EXPECT_FALSE(figures_of(row)->fixed_s.has_value());
+}
+
 TEST(Figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
 {
     RowRun row = timed_row();

@@ -7,6 +7,7 @@
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
@@ -116,11 +117,15 @@ TEST_F(Measure, every_row_has_its_samples_each_of_all_views)
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
     EXPECT_EQ(measured.samples, 30u);
     EXPECT_FALSE(measured.lowered);
-    EXPECT_EQ(launched_.size(), 2u * (1 + 30) * 2) << "a pass to warm up, then samples, of two views";
+    EXPECT_EQ(launched_.size(), 2u * (2 + 30 + 3 * 2)) << "two views to warm up, samples of both in one launch, and "
+                                                          "after a tenth of them a launch for each view";
     for (const RowRun& row : rows_) {
         EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
         ASSERT_EQ(row.samples_s.size(), 30u);
         ASSERT_EQ(row.wall_samples_s.size(), 30u);
+        EXPECT_EQ(row.latency_samples_s.size(), 3u);
+        EXPECT_EQ(row.launches.joined, 1u);
+        EXPECT_EQ(row.launches.single, 2u);
         for (std::size_t i = 0; i < 30; ++i)
             EXPECT_GE(row.wall_samples_s[i], row.samples_s[i]);
     }
@@ -137,7 +142,7 @@ TEST_F(Measure, rows_are_interleaved_unless_a_flag_says_otherwise)
     EXPECT_TRUE(first_row_ends_before_the_second_starts(launched_));
 }
 
-TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launch_a_view)
+TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launch)
 {
     rows_.pop_back();
     options_.sample_s = 0.02;
@@ -148,11 +153,64 @@ TEST_F(Measure, a_sample_lasts_as_long_as_asked_for_by_passes_that_are_one_launc
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
     const RowRun& row = rows_[0];
     ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
-    EXPECT_EQ(row.passes, 13u) << "of two milliseconds, for a device whose clocks rise by a quarter";
-    // Warm-up, and for each sample a pass alone: two views each.
-    EXPECT_EQ(std::ranges::count(launches, 1u, &SeenLaunch::passes), 2 + 3 * 2);
-    EXPECT_EQ(launches.size(), 2u + 3 * 4);
-    EXPECT_EQ(row.samples_s, (std::vector<double>{2e-3, 2e-3, 2e-3})) << "the seconds are those of a pass";
+    EXPECT_EQ(row.passes, 20u) << "of a millisecond; at first 13, by the two of the warm-up, for a device whose clocks "
+                                  "rise by a quarter";
+    // Two views to warm up; for each sample a pass alone, all of them, and a launch for each view.
+    EXPECT_EQ(std::ranges::count(launches, 1u, &SeenLaunch::passes), 2 + 3 * (1 + 2));
+    EXPECT_EQ(std::ranges::count(launches, 20u, &SeenLaunch::passes), 2);
+    EXPECT_EQ(launches.size(), 2u + 3 * (1 + 1 + 2));
+    EXPECT_EQ(row.samples_s, (std::vector<double>{1e-3, 1e-3, 1e-3})) << "the seconds are those of a pass";
+    EXPECT_EQ(row.latency_samples_s, (std::vector<double>{2e-3, 2e-3, 2e-3}));
+    const auto figures = figures_of(row);
+    EXPECT_DOUBLE_EQ(figures->mrays_per_s, 1e-6 * 2 * 64 / 1e-3);
+    EXPECT_DOUBLE_EQ(figures->latency_mrays_per_s.value(), 1e-6 * 2 * 64 / 2e-3);
+    EXPECT_DOUBLE_EQ(figures->latency_s.value(), 1e-3);
+    EXPECT_FALSE(figures->fixed_s.has_value()) << "all that there is would be fixed";
+}
+
+TEST_F(Measure, views_whose_hits_exceed_a_buffer_together_are_launched_in_several_batches)
+{
+    const Options four =
+        parse_options({"bench", "--size", "16", "--views", "0-3", "--samples", "3", "--sample-time", "0"});
+    SceneWork scene{loaded_cubes(), four};
+    std::vector<RowRun> rows;
+    rows.push_back(open_row({"cubes", "openmp", {}, RayKind::primary, TetOrder::chains}, scene, four));
+    rows[0].session = std::make_unique<WatchedSession>(std::move(rows[0].session), 0, launched_, changes_);
+    verify_rows({&rows[0]}, scene, four);
+    launched_.clear();
+    rows[0].max_buffer_bytes = 20'000; // of two views, which have 6656 bytes each and begin at multiples of 4096
+    static_cast<void>(measure_rows(rows, four, read_benchmark_flags({})));
+    EXPECT_EQ(status_of(rows[0]), Status::ok) << reason_of(rows[0]);
+    EXPECT_EQ(rows[0].batches, (std::vector<ViewBatch>{{0, 1}, {2, 3}}));
+    EXPECT_EQ(launched_.size(), 4u + 3 * 2 + 4) << "to warm up, samples, and a pass with a launch for each view";
+    rows[0].max_buffer_bytes = 1;
+    EXPECT_EQ(joined_views(rows[0], batch_limit(rows[0], 1)), single_views(rows[0]));
+    rows[0].max_buffer_bytes = 0;
+    EXPECT_EQ(joined_views(rows[0], batch_limit(rows[0], 1)), (std::vector<ViewBatch>{{0, 1, 2, 3}}));
+    rows[0].device.memory_bytes = 3 * 5 * 20'000;
+    EXPECT_EQ(joined_views(rows[0], batch_limit(rows[0], 5)).size(), 2u) << "five rows share a third of the memory";
+}
+
+TEST_F(Measure, given_rays_of_all_views_are_one_launch_with_the_hits_of_each)
+{
+    for (const RayKind kind : {RayKind::shadow, RayKind::diffuse})
+        for (const Layout layout : {Layout::tet80, Layout::bvh2}) {
+            RowKey key{"cubes", "openmp", {}, kind, TetOrder::chains};
+            key.kernel.task = Task::rays;
+            key.kernel.layout = layout;
+            if (layout == Layout::bvh2) key.kernel.structure = Structure::bvh, key.kernel.method = Method::single;
+            std::vector<RowRun> rows;
+            rows.push_back(open_row(key, scene_, options_));
+            ASSERT_EQ(status_of(rows[0]), Status::ok) << reason_of(rows[0]);
+            verify_rows({&rows[0]}, scene_, options_);
+            const auto jobs = prepare_batch(rows[0], {0, 1});
+            ASSERT_EQ(jobs.size(), 1u);
+            EXPECT_EQ(jobs[0].rays(), ray_count(rows[0], 0) + ray_count(rows[0], 1));
+            EXPECT_EQ(traced(rows[0])->totals.rays, jobs[0].rays());
+            static_cast<void>(measure_rows(rows, options_, read_benchmark_flags({})));
+            EXPECT_EQ(status_of(rows[0]), Status::ok) << reason_of(rows[0]);
+            EXPECT_EQ(rows[0].launches.joined, 1u);
+        }
 }
 
 TEST_F(Measure, rows_on_gpus_are_interleaved_with_each_other_alone)
@@ -163,8 +221,9 @@ TEST_F(Measure, rows_on_gpus_are_interleaved_with_each_other_alone)
         // By a clock that stands still, so that no pulse is due among the samples, however busy the machine is.
         Budget still(std::numeric_limits<double>::infinity(), [] { return 0.0; });
         static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), still));
-        // The warm-up comes before them, and the GPU's pulse, which is its row's, after them.
-        const auto samples = std::vector(launched_.begin() + 2 * 2, launched_.end() - 3);
+        // The warm-up comes before them, of the GPU with a joined launch, and the GPU's pulse, which is its row's,
+        // after them.
+        const auto samples = std::vector(launched_.begin() + 2 * 2 + 1, launched_.end() - 3);
         EXPECT_EQ(samples.front(), row) << "GPUs come first";
         EXPECT_TRUE(row == 0 ? std::ranges::is_sorted(samples) : std::ranges::is_sorted(samples, std::greater<>()));
     }
@@ -261,10 +320,110 @@ TEST_F(Measure, hits_that_change_after_verification_are_an_error_without_a_rate)
     EXPECT_EQ(exit_code(rows_, true), exit_code(ErrorKind::internal));
 }
 
+TEST_F(Measure, hits_that_only_views_in_flight_together_change_are_an_error_that_names_the_view)
+{
+    class Muddled : public WrappedSession {
+    public:
+        using WrappedSession::WrappedSession;
+
+    private:
+        void change(std::span<Hit> hits) override
+        {
+            if (hits.size() > 64) hits[64].t += 1;
+        }
+    };
+    rows_[0].session = std::make_unique<Muddled>(std::move(rows_[0].session));
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+    EXPECT_EQ(status_of(rows_[0]), Status::error);
+    EXPECT_EQ(reason_of(rows_[0]), "the hits of view 1 changed between verifying and measuring");
+    EXPECT_EQ(status_of(rows_[1]), Status::ok);
+}
+
 TEST_F(Measure, rows_that_are_wrong_are_not_timed)
 {
     std::get<Traced>(rows_[0].outcome).different = 1;
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
     EXPECT_TRUE(rows_[0].samples_s.empty());
     EXPECT_EQ(rows_[1].samples_s.size(), 30u);
+}
+
+namespace {
+
+/// openmp, whose sessions take longer from one to the next.
+class AgeingBackend : public Backend {
+public:
+    explicit AgeingBackend(std::vector<SeenLaunch>& launches) : launches_(&launches) {}
+    [[nodiscard]] std::string name() const override { return "openmp"; }
+    [[nodiscard]] std::string clock() const override { return inner_->clock(); }
+    [[nodiscard]] const std::vector<Device>& devices() const override { return inner_->devices(); }
+    [[nodiscard]] bool has_kernel(const KernelId& kernel) const override { return inner_->has_kernel(kernel); }
+    [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
+    {
+        return inner_->why_not(device, kernel);
+    }
+    [[nodiscard]] std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel, const SceneData& scene,
+                                                const SessionOptions& options) override
+    {
+        pass_s_.push_back(1e-3 * static_cast<double>(pass_s_.size() + 2));
+        return std::make_unique<TimedSession>(inner_->open(device, kernel, scene, options), pass_s_.size(), *launches_,
+                                              pass_s_.back());
+    }
+    [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
+                                                   std::span<const Quad> operations) override
+    {
+        return inner_->probe(device, math, operations);
+    }
+    [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
+
+private:
+    Backend* inner_ = &reference_backend();
+    std::vector<SeenLaunch>* launches_;
+    std::deque<double> pass_s_;
+};
+
+} // namespace
+
+TEST_F(Measure, each_run_opens_the_sessions_again_and_has_samples_of_its_own)
+{
+    std::vector<SeenLaunch> launches;
+    AgeingBackend ageing(launches);
+    for (RowRun& row : rows_)
+        row.backend = &ageing;
+    options_.runs = 3;
+    options_.samples = 5;
+    const double first_s = 1e-3;
+    rows_[0].session = std::make_unique<TimedSession>(std::move(rows_[0].session), 0, launches, first_s);
+    const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
+    EXPECT_EQ(measured.runs, 3u);
+    EXPECT_EQ(measured.samples, 5u);
+    const RowRun& row = rows_[0];
+    ASSERT_EQ(status_of(row), Status::ok) << reason_of(row);
+    EXPECT_EQ(row.run_samples, (std::vector<std::size_t>{5, 5, 5}));
+    EXPECT_EQ(row.latency_samples_s.size(), 3u) << "one of each run";
+    const auto runs = samples_of_runs(row);
+    EXPECT_EQ(runs[0], std::vector<double>(5, 1e-3));
+    EXPECT_EQ(runs[1], std::vector<double>(5, 2e-3)) << "the first session that was opened again";
+    EXPECT_EQ(runs[2], std::vector<double>(5, 4e-3)) << "after the second run of both rows";
+    EXPECT_EQ(samples_of_runs(rows_[1])[2], std::vector<double>(5, 5e-3));
+    EXPECT_LT(launches.front().session, launches.back().session);
+}
+
+TEST_F(Measure, a_row_that_cannot_be_opened_again_ends_with_its_reason_and_no_rate)
+{
+    std::vector<SeenLaunch> launches;
+    class Gone : public AgeingBackend {
+    public:
+        using AgeingBackend::AgeingBackend;
+        [[nodiscard]] std::unique_ptr<Session> open(std::size_t, const KernelId&, const SceneData&,
+                                                    const SessionOptions&) override
+        {
+            throw Error(ErrorKind::internal, "the device is gone");
+        }
+    } gone(launches);
+    rows_[0].backend = &gone;
+    options_.runs = 2;
+    static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({})));
+    EXPECT_EQ(reason_of(rows_[0]), "the device is gone");
+    EXPECT_FALSE(figures_of(rows_[0]).has_value());
+    EXPECT_EQ(rows_[1].run_samples, (std::vector<std::size_t>{30, 30}));
 }

@@ -100,3 +100,57 @@ TEST(MedianRatio, samples_that_cannot_be_times_are_rejected)
     EXPECT_THROW(static_cast<void>(ratio_of_medians({}, {1})), Error);
     EXPECT_THROW(static_cast<void>(ratio_of_medians({1}, {0})), Error);
 }
+
+namespace {
+
+/// Runs of both rows, whose true ratio is 1: each run makes one row faster or slower by its own factor, of some spread.
+std::pair<std::vector<Samples>, std::vector<Samples>> runs_of(std::size_t runs, double spread, std::mt19937_64& random)
+{
+    std::pair<std::vector<Samples>, std::vector<Samples>> found;
+    for (std::size_t run = 0; run < runs; ++run) {
+        found.first.push_back(normal_times(10, normal_times(1, 1, spread, random).front(), 0.005, random));
+        found.second.push_back(normal_times(10, 1, 0.005, random));
+    }
+    return found;
+}
+
+} // namespace
+
+TEST(RatioOverRuns, of_few_runs_has_their_range)
+{
+    const std::vector<Samples> a = {{1, 1, 1}, {1.2, 1.2, 1.2}, {1.1, 1.1, 1.1}}, b = {{2, 2, 2}, {2, 2, 2}, {2, 2, 2}};
+    const MedianRatio ratio = ratio_over_runs(a, b);
+    EXPECT_DOUBLE_EQ(ratio.value, 0.55) << "of the medians of all samples";
+    EXPECT_DOUBLE_EQ(ratio.low, 0.5);
+    EXPECT_DOUBLE_EQ(ratio.high, 0.6);
+}
+
+TEST(RatioOverRuns, compares_runs_that_shared_their_conditions)
+{
+    const std::vector<Samples> a = {{1, 1, 1}, {3, 3, 3}, {2, 2, 2}}, b = {{2, 2, 2}, {6, 6, 6}, {4, 4, 4}};
+    const MedianRatio ratio = ratio_over_runs(a, b);
+    EXPECT_DOUBLE_EQ(ratio.low, 0.5) << "slow runs are slow for both";
+    EXPECT_DOUBLE_EQ(ratio.high, 0.5);
+}
+
+// Runs differ by 5 %, their samples by 0.5 %: what one run calls certain, the next contradicts.
+TEST(RatioOverRuns, contains_the_truth_where_the_interval_of_one_run_does_not)
+{
+    std::mt19937_64 random(11);
+    constexpr int trials = 200;
+    int of_samples = 0, of_runs = 0;
+    for (int i = 0; i < trials; ++i) {
+        const auto [a, b] = runs_of(10, 0.05, random);
+        of_samples += ratio_of_medians(a[0], b[0]).contains(1);
+        of_runs += ratio_over_runs(a, b).contains(1);
+    }
+    EXPECT_LT(of_samples, trials / 4);
+    EXPECT_GT(of_runs, trials * 8 / 10);
+}
+
+TEST(RatioOverRuns, rejects_runs_that_do_not_belong_together)
+{
+    EXPECT_THROW(static_cast<void>(ratio_over_runs({}, {})), Error);
+    EXPECT_THROW(static_cast<void>(ratio_over_runs({{1}, {1}}, {{1}})), Error);
+    EXPECT_THROW(static_cast<void>(ratio_over_runs({{1}, {0}}, {{1}, {1}})), Error);
+}

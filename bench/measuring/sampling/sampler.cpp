@@ -29,6 +29,13 @@ std::uint32_t passes_for(double sample_s, double pass_s)
     return pass_s > 0 ? static_cast<std::uint32_t>(std::clamp(std::ceil(sample_s / pass_s), 1.0, most)) : 1;
 }
 
+unsigned latency_passes(unsigned samples, std::uint32_t passes)
+{
+    constexpr std::uint64_t most = 5, share = 10;
+    const std::uint64_t affordable = std::uint64_t{samples} * passes / share;
+    return static_cast<unsigned>(std::clamp<std::uint64_t>(affordable, 1, std::min<std::uint64_t>(most, samples)));
+}
+
 void Sampler::warmed_up(RowRun& row, double pass_s) const
 {
     constexpr double for_faster_clocks = 1.25; // a device that has rested is slower than it will be

@@ -32,6 +32,10 @@ private:
 /// Passes that make a sample at least so long; most_passes at most. pass_s: device seconds of one.
 [[nodiscard]] std::uint32_t passes_for(double sample_s, double pass_s);
 
+/// Passes with a launch for each view that a row gets in addition to its samples: 5 and no more than samples, but fewer
+/// if they would take more than a tenth of the samples' time; one at least. passes: of a sample.
+[[nodiscard]] unsigned latency_passes(unsigned samples, std::uint32_t passes);
+
 /// A sample that was kept; begin_s and end_s are those of all its passes and repeats, by the budget's clock.
 struct Sample {
     LaunchTimes pass; ///< of one pass

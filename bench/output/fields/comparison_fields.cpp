@@ -23,9 +23,8 @@ auto end_of_interval(double FactorInterval::*end)
 
 std::string ratio_with_interval(const Comparison& comparison)
 {
-    const auto& interval = comparison.interval;
-    return fmt::format("{:5.2f}", comparison.ratio) +
-           (interval ? fmt::format(" [{:.2f}, {:.2f}]", interval->low, interval->high) : "");
+    const std::string interval = interval_text(comparison);
+    return fmt::format("{:5.2f}", comparison.ratio) + (interval.empty() ? "" : " " + interval);
 }
 
 /// Reads the comparison with the fastest BVH.
@@ -67,15 +66,22 @@ std::vector<RowField> reference_fields()
                   "the reference's median device seconds over the row's: above 1 the row is faster"),
          csv("ratio to reference")},
         {ratio_group, "low", end_of_interval(&FactorInterval::low),
-         recorded("positive", optional, "of the interval, of samples; left out where a row has fewer than 5 samples"),
+         recorded("positive", optional,
+                  "of the interval, of samples or over runs; left out where a row has fewer than 5 samples"),
          csv({.title = "low", .key = "ratio_low"})},
         {ratio_group, "high", end_of_interval(&FactorInterval::high), recorded("positive"),
          csv({.title = "high", .key = "ratio_high"})},
         {ratio_group, "confidence",
          [](const Comparison& comparison) {
-             return comparison.interval ? std::optional(ratio_confidence) : std::nullopt;
+             const bool has_any = comparison.interval && (comparison.runs == 1 || comparison.runs >= resampled_runs);
+             return has_any ? std::optional(ratio_confidence) : std::nullopt;
          },
-         recorded(R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })")},
+         recorded(R"({ "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 })", optional,
+                  "left out of 2 to 4 runs, whose interval is the range of their ratios")},
+        {ratio_group, "runs",
+         [](const Comparison& comparison) { return comparison.runs > 1 ? json(comparison.runs) : json(); },
+         recorded(R"({ "type": "integer", "minimum": 2 })", optional,
+                  "that the interval spans; left out if it is of the samples of one run")},
         {ratio_group, "reference", [](const Comparison& comparison) { return row_name(comparison.reference->key); },
          recorded("line", required), csv("reference")},
     };
@@ -96,7 +102,7 @@ std::vector<RowField> bvh_fields()
          recorded("positive", optional, "that BVH's median device seconds over the row's: above 1 the row is faster"),
          csv("ratio to best BVH")},
         {"rates", "ratio_to_best_bvh_low", [](const RowFacts& facts) { return bvh_end(facts, &FactorInterval::low); },
-         recorded("positive", optional, "of its 95 % interval, of samples, as in tetrace.ratios"), csv("low")},
+         recorded("positive", optional, "of its interval, as in tetrace.ratios"), csv("low")},
         {"rates", "ratio_to_best_bvh_high", [](const RowFacts& facts) { return bvh_end(facts, &FactorInterval::high); },
          recorded("positive"), csv("high")},
         {"rates", "ratio_to_single", &RowFacts::ratio_to_single,

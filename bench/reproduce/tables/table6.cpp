@@ -325,7 +325,8 @@ PaperTable table6(const SceneRuns& runs)
         "Tets and BVHs: frames a second, build time and memory",
         table6_source(),
         frame_columns(),
-        {"Frames of 1024x1024 a second, of the median of a view's samples, device seconds of the kernel "
+        {"Frames of 1024x1024 per second, each in a launch of its own, of the median of a view's samples, device "
+         "seconds of the kernel "
          "alone: the median over the views with its interval (order statistics), the least and the most.",
          "Built in: TetGen for the CDT, and our optimiser for rays, the builder of the BVH, which is Embree's, for "
          "bvh2 and cwbvh, "
