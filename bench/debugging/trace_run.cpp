@@ -20,7 +20,7 @@ KernelId our_kernel(const Options& options)
     if (!is_portable(kernel))
         throw Error(ErrorKind::usage,
                     fmt::format("trace: {} is no kernel of ours: its library or driver tells nothing but the answer; "
-                                "take a method of the cdt, or layout bvh2 or cwbvh",
+                                "take a method of the cdt, or layout bvh2, bvh4 or cwbvh",
                                 name_of(kernel)));
     return kernel;
 }

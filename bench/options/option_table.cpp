@@ -139,7 +139,7 @@ std::vector<OptionRow> row_options()
          append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
          "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with project), "
-         "bvh2 or "
+         "bvh2, bvh4 or "
          "cwbvh (our BVHs), embree, embree_medium or embree_robust (built by Embree itself, with quality high or "
          "medium, "
          "or with flag robust), or rt (built by Vulkan's driver for its own rays). "

@@ -3,10 +3,11 @@
 namespace tetrace {
 namespace {
 
-/// The least costs of a subtree as at most 1, 2, ... 7 children of a wide node, and as a node of its own.
+/// The least costs of a subtree as at most 1, 2, ... children of a wide node, one fewer than the node has, and as a
+/// node of its own.
 struct SubtreePlan {
-    std::array<double, wide_children> cost = {}; ///< as at most i children; [0] is not used
-    std::array<std::uint8_t, wide_children + 1> share =
+    std::array<double, max_wide_children> cost = {}; ///< as at most i children; [0] is not used
+    std::array<std::uint8_t, max_wide_children + 1> share =
         {};                             ///< of i children that the left child gets; 0: i - 1 are best
     bool is_leaf = false;               ///< as one child
     std::uint32_t first = 0, count = 0; ///< references below
@@ -14,7 +15,8 @@ struct SubtreePlan {
 
 class WideBvhMaker {
 public:
-    WideBvhMaker(const Bvh& bvh, Collapse collapse) : bvh_(bvh), collapse_(collapse), plans_(bvh.nodes.size())
+    WideBvhMaker(const Bvh& bvh, const WideShape& shape, Collapse collapse)
+        : bvh_(bvh), shape_(shape), collapse_(collapse), plans_(bvh.nodes.size())
     {
         for (std::size_t i = bvh.nodes.size(); i-- > 0;)
             bvh.nodes[i].count > 0 ? plan_leaf(i) : plan_inner(i);
@@ -27,7 +29,7 @@ public:
         if (bvh_.nodes.front().count > 0)
             children.push_back(0);
         else
-            open(0, wide_children, children);
+            open(0, shape_.children, children);
         add_node(children);
         return std::move(wide_);
     }
@@ -54,12 +56,13 @@ private:
         const auto& right = plans_[bvh_.nodes[node].child[1]];
         plan.first = left.first;
         plan.count = left.count + right.count;
-        plan.cost[1] = share_out(plan, left, right, wide_children) + half_area(bvh_.nodes[node].box) * wide_node_cost;
-        if (plan.count <= wide_leaf_triangles && (leaf_cost(node) <= plan.cost[1] || collapse_ == Collapse::shallow)) {
+        plan.cost[1] = share_out(plan, left, right, shape_.children) + half_area(bvh_.nodes[node].box) * wide_node_cost;
+        if (plan.count <= shape_.leaf_triangles &&
+            (leaf_cost(node) <= plan.cost[1] || collapse_ == Collapse::shallow)) {
             plan.is_leaf = true;
             plan.cost[1] = leaf_cost(node);
         }
-        for (std::size_t i = 2; i < wide_children; ++i) {
+        for (std::size_t i = 2; i < shape_.children; ++i) {
             plan.cost[i] = share_out(plan, left, right, i);
             if (plan.cost[i] < plan.cost[i - 1] || collapse_ == Collapse::shallow) continue;
             plan.cost[i] = plan.cost[i - 1];
@@ -116,11 +119,12 @@ private:
         const SubtreePlan& plan = plans_[node];
         if (plan.is_leaf) return {bvh_.nodes[node].box, 0, plan.first, plan.count};
         std::vector<std::uint32_t> children;
-        open(node, wide_children, children);
+        open(node, shape_.children, children);
         return {bvh_.nodes[node].box, add_node(children), 0, 0};
     }
 
     const Bvh& bvh_;
+    WideShape shape_;
     Collapse collapse_;
     std::vector<SubtreePlan> plans_;
     WideBvh wide_;
@@ -128,9 +132,9 @@ private:
 
 } // namespace
 
-WideBvh make_wide(const Bvh& bvh, Collapse collapse)
+WideBvh make_wide(const Bvh& bvh, const WideShape& shape, Collapse collapse)
 {
-    return WideBvhMaker(bvh, collapse).make();
+    return WideBvhMaker(bvh, shape, collapse).make();
 }
 
 std::uint32_t levels_of(const WideBvh& bvh)

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "kernels/layouts/layout.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace tetrace {
@@ -21,6 +22,20 @@ std::uint32_t add_leaf_triangles(PackedScene& packed, const TriangleMesh& mesh,
         }
     }
     return first;
+}
+
+std::vector<std::uint32_t> triangles_of_leaf(const WideBvh& wide, const WideChild& leaf)
+{
+    const auto references = std::span(wide.references).subspan(leaf.first, leaf.count);
+    std::vector<std::uint32_t> triangles(references.begin(), references.end());
+    std::ranges::sort(triangles);
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    return triangles;
+}
+
+Box grown_box(const WideChild& child)
+{
+    return grown(child.box, BOX_MARGIN);
 }
 
 void refuse_to_pack(Layout layout, std::uint64_t found, const char* what, std::uint64_t most)

@@ -13,7 +13,7 @@
 namespace tetrace {
 namespace {
 
-static_assert(wide_leaf_triangles == CWBVH_LEAF_TRIANGLES);
+static_assert(eight_wide.leaf_triangles == CWBVH_LEAF_TRIANGLES);
 
 /// The words of a node as a device reads them.
 struct CwbvhNode {
@@ -34,12 +34,7 @@ struct CwbvhNode {
 };
 
 /// A node's children by slot; null in an empty slot.
-using SlottedChildren = std::array<const WideChild*, wide_children>;
-
-Box grown_box(const WideChild& child)
-{
-    return grown(child.box, BOX_MARGIN);
-}
+using SlottedChildren = std::array<const WideChild*, eight_wide.children>;
 
 SlottedChildren place_children(const WideNode& node, Double3 node_centre)
 {
@@ -64,7 +59,7 @@ void set_grid(CwbvhNode& node, const BoxGrid& grid)
 // An empty slot has the box that no ray meets.
 void set_boxes(CwbvhNode& node, const BoxGrid& grid, const SlottedChildren& children)
 {
-    for (std::size_t slot = 0; slot < wide_children; ++slot) {
+    for (std::size_t slot = 0; slot < eight_wide.children; ++slot) {
         const GridBox box =
             children[slot] != nullptr ? to_grid(grid, grown_box(*children[slot])) : GridBox{{255, 255, 255}, {0, 0, 0}};
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -116,7 +111,7 @@ private:
     static std::uint32_t set_inner(CwbvhNode& node, const SlottedChildren& children)
     {
         std::uint32_t inner = 0;
-        for (std::uint32_t slot = 0; slot < wide_children; ++slot) {
+        for (std::uint32_t slot = 0; slot < eight_wide.children; ++slot) {
             if (children[slot] == nullptr || children[slot]->count > 0) continue;
             node.words[CwbvhNode::grid_word] |= 1u << (24 + slot);
             node.set_byte(CwbvhNode::meta, slot, 0x20 | (24 + slot));
@@ -129,23 +124,13 @@ private:
     {
         const std::uint32_t first = add_leaf_triangles(packed_, mesh_, {});
         node.words[CwbvhNode::triangle_base] = first;
-        for (std::uint32_t slot = 0; slot < wide_children; ++slot) {
+        for (std::uint32_t slot = 0; slot < eight_wide.children; ++slot) {
             if (children[slot] == nullptr || children[slot]->count == 0) continue;
-            const auto triangles = triangles_of(*children[slot]);
+            const auto triangles = triangles_of_leaf(wide_, *children[slot]);
             const std::uint32_t offset = add_leaf_triangles(packed_, mesh_, triangles) - first;
             const std::uint32_t unary = (1u << triangles.size()) - 1;
             node.set_byte(CwbvhNode::meta, slot, unary << 5 | offset);
         }
-    }
-
-    // Only once if a leaf holds two parts of a triangle.
-    [[nodiscard]] std::vector<std::uint32_t> triangles_of(const WideChild& leaf) const
-    {
-        const auto references = std::span(wide_.references).subspan(leaf.first, leaf.count);
-        std::vector<std::uint32_t> triangles(references.begin(), references.end());
-        std::ranges::sort(triangles);
-        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-        return triangles;
     }
 
     const TriangleMesh& mesh_;
@@ -161,10 +146,10 @@ PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh)
     if (const auto depth = depth_of(bvh); depth > most_depth)
         refuse_to_pack(Layout::cwbvh, depth, "inner nodes above a leaf", most_depth);
     const Bvh binary = with_single_leaves(mesh, bvh);
-    WideBvh wide = make_wide(binary, Collapse::cheapest);
+    WideBvh wide = make_wide(binary, eight_wide, Collapse::cheapest);
     std::string fall_back;
     if (const auto levels = levels_of(wide); levels > CWBVH_STACK) {
-        wide = make_wide(binary, Collapse::shallow);
+        wide = make_wide(binary, eight_wide, Collapse::shallow);
         fall_back = "three binary levels are one of eight children: the cheapest nodes would be " +
                     std::to_string(levels) + " deep, a ray's stack has room for " + std::to_string(CWBVH_STACK);
     }

@@ -44,7 +44,7 @@ struct PackedScene {
     std::vector<Quad> entry_faces; ///< of tet20 and tet16, in place of entry_links: three vertices and a tet
     std::vector<std::uint32_t> occlusive_faces; ///< of tet20 and tet16: OCCLUSIVE_WORDS per face
 
-    std::vector<Quad> nodes;          ///< of a BVH: BVH2_NODE_QUADS or CWBVH_NODE_QUADS a node, the root first
+    std::vector<Quad> nodes;          ///< of a BVH: BVH2_, BVH4_ or CWBVH_NODE_QUADS a node, the root first
     std::vector<Quad> leaf_triangles; ///< LEAF_TRIANGLE_QUADS a reference of a leaf to a triangle
 
     std::vector<std::uint32_t> packed_of_mesh;   ///< stays on the host: position of each tet of the scene in `tets`

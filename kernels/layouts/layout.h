@@ -111,6 +111,13 @@
 #define BVH2_NODE_QUADS 4u
 #define BVH2_LEAF 0x80000000u
 #define BVH2_STACK 64u // the most children that wait on a ray's stack: packing refuses deeper trees
+// bvh4: four children, whose boxes stand side by side, and the children as in bvh2.
+//   {low.x 0..3} {high.x 0..3} {low.y 0..3} {high.y 0..3} {low.z 0..3} {high.z 0..3} {children 0..3} {0, 0, 0, 0}
+// An empty slot is an empty leaf, whose box no ray enters: it begins at BVH4_OUTSIDE and ends at -BVH4_OUTSIDE.
+#define BVH4_NODE_QUADS 8u
+#define BVH4_LEAF BVH2_LEAF
+#define BVH4_OUTSIDE 1048576.0f // farther than any ray's origin
+#define BVH4_STACK 96u          // the most children that wait on a ray's stack
 // cwbvh: eight children, boxes as bytes on the node's own grid.
 //   {origin.xyz, exponents of the grid in bytes 0 to 2, bits of the inner children in byte 3}
 //   {first inner child, first leaf triangle, meta 0..3, meta 4..7}

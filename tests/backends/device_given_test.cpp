@@ -112,7 +112,7 @@ TEST_P(GivenRays, are_those_that_were_given_last)
 
 TEST_P(GivenRays, of_bvhs_hit_what_openmp_hits_and_any_hit_is_a_hit)
 {
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
         const SceneData data{&cubes.scene.mesh, &packed};
         for (const RayKind kind : {RayKind::ao, RayKind::random}) {
@@ -157,7 +157,7 @@ TEST_P(GivenRays, of_walks_hit_what_openmp_hits_in_each_schedule)
 
 TEST_P(GivenRays, of_a_tree_that_fills_the_stack_hit_what_openmp_hits)
 {
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const FullStacks full(layout);
         const SceneData data{&full.mesh, &full.packed};
         const auto quads = given_quads_offset(full.rays, full.mesh);

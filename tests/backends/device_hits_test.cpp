@@ -66,7 +66,7 @@ TEST_P(Devices, find_openmps_hits_of_bvhs_for_each_schedule_and_tile)
 {
     const Scene scene = make_cubes(8);
     const DeviceRays rays(scene, Layout::tet80);
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const PackedScene packed = make_bvh_scene(scene.mesh, layout);
         const SceneData data{&scene.mesh, &packed};
         KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = layout};

@@ -54,7 +54,7 @@ TEST_F(Native, kernels_hit_what_those_for_every_processor_hit)
 
 TEST_F(Native, bvhs_hit_what_those_for_every_processor_hit)
 {
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const FullStacks stacks(layout);
         const KernelId kernel{.structure = Structure::bvh, .method = Method::single, .layout = layout};
         EXPECT_EQ(different_rays(hits_of(kernel, Schedule::native, stacks.packed, stacks.rays),

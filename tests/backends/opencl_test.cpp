@@ -42,7 +42,7 @@ TEST_F(Opencl, a_second_session_finds_its_program_in_the_cache)
 
 TEST_F(Opencl, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
 {
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const StackCase stacks(layout);
         for (opencl::FoundDevice found : opencl::find_devices())
             for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})

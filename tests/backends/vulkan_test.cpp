@@ -150,7 +150,7 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
 {
     const DeviceRays rays(make_cubes(8), Layout::tet80);
     const GivenScene cubes{40, false, 6};
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const PackedScene packed = make_bvh_scene(cubes.scene.mesh, layout);
         const SceneData data{&cubes.scene.mesh, &packed};
         const auto on_host = openmp_backend().open(0, bvh_kernel(layout, Task::trace), data, {.threads = 2});
@@ -174,7 +174,7 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_whatever_kind_of_device_it_is)
 
 TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups_memory)
 {
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const StackCase stacks(layout);
         for (vulkan::FoundDevice found : vulkan::find_devices())
             for (const unsigned stack_top : {0u, 1u, STACK_TOP_OF_GPUS})
@@ -193,7 +193,7 @@ TEST_F(Vulkan, hits_of_bvhs_are_openmps_however_much_of_a_stack_is_in_the_groups
 // As packing found, and the most: both without a top in the group's memory.
 TEST_F(Vulkan, hits_of_bvhs_are_openmps_with_stacks_as_large_as_the_tree_needs)
 {
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const StackCase stacks(layout);
         for (vulkan::FoundDevice found : vulkan::find_devices())
             for (const std::uint32_t entries : {stacks.full.packed.stack_entries, 0u}) {

@@ -155,6 +155,8 @@ TEST(PackBvh, trees_deeper_than_the_stack_are_refused_with_both_numbers)
     const std::string text = refusal(mesh, chain(BVH2_STACK + 1, box), Layout::bvh2);
     EXPECT_NE(text.find("65 "), std::string::npos) << text;
     EXPECT_NE(text.find("room for 64"), std::string::npos) << text;
+    EXPECT_EQ(refusal(mesh, chain(BVH4_STACK / 3 * 2, box), Layout::bvh4), "");
+    EXPECT_NE(refusal(mesh, chain(65, box), Layout::bvh4).find("65 "), std::string::npos);
     EXPECT_EQ(refusal(mesh, chain(3 * CWBVH_STACK, box), Layout::cwbvh), "");
     EXPECT_NE(refusal(mesh, chain(100'000, box), Layout::cwbvh).find("100000 "), std::string::npos);
 }
@@ -162,7 +164,7 @@ TEST(PackBvh, trees_deeper_than_the_stack_are_refused_with_both_numbers)
 TEST(PackBvh, leaves_of_more_than_15_triangles_are_refused)
 {
     const TriangleMesh mesh = identical_triangles(16);
-    for (const auto layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const auto layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         Bvh bvh = {{{triangle_box(mesh, 0), {}, 0, 16}}, counted_up_to(16)};
         EXPECT_NE(refusal(mesh, bvh, layout).find("16 triangles in a leaf"), std::string::npos);
         bvh.nodes[0].count = 15;
@@ -173,6 +175,7 @@ TEST(PackBvh, leaves_of_more_than_15_triangles_are_refused)
 TEST(PackBvh, a_layout_numbers_no_more_references_than_its_words_hold)
 {
     EXPECT_EQ(traits_of(Layout::bvh2).most, 1u << 27) << "31 bits, four of them for the count";
+    EXPECT_EQ(traits_of(Layout::bvh4).most, 1u << 27) << "as those of bvh2";
     EXPECT_EQ(traits_of(Layout::cwbvh).most, 1'431'655'765u) << "three quads each, quads numbered with 32 bits";
 }
 

@@ -167,7 +167,7 @@ TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow_and_say_so)
 {
     const TriangleMesh mesh = nested_in_turn(5, 20, 1000);
     const Bvh bvh = build_bvh(mesh).bvh;
-    ASSERT_GT(levels_of(make_wide(with_single_leaves(mesh, bvh), Collapse::cheapest)), CWBVH_STACK);
+    ASSERT_GT(levels_of(make_wide(with_single_leaves(mesh, bvh), eight_wide, Collapse::cheapest)), CWBVH_STACK);
     const PackedScene packed = pack_bvh(mesh, bvh, Layout::cwbvh);
     EXPECT_NE(packed.fall_back.find("room for 40"), std::string::npos) << packed.fall_back;
     const CwbvhReader read(packed, mesh);

@@ -101,14 +101,14 @@ double cost_of(const WideBvh& wide)
 /// Least costs by trying every way: a second opinion on the dynamic programme.
 class EveryWay {
 public:
-    explicit EveryWay(const Bvh& bvh) : bvh_(bvh) {}
+    EveryWay(const Bvh& bvh, const WideShape& shape) : bvh_(bvh), shape_(shape) {}
 
     double below(std::uint32_t node) const
     {
         double least = std::numeric_limits<double>::infinity();
         for (const auto& [children, cost] : cuts(bvh_.nodes[node].child[0]))
             for (const auto& [others, other_cost] : cuts(bvh_.nodes[node].child[1]))
-                if (children + others <= wide_children) least = std::min(least, cost + other_cost);
+                if (children + others <= shape_.children) least = std::min(least, cost + other_cost);
         return least;
     }
 
@@ -128,7 +128,7 @@ private:
     {
         const std::uint32_t count = triangles(node);
         const Box& box = bvh_.nodes[node].box;
-        double cost = count <= wide_leaf_triangles ? leaf_cost(box, count) : std::numeric_limits<double>::infinity();
+        double cost = count <= shape_.leaf_triangles ? leaf_cost(box, count) : std::numeric_limits<double>::infinity();
         if (bvh_.nodes[node].count == 0) cost = std::min(cost, half_area(box) * wide_node_cost + below(node));
         return cost;
     }
@@ -139,11 +139,12 @@ private:
         if (bvh_.nodes[node].count > 0) return all;
         for (const auto& [children, cost] : cuts(bvh_.nodes[node].child[0]))
             for (const auto& [others, other_cost] : cuts(bvh_.nodes[node].child[1]))
-                if (children + others < wide_children) all.push_back({children + others, cost + other_cost});
+                if (children + others < shape_.children) all.push_back({children + others, cost + other_cost});
         return all;
     }
 
     const Bvh& bvh_;
+    WideShape shape_;
 };
 
 } // namespace
@@ -152,21 +153,24 @@ TEST(WideBvh, no_other_way_to_collapse_costs_less)
 {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const Bvh bvh = RandomTree(11, seed).bvh;
-        EXPECT_NEAR(cost_of(make_wide(bvh, Collapse::cheapest)), EveryWay(bvh).below(0), 1e-9) << "seed " << seed;
+        for (const WideShape& shape : {four_wide, eight_wide})
+            EXPECT_NEAR(cost_of(make_wide(bvh, shape, Collapse::cheapest)), EveryWay(bvh, shape).below(0), 1e-9)
+                << "seed " << seed << ", " << shape.children << " children";
     }
 }
 
 namespace {
 
-void expect_whole(const WideBvh& wide, const Bvh& bvh)
+void expect_whole(const Bvh& bvh, const WideShape& shape, Collapse collapse)
 {
+    const WideBvh wide = make_wide(bvh, shape, collapse);
     std::vector<int> seen(bvh.references.size());
     std::vector<int> is_child(wide.nodes.size());
     for (std::size_t i = 0; i < wide.nodes.size(); ++i) {
         ASSERT_GE(wide.nodes[i].size(), i == 0 ? 1u : 2u);
-        ASSERT_LE(wide.nodes[i].size(), wide_children);
+        ASSERT_LE(wide.nodes[i].size(), shape.children);
         for (const auto& child : wide.nodes[i]) {
-            ASSERT_LE(child.count, wide_leaf_triangles);
+            ASSERT_LE(child.count, shape.leaf_triangles);
             for (std::uint32_t k = child.first; k < child.first + child.count; ++k)
                 ++seen[k];
             if (child.count > 0) continue;
@@ -185,37 +189,40 @@ void expect_whole(const WideBvh& wide, const Bvh& bvh)
 
 TEST(WideBvh, each_reference_is_in_one_leaf)
 {
-    for (const auto collapse : {Collapse::cheapest, Collapse::shallow}) {
-        const Bvh bvh = single_leaves_of(needles(500));
-        expect_whole(make_wide(bvh, collapse), bvh);
-        for (std::uint32_t count = 1; count < 30; ++count) {
-            const Bvh random = RandomTree(count, count).bvh;
-            expect_whole(make_wide(random, collapse), random);
+    for (const WideShape& shape : {four_wide, eight_wide})
+        for (const auto collapse : {Collapse::cheapest, Collapse::shallow}) {
+            expect_whole(single_leaves_of(needles(500)), shape, collapse);
+            for (std::uint32_t count = 1; count < 30; ++count)
+                expect_whole(RandomTree(count, count).bvh, shape, collapse);
         }
-    }
 }
 
 TEST(WideBvh, nodes_of_a_surface_are_nearly_full)
 {
     const Bvh bvh = single_leaves_of(make_cubes(10).mesh);
-    const WideBvh wide = make_wide(bvh, Collapse::cheapest);
-    std::size_t children = 0;
-    for (const auto& node : wide.nodes)
-        children += node.size();
-    EXPECT_GT(static_cast<double>(children) / static_cast<double>(wide.nodes.size()), 7.0);
+    for (const WideShape& shape : {four_wide, eight_wide}) {
+        const WideBvh wide = make_wide(bvh, shape, Collapse::cheapest);
+        std::size_t children = 0;
+        for (const auto& node : wide.nodes)
+            children += node.size();
+        EXPECT_GT(static_cast<double>(children) / static_cast<double>(wide.nodes.size()), 0.875 * shape.children);
+    }
 }
 
-TEST(WideBvh, the_shallow_one_makes_one_level_of_three)
+TEST(WideBvh, the_shallow_one_makes_one_level_of_two_or_three)
 {
     const Bvh bvh = single_leaves_of(nested_groups(1, 30, 20));
-    const std::uint32_t levels = levels_of(make_wide(bvh, Collapse::shallow));
-    EXPECT_LE(levels, (depth_of(bvh) + 2) / 3);
-    EXPECT_LT(levels, levels_of(make_wide(bvh, Collapse::cheapest)));
+    for (const WideShape& shape : {four_wide, eight_wide}) {
+        const std::uint32_t levels = levels_of(make_wide(bvh, shape, Collapse::shallow));
+        const std::uint32_t binary_levels = shape.children == 4 ? 2 : 3;
+        EXPECT_LE(levels, (depth_of(bvh) + binary_levels - 1) / binary_levels);
+        EXPECT_LT(levels, levels_of(make_wide(bvh, shape, Collapse::cheapest)));
+    }
 }
 
 TEST(WideBvh, one_leaf_becomes_a_root_with_one_child)
 {
-    const WideBvh wide = make_wide(single_leaves_of(identical_triangles(1)), Collapse::cheapest);
+    const WideBvh wide = make_wide(single_leaves_of(identical_triangles(1)), eight_wide, Collapse::cheapest);
     ASSERT_EQ(wide.nodes.size(), 1u);
     EXPECT_EQ(wide.nodes[0].size(), 1u);
     EXPECT_EQ(levels_of(wide), 1u);

@@ -202,13 +202,13 @@ void expect_known_figures(const std::string& target, const json& programs)
 INSTANTIATE_TEST_SUITE_P(each, InspectedTarget,
                          testing::Values(Asked{"gfx1100",
                                                {"--method all --entry outside",
-                                                "--method all --layout tet80,half32,bvh2,cwbvh --entry "
+                                                "--method all --layout tet80,half32,bvh2,bvh4,cwbvh --entry "
                                                 "inside,rays"}},
                                          Asked{"navi21", {"--method all --entry outside"}},
                                          Asked{"gfx906", {"--method all --entry outside"}},
                                          Asked{"sm_75", {"--method all --entry outside,inside,rays"}},
                                          Asked{"sm_90",
-                                               {"--method project,single --layout half32,tet64,bvh2,cwbvh --entry "
+                                               {"--method project,single --layout half32,tet64,bvh2,bvh4,cwbvh --entry "
                                                 "outside,inside,rays"}}),
                          [](const auto& instance) { return instance.param.target; });
 

@@ -21,6 +21,7 @@ using TraceByForm = VisitedHit(const PackedScene& packed, const std::array<Quad,
 
 // bvh_form_probe.cpp by layout and form: what every API compiles, what openmp's tiles and its schedule native have.
 TraceByForm trace_bvh2_portable, trace_bvh2_tiles, trace_bvh2_native;
+TraceByForm trace_bvh4_portable, trace_bvh4_tiles, trace_bvh4_native;
 TraceByForm trace_cwbvh_portable, trace_cwbvh_tiles, trace_cwbvh_native;
 
 } // namespace tetrace::test

@@ -28,6 +28,8 @@ struct Form {
 };
 const Form forms[] = {{"bvh2_tiles", Layout::bvh2, trace_bvh2_portable, trace_bvh2_tiles, false},
                       {"bvh2_native", Layout::bvh2, trace_bvh2_portable, trace_bvh2_native, true},
+                      {"bvh4_tiles", Layout::bvh4, trace_bvh4_portable, trace_bvh4_tiles, false},
+                      {"bvh4_native", Layout::bvh4, trace_bvh4_portable, trace_bvh4_native, true},
                       {"cwbvh_tiles", Layout::cwbvh, trace_cwbvh_portable, trace_cwbvh_tiles, false},
                       {"cwbvh_native", Layout::cwbvh, trace_cwbvh_portable, trace_cwbvh_native, true}};
 

@@ -55,27 +55,11 @@ Words bits_of(const bvh::Hit& hit)
 
 /// A mesh in several trees.
 struct Trees {
-    explicit Trees(TriangleMesh of)
-        : mesh(std::move(of)), split(build_bvh(mesh, 1).bvh),
-          balanced(build_balanced_bvh(mesh)), packed{pack_bvh(mesh, split, Layout::bvh2),
-                                                     pack_bvh(mesh, balanced, Layout::bvh2),
-                                                     pack_bvh(mesh, split, Layout::cwbvh),
-                                                     pack_bvh(mesh, balanced, Layout::cwbvh)}
-    {
-    }
-    explicit Trees(const DeepTree& tree)
-        : mesh(tree.mesh), split(tree.bvh),
-          balanced(build_balanced_bvh(mesh)), packed{pack_bvh(mesh, split, Layout::bvh2),
-                                                     pack_bvh(mesh, balanced, Layout::bvh2),
-                                                     pack_bvh(mesh, split, Layout::cwbvh),
-                                                     pack_bvh(mesh, balanced, Layout::cwbvh)}
-    {
-    }
+    explicit Trees(TriangleMesh of) : mesh(std::move(of)), split(build_bvh(mesh, 1).bvh) { pack(); }
+    explicit Trees(const DeepTree& tree) : mesh(tree.mesh), split(tree.bvh) { pack(); }
     [[nodiscard]] bvh::Hit trace(std::size_t tree, const Ray& ray, float end = NO_END, bool any_hit = false) const
     {
-        const SceneView view = view_of(packed[tree]);
-        return tree < 2 ? bvh2::trace_ray(view, params_for(any_hit), ray, end)
-                        : cwbvh::trace_ray(view, params_for(any_hit), ray, end);
+        return trace_packed(packed[tree], params_for(any_hit), ray, end);
     }
     [[nodiscard]] std::array<Float3, 3> corners(std::uint32_t triangle) const
     {
@@ -84,8 +68,16 @@ struct Trees {
     }
 
     TriangleMesh mesh;
-    Bvh split, balanced;
+    Bvh split, balanced = build_balanced_bvh(mesh);
     std::vector<PackedScene> packed;
+
+private:
+    void pack()
+    {
+        for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh})
+            for (const Bvh* tree : {&split, &balanced})
+                packed.push_back(pack_bvh(mesh, *tree, layout));
+    }
 };
 
 /// The triangle test alone, on all leaf triangles of a tree from the last to the first.

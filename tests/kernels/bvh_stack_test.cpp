@@ -19,7 +19,7 @@ std::uint32_t& touched_word(std::size_t index)
 
 } // namespace
 
-#define STACK_TOP (BVH2_STACK + 2u)
+#define STACK_TOP (BVH4_STACK + 1u) // the most of all layouts
 #define GROUP_WORDS(count)
 #define GROUP_WORD(scene, index) touched_word(index)
 #include "tests/support/bvh_kernels.h"
@@ -40,13 +40,9 @@ public:
 
     void trace(Float3 from, Float3 to)
     {
-        const bvh::SceneView view = bvh::view_of(packed_);
         const bvh::Ray ray = bvh::make_ray(bvh::to_vec3(from), {to.x - from.x, to.y - from.y, to.z - from.z});
         touched_words = 0;
-        if (packed_.layout == Layout::bvh2)
-            static_cast<void>(bvh::bvh2::trace_ray(view, {}, ray, NO_END));
-        else
-            static_cast<void>(bvh::cwbvh::trace_ray(view, {}, ray, NO_END));
+        static_cast<void>(bvh::trace_packed(packed_, {}, ray, NO_END));
         most_ = std::max(most_, static_cast<std::uint32_t>(touched_words / STACK_ENTRY_WORDS));
     }
     [[nodiscard]] std::uint32_t most() const { return most_; }
@@ -71,11 +67,13 @@ TEST_P(BvhStack, no_ray_touches_more_entries_than_the_packed_scene_says)
     EXPECT_LE(touched.most(), packed.stack_entries);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    each, BvhStack, testing::Combine(testing::ValuesIn(meshes_to_pack()), testing::Values(Layout::bvh2, Layout::cwbvh)),
-    [](const auto& tested) {
-        return std::string(std::get<0>(tested.param).name) + "_" + std::string(name_of(std::get<1>(tested.param)));
-    });
+INSTANTIATE_TEST_SUITE_P(each, BvhStack,
+                         testing::Combine(testing::ValuesIn(meshes_to_pack()),
+                                          testing::Values(Layout::bvh2, Layout::bvh4, Layout::cwbvh)),
+                         [](const auto& tested) {
+                             return std::string(std::get<0>(tested.param).name) + "_" +
+                                    std::string(name_of(std::get<1>(tested.param)));
+                         });
 
 TEST(BvhStack, rays_through_every_box_of_a_deep_tree_touch_as_many_entries_as_the_packed_scene_says)
 {
@@ -86,6 +84,31 @@ TEST(BvhStack, rays_through_every_box_of_a_deep_tree_touch_as_many_entries_as_th
         touched.trace({0, 0, 1}, {0.25f, 0.25f, -0.75f});
         EXPECT_EQ(touched.most(), depth + 1) << "BVH2_END and a child at each depth";
         EXPECT_EQ(packed.stack_entries, depth + 1);
+    }
+}
+
+TEST(BvhStack, rays_through_every_box_of_a_deep_bvh4_touch_as_many_entries_as_the_packed_scene_says)
+{
+    for (const std::uint32_t depth : {1u, 2u, 17u, BVH2_STACK}) {
+        // Triangles above one another. Each leaf is below all leaves that are deeper in the tree.
+        TriangleMesh mesh;
+        Bvh bvh = chain(depth, {});
+        for (std::uint32_t i = 0; i <= depth; ++i) {
+            const float z = static_cast<float>(i) / 128;
+            add_triangle(mesh, {-0.5f, -0.5f, z}, {0.5f, -0.5f, z}, {0, 0.5f, z});
+            bvh.references[i] = i;
+        }
+        for (std::size_t node = bvh.nodes.size(); node-- > 0;) {
+            BvhNode& at = bvh.nodes[node];
+            at.box = at.count > 0 ? triangle_box(mesh, at.first)
+                                  : merged(bvh.nodes[at.child[0]].box, bvh.nodes[at.child[1]].box);
+        }
+        ASSERT_EQ(find_defect(bvh, mesh), std::nullopt);
+        const PackedScene packed = pack_bvh(mesh, bvh, Layout::bvh4);
+        TouchedEntries touched(packed);
+        touched.trace({0, 0, 1}, {0.0625f, 0.0625f, -0.75f});
+        EXPECT_EQ(touched.most(), packed.stack_entries);
+        EXPECT_GT(packed.stack_entries, depth / 2);
     }
 }
 

@@ -1,5 +1,5 @@
 // The persistent entries of backends/cuda/kernel.cu on warps of many lanes, for refill_test.cpp: compiled once for each
-// layout of BVHs, as kernel by_warps_bvh2 or by_warps_cwbvh. The host emulation's own warps have one lane.
+// layout of BVHs, as kernel by_warps_bvh2 and so on. The host emulation's own warps have one lane.
 #include "tests/kernels/refill_probe.h"
 #include "backends/cuda_host/shim.h"
 #include "kernels/layouts/layout.h"

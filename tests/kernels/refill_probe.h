@@ -74,6 +74,7 @@ struct WarpCounts {
 
 /// Runs backends/cuda/kernel.cu by a block of several warps.
 WarpCounts trace_by_warps_bvh2(const WarpLaunch& launch);
+WarpCounts trace_by_warps_bvh4(const WarpLaunch& launch);
 WarpCounts trace_by_warps_cwbvh(const WarpLaunch& launch);
 
 } // namespace tetrace::test

@@ -172,6 +172,7 @@ TEST_P(RefilledLanes, that_put_triangles_off_find_room_on_a_full_stack)
 
 INSTANTIATE_TEST_SUITE_P(each, RefilledLanes,
                          ::testing::Values(Tree{Layout::bvh2, trace_by_warps_bvh2},
+                                           Tree{Layout::bvh4, trace_by_warps_bvh4},
                                            Tree{Layout::cwbvh, trace_by_warps_cwbvh}),
                          [](const auto& test) { return std::string(name_of(test.param.layout)); });
 

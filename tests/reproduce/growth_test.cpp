@@ -16,7 +16,7 @@ using namespace tetrace::test;
 namespace {
 
 /// Rows of a size, and those with a line in a figure: maria in two layouts, bvh2, cwbvh, and Embree's.
-const std::size_t all_rows = 4 + embree_rows(), all_lines = 4 + traced_embree_rows();
+const std::size_t all_rows = 5 + embree_rows(), all_lines = 5 + traced_embree_rows();
 
 const std::vector<double> sizes = {1500, 6000, 25000, 100000, 400000};
 
@@ -266,8 +266,8 @@ TEST(Growth, tets_for_rays_are_lines_of_their_own_beside_the_same_bvhs)
     EXPECT_EQ(figures[0].series[all_lines].name, "tets for rays tet80 openmp");
     EXPECT_EQ(figures[0].series[all_lines + 2].name, "tets for rays half32 openmp");
     EXPECT_EQ(figures[0].series[all_lines + 3].name, "tets for rays tet64 openmp");
-    ASSERT_EQ(figures[1].series.size(), 6u);
-    EXPECT_EQ(figures[1].series[5].name, "tets for rays");
+    ASSERT_EQ(figures[1].series.size(), 8u);
+    EXPECT_EQ(figures[1].series[7].name, "tets for rays");
 }
 
 TEST(Growth, figures_are_lines_over_the_faces_with_logarithmic_axes)
@@ -280,9 +280,9 @@ TEST(Growth, figures_are_lines_over_the_faces_with_logarithmic_axes)
     EXPECT_TRUE(figures[0].x.logarithmic && figures[0].y.logarithmic);
     EXPECT_EQ(figure_json(figures[0])["y"]["scale"], "logarithmic");
     EXPECT_EQ(figures[1].id, "growth-cubes-visits");
-    ASSERT_EQ(figures[1].series.size(), 5u);
+    ASSERT_EQ(figures[1].series.size(), 7u);
     EXPECT_EQ(figures[1].series[0].name, "CDT, tets") << "both layouts have the same";
-    EXPECT_EQ(figures[1].series[4].name, "cwbvh, triangles");
+    EXPECT_EQ(figures[1].series[6].name, "cwbvh, triangles");
     for (const PaperFigure& figure : figures)
         for (const auto& series : figure.series) {
             ASSERT_EQ(series.points.size(), 3u);

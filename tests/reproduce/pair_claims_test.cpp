@@ -92,7 +92,7 @@ TEST(PairClaims, tets_for_rays_have_a_claim_of_their_own_and_no_number_of_the_pa
     EXPECT_EQ(verdict_of({&ours, &rays}, id), ClaimVerdict::holds);
     EXPECT_FALSE(contains(claim_of(table6_pairs({&rays}), id).evidence, "CDT")) << "they are none";
     set_times(rays, find_row(rays, Layout::cwbvh, Method::single), ramp(0.5));
-    EXPECT_EQ(verdict_of({&rays}, id), ClaimVerdict::does_not_hold) << "both of our BVHs count";
+    EXPECT_EQ(verdict_of({&rays}, id), ClaimVerdict::does_not_hold) << "each of our BVHs counts";
     set_all(rays, 1, 2);
     for (const PaperTable& table :
          {table3({&rays}), table3_rates({&rays}), table4({&rays}, 1282), table6({&rays}), figure6_table({&rays})})

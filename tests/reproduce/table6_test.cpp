@@ -125,7 +125,7 @@ TEST(Table6, a_slower_build_is_paid_by_faster_rays_or_never)
 TEST(Table6, rows_pair_on_one_device_and_embree_with_openmp)
 {
     const SceneRun run = open_run("openmp,cuda-host,embree");
-    EXPECT_EQ(run.rows.size(), 8 + embree_rows()) << "two of maria, bvh2 and cwbvh on two devices, and Embree's";
+    EXPECT_EQ(run.rows.size(), 10 + embree_rows()) << "two of maria, bvh2, bvh4 and cwbvh on two devices, and Embree's";
     std::size_t with_embree = 0;
     for (const RowPair& pair : row_pairs(run)) {
         const RowRun &cdt = run.rows[pair.cdt], &bvh = run.rows[pair.bvh];
@@ -136,8 +136,8 @@ TEST(Table6, rows_pair_on_one_device_and_embree_with_openmp)
         EXPECT_EQ(cdt.key.backend, is_embree ? "openmp" : bvh.key.backend);
     }
     EXPECT_EQ(with_embree, 2 * traced_embree_rows());
-    EXPECT_EQ(row_pairs(run).size(), 2 * (4 + traced_embree_rows()));
-    EXPECT_EQ(fastest_pairs(run).size(), 4 + traced_embree_rows()) << "one layout of the CDT a device";
+    EXPECT_EQ(row_pairs(run).size(), 2 * (6 + traced_embree_rows()));
+    EXPECT_EQ(fastest_pairs(run).size(), 6 + traced_embree_rows()) << "one layout of the CDT a device";
 }
 
 TEST(Table6, tets_for_rays_are_compared_by_the_fastest_walk_as_well_the_cdt_by_marias_alone)
@@ -318,7 +318,7 @@ TEST(Table6, a_row_without_a_rate_is_told_and_pairs_with_nothing)
 {
     SceneRun run = open_run();
     run.rows[find_row(run, Layout::bvh2, Method::single)].outcome = Skipped{Status::skipped, "no such thing"};
-    EXPECT_EQ(row_pairs(run).size(), 2 * (1 + traced_embree_rows()));
+    EXPECT_EQ(row_pairs(run).size(), 2 * (2 + traced_embree_rows()));
     EXPECT_EQ(text_of(table6({&run}), find_row(run, Layout::bvh2, Method::single), "status"), "skipped: no such thing");
 }
 
@@ -332,7 +332,7 @@ TEST(Table6, a_curve_ascends_and_ends_with_all_views)
     const auto figures = table6_figures({&run});
     ASSERT_EQ(figures.size(), 1u);
     EXPECT_EQ(figures[0].id, "table6-cubes-cpu");
-    ASSERT_EQ(figures[0].series.size(), 3 + traced_embree_rows())
+    ASSERT_EQ(figures[0].series.size(), 4 + traced_embree_rows())
         << "bvh2, cwbvh, Embree's, and the line of equal times";
     const auto& points = figures[0].series[0].points;
     ASSERT_EQ(points.size(), views);
@@ -340,5 +340,5 @@ TEST(Table6, a_curve_ascends_and_ends_with_all_views)
     EXPECT_EQ(points.front().second, 2.0 / 13);
     EXPECT_EQ(points.back(), std::pair(100.0, 26.0));
     EXPECT_EQ(figures[0].series[0].name, "bvh2");
-    EXPECT_EQ(figures[0].series[2].name, "Embree single");
+    EXPECT_EQ(figures[0].series[3].name, "Embree single");
 }

@@ -214,6 +214,7 @@ TEST(Rows, the_default_is_maria_and_projects_records_beside_bvhs_and_embree)
                                         "cdt/project/tet64/bunny/primary/math:exact/api:openmp",
                                         "cdt/project/half32/bunny/primary/math:exact/schedule:packets/api:openmp",
                                         "bvh/single/bvh2/bunny/primary/math:exact/api:openmp",
+                                        "bvh/single/bvh4/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/cwbvh/bunny/primary/math:exact/api:openmp",
                                         "bvh/single/embree/bunny/primary/math:fast/api:embree",
                                         "bvh/packet8/embree/bunny/primary/math:fast/api:embree",

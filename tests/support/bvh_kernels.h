@@ -1,6 +1,6 @@
 #pragma once
 
-// The kernels of both BVH layouts, compiled as host C++: what they share, and a namespace for each.
+// The kernels of our BVH layouts, compiled as host C++: what they share, and a namespace for each.
 
 #include "core/device/backend.h"
 
@@ -32,6 +32,12 @@ namespace bvh2 {
 #undef TRAVERSAL_ENTRIES
 #undef TRAVERSAL_AT_ROOT
 #undef TRAVERSAL_GOES_ON
+namespace bvh4 {
+#include "kernels/bvh/bvh4.h"
+}
+#undef TRAVERSAL_ENTRIES
+#undef TRAVERSAL_AT_ROOT
+#undef TRAVERSAL_GOES_ON
 namespace cwbvh {
 #include "kernels/bvh/cwbvh.h"
 }
@@ -39,6 +45,17 @@ namespace cwbvh {
 #include "kernels/language/view_cpp.h"
 
 #include "kernels/language/params_cpp.h"
+
+/// By the kernel of the packed scene's layout.
+inline Hit trace_packed(const tetrace::PackedScene& packed, const TraceParams& params, Ray ray, float end)
+{
+    const SceneView view = view_of(packed);
+    switch (packed.layout) {
+    case Layout::bvh2: return bvh2::trace_ray(view, params, ray, end);
+    case Layout::bvh4: return bvh4::trace_ray(view, params, ray, end);
+    default: return cwbvh::trace_ray(view, params, ray, end);
+    }
+}
 
 } // namespace tetrace::test::bvh
 

@@ -16,7 +16,7 @@
 namespace tetrace::test {
 
 /// Builds a mesh's BVH and packs it: build_bvh() and pack_bvh(), and what they throw.
-/// layout: bvh2 or cwbvh.
+/// layout: bvh2, bvh4 or cwbvh.
 [[nodiscard]] inline PackedScene make_bvh_scene(const TriangleMesh& mesh, Layout layout)
 {
     return pack_bvh(mesh, build_bvh(mesh).bvh, layout);
@@ -48,7 +48,7 @@ struct FullStacks {
     {
         rays.kind = RayKind::random;
         rays.width = TILE_WIDTH;
-        layout == Layout::bvh2 ? make_chain() : make_nest();
+        layout == Layout::bvh2 ? make_chain() : make_nest(layout);
     }
 
 private:
@@ -67,12 +67,12 @@ private:
 
     // From the side of the smallest groups, so that the larger ones wait: rays that reach those, and rays through the
     // point that the groups shrink towards, which enter the boxes of all and end at a small one.
-    void make_nest()
+    void make_nest(Layout layout)
     {
         mesh = nested_groups(1, 32, 20);
         for (Float3& vertex : mesh.vertices)
             vertex = snap_to_grid(vertex);
-        packed = make_bvh_scene(mesh, Layout::cwbvh);
+        packed = make_bvh_scene(mesh, layout);
         Random random(20);
         for (std::uint32_t i = 0; i < ray_count; ++i)
             add_ray({coarse(random.between(-0.125f, 0)), coarse(random.between(-0.125f, 0)), -0.0625f},

@@ -68,7 +68,7 @@ TEST(GivenOracle, agrees_with_bvhs_but_where_their_offset_explains_it)
     const TriangleMesh& mesh = inside_camera().scene.mesh;
     const Bvh bvh = build_bvh(mesh).bvh;
     GivenOracle oracle(mesh, 2);
-    for (const Layout layout : {Layout::bvh2, Layout::cwbvh}) {
+    for (const Layout layout : {Layout::bvh2, Layout::bvh4, Layout::cwbvh}) {
         const PackedScene packed = pack_bvh(mesh, bvh, layout);
         for (const RayKind kind : all_kinds) {
             const RaySet set = make_rays(kind, inside_camera().source());

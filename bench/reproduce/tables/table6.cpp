@@ -329,7 +329,7 @@ PaperTable table6(const SceneRuns& runs)
          "seconds of the kernel "
          "alone: the median over the views with its interval (order statistics), the least and the most.",
          "Built in: TetGen for the CDT, and our optimiser for rays, the builder of the BVH, which is Embree's, for "
-         "bvh2 and cwbvh, "
+         "bvh2, bvh4 and cwbvh, "
          "Embree itself for its own rows; TetGen uses one thread, the others all. Memory: all that a "
          "session holds of the scene.",
          fmt::format("The paper's frames are of its GPU ({}) and its own cameras; they have a ratio beside "
