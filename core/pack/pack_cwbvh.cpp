@@ -1,8 +1,8 @@
 #include "core/pack/pack_bvh.h"
 
+#include "core/bvh/box_grid.h"
 #include "core/bvh/single_leaves.h"
 #include "core/bvh/wide_bvh.h"
-#include "core/pack/box_grid.h"
 #include "core/pack/octant_slots.h"
 #include "kernels/layouts/layout.h"
 

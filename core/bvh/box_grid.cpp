@@ -1,4 +1,4 @@
-#include "core/pack/box_grid.h"
+#include "core/bvh/box_grid.h"
 
 namespace tetrace {
 namespace {
