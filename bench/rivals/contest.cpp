@@ -1,6 +1,7 @@
 #include "bench/rivals/contest.h"
 
 #include "bench/measuring/figures.h"
+#include "bench/rows/best_bvh.h"
 #include "bench/rows/physical_device.h"
 #include "bench/statistics/median_ratio.h"
 
@@ -25,12 +26,6 @@ std::optional<Place> place_of(const RowRun& row, std::size_t hardware)
     }
     const bool is_emulated = row.device.kind == DeviceKind::emulated;
     return Place{row.device.kind, hardware, is_emulated ? device_label(row.key) : std::string()};
-}
-
-bool is_single_ray(const KernelId& kernel)
-{
-    return kernel.schedule != Schedule::packets &&
-           (kernel.structure == Structure::cdt || kernel.method == Method::single);
 }
 
 /// Adds the row's API unless it is there.

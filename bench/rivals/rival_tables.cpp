@@ -1,11 +1,10 @@
 #include "bench/rivals/rival_tables.h"
 
+#include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
-#include "bench/rivals/pay_off.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fmt/format.h>
 #include <map>
 
@@ -61,29 +60,38 @@ PaperCell label_cell(const RowRun* row)
     return row == nullptr ? PaperCell() : PaperCell(fmt::format("{}, {}", title_of(row->key), device_label(row->key)));
 }
 
-/// A percentage of the rays that hit, by the first row with an answer.
-PaperCell hit_cell(const Contest& contest)
+/// The shares of the rays, in percent, by the first row with an answer.
+std::array<PaperCell, 2> share_cells(const Contest& contest)
 {
     for (const RowRun* row : contest.rows)
-        if (const Traced* result = traced(*row); result != nullptr && result->totals.rays > 0)
-            return exact_cell(100 * static_cast<double>(result->totals.hits) /
-                              static_cast<double>(result->totals.rays));
+        if (const Traced* result = traced(*row); result != nullptr && result->totals.rays > 0) {
+            const RayShares shares = ray_shares(*result);
+            const auto cell = [](const std::optional<double>& share) {
+                return share ? exact_cell(100 * *share) : PaperCell();
+            };
+            return {cell(shares.enter), cell(shares.hit)};
+        }
     return {};
 }
 
 PaperCell build_cell(const RowRun* row)
 {
-    const auto cost = row == nullptr ? std::nullopt : total_cost(*row);
-    return cost ? exact_cell(cost->once_s) : PaperCell();
+    const auto cost = row == nullptr ? std::nullopt : setup_cost(*row);
+    return cost ? exact_cell(cost->once_s()) : PaperCell();
 }
 
-/// When the tets have paid: as billions of rays, and as seconds of tracing.
+/// When the walk's tets have paid: as billions of rays, and as seconds of tracing.
 std::array<PaperCell, 2> paid_cells(const RowRun* walk, const RowRun* bvh)
 {
-    const auto rays = walk == nullptr || bvh == nullptr ? std::nullopt : rays_until_paid(*walk, *bvh);
-    if (!rays) return {};
-    if (std::isinf(*rays)) return {std::string("never"), std::string("never")};
-    return {exact_cell(1e-9 * *rays), exact_cell(*rays * total_cost(*walk)->ray_s)};
+    if (walk == nullptr || bvh == nullptr) return {};
+    const Estimate ratio = rate_ratio(*walk, *bvh);
+    Comparison comparison{bvh, ratio.value, {}};
+    if (ratio.low && ratio.high) comparison.interval = FactorInterval{*ratio.low, *ratio.high};
+    const auto paid = paid_build(*walk, comparison);
+    if (!paid) return {};
+    if (paid->when == PaidBuild::When::later) return {exact_cell(1e-9 * paid->rays), exact_cell(paid->tracing_s)};
+    const std::string when(name_of(paid->when));
+    return {when, when};
 }
 
 PaperTable scenes_table(const std::vector<Contest>& contests)
@@ -95,7 +103,8 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
         {{"scene", "scene"},
          {"rays", "rays"},
          {"device", "device"},
-         {"hit", "rays that hit", "%", 0},
+         {"enter", "enter the domain", "%", 0},
+         {"hit", "hit", "%", 0},
          {"ratio", "fastest walk / fastest BVH"},
          {"packets_over_embree", "packets / Embree's best"},
          {"tet64_over_single", "tet64 / best BVH of one ray at a time"},
@@ -111,8 +120,8 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
     for (const Contest& contest : contests) {
         const RowRun *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
                                                                              fastest(rows_of(contest, Rival::any));
-        const auto paid = paid_cells(walk, bvh);
-        table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), contest.device, hit_cell(contest),
+        const auto paid = paid_cells(walk, bvh), shares = share_cells(contest);
+        table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), contest.device, shares[0], shares[1],
                               ratio_cell(contest, Walk::any, Rival::any),
                               ratio_cell(contest, Walk::packets, Rival::embree),
                               ratio_cell(contest, Walk::tet64, Rival::single), label_cell(walk), label_cell(bvh),
