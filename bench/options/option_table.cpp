@@ -263,8 +263,8 @@ std::vector<OptionRow> judging_options()
          "differ more between runs than within one (memory, driver, machine), so that intervals of ratios then span "
          "the "
          "runs: their range, or from 5 runs on a 95 % interval by resampling runs and samples. Default: 1, whose "
-         "intervals are of its samples alone.",
-         bit(Verb::bench), false, set_count("--runs", &Options::runs, 1, 100)},
+         "intervals are of its samples alone. Of 'reproduce' for rivals.",
+         bit(Verb::bench) | bit(Verb::reproduce), false, set_count("--runs", &Options::runs, 1, 100)},
         {"Measuring", "--sample-time", "TIME",
          "A sample lasts at least this long on its device (seconds, or a number followed by s; a minute at most), or "
          "4096 "

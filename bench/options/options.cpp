@@ -168,7 +168,7 @@ void check_together(const Options& options)
 }
 
 /// `reproduce rivals` is a run of `bench` over given rows; the other tables are of views one after the other.
-constexpr std::string_view only_of_rivals[] = {"--budget"};
+constexpr std::string_view only_of_rivals[] = {"--budget", "--runs"};
 constexpr std::string_view not_of_rivals[] = {"--builds", "--searches", "--sizes", "--resume", "--shard", "--wait"};
 
 void check_rivals(const Options& options, const CLI::App& app)
@@ -181,7 +181,7 @@ void check_rivals(const Options& options, const CLI::App& app)
             throw Error(ErrorKind::usage, fmt::format("{} {}", name, what));
     };
     for (const std::string_view name : only_of_rivals)
-        if (!is_rivals) reject(name, "is for 'reproduce rivals'; the other tables have no budget, but --resume");
+        if (!is_rivals) reject(name, "is for 'reproduce rivals'; the other tables are measured view by view");
     for (const std::string_view name : not_of_rivals)
         if (is_rivals) reject(name, "is not for 'reproduce rivals', which is one run of one process");
 }

@@ -1,9 +1,8 @@
 #include "bench/rivals/contest.h"
 
+#include "bench/measuring/comparison.h"
 #include "bench/measuring/figures.h"
-#include "bench/rows/best_bvh.h"
 #include "bench/rows/physical_device.h"
-#include "bench/statistics/median_ratio.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -109,11 +108,11 @@ const RowRun* fastest(const std::vector<const RowRun*>& rows)
 
 Estimate rate_ratio(const RowRun& row, const RowRun& over)
 {
-    const MedianRatio ratio = ratio_of_medians(over.samples_s, row.samples_s);
-    Estimate estimate{ratio.value, {}, {}};
-    if (std::min(row.samples_s.size(), over.samples_s.size()) >= fewest_samples) {
-        estimate.low = ratio.low;
-        estimate.high = ratio.high;
+    const Comparison comparison = compare_rates(over, row);
+    Estimate estimate{comparison.ratio, {}, {}};
+    if (comparison.interval) {
+        estimate.low = comparison.interval->low;
+        estimate.high = comparison.interval->high;
     }
     return estimate;
 }

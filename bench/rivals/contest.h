@@ -41,8 +41,7 @@ template <class Kind>
 /// The row with the highest rate; null if none has a rate.
 [[nodiscard]] const RowRun* fastest(const std::vector<const RowRun*>& rows);
 
-/// The row's rate over the other's, by the medians of their samples; without bounds if either has fewer than
-/// fewest_samples. Precondition: both have rates.
+/// The row's rate over the other's, with the interval of compare_rates(). Precondition: both have rates.
 [[nodiscard]] Estimate rate_ratio(const RowRun& row, const RowRun& over);
 
 /// "bunny", "bunny, shadow rays".

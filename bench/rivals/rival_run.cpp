@@ -34,6 +34,9 @@ bool is_wanted(const RowKey& key, const Options& options)
     if (!has_rays(scene, key.rays)) return false;
     const bool is_emulated = backend_of(key).devices().at(key.device).kind == DeviceKind::emulated;
     if (is_emulated && (key.rays != RayKind::primary || (scene != nullptr && !scene->has_all_rays))) return false;
+    const bool is_other_tree = is_embree(key.kernel.layout) && key.kernel.layout != Layout::embree;
+    if (is_other_tree && options.layouts.empty())
+        return key.rays == RayKind::primary && (scene == nullptr || scene->has_all_rays);
     if (key.kernel.method != Method::maria || !options.methods.empty()) return true;
     return !is_emulated && key.rays == RayKind::primary &&
            (key.kernel.layout == Layout::tet80 || !options.layouts.empty());

@@ -15,8 +15,9 @@ namespace tetrace {
 /// The rows of the run. Each scene has primary rays and the other kinds that rival_scenes() gives it; a scene that is
 /// not listed has diffuse and random rays. On openmp each kernel of one ray at a time also has its form for AVX2
 /// (schedule native). Emulated devices have only primary rays, on scenes with all kinds of rays and on those that are
-/// not listed. Unless --method names it, maria has one layout and only primary rays, and none on emulated devices.
-/// Throws Error{usage} as selected_rows() does.
+/// not listed, and so do Embree's trees of other qualities than high unless --layout names them. Unless --method names
+/// it, maria has one layout and only primary rays, and none on emulated devices. Throws Error{usage} as selected_rows()
+/// does.
 [[nodiscard]] std::vector<RowKey> rival_rows(const Options& options);
 
 /// Whether the options leave out rows that could be the fastest.

@@ -84,14 +84,22 @@ PaperCell build_cell(const RowRun* row)
 std::array<PaperCell, 2> paid_cells(const RowRun* walk, const RowRun* bvh)
 {
     if (walk == nullptr || bvh == nullptr) return {};
-    const Estimate ratio = rate_ratio(*walk, *bvh);
-    Comparison comparison{bvh, ratio.value, {}};
-    if (ratio.low && ratio.high) comparison.interval = FactorInterval{*ratio.low, *ratio.high};
-    const auto paid = paid_build(*walk, comparison);
+    const auto paid = paid_build(*walk, compare_rates(*bvh, *walk));
     if (!paid) return {};
     if (paid->when == PaidBuild::When::later) return {exact_cell(1e-9 * paid->rays), exact_cell(paid->tracing_s)};
     const std::string when(name_of(paid->when));
     return {when, when};
+}
+
+/// How Embree runs on the processor; empty if it has no row.
+std::string embree_note(const std::vector<Contest>& contests)
+{
+    for (const Contest& contest : contests)
+        for (const RowRun* row : contest.rows)
+            if (is_embree(row->key.kernel.layout) && row->backend != nullptr)
+                return fmt::format("{}; it traces {} rays in lockstep on this processor.", row->device.driver,
+                                   row->device.group_width);
+    return {};
 }
 
 PaperTable scenes_table(const std::vector<Contest>& contests)
@@ -114,9 +122,11 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
          {"bvh_build_s", "BVH built in", "s", 2},
          {"paid_after", "tets have paid after", "G rays", 3},
          {"paid_after_s", "or", "s of tracing", 1}},
-        {"A ratio is of rates: above 1 the walk through tets is faster. Its interval is of the samples of this run; "
-         "runs differ by more. Builds are with all threads, packing included. 'Paid' is for the fastest walk against "
+        {"A ratio is of rates: above 1 the walk through tets is faster. Its interval is of the samples of one run, "
+         "or over the runs of --runs; runs differ by more than samples. Builds are with all threads, packing included. "
+         "'Paid' is for the fastest walk against "
          "the fastest BVH."}};
+    if (const std::string note = embree_note(contests); !note.empty()) table.notes.push_back(note);
     for (const Contest& contest : contests) {
         const RowRun *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
                                                                              fastest(rows_of(contest, Rival::any));
