@@ -119,14 +119,15 @@ Owned<EventHandle> make_event(Context& context, unsigned flags = 0)
 
 void SideStreams::fork(std::size_t streams)
 {
-    streams_ = std::min(streams, max_streams);
-    if (streams_ < 2) return;
+    streams = std::min(streams, max_streams);
+    if (streams < 2) return;
     if (forked_ == nullptr) forked_ = make_event(context_, without_timing);
-    while (sides_.size() < streams_ - 1)
+    while (sides_.size() < streams - 1)
         sides_.push_back({make_stream(context_), make_event(context_, without_timing)});
     record(forked_.get(), main_);
-    for (std::size_t i = 0; i + 1 < streams_; ++i)
+    for (std::size_t i = 0; i + 1 < streams; ++i)
         wait(sides_[i].stream.get(), forked_.get());
+    streams_ = streams; // only now: join() is called after a failure, too
 }
 
 StreamHandle SideStreams::stream(std::size_t work) const

@@ -2,6 +2,7 @@
 
 #include "backends/embree/session.h"
 #include "core/base/error.h"
+#include "core/device/device_facts.h"
 #include "core/device/host.h"
 
 #include <omp.h>
@@ -21,6 +22,15 @@ Device embree_device(const embree::Abilities& abilities)
 
 class EmbreeBackend : public Backend {
 public:
+    EmbreeBackend()
+    {
+        try {
+            abilities_ = embree::abilities();
+            devices_ = {embree_device(abilities_)};
+        } catch (const Error& error) { // the program starts without it
+            devices_ = {unusable_device("none", error.what())};
+        }
+    }
     [[nodiscard]] std::string name() const override { return "embree"; }
     [[nodiscard]] std::string clock() const override { return "host steady clock"; }
 
@@ -51,8 +61,8 @@ public:
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:
-    embree::Abilities abilities_ = embree::abilities();
-    std::vector<Device> devices_ = {embree_device(abilities_)};
+    embree::Abilities abilities_;
+    std::vector<Device> devices_;
 };
 
 } // namespace

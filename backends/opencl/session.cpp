@@ -217,8 +217,8 @@ void OpenclSession::enqueue_together(std::span<const LaunchPiece> pieces, std::v
 void OpenclSession::start(std::span<const TraceJob> jobs)
 {
     const auto starts_inside = [](const TraceJob& job) { return job.start_tet != NO_TET; };
-    if (starts_outside_ && std::ranges::any_of(jobs, starts_inside)) compile_starts_inside();
     resize_output(output_parts(words_per_ray(kernel_id_.task)));
+    if (starts_outside_ && std::ranges::any_of(jobs, starts_inside)) compile_starts_inside();
     run("launching", output_bytes(), [&] {
         enqueued_.clear();
         queues_[0].enqueueFillBuffer(output_, POISON, 0, output_bytes());

@@ -335,7 +335,9 @@ std::vector<SceneRequest> scene_requests(const Options& options)
     build.resolution = options.resolution;
     build.time_limit_s = options.time_limit_s;
     build.optimise_s = options.optimise_s;
-    build.mesh_will_do = options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render;
+    const bool is_rivals = std::ranges::find(options.targets, PaperTarget::rivals) != options.targets.end();
+    build.mesh_will_do =
+        is_rivals || options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::render;
     build.keep_unfinished = options.verb == Verb::build;
     build.memory_limit_bytes = options.memory_limit_bytes;
     std::vector<SceneRequest> requests;

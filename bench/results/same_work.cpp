@@ -31,17 +31,17 @@ std::string other_searches(const ResultFile& a, const ResultFile& b)
 }
 
 /// On a GPU, views that are traced together take less time than views with a launch each.
-std::string launches_of(const ResultRow& row)
+std::string launches_of(const ResultFile& file, const ResultRow& row)
 {
-    if (row.device_kind != DeviceKind::gpu) return {};
-    return row.launches == 0 ? "a launch for each view"
-                             : fmt::format("all views in {} launch{}", row.launches, row.launches == 1 ? "" : "es");
+    if (row.device_kind != DeviceKind::gpu || row.scene.empty()) return {};
+    return row.launches == 0 || row.launches == scene_of(file, row).views.size()
+               ? "a launch for each view"
+               : fmt::format("all views in {} launch{}", row.launches, row.launches == 1 ? "" : "es");
 }
 
-std::string other_launches(const ResultRow& a, const ResultRow& b)
+std::string other_launches(const std::string& a, const std::string& b)
 {
-    if (launches_of(a) == launches_of(b)) return {};
-    return fmt::format("{} in A, {} in B", launches_of(a), launches_of(b));
+    return a == b ? std::string() : fmt::format("{} in A, {} in B", a, b);
 }
 
 /// Merged shards have the hash of their views alone.
@@ -69,7 +69,7 @@ std::string different_work(const ResultFile& a, const ResultRow& row_a, const Re
 {
     std::string difference =
         row_a.scene.empty() ? other_searches(a, b) : other_rays(scene_of(a, row_a), scene_of(b, row_b));
-    if (difference.empty()) difference = other_launches(row_a, row_b);
+    if (difference.empty()) difference = other_launches(launches_of(a, row_a), launches_of(b, row_b));
     return difference.empty() ? other_answers(row_a, row_b) : difference;
 }
 
@@ -85,7 +85,7 @@ std::string work_of(const ResultFile& file, const ResultRow& row)
     const std::string& hash =
         row.hit_hash.empty() ? row.views_hash : row.hit_hash; // merged shards have the latter alone
     return hash.empty() ? std::string()
-                        : fmt::format("{} {} {} {}", row.name, hash, rays_of(file, row), launches_of(row));
+                        : fmt::format("{} {} {} {}", row.name, hash, rays_of(file, row), launches_of(file, row));
 }
 
 } // namespace tetrace

@@ -44,9 +44,27 @@ bool is_noisy_row(const RowRun& row)
     return figures_of(row)->noisy;
 }
 
+/// "They are slower": a faster rival speaks for the claim, a faster walk against it.
+bool wants_slow_walks(const RivalClaim& claim)
+{
+    return claim.is_below && claim.measure == Measure::rate;
+}
+
+/// A walk that was not timed could be the fastest. Only one could, if the claim names its kernel.
+void add_untimed_walks(JudgedClaim& judged, const Contest& contest)
+{
+    for (const RowRun* row : rows_of(contest, judged.claim->walk)) {
+        if (figures_of(*row) || status_of(*row) == Status::unsupported) continue;
+        judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
+                                               row_label(row->key), reason_without_rate({row})));
+        judged.may_refute = judged.may_refute && wants_slow_walks(*judged.claim);
+    }
+}
+
 /// A rival that the device has, but that was not timed, could be the fastest.
 void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
 {
+    const std::size_t before = judged.obstacles.size();
     for (const RowRun* row : rows_of(contest, judged.claim->rival))
         if (!figures_of(*row) && status_of(*row) != Status::unsupported)
             judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
@@ -56,6 +74,7 @@ void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
         std::ranges::none_of(contest.rows, [](const RowRun* row) { return is_embree(row->key.kernel.layout); }))
         judged.obstacles.push_back(
             fmt::format("{}: Embree, whose rays could be faster, has no rows in this run", title_of(contest)));
+    if (judged.obstacles.size() > before && wants_slow_walks(*judged.claim)) judged.may_refute = false;
 }
 
 void add_contest(JudgedClaim& judged, const Contest& contest)
@@ -69,6 +88,7 @@ void add_contest(JudgedClaim& judged, const Contest& contest)
     if (walk == nullptr) add_missing(name_of(judged.claim->walk), walks);
     if (rival == nullptr) add_missing(name_of(judged.claim->rival), rivals);
     if (walk == nullptr || rival == nullptr) return;
+    add_untimed_walks(judged, contest);
     add_untimed_rivals(judged, contest);
     const auto value = judged.claim->measure == Measure::rate ? std::optional(rate_ratio(*walk, *rival))
                                                               : tracing_until_paid(*walk, *rival);
@@ -142,9 +162,13 @@ JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests,
     add_missing_scenes(judged, about);
     for (const Contest* contest : about)
         add_contest(judged, *contest);
-    if (is_filtered && !judged.numbers.empty())
+    if (is_filtered && !judged.numbers.empty()) {
         judged.obstacles.emplace_back("--method or --layout left out rows, of which one could be the fastest");
-    if (verdict_of(judged, false) == ClaimVerdict::does_not_hold)
+        const bool has_several_walks =
+            claim.walk == Walk::single || claim.walk == Walk::any || claim.walk == Walk::maria;
+        if (has_several_walks || wants_slow_walks(claim)) judged.may_refute = false;
+    }
+    if (judged.may_refute && verdict_of(judged, false) == ClaimVerdict::does_not_hold)
         judged.verdict = ClaimVerdict::does_not_hold;
     else if (judged.obstacles.empty())
         judged.verdict = verdict_of(judged, true);
@@ -189,7 +213,7 @@ Claim to_claim(const JudgedClaim& judged)
     for (const std::string& obstacle : judged.obstacles)
         result.evidence += fmt::format(" {}.", obstacle);
     if (!judged.missing.empty())
-        result.evidence += fmt::format(" No such rows of {} in this run.", fmt::join(judged.missing, ", "));
+        result.evidence += fmt::format(" Not traced in this run: {}.", fmt::join(judged.missing, ", "));
     return result;
 }
 

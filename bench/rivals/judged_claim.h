@@ -22,13 +22,14 @@ struct JudgedClaim {
     std::vector<ClaimNumber> numbers;   ///< one for each contest that has both rows
     std::vector<std::string> obstacles; ///< reasons why it cannot be said to hold, a phrase each
     std::vector<std::string> missing;   ///< scenes of the claim without such rows
+    bool may_refute = true;             ///< no row is missing that could speak for the claim
 };
 
 /// Judges a claim by the contests that it is about. It holds only if every number's interval is on the right side of
 /// the boundary and there is no obstacle: a rival without a rate could be the fastest, and a noisy row decides nothing.
-/// One number whose interval is on the wrong side refutes it, unless one of its two rows is noisy. Scenes that were not
-/// traced are named, and the others decide.
-/// is_filtered: whether --method or --layout left out rows, of which one could be the fastest.
+/// One number whose interval is on the wrong side refutes it, unless one of its two rows is noisy, or a row is missing
+/// that could put it on the right side. Scenes that were not traced are named, and the others decide.
+/// is_filtered: whether options left out rows, of which one could be the fastest.
 [[nodiscard]] JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, bool is_filtered);
 
 /// "0.91 [0.90, 0.92]"; seconds end in their unit, and infinite ones are "never".

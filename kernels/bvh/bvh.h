@@ -11,7 +11,7 @@
 #define COUNT_TRIANGLE()
 #endif
 
-// Depth is the distance from the ray's origin along the axis of the direction's largest component, in the direction's
+// Below, depth is the distance from the ray's origin along the axis of the direction's largest component, in the direction's
 // sense: t times the magnitude of that component.
 
 // The nearest hit so far.

@@ -15,7 +15,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// Rows of a size, and those with a line in a figure: maria in two layouts, bvh2, cwbvh, and Embree's.
+/// Rows of a size, and those with a line in a figure: maria in two layouts, bvh2, bvh4, cwbvh, and Embree's.
 const std::size_t all_rows = 5 + embree_rows(), all_lines = 5 + traced_embree_rows();
 
 const std::vector<double> sizes = {1500, 6000, 25000, 100000, 400000};

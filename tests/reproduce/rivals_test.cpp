@@ -205,6 +205,21 @@ TEST(Rivals, a_claim_of_losing_holds_below_its_boundary)
     EXPECT_EQ(verdict_of(claim, list(row_of(half32, 1), row_of(bvh2, 1))), untested);
 }
 
+TEST(Rivals, a_claim_is_not_refuted_if_a_missing_row_could_speak_for_it)
+{
+    RivalClaim losing = claim_of(Walk::packets, Rival::any);
+    losing.is_below = true;
+    EXPECT_EQ(verdict_of(losing, list(row_of(packets, 1), row_of(bvh2, 9))), untested) << "Embree could be faster";
+    EXPECT_EQ(verdict_of(losing, list(row_of(packets, 1), row_of(bvh2, 9), embree(Method::single, 5))), fails_to_hold);
+    const RivalClaim winning = claim_of(Walk::single);
+    auto rows = list(row_of(half32, 2), row_of(tet64, 3), row_of(bvh2, 1));
+    EXPECT_EQ(verdict_of(winning, rows), fails_to_hold);
+    rows[1].samples_s.clear();
+    rows[1].outcome = Skipped{Status::skipped, "no time"};
+    EXPECT_EQ(verdict_of(winning, rows), untested) << "tet64 could be faster";
+    EXPECT_NE(evidence_of(winning, rows).find("no time"), std::string::npos);
+}
+
 TEST(Rivals, tets_have_paid_once_faster_rays_have_made_up_for_the_build)
 {
     RivalClaim claim = claim_of();

@@ -333,7 +333,7 @@ TEST(Table6, a_curve_ascends_and_ends_with_all_views)
     ASSERT_EQ(figures.size(), 1u);
     EXPECT_EQ(figures[0].id, "table6-cubes-cpu");
     ASSERT_EQ(figures[0].series.size(), 4 + traced_embree_rows())
-        << "bvh2, cwbvh, Embree's, and the line of equal times";
+        << "bvh2, bvh4, cwbvh, Embree's, and the line of equal times";
     const auto& points = figures[0].series[0].points;
     ASSERT_EQ(points.size(), views);
     EXPECT_TRUE(std::is_sorted(points.begin(), points.end()));
