@@ -248,7 +248,8 @@ void read_times(RowRun& run, const ResultValue& value)
         if (const auto walls = times->find("wall_samples_s"))
             for (const ResultValue& wall : walls->items())
                 run.wall_samples_s.push_back(wall.number());
-        if (const auto runs = times->find("runs"); runs && !runs->items().empty() && row_samples % runs->items().size() == 0)
+        if (const auto runs = times->find("runs");
+            runs && !runs->items().empty() && row_samples % runs->items().size() == 0)
             run.run_samples.assign(runs->items().size(), row_samples / runs->items().size());
         if (const auto singles = times->find("latency_samples_s"))
             for (const ResultValue& single : singles->items())

@@ -11,8 +11,8 @@
 #define COUNT_TRIANGLE()
 #endif
 
-// Below, depth is the distance from the ray's origin along the axis of the direction's largest component, in the direction's
-// sense: t times the magnitude of that component.
+// Below, depth is the distance from the ray's origin along the axis of the direction's largest component, in the
+// direction's sense: t times the magnitude of that component.
 
 // The nearest hit so far.
 STRUCT(Nearest)
@@ -42,8 +42,7 @@ KERNEL_FN Nearest nothing_before(Ray ray, real end)
 {
     Nearest nearest;
     real bounded = end < real(8.67361737988403547e-19f) ? real(0.0f) : minimum(end, real(18446744073709551616.0f));
-    Vec3 size = magnitudes(ray.direction);
-    PRECISE real depth = bounded * maximum(maximum(size.x, size.y), size.z);
+    PRECISE real depth = bounded * magnitude(component(ray.direction, deepest_axis(ray.direction)));
     nearest.depth = depth;
     nearest.triangle = NO_HIT;
     nearest.at = 0u;
@@ -59,22 +58,6 @@ KERNEL_FN real reciprocal(real a)
     PRECISE real second = first * (real(2.0f) - a * first);
     PRECISE real third = second * (real(2.0f) - a * second);
     return third;
-}
-
-// The nearer of a hit and leaf triangle `at`, given the sum of its sides and the sum of its depths times 2^40, weighted
-// by the sides. Of equally near triangles the first in the input wins, in any order of the tests.
-KERNEL_FN Nearest nearer(Nearest nearest, real determinant, real weighted, uint triangle, uint at)
-{
-    PRECISE real inverse = reciprocal(magnitude(determinant));
-    PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
-    PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
-    bool is_nearer = depth < nearest.depth || (depth == nearest.depth && triangle < nearest.triangle);
-    if (scaled < LEAST_DEPTH || !is_nearer) return nearest;
-    Nearest found;
-    found.depth = depth;
-    found.triangle = triangle;
-    found.at = at;
-    return found;
 }
 
 #ifdef HOST_SSE2

@@ -104,6 +104,22 @@ KERNEL_FN __m128 quad_in_lanes(const uint4& quad)
     return _mm_loadu_ps(reinterpret_cast<const float*>(&quad));
 }
 
+// The nearer of a hit and leaf triangle `at`, given the sum of its sides and the sum of its depths times 2^40, weighted
+// by the sides. Of equally near triangles the first in the input wins, in any order of the tests.
+KERNEL_FN Nearest nearer(Nearest nearest, real determinant, real weighted, uint triangle, uint at)
+{
+    PRECISE real inverse = reciprocal(magnitude(determinant));
+    PRECISE real scaled = (determinant < real(0.0f) ? -weighted : weighted) * inverse;
+    PRECISE real depth = scaled * real(9.09494701772928238e-13f); // 2^-40
+    bool is_nearer = depth < nearest.depth || (depth == nearest.depth && triangle < nearest.triangle);
+    if (scaled < LEAST_DEPTH || !is_nearer) return nearest;
+    Nearest found;
+    found.depth = depth;
+    found.triangle = triangle;
+    found.at = at;
+    return found;
+}
+
 KERNEL_FN Nearest nearer_triangle(SceneView scene, const RayFrame& frame, Nearest nearest, uint at)
 {
     COUNT_TRIANGLE();

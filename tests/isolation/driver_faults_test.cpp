@@ -21,8 +21,9 @@ protected:
     {
         const ScopedVariable faulty("FAULTY_OPENCL", fault);
         const ScopedVariable preload("LD_PRELOAD", TETRACE_FAULTY_OPENCL);
-        return run(arguments + " --backend openmp,opencl --scene cubes --resolution 4 --size 24 --threads 2 "
-                               "--method maria");
+        return run(arguments +
+                   " --backend openmp,opencl --scene cubes --resolution 4 --size 24 --camera-set smoke --threads 2 "
+                   "--method maria");
     }
 
     std::string crash_ = "was ended by signal 6 (SIGABRT, Aborted) while ";
@@ -33,8 +34,8 @@ protected:
 TEST_F(DriverFaults, opencl_that_crashes_at_load_is_named_and_vulkans_matrix_is_whole)
 {
     if (!has("vulkan")) GTEST_SKIP() << "there is no Vulkan device";
-    const std::string check =
-        "check --backend opencl,vulkan --scene cubes --resolution 4 --size 16 --threads 2 --views 0 ";
+    const std::string check = "check --backend opencl,vulkan --scene cubes --resolution 4 --size 16 --camera-set smoke "
+                              "--threads 2 --views 0 ";
     break_opencl();
     const ScopedVariable broken("OCL_ICD_VENDORS", vendors());
     const Ended ended = run(check + "--junit check.xml");
@@ -49,7 +50,7 @@ TEST_F(DriverFaults, opencl_that_crashes_at_load_is_named_and_vulkans_matrix_is_
             ++count;
         return count;
     };
-    EXPECT_EQ(cases_of("classname=\"tetrace.vulkan"), 6u);
+    EXPECT_EQ(cases_of("classname=\"tetrace.vulkan"), 7u);
     EXPECT_EQ(cases_of("<error "), cases_of("classname=\"tetrace.opencl"));
 }
 

@@ -36,7 +36,9 @@ protected:
         EXPECT_TRUE(contains(ended.out, "Verified  576 rays")) << "openmp's";
     }
 
-    std::string small_ = " --backend openmp,vulkan --scene cubes --resolution 4 --size 24 --threads 2 --method maria";
+    std::string small_ =
+        " --backend openmp,vulkan --scene cubes --resolution 4 --size 24 --camera-set smoke --threads 2 "
+        "--method maria";
     std::string crash_ = "was ended by signal 6 (SIGABRT, Aborted) while ";
 };
 

@@ -100,9 +100,9 @@ TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
     const std::string quiet = unwrapped();
     EXPECT_TRUE(contains(quiet, "bunny (CPU): bvh bvh2 on openmp, 800.0 Mrays/s")) << quiet;
     EXPECT_TRUE(contains(quiet, "bunny (H200): ")) << quiet;
-    EXPECT_TRUE(
-        contains(quiet, "the fastest walk through tets, cdt maria tet80 on openmp (noisy), has 0.50 [0.45, 0.56] of the "
-                        "rate of the fastest BVH, bvh bvh2 on openmp"))
+    EXPECT_TRUE(contains(
+        quiet, "the fastest walk through tets, cdt maria tet80 on openmp (noisy), has 0.50 [0.45, 0.56] of the "
+               "rate of the fastest BVH, bvh bvh2 on openmp"))
         << quiet;
     EXPECT_TRUE(
         contains(quiet, "APIs by openmp's rate, medians over the kernels: cuda-host 1.00, opencl 1.00, vulkan 1.00"))
@@ -187,7 +187,8 @@ TEST_F(BenchTables, the_fastest_bvh_is_that_of_all_bvh_rows_of_the_hardware)
     }
     compare();
     const std::string text = std::regex_replace(answer_of(result_).text(), std::regex("\\s+"), " ");
-    EXPECT_TRUE(contains(text, "has 0.20 [0.18, 0.22] of the rate of the fastest BVH, bvh stream robust on openmp")) << text;
+    EXPECT_TRUE(contains(text, "has 0.20 [0.18, 0.22] of the rate of the fastest BVH, bvh stream robust on openmp"))
+        << text;
 }
 
 TEST_F(BenchTables, rows_stand_by_device_under_what_they_may_be_ranked_with)

@@ -21,7 +21,7 @@ protected:
     /// What bench wrote, with seven samples a row that leave no doubt.
     Json result()
     {
-        const Ended ended = bench("--out measured.json");
+        const Ended ended = bench(std::string("--out measured.json") + nine_rows);
         EXPECT_EQ(ended.code, 0) << ended.errors;
         Json json = Json::parse(file("measured.json"));
         for (Json& row : json["tetrace"]["rows"]) {

@@ -90,7 +90,7 @@ TEST_F(Program, usage_errors_go_to_standard_error_with_exit_code_2)
         EXPECT_NE(ended.errors, "") << bad;
     }
     EXPECT_TRUE(contains(run("bench --backend openmp,embree --scene cubes --filter nothing").errors,
-                         "matches none of the 9 rows"));
+                         "matches none of the 19 rows"));
 }
 
 TEST_F(Program, renders_without_openimageio)
@@ -128,7 +128,7 @@ TEST_F(Program, lists_scenes_and_clears_the_cache)
 
 TEST_F(Program, benches_and_writes_the_table_and_the_json)
 {
-    const Ended ended = bench("--out result.json");
+    const Ended ended = bench(std::string("--views 0-3 --out result.json") + nine_rows);
     ASSERT_EQ(ended.code, 0) << ended.errors;
     EXPECT_TRUE(contains(ended.out, "Mrays/s"));
     EXPECT_TRUE(contains(ended.out, "Verified  20,736 rays"));
@@ -164,7 +164,7 @@ TEST_F(Program, the_same_rays_give_the_same_hashes_whatever_the_number_of_thread
 
 TEST_F(Program, benches_as_csv_and_markdown)
 {
-    const Ended csv = bench("--format csv");
+    const Ended csv = bench(std::string("--format csv") + nine_rows);
     ASSERT_EQ(csv.code, 0) << csv.errors;
     EXPECT_EQ(csv.out.rfind("name,scene,structure,method,", 0), 0u);
     EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 10);
@@ -178,7 +178,7 @@ TEST_F(Program, lists_rows_without_loading_scenes)
 {
     const Ended ours = run("bench --backend openmp,embree --scene bunny,armadillo --list");
     EXPECT_EQ(ours.code, 0) << ours.errors;
-    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 18);
+    EXPECT_EQ(std::count(ours.out.begin(), ours.out.end(), '\n'), 38);
     EXPECT_EQ(run("bench --backend openmp,embree --scene bunny,armadillo --benchmark_list_tests").out, ours.out);
     EXPECT_EQ(
         run("bench --backend openmp,embree --scene bunny --benchmark_list_tests=true --benchmark_filter=-bvh").out,
@@ -207,10 +207,11 @@ TEST_F(Program, checks_every_ray)
 {
     const Ended ended = run(
         "check --backend openmp,embree --scene cubes --resolution 6 --size 24 --math exact,fast --order chains,input "
-        "--require openmp,embree --out check.json");
+        "--require openmp,embree --out check.json" +
+        std::string(nine_rows));
     ASSERT_EQ(ended.code, 0) << ended.out << ended.errors;
     const auto rows = nlohmann::json::parse(file("check.json"))["tetrace"]["rows"];
-    EXPECT_EQ(rows.size(), 24u);
+    EXPECT_EQ(rows.size(), 25u);
     for (const auto& row : rows) {
         EXPECT_EQ(row["status"], "ok") << row;
         const auto& found = row["verification"];
@@ -232,7 +233,7 @@ TEST_F(Program, check_shows_rows_against_devices_and_writes_junit)
     EXPECT_EQ(cell["cell"], "reference");
     EXPECT_EQ(cell["hit_hash"], section["rows"][0]["hit_hash"]);
     EXPECT_EQ(section["rows"][0]["self_test"]["exact"], true);
-    EXPECT_TRUE(contains(file("check.xml"), "tests=\"7\" failures=\"0\" errors=\"0\" skipped=\"0\""));
+    EXPECT_TRUE(contains(file("check.xml"), "tests=\"8\" failures=\"0\" errors=\"0\" skipped=\"0\""));
     EXPECT_TRUE(contains(file("check.xml"), "classname=\"tetrace.openmp."));
     EXPECT_TRUE(contains(file("check.xml"), "<property name=\"tetrace.version\""));
 }
@@ -307,7 +308,8 @@ TEST_F(Program, a_scene_that_cannot_be_loaded_ends_its_rows_and_not_the_others)
 {
     std::ofstream(folder_.path() / "broken.tet") << "no scene";
     const Ended ended = run(
-        "bench --backend openmp,embree --scene cubes,broken.tet --resolution 6 --size 24 --samples 3 --format json");
+        "bench --backend openmp,embree --scene cubes,broken.tet --resolution 6 --size 24 --samples 3 --format json" +
+        std::string(nine_rows));
     EXPECT_NE(ended.code, 0);
     const auto rows = nlohmann::json::parse(ended.out)["tetrace"]["rows"];
     ASSERT_EQ(rows.size(), 18u);
