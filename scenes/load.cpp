@@ -290,6 +290,16 @@ LoadedScene load_lattice(const SceneRequest& request, std::uint32_t resolution, 
     return loaded;
 }
 
+/// The views of the procedural scene, in its usual size, from whose mesh a scene file was made; none of another file.
+std::vector<Aim> own_views(const BuildInfo& build)
+{
+    for (const CatalogueEntry& entry : catalogue())
+        if (entry.procedural && fs::path(build.source).stem() == entry.name &&
+            build.source_hash == hash_of_mesh_file(ProceduralScene{entry, {}}))
+            return entry.views;
+    return {};
+}
+
 LoadedScene load_scene_file(const SceneRequest& request, const Progress& progress)
 {
     if (progress) progress(fmt::format("reading {}", request.name), -1, "");
@@ -297,6 +307,7 @@ LoadedScene load_scene_file(const SceneRequest& request, const Progress& progres
     loaded.scene = read_scene(request.name);
     loaded.hash = scene_hash(loaded.scene);
     loaded.file = request.name;
+    loaded.views = own_views(loaded.scene.build);
     Unused unused{request.build, {}};
     unused.add_build();
     unused.add_resolution();

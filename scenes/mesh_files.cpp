@@ -75,6 +75,12 @@ std::string off_text(const TriangleMesh& mesh)
     return text;
 }
 
+std::string mesh_text(const ProceduralScene& scene)
+{
+    const ProceduralMesh& generator = *scene.entry.procedural;
+    return off_text(scene.triangles ? generator.make(*scene.triangles) : generator.usual());
+}
+
 } // namespace
 
 MeshLocation locate_mesh(const CatalogueEntry& entry)
@@ -99,10 +105,14 @@ MeshLocation locate_mesh(const CatalogueEntry& entry)
     return found;
 }
 
+std::uint64_t hash_of_mesh_file(const ProceduralScene& scene)
+{
+    return hash_of(mesh_text(scene));
+}
+
 fs::path mesh_file(const ProceduralScene& scene)
 {
-    const ProceduralMesh& generator = *scene.entry.procedural;
-    const std::string text = off_text(scene.triangles ? generator.make(*scene.triangles) : generator.usual());
+    const std::string text = mesh_text(scene);
     fs::path target = cached_mesh_path(scene.entry.name + ".off", hash_of(text));
     if (file_bytes(target) == text) return target;
     AtomicFile file(target);

@@ -17,6 +17,9 @@ struct MeshLocation {
 /// The mesh of a procedural scene, made in the cache. Throws Error{invalid_input} if writing fails.
 [[nodiscard]] std::filesystem::path mesh_file(const ProceduralScene& scene);
 
+/// XXH3 of that file's bytes (BuildInfo::source_hash), without writing it.
+[[nodiscard]] std::uint64_t hash_of_mesh_file(const ProceduralScene& scene);
+
 /// The mesh of a catalogue row as a plain file: found, unpacked into the cache, or made there.
 /// Throws Error{missing} with the reason of locate_mesh, Error{invalid_input} where unpacking or writing fails.
 [[nodiscard]] std::filesystem::path mesh_file(const CatalogueEntry& entry);

@@ -2,6 +2,7 @@
 
 #include "bench/measuring/figures.h"
 #include "bench/rivals/pay_off.h"
+#include "scenes/catalogue.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +21,19 @@ bool may_have_tets(const Contest& contest, TetsKind kind)
     });
 }
 
+/// Of that name, and seen as the catalogue's scene is: a file of the user's may have its name.
+bool is_the_scene(const Contest& contest, std::string_view name)
+{
+    const auto entry = std::ranges::find(catalogue(), name, &CatalogueEntry::name);
+    const bool has_views = entry != catalogue().end() && !entry->views.empty();
+    return is_scene(contest.scene, name) && std::ranges::all_of(contest.rows, [&](const RowRun* row) {
+               return row->scene == nullptr || has_views == !row->scene->loaded().views.empty();
+           });
+}
+
 bool is_about(const RivalClaim& claim, const Contest& contest)
 {
-    const auto is_it = [&](std::string_view name) { return is_scene(contest.scene, name); };
+    const auto is_it = [&](std::string_view name) { return is_the_scene(contest, name); };
     return contest.place == claim.place && std::ranges::find(claim.rays, contest.rays) != claim.rays.end() &&
            (claim.scenes.empty() || std::ranges::any_of(claim.scenes, is_it)) &&
            (claim.backend.empty() || contest.rows.front()->key.backend == claim.backend) &&
@@ -106,10 +117,26 @@ void add_contest(JudgedClaim& judged, const Contest& contest)
 void add_missing_scenes(JudgedClaim& judged, const std::vector<const Contest*>& contests)
 {
     for (const std::string_view name : judged.claim->scenes)
-        if (std::ranges::none_of(contests, [&](const Contest* contest) { return is_scene(contest->scene, name); }))
+        if (std::ranges::none_of(contests, [&](const Contest* contest) { return is_the_scene(*contest, name); }))
             judged.missing.emplace_back(name);
     if (contests.empty() && judged.missing.empty())
         judged.obstacles.emplace_back("no row of this run is on such a device, with such rays");
+}
+
+void add_left_out(JudgedClaim& judged, LeftOut left_out)
+{
+    const RivalClaim& claim = *judged.claim;
+    if (left_out.kernels) {
+        judged.obstacles.emplace_back("options left out kernels, of which one could be the fastest");
+        const bool has_several_walks =
+            claim.walk == Walk::single || claim.walk == Walk::any || claim.walk == Walk::maria;
+        if (has_several_walks || wants_slow_walks(claim)) judged.may_refute = false;
+    }
+    if (left_out.apis && claim.place == DeviceKind::gpu) {
+        judged.obstacles.emplace_back(
+            "--backend or --device left out an API of the GPU, of whose rows one could be the fastest");
+        judged.may_refute = false;
+    }
 }
 
 /// The measure such that more of it speaks for the claim.
@@ -152,7 +179,7 @@ std::string names_of(const std::vector<RayKind>& kinds)
 
 } // namespace
 
-JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, bool is_filtered)
+JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests, LeftOut left_out)
 {
     JudgedClaim judged;
     judged.claim = &claim;
@@ -162,12 +189,7 @@ JudgedClaim judge(const RivalClaim& claim, const std::vector<Contest>& contests,
     add_missing_scenes(judged, about);
     for (const Contest* contest : about)
         add_contest(judged, *contest);
-    if (is_filtered && !judged.numbers.empty()) {
-        judged.obstacles.emplace_back("--method or --layout left out rows, of which one could be the fastest");
-        const bool has_several_walks =
-            claim.walk == Walk::single || claim.walk == Walk::any || claim.walk == Walk::maria;
-        if (has_several_walks || wants_slow_walks(claim)) judged.may_refute = false;
-    }
+    if (!judged.numbers.empty()) add_left_out(judged, left_out);
     if (judged.may_refute && verdict_of(judged, false) == ClaimVerdict::does_not_hold)
         judged.verdict = ClaimVerdict::does_not_hold;
     else if (judged.obstacles.empty())

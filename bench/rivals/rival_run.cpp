@@ -2,6 +2,7 @@
 
 #include "bench/measuring/scene_rows.h"
 #include "bench/rivals/rival_claims.h"
+#include "bench/rows/physical_device.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -42,6 +43,11 @@ bool is_wanted(const RowKey& key, const Options& options)
            (key.kernel.layout == Layout::tet80 || !options.layouts.empty());
 }
 
+bool is_kept_backend(const Options& options, const Backend& backend)
+{
+    return options.backends.empty() || std::ranges::find(options.backends, backend.name()) != options.backends.end();
+}
+
 /// The same kernel in its form for AVX2; a row of another backend has none.
 void add_native(std::vector<RowKey>& rows, RowKey key)
 {
@@ -79,9 +85,26 @@ std::vector<RowKey> rival_rows(const Options& options)
     return rows;
 }
 
-bool leaves_out_rows(const Options& options)
+LeftOut left_out(const Options& options, const std::vector<Backend*>& backends)
 {
-    return !options.methods.empty() || !options.layouts.empty();
+    const bool wants_exact = std::ranges::find(options.math, MathMode::exact) != options.math.end();
+    LeftOut left_out;
+    left_out.kernels = !options.methods.empty() || !options.layouts.empty() || !options.schedules.empty() ||
+                       !options.orders.empty() || (!options.math.empty() && !wants_exact);
+    std::vector<Device> gpus;
+    std::vector<bool> is_kept;
+    for (const Backend* backend : backends)
+        for (std::size_t i = 0; i < backend->devices().size(); ++i) {
+            const Device& device = backend->devices()[i];
+            if (!device.usable || device.kind != DeviceKind::gpu) continue;
+            gpus.push_back(device);
+            is_kept.push_back(is_kept_backend(options, *backend) && wanted_device(options, *backend, i));
+        }
+    const auto hardware = physical_devices(gpus);
+    for (std::size_t i = 0; i < gpus.size(); ++i)
+        for (std::size_t j = 0; j < gpus.size(); ++j)
+            if (hardware[i] == hardware[j] && is_kept[i] && !is_kept[j]) left_out.apis = true;
+    return left_out;
 }
 
 } // namespace tetrace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bench/options/options.h"
+#include "bench/rivals/judged_claim.h"
 #include "bench/rows/rows.h"
 
 #include <string>
@@ -20,7 +21,7 @@ namespace tetrace {
 /// does.
 [[nodiscard]] std::vector<RowKey> rival_rows(const Options& options);
 
-/// Whether the options leave out rows that could be the fastest.
-[[nodiscard]] bool leaves_out_rows(const Options& options);
+/// What the options leave out of such a run.
+[[nodiscard]] LeftOut left_out(const Options& options, const std::vector<Backend*>& backends = all_backends());
 
 } // namespace tetrace

@@ -184,7 +184,7 @@ PaperTable rows_table(const std::vector<Contest>& contests)
 
 } // namespace
 
-PaperTable claims_table(const std::vector<Contest>& contests, bool is_filtered, const std::vector<RivalClaim>& claims)
+PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out, const std::vector<RivalClaim>& claims)
 {
     std::map<DeviceKind, std::vector<Claim>> by_place;
     PaperTable table{
@@ -196,7 +196,7 @@ PaperTable claims_table(const std::vector<Contest>& contests, bool is_filtered, 
     for (Column& column : table.columns)
         column.decimals = 0;
     for (const RivalClaim& claim : claims) {
-        table.claims.push_back(to_claim(judge(claim, contests, is_filtered)));
+        table.claims.push_back(to_claim(judge(claim, contests, left_out)));
         by_place[claim.place].push_back(table.claims.back());
     }
     for (const auto& [place, list] : by_place)
@@ -207,10 +207,10 @@ PaperTable claims_table(const std::vector<Contest>& contests, bool is_filtered, 
     return table;
 }
 
-std::vector<PaperTable> rival_tables(const std::vector<RowRun>& rows, bool is_filtered)
+std::vector<PaperTable> rival_tables(const std::vector<RowRun>& rows, LeftOut left_out)
 {
     const auto contests = contests_of(rows);
-    return {claims_table(contests, is_filtered), scenes_table(contests), rows_table(contests)};
+    return {claims_table(contests, left_out), scenes_table(contests), rows_table(contests)};
 }
 
 } // namespace tetrace

@@ -175,7 +175,7 @@ int reproduce_rivals(const Options& asked)
         say(sentence);
     BenchResult result = run_bench(rival_rows(options), options, read_benchmark_flags({}));
     result.missing_scenes = missing;
-    const auto tables = rival_tables(result.run.rows, leaves_out_rows(options));
+    const auto tables = rival_tables(result.run.rows, left_out(options));
     deliver(options, rival_report(result, tables, options));
     require_answers(result.run.rows, "measured");
     return exit_code(result.run.rows, true);

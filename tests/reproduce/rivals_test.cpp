@@ -1,5 +1,7 @@
 #include "bench/rivals/pay_off.h"
+#include "bench/rivals/rival_run.h"
 #include "bench/rivals/rival_tables.h"
+#include "tests/support/fake_backend.h"
 #include "tests/support/row_runs.h"
 
 #include <gtest/gtest.h>
@@ -52,13 +54,13 @@ RowRun embree(Method method, double seconds, Layout layout = Layout::embree)
     return row;
 }
 
-JudgedClaim judged(const RivalClaim& claim, const std::vector<RowRun>& rows, bool is_filtered = false)
+JudgedClaim judged(const RivalClaim& claim, const std::vector<RowRun>& rows, LeftOut left_out = {})
 {
     static RivalClaim kept; // a judged claim points to it
     kept = claim;
     static std::vector<Contest> contests;
     contests = contests_of(rows);
-    return judge(kept, contests, is_filtered);
+    return judge(kept, contests, left_out);
 }
 
 ClaimVerdict verdict_of(const RivalClaim& claim, const std::vector<RowRun>& rows)
@@ -238,8 +240,47 @@ TEST(Rivals, tets_have_paid_once_faster_rays_have_made_up_for_the_build)
 TEST(Rivals, rows_that_a_user_left_out_could_be_faster)
 {
     const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
-    EXPECT_EQ(judged(claim_of(), rows, true).verdict, untested);
-    EXPECT_EQ(judged(claim_of(Walk::half32, Rival::our_single, 3), rows, true).verdict, fails_to_hold);
+    EXPECT_EQ(judged(claim_of(), rows, {.kernels = true}).verdict, untested);
+    EXPECT_EQ(judged(claim_of(Walk::half32, Rival::our_single, 3), rows, {.kernels = true}).verdict, fails_to_hold);
+    EXPECT_EQ(judged(claim_of(), rows, {.apis = true}).verdict, holds) << "a processor's rows have one API";
+}
+
+TEST(Rivals, a_gpus_rows_of_an_api_that_was_left_out_could_be_faster)
+{
+    RivalClaim claim = claim_of(Walk::half32, Rival::any);
+    claim.place = DeviceKind::gpu;
+    auto rows = list(row_of(half32, 1, "cuda"), row_of(bvh2, 2, "cuda"));
+    for (RowRun& row : rows) {
+        row.device.kind = DeviceKind::gpu;
+        row.device.pci = "0000:01:00.0";
+    }
+    EXPECT_EQ(judged(claim, rows).verdict, holds);
+    EXPECT_EQ(judged(claim, rows, {.apis = true}).verdict, untested);
+    claim.boundary = 3;
+    EXPECT_EQ(judged(claim, rows).verdict, fails_to_hold);
+    EXPECT_EQ(judged(claim, rows, {.apis = true}).verdict, untested);
+}
+
+TEST(Rivals, options_that_leave_out_an_api_of_a_gpu_are_seen)
+{
+    Device gpu, other;
+    gpu.kind = other.kind = DeviceKind::gpu;
+    gpu.usable = other.usable = true;
+    gpu.pci = "0000:01:00.0";
+    other.pci = "0000:02:00.0";
+    FakeBackend cuda("cuda", gpu), vulkan("vulkan", gpu), opencl("opencl", other);
+    const std::vector<Backend*> backends{&cuda, &vulkan, &opencl};
+    Options options;
+    EXPECT_FALSE(left_out(options, backends).apis);
+    options.backends = {"cuda"};
+    EXPECT_TRUE(left_out(options, backends).apis);
+    options.backends = {"cuda", "vulkan"};
+    EXPECT_FALSE(left_out(options, backends).apis) << "the other GPU has no rows at all";
+    EXPECT_FALSE(left_out(options, backends).kernels);
+    options.math = {MathMode::exact};
+    EXPECT_FALSE(left_out(options, backends).kernels);
+    options.schedules = {Schedule::tiles};
+    EXPECT_TRUE(left_out(options, backends).kernels) << "packets";
 }
 
 TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
@@ -249,7 +290,7 @@ TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
     EXPECT_NE(evidence.find("Now 2.00 [1.9"), std::string::npos) << evidence;
     EXPECT_NE(evidence.find("is above 1 "), std::string::npos) << "the rule: " << evidence;
     const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
-    const PaperTable table = claims_table(contests_of(rows), false, {claim_of()});
+    const PaperTable table = claims_table(contests_of(rows), {}, {claim_of()});
     EXPECT_EQ(table.notes, std::vector<std::string>{"a machine: some views on a machine."});
     EXPECT_EQ(std::get<Quantity>(table.rows.at(0).at(1)).ours.value, 1) << "one holds";
 }
@@ -272,7 +313,7 @@ TEST(Rivals, every_claim_has_a_name_of_its_own_and_a_scene_of_the_run_or_of_the_
 TEST(Rivals, every_row_has_its_ratio_to_the_fastest_bvh)
 {
     const auto rows = list(row_of(packets, 1), row_of(bvh2, 4), embree(Method::packet16, 2));
-    const auto tables = rival_tables(rows, false);
+    const auto tables = rival_tables(rows, {});
     ASSERT_EQ(tables.size(), 3u);
     const auto& table = tables.at(2);
     ASSERT_EQ(table.rows.size(), 3u);

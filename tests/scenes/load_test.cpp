@@ -1,4 +1,6 @@
 // What load_scene() gives for each kind of name, and which options do not concern it.
+#include "core/rays/camera_set.h"
+#include "scenes/mesh_files.h"
 #include "tests/scenes/load_fixture.h"
 
 #include <vector>
@@ -68,6 +70,21 @@ TEST_F(Load, tells_which_options_a_tet_file_does_not_heed)
     expect_unused({.resolution = 3}, "--resolution is");
     request.build = {};
     EXPECT_TRUE(load().messages.empty());
+}
+
+TEST_F(Load, a_tet_file_of_a_procedural_scene_has_its_views)
+{
+    Scene scene = read_scene(prepared);
+    scene.build.source = "atrium.off";
+    request.name = (folder / "packed-rays.tet").string();
+    write_scene(request.name, scene);
+    EXPECT_TRUE(load().views.empty()) << "of a mesh that has the name alone";
+    scene.build.source_hash = hash_of_mesh_file(*find_procedural("atrium"));
+    write_scene(request.name, scene);
+    EXPECT_EQ(load().views.size(), own_view_count);
+    scene.build.source_hash = hash_of_mesh_file(*find_procedural("atrium@2000"));
+    write_scene(request.name, scene);
+    EXPECT_TRUE(load().views.empty()) << "in another size";
 }
 
 TEST_F(Load, tells_that_a_mesh_has_no_resolution)
