@@ -5,7 +5,9 @@
 #include "core/device/device_facts.h"
 #include "core/device/host.h"
 
+#include <memory>
 #include <omp.h>
+#include <vector>
 
 namespace tetrace {
 namespace {
@@ -53,16 +55,35 @@ public:
         if (const auto reason = why_not(0, kernel); !reason.empty()) throw Error(ErrorKind::unsupported, reason);
         const unsigned threads = options.threads != 0 ? options.threads : devices_.front().threads;
         return std::make_unique<embree::EmbreeSession>(
-            kernel, abilities_.native_width,
-            std::make_shared<embree::Accelerator>(*scene.mesh, embree::tree_of(kernel.layout), threads), threads);
+            kernel, abilities_.native_width, tree(*scene.mesh, embree::tree_of(kernel.layout), threads), threads);
     }
 
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t, MathMode, std::span<const Quad>) override { return {}; }
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t, const SessionOptions&) override { return {}; }
 
 private:
+    /// Sessions that are open together share their trees: a scene has a row for each entry point.
+    struct SharedTree {
+        const TriangleMesh* mesh; // alive as long as a session has the tree
+        embree::Tree kind;
+        unsigned threads;
+        std::weak_ptr<const embree::Accelerator> tree;
+    };
+
+    [[nodiscard]] std::shared_ptr<const embree::Accelerator> tree(const TriangleMesh& mesh, embree::Tree kind,
+                                                                  unsigned threads)
+    {
+        std::erase_if(trees_, [](const SharedTree& shared) { return shared.tree.expired(); });
+        for (const SharedTree& shared : trees_)
+            if (shared.mesh == &mesh && shared.kind == kind && shared.threads == threads) return shared.tree.lock();
+        auto made = std::make_shared<const embree::Accelerator>(mesh, kind, threads);
+        trees_.push_back({&mesh, kind, threads, made});
+        return made;
+    }
+
     embree::Abilities abilities_;
     std::vector<Device> devices_;
+    std::vector<SharedTree> trees_;
 };
 
 } // namespace

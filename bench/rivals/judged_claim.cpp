@@ -2,7 +2,6 @@
 
 #include "bench/measuring/figures.h"
 #include "bench/rivals/pay_off.h"
-#include "scenes/catalogue.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +23,8 @@ bool may_have_tets(const Contest& contest, TetsKind kind)
 /// Of that name, and seen as the catalogue's scene is: a file of the user's may have its name.
 bool is_the_scene(const Contest& contest, std::string_view name)
 {
-    const auto entry = std::ranges::find(catalogue(), name, &CatalogueEntry::name);
-    const bool has_views = entry != catalogue().end() && !entry->views.empty();
+    const auto scene = std::ranges::find(rival_scenes(), name, &RivalScene::name);
+    const bool has_views = scene != rival_scenes().end() && scene->has_own_views;
     return is_scene(contest.scene, name) && std::ranges::all_of(contest.rows, [&](const RowRun* row) {
                return row->scene == nullptr || has_views == !row->scene->loaded().views.empty();
            });

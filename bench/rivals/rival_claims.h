@@ -75,7 +75,8 @@ struct RivalClaim {
 /// A scene of the default run, and the rays that it is traced with.
 struct RivalScene {
     std::string_view name;
-    bool has_all_rays = false; ///< else primary, diffuse and random
+    bool has_all_rays = false;  ///< else primary, diffuse and random
+    bool has_own_views = false; ///< CatalogueEntry::views
 };
 /// Those that the claims are about, then those on which tets do badly.
 [[nodiscard]] const std::vector<RivalScene>& rival_scenes();

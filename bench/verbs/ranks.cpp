@@ -134,14 +134,16 @@ bool is_shared(const Options& options)
 {
     const bool takes_shards =
         options.verb == Verb::bench || options.verb == Verb::check || options.verb == Verb::reproduce;
-    const auto& targets = options.targets;
-    const bool is_one_process =
-        options.list || options.defects || std::ranges::find(targets, PaperTarget::rivals) != targets.end();
-    return takes_shards && !options.shard && !is_one_process;
+    return takes_shards && !options.shard && !options.list && !options.defects;
 }
 
 int run_rank(const Rank& rank, const Options& asked, const std::function<int(const Options&)>& run_verb)
 {
+    const auto& targets = asked.targets;
+    if (std::ranges::find(targets, PaperTarget::rivals) != targets.end())
+        throw Error(ErrorKind::usage, fmt::format("reproduce rivals: this is rank {} of {}, and ranks cannot share "
+                                                  "this run; start it without srun or mpirun",
+                                                  rank.number, rank.size));
     require_file(asked, rank);
     Options options = asked;
     options.shard = Shard{rank.size, rank.size};

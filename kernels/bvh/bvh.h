@@ -42,7 +42,13 @@ KERNEL_FN Nearest nothing_before(Ray ray, real end)
 {
     Nearest nearest;
     real bounded = end < real(8.67361737988403547e-19f) ? real(0.0f) : minimum(end, real(18446744073709551616.0f));
+#ifdef HOST_SSE2
+    // gcc makes branches of an axis that is selected.
+    Vec3 size = magnitudes(ray.direction);
+    PRECISE real depth = bounded * maximum(maximum(size.x, size.y), size.z);
+#else
     PRECISE real depth = bounded * magnitude(component(ray.direction, deepest_axis(ray.direction)));
+#endif
     nearest.depth = depth;
     nearest.triangle = NO_HIT;
     nearest.at = 0u;

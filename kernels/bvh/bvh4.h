@@ -11,6 +11,17 @@
 // slot in the last two bits. Planes are those that the ray meets first (near) and last (far) along each axis.
 #if defined(HOST_SSE2)
 // bvh4_node_sse2.h has them in its own way.
+
+// Depths of the planes that the ray meets last, fused where the processor can. By a rounding, other boxes may be
+// entered than elsewhere, but in the same order, and hits are the same (docs/spec/bvhs.md, B7).
+KERNEL_FN __m128 far_depths(const float* planes, __m128 inverse, __m128 offset)
+{
+#ifdef __FMA__
+    return _mm_fmsub_ps(_mm_loadu_ps(planes), inverse, offset);
+#else
+    return _mm_loadu_ps(planes) * inverse - offset;
+#endif
+}
 #elif defined(HAS_FLOAT4)
 #include "kernels/bvh/bvh4_keys_opencl.h"
 #else
@@ -101,6 +112,12 @@ KERNEL_FN uint child_of(uint4 children, uint key)
         ++waiting;                                                                                                     \
     }
 #endif
+
+// To the topmost entry that the nearest hit does not hide.
+#define GO_TO_WAITING                                                                                                  \
+    do {                                                                                                               \
+        --waiting;                                                                                                     \
+    } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.depth));
 
 // A traversal is text, as that of bvh2.h; the loop's body is bvh4_loop.h.
 // Entries of the stack: children with their depths; BVH4_END.

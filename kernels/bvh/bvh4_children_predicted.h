@@ -3,9 +3,13 @@
 // The same order as in bvh4_loop.h. It has the loop's variables, `children`, `keys` without their slots, and `entered`:
 // bit i for child i.
 switch (entered) {
-case 0u:
-    KEEP_BRANCH;
-    child = BVH4_LEAF; // an empty leaf
+case 0u: KEEP_BRANCH;
+#ifdef HOST_SSE2
+    GO_TO_WAITING
+    child = FIRST_OF_ENTRY(scene, stack, waiting);
+#else
+    child = BVH4_LEAF; // an empty leaf: PoCL is faster so
+#endif
     break;
 case 1u: ENTER_CHILD(x) break;
 case 2u: ENTER_CHILD(y) break;

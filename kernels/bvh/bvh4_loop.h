@@ -57,9 +57,7 @@
                 ++at;
             } while (at < behind);
         }
-        do {
-            --waiting;
-        } while (as_real(SECOND_OF_ENTRY(scene, stack, waiting)) > with_slack(nearest.depth));
+        GO_TO_WAITING
         uint next = FIRST_OF_ENTRY(scene, stack, waiting);
         child = params.any_hit != 0u && nearest.triangle != NO_HIT ? BVH4_END : next;
     }

@@ -33,8 +33,10 @@ STRUCT(RayFrame)
 {
     Ray ray;
     __m128 origin;
-    __m128 inverse; // the depth of one unit along each axis
-    __m128 offset;  // origin * inverse
+    __m128 inverse;  // the depth of one unit along each axis
+    __m128 offset;   // origin * inverse
+    Lanes3 inverses; // each component in all lanes
+    Lanes3 offsets;
     Lanes3 origins;
     Lanes3 across; // a point's products with these, from the origin on, are its x and y times 2^20, as in shear.h,
     Lanes3 upwards;
@@ -69,6 +71,8 @@ KERNEL_FN RayFrame frame_of(Ray ray)
             origin,
             inverse,
             origin * inverse,
+            each_in_all_lanes(inverse),
+            each_in_all_lanes(origin * inverse),
             each_in_all_lanes(origin),
             each_in_all_lanes(across),
             each_in_all_lanes(upwards),
@@ -80,9 +84,12 @@ KERNEL_FN Ray ray_of(const RayFrame& frame)
     return frame.ray;
 }
 
-// lost_by() of shear.h.
+// lost_by() of shear.h. What a product loses is a float (B8), so a fused product has the same bits.
 KERNEL_FN __m128 lost_in_lanes(__m128 a, __m128 b, __m128 product)
 {
+#ifdef __FMA__
+    return _mm_fmsub_ps(a, b, product);
+#else
     const __m128 split = _mm_set1_ps(4097.0f);
     const __m128 a_large = a * split;
     const __m128 a_high = a_large - (a_large - a);
@@ -91,12 +98,15 @@ KERNEL_FN __m128 lost_in_lanes(__m128 a, __m128 b, __m128 product)
     const __m128 b_high = b_large - (b_large - b);
     const __m128 b_low = b - b_high;
     return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+#endif
 }
 
-KERNEL_FN bool has_two_signs(__m128 sides)
+// Whether plus - minus is below 0 in some lane, and above in another. One branch: either half of the answer alone is
+// hard to predict. Only an empty mask is negative less one.
+KERNEL_FN bool has_two_signs(__m128 plus, __m128 minus)
 {
-    return _mm_movemask_ps(_mm_cmplt_ps(sides, _mm_setzero_ps())) != 0 &&
-           _mm_movemask_ps(_mm_cmpgt_ps(sides, _mm_setzero_ps())) != 0;
+    const int below = _mm_movemask_ps(_mm_cmplt_ps(plus, minus)), above = _mm_movemask_ps(_mm_cmpgt_ps(plus, minus));
+    return ((below - 1) | (above - 1)) >= 0;
 }
 
 KERNEL_FN __m128 quad_in_lanes(const uint4& quad)
@@ -137,13 +147,13 @@ KERNEL_FN Nearest nearer_triangle(SceneView scene, const RayFrame& frame, Neares
     const __m128 next_x = _mm_shuffle_ps(x, x, _MM_SHUFFLE(0, 0, 2, 1));
     const __m128 next_y = _mm_shuffle_ps(y, y, _MM_SHUFFLE(0, 0, 2, 1));
     const __m128 plus = x * next_y, minus = y * next_x;
-    if (has_two_signs(plus - minus)) return nearest;
+    if (has_two_signs(plus, minus)) return nearest;
 
     const __m128 fine = (plus - minus) + (lost_in_lanes(x, next_y, plus) - lost_in_lanes(y, next_x, minus));
     const __m128 sides = next_lanes(fine); // opposite a, b, c
     const Lanes3 side = each_in_all_lanes(sides),
                  part = each_in_all_lanes(sides * dot_lanes(offset, each_in_all_lanes(frame.forwards)));
     const real determinant = _mm_cvtss_f32(side.x + side.y + side.z);
-    if (has_two_signs(fine) || determinant == 0.0f) return nearest;
+    if (has_two_signs(fine, _mm_setzero_ps()) || determinant == 0.0f) return nearest;
     return nearer(nearest, determinant, _mm_cvtss_f32(part.x + part.y + part.z), quad.w, at);
 }

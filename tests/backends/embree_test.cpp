@@ -126,6 +126,24 @@ TEST(Embree, trees_are_built_as_their_layouts_say)
     EXPECT_EQ(embree::tree_of(Layout::embree_robust), embree::Tree::robust);
 }
 
+TEST(Embree, sessions_that_are_open_together_share_their_tree)
+{
+    const TriangleMesh mesh = needles(300), other = needles(301);
+    const auto opened = [](Method method, Layout layout, const TriangleMesh& of, unsigned threads = 1) {
+        const KernelId kernel{.structure = Structure::bvh, .method = method, .layout = layout, .math = MathMode::fast};
+        return embree_backend().open(0, kernel, {&of, nullptr}, {.threads = threads});
+    };
+    const auto build_s = [](const auto& session) { return session->setup_times().compile_s; };
+    auto single = opened(Method::single, Layout::embree, mesh);
+    const double first_s = build_s(single);
+    EXPECT_EQ(build_s(opened(Method::packet8, Layout::embree, mesh)), first_s);
+    EXPECT_NE(build_s(opened(Method::single, Layout::embree_medium, mesh)), first_s);
+    EXPECT_NE(build_s(opened(Method::single, Layout::embree, other)), first_s);
+    EXPECT_NE(build_s(opened(Method::single, Layout::embree, mesh, 2)), first_s);
+    single.reset();
+    EXPECT_NE(build_s(opened(Method::single, Layout::embree, mesh)), first_s) << "none is left of it";
+}
+
 TEST(Embree, four_traces_no_packets_wider_than_the_processors_and_no_streams)
 {
     EXPECT_EQ(embree::why_not_traced(library(4, 8, false), Method::single), "");

@@ -63,3 +63,11 @@ TEST_F(RivalsRun, wrong_command_lines_are_refused)
     refused("table6 --budget 9", "--budget");
     refused("rivals --out page.what", ".what");
 }
+
+TEST_F(RivalsRun, ranks_that_would_all_do_the_whole_run_are_refused)
+{
+    const ScopedVariable rank{"PMI_RANK", "1"}, size{"PMI_SIZE", "2"}, launch{"TETRACE_LAUNCH", "today"};
+    const Ended ended = run(small + "--out page.json");
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_NE(ended.errors.find("rank 1 of 2"), std::string::npos) << ended.errors;
+}

@@ -82,7 +82,7 @@ TEST_F(Load, a_tet_file_of_a_procedural_scene_has_its_views)
     scene.build.source_hash = hash_of_mesh_file(*find_procedural("atrium"));
     write_scene(request.name, scene);
     EXPECT_EQ(load().views.size(), own_view_count);
-    scene.build.source_hash = hash_of_mesh_file(*find_procedural("atrium@2000"));
+    scene.build.source_hash = hash_of_mesh_file(*find_procedural("atrium@9000"));
     write_scene(request.name, scene);
     EXPECT_TRUE(load().views.empty()) << "in another size";
 }
