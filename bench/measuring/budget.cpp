@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <set>
 
 namespace tetrace {
 
@@ -102,7 +101,6 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
 {
     start_s_ = now();
     if (std::isinf(seconds_)) return;
-    std::set<const SceneWork*> scenes;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         RowRun& row = rows[i];
         progress_line().show("estimating", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
@@ -116,12 +114,21 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
         entry.samples = std::min(samples, fewest_samples);
         entry.sample_s = sample_s;
         entries_.push_back(entry);
-        if (scenes.insert(row.scene).second) views_to_judge_ += entry.views;
+        views_to_judge_[row.scene] = entry.views;
     }
     for (Entry& entry : entries_)
         entry.is_reference = std::ranges::any_of(
             entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
     fit(left_s());
+    if (needed_s() > least_patience * seconds_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("--budget: even the fastest row would take about {}, and {} of {} is left; use "
+                                "--budget {}, fewer --views or a smaller --size",
+                                seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
+                                budget_text(1.25 * (now() - start_s_ + needed_s()))));
+    if (alive() == 1 && needed_s() > left_s())
+        say(fmt::format("--budget: the fastest row alone takes about {}, and {} is left; it is measured all the same",
+                        seconds_text(needed_s()), seconds_text(std::max(0.0, left_s()))));
 }
 
 /// A sample of several passes has one more, which is launched alone, and up to one more than it needs.
@@ -144,10 +151,12 @@ void Budget::traced(const RowRun& row, std::size_t views, double seconds)
     }
 }
 
-void Budget::judged(double seconds)
+void Budget::judged(const SceneWork& scene, double seconds)
 {
     judged_s_ += seconds;
     judged_views_ += 1;
+    if (const auto found = views_to_judge_.find(&scene); found != views_to_judge_.end())
+        found->second = std::max(0.0, found->second - 1);
 }
 
 void Budget::review()
@@ -163,22 +172,47 @@ void Budget::review_timed()
 
 void Budget::fit(double affordable_s)
 {
-    if (entries_.empty()) return;
-    const bool has_references = std::ranges::any_of(entries_, [](const Entry& entry) { return entry.is_reference; });
-    if (const double need_s = needed_s(true); has_references && need_s > affordable_s)
-        reject("openmp's rows that others are compared with", need_s);
-    const double need_s = needed_s();
+    while (needed_s(true) > affordable_s && skip_last_scene(affordable_s)) {
+    }
+    while (needed_s(true) > affordable_s && skip_slowest_reference(affordable_s)) {
+    }
     skip_slowest(affordable_s, false);
-    if (skipped_s_ > 0 && std::ranges::none_of(entries_, [](const Entry& entry) { return is_alive(*entry.row); }))
-        reject("all rows", need_s);
 }
 
-/// Whether the rows fit afterwards.
+/// Of those with a row that is still in the run; never the only one. Whether there was one.
+bool Budget::skip_last_scene(double affordable_s)
+{
+    const auto is_left = [](const Entry& entry) { return is_alive(*entry.row); };
+    const auto first = std::ranges::find_if(entries_, is_left);
+    const auto last = std::find_if(entries_.rbegin(), entries_.rend(), is_left);
+    if (first == entries_.end() || first->row->scene == last->row->scene) return false;
+    const SceneWork* const scene = last->row->scene;
+    for (Entry& entry : entries_)
+        if (entry.row->scene == scene && is_alive(*entry.row)) skip(entry, affordable_s);
+    return true;
+}
+
+/// With the rows that are compared with it; never the only one. Whether there was one.
+bool Budget::skip_slowest_reference(double affordable_s)
+{
+    Entry* const slow = slowest(true);
+    const auto is_other = [&](const Entry& entry) {
+        return &entry != slow && entry.is_reference && is_alive(*entry.row);
+    };
+    if (slow == nullptr || std::ranges::none_of(entries_, is_other)) return false;
+    const RowKey reference = slow->row->key;
+    for (Entry& entry : entries_)
+        if (is_alive(*entry.row) && (&entry == slow || reference_of(entry.row->key) == reference))
+            skip(entry, affordable_s);
+    return true;
+}
+
+/// Whether the rows fit afterwards. The last row stays.
 bool Budget::skip_slowest(double affordable_s, bool among_references)
 {
     while (needed_s() > affordable_s) {
         Entry* const entry = slowest(among_references);
-        if (entry == nullptr) return false;
+        if (entry == nullptr || alive() == 1) return false;
         skip(*entry, affordable_s);
     }
     return true;
@@ -198,6 +232,7 @@ Budget::Entry* Budget::slowest(bool among_references)
 void Budget::skip(Entry& entry, double affordable_s)
 {
     RowRun& row = *entry.row;
+    const double judging_before_s = judging_s();
     if (!fails(row, true)) // an answer that is known to be wrong is always reported
         row.outcome =
             Skipped{Status::skipped,
@@ -205,16 +240,7 @@ void Budget::skip(Entry& entry, double affordable_s)
                                 "measured",
                                 seconds_text(entry.need_s()), seconds_text(std::max(0.0, affordable_s)), sufficient())};
     row.session.reset();
-    skipped_s_ += entry.need_s();
-}
-
-void Budget::reject(const std::string& who, double need_s) const
-{
-    throw Error(ErrorKind::usage,
-                fmt::format("--budget: {} would take about {}, and {} of {} is left; use --budget {}, "
-                            "fewer rows, fewer --views or a smaller --size",
-                            who, seconds_text(need_s), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
-                            sufficient()));
+    skipped_s_ += entry.need_s() + judging_before_s - judging_s();
 }
 
 /// A budget that fits all rows, including the skipped ones: a quarter more than their expected time.
@@ -223,12 +249,29 @@ std::string Budget::sufficient() const
     return budget_text(1.25 * (now() - start_s_ + needed_s() + skipped_s_));
 }
 
+double Budget::judging_s() const
+{
+    if (judged_views_ == 0) return 0;
+    double views = 0;
+    for (const auto& [scene, left] : views_to_judge_)
+        if (std::ranges::any_of(entries_,
+                                [&](const Entry& entry) { return entry.row->scene == scene && is_alive(*entry.row); }))
+            views += left;
+    return judged_s_ / judged_views_ * views;
+}
+
 double Budget::needed_s(bool by_references_only) const
 {
     double sum = judging_s();
     for (const Entry& entry : entries_)
         if (is_alive(*entry.row) && (entry.is_reference || !by_references_only)) sum += entry.need_s();
     return sum;
+}
+
+std::size_t Budget::alive() const
+{
+    return static_cast<std::size_t>(
+        std::ranges::count_if(entries_, [](const Entry& entry) { return is_alive(*entry.row); }));
 }
 
 Budget& no_budget()

@@ -4,6 +4,7 @@
 #include "bench/statistics/statistics.h"
 
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,18 @@ inline constexpr std::uint32_t most_passes = 4096;
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
 /// more, a warm-up pass, and fewest_samples samples with their passes of single launches (latency_passes()). Where the
 /// rows need more than is left, the slowest end as skipped; their text gives their cost and the --budget that runs
-/// them. The others get all the time that they need, whatever the order of the rows. openmp's rows that others are
-/// compared with are skipped last, and only once rows are being timed.
+/// them. The others get all the time that they need, whatever the order of the rows. If judging the rays and openmp's
+/// rows that others are compared with do not fit by themselves, whole scenes are skipped, the last one first, and of
+/// the first scene the slowest kernels of openmp with the rows that are compared with them. The fastest row is left.
 ///
 /// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
 /// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
-/// moment.
+/// moment; if the last row takes longer, that row.
 class Budget {
 public:
+    /// A run that would take longer than so many budgets, even with one row, is refused.
+    static constexpr double least_patience = 4;
+
     /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing.
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
 
@@ -33,17 +38,17 @@ public:
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
     /// samples: the number asked for, in each of so many runs. sample_s: that each lasts at least. Throws Error{usage}
-    /// where no row fits, or not all of openmp's rows that others are compared with.
+    /// where the last row would take more than least_patience budgets.
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
 
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);
-    /// Records that all rows of a view were judged; seconds: without the tracing.
-    void judged(double seconds);
+    /// Records that all rows of a view of the scene were judged; seconds: without the tracing.
+    void judged(const SceneWork& scene, double seconds);
 
-    /// Skips the slowest rows until the others fit. Throws as plan() does.
+    /// Skips rows until the others fit.
     void review();
-    /// The same while rows are timed: may also skip openmp's rows, and throws nothing.
+    /// The same while rows are timed, when nothing is compared any more.
     void review_timed();
 
 private:
@@ -58,16 +63,16 @@ private:
         [[nodiscard]] double need_s() const;
     };
 
-    [[nodiscard]] double judging_s() const
-    {
-        return judged_views_ == 0 ? 0 : judged_s_ / judged_views_ * std::max(0.0, views_to_judge_ - judged_views_);
-    }
+    /// Of the views that have not been judged, of scenes with a row that is still in the run.
+    [[nodiscard]] double judging_s() const;
     [[nodiscard]] double needed_s(bool by_references_only = false) const;
+    [[nodiscard]] std::size_t alive() const;
     [[nodiscard]] Entry* slowest(bool among_references);
     void skip(Entry& entry, double affordable_s);
+    bool skip_last_scene(double affordable_s);
+    bool skip_slowest_reference(double affordable_s);
     bool skip_slowest(double affordable_s, bool among_references);
     void fit(double affordable_s);
-    [[noreturn]] void reject(const std::string& who, double need_s) const;
     [[nodiscard]] std::string sufficient() const;
 
     double seconds_;
@@ -76,7 +81,7 @@ private:
     std::vector<Entry> entries_;
     double skipped_s_ = 0; ///< time that the skipped rows would have needed
     double judged_s_ = 0, judged_views_ = 0;
-    double views_to_judge_ = 0; ///< of all scenes
+    std::map<const SceneWork*, double> views_to_judge_;
 };
 
 /// For runs without a limit.

@@ -319,7 +319,7 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
             });
             budget.review();
         }
-        budget.judged(budget.now() - start_s - traced_s);
+        budget.judged(scene, budget.now() - start_s - traced_s);
     }
     for (RowRun* row : rows) {
         progress_line().show(stage, 1, -1, row_label(row->key) + ", again");

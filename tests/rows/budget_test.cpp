@@ -160,7 +160,7 @@ TEST_F(BudgetOfRows, is_not_spent_on_what_does_not_fit)
     Budget limit = budget_of(100);
     const std::string error = error_of([&] { limit.plan(rows_, 10); });
     EXPECT_TRUE(error.starts_with("usage: ")) << error;
-    EXPECT_TRUE(contains(error, "all rows would take about 283 min"));
+    EXPECT_TRUE(contains(error, "even the fastest row would take about 283 min"));
     EXPECT_LE(now_s_ - 100, 500 + 1) << "two launches of a quarter of the rays";
 }
 
@@ -211,16 +211,49 @@ TEST_F(BudgetOfRows, openmps_rows_that_others_are_compared_with_are_never_skippe
     expect_skipped(alone);
 }
 
-TEST_F(BudgetOfRows, that_not_even_those_fit_ends_the_run_with_a_message)
+TEST_F(BudgetOfRows, of_openmps_rows_that_do_not_fit_the_slowest_go_with_the_rows_that_are_compared_with_them)
+{
+    rows_.reserve(4);
+    const std::size_t slow = add_row(Layout::tet80, 5, "openmp"), with_slow = add_row(Layout::tet80, 0.01);
+    const std::size_t fast = add_row(Layout::tet96, 2, "openmp"), with_fast = add_row(Layout::tet96, 1);
+    Budget limit = budget_of(100);
+    static_cast<void>(run(limit));
+    expect_skipped(slow);
+    expect_skipped(with_slow);
+    expect_measured(fast);
+    expect_measured(with_fast);
+}
+
+TEST_F(BudgetOfRows, the_last_row_is_measured_although_it_does_not_fit)
 {
     rows_.reserve(2);
-    add_row(Layout::tet80, 10, "openmp");
-    add_row(Layout::tet80, 1);
+    const std::size_t last = add_row(Layout::tet80, 10, "openmp"), other = add_row(Layout::tet80, 1);
     Budget limit = budget_of(100);
-    const std::string error = error_of([&] { limit.plan(rows_, 10); });
-    EXPECT_TRUE(error.starts_with("usage: ")) << error;
-    EXPECT_TRUE(contains(error, "openmp's rows that others are compared with would take about 2 min 50 s"));
-    EXPECT_TRUE(contains(error, "use --budget "));
+    static_cast<void>(run(limit));
+    expect_measured(last);
+    expect_skipped(other);
+}
+
+TEST_F(BudgetOfRows, that_judging_takes_too_long_skips_whole_scenes_from_the_last_on)
+{
+    Options more = options_;
+    SceneWork second{loaded_cubes(), more}, third{loaded_cubes(), more};
+    rows_.reserve(3);
+    for (std::size_t row = 0; row < 3; ++row)
+        add_row(Layout::tet80, 0.1);
+    rows_[1].scene = &second;
+    rows_[2].scene = &third;
+    Budget limit = budget_of(100);
+    limit.plan(rows_, 10);
+    limit.judged(scene_, 30); // so 150 s more for the other five views
+    limit.review();
+    EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
+    EXPECT_EQ(status_of(rows_[1]), Status::ok) << reason_of(rows_[1]);
+    expect_skipped(2);
+    limit.judged(scene_, 1000);
+    limit.review();
+    expect_skipped(1);
+    EXPECT_EQ(status_of(rows_[0]), Status::ok) << "the last scene stays";
 }
 
 TEST_F(BudgetOfRows, a_fast_rows_samples_take_their_own_time_however_slow_its_first_passes_were)
