@@ -122,12 +122,12 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
     fit(left_s());
     if (needed_s() > least_patience * seconds_)
         throw Error(ErrorKind::usage,
-                    fmt::format("--budget: even the fastest row would take about {}, and {} of {} is left; use "
-                                "--budget {}, fewer --views or a smaller --size",
+                    fmt::format("--budget: even one row would take about {}, and {} of {} is left; use "
+                                "--budget {}, other rows, fewer --views or a smaller --size",
                                 seconds_text(needed_s()), seconds_text(std::max(0.0, left_s())), seconds_text(seconds_),
                                 budget_text(1.25 * (now() - start_s_ + needed_s()))));
     if (alive() == 1 && needed_s() > left_s())
-        say(fmt::format("--budget: the fastest row alone takes about {}, and {} is left; it is measured all the same",
+        say(fmt::format("--budget: one row alone takes about {}, and {} is left; it is measured all the same",
                         seconds_text(needed_s()), seconds_text(std::max(0.0, left_s()))));
 }
 

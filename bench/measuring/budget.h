@@ -18,11 +18,12 @@ inline constexpr std::uint32_t most_passes = 4096;
 /// rows need more than is left, the slowest end as skipped; their text gives their cost and the --budget that runs
 /// them. The others get all the time that they need, whatever the order of the rows. If judging the rays and openmp's
 /// rows that others are compared with do not fit by themselves, whole scenes are skipped, the last one first, and of
-/// the first scene the slowest kernels of openmp with the rows that are compared with them. The fastest row is left.
+/// the first scene the slowest kernels of openmp with the rows that are compared with them. One row is left: of openmp,
+/// where others are compared with it.
 ///
 /// Estimates are corrected as rows are traced. plan() holds the rows to the budget itself. Later reviews allow a
 /// quarter more, so that noise skips no row. A run takes at most 1.25 budgets plus the pass that is running at that
-/// moment; if the last row takes longer, that row.
+/// moment; if the last row with the judging of its scene takes longer, as long as these.
 class Budget {
 public:
     /// A run that would take longer than so many budgets, even with one row, is refused.

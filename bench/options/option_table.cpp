@@ -284,8 +284,8 @@ std::vector<OptionRow> judging_options()
         {"Measuring", "--budget", "TIME",
          "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
          "(if as many are asked for), since fewer give no interval. If 5 do not fit, the slowest rows are "
-         "skipped, or whole scenes, the last one first, and the result names the budget that they need. The fastest "
-         "row is measured in any case, unless it takes four budgets. Else a run takes at most a quarter longer. "
+         "skipped, or whole scenes, the last one first, and the result names the budget that they need. One row "
+         "is measured in any case, unless it takes four budgets. Else a run takes at most a quarter longer. "
          "Loading scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
          bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
         {"Measuring", "--budget", "TIME",

@@ -123,7 +123,9 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
          {"paid_after", "tets have paid after", "G rays", 3},
          {"paid_after_s", "or", "s of tracing", 1}},
         {"A ratio is of rates: above 1 the walk through tets is faster. Its interval is of the samples of one run, "
-         "or over the runs of --runs; runs differ by more than samples. Builds are with all threads, packing included. "
+         "or over the runs of --runs; runs differ by more than samples. Builds include packing; tets that come from "
+         "the "
+         "cache keep the time that they took. "
          "'Paid' is for the fastest walk against "
          "the fastest BVH."}};
     if (const std::string note = embree_note(contests); !note.empty()) table.notes.push_back(note);
