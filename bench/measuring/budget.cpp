@@ -120,7 +120,7 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
         entry.is_reference = std::ranges::any_of(
             entries_, [&](const Entry& other) { return reference_of(other.row->key) == entry.row->key; });
     fit(left_s());
-    if (needed_s() > least_patience * seconds_)
+    if (needed_s() > max_budgets * seconds_)
         throw Error(ErrorKind::usage,
                     fmt::format("--budget: even one row would take about {}, and {} of {} is left; use "
                                 "--budget {}, other rows, fewer --views or a smaller --size",

@@ -26,8 +26,8 @@ inline constexpr std::uint32_t most_passes = 4096;
 /// moment; if the last row with the judging of its scene takes longer, as long as these.
 class Budget {
 public:
-    /// A run that would take longer than so many budgets, even with one row, is refused.
-    static constexpr double least_patience = 4;
+    /// A run is refused if even one row would take longer than this many budgets.
+    static constexpr double max_budgets = 4;
 
     /// Starts the clock. seconds: infinity means no limit; then all functions below do nothing.
     explicit Budget(double seconds = std::numeric_limits<double>::infinity(), Clock clock = host_clock());
@@ -39,7 +39,7 @@ public:
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
     /// samples: the number asked for, in each of so many runs. sample_s: that each lasts at least. Throws Error{usage}
-    /// where the last row would take more than least_patience budgets.
+    /// where the last row would take more than max_budgets budgets.
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
 
     /// Records that some views of a row took this many seconds.
