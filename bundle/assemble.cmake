@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/libraries.cmake)
 include(${SOURCE}/packed.cmake)
 
-set(largest_bytes 67108864) # 64 MiB: what is carried to a machine, and what such machines' transfers accept
+set(max_bytes 67108864) # 64 MiB: what is carried to a machine, and what such machines' transfers accept
 
 file(REMOVE_RECURSE ${BUNDLE})
 file(COPY ${PROGRAM} DESTINATION ${BUNDLE}/bin)
@@ -50,7 +50,7 @@ math(EXPR tenths "${bytes} * 10 / 1048576")
 math(EXPR whole "${tenths} / 10")
 math(EXPR tenth "${tenths} % 10")
 message(STATUS "${BUNDLE}: ${whole}.${tenth} MiB (${bytes} bytes), scenes: ${SCENES}, needs glibc ${GLIBC}")
-if(bytes GREATER largest_bytes)
+if(bytes GREATER max_bytes)
   message(FATAL_ERROR "The bundle has ${bytes} bytes, more than the ${largest_bytes} (64 MiB) that it may have; its "
                       "largest parts: du -a ${BUNDLE} | sort -n | tail")
 endif()

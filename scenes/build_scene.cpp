@@ -36,7 +36,7 @@ bool can_execute(const fs::path& path)
 }
 
 constexpr const char* builder_name = "tetrace-builder";
-constexpr double least_mesh_only_s = 60;
+constexpr double min_mesh_only_s = 60;
 constexpr double to_check_and_write_s = 120; // what an interrupted optimiser has reached; a second Ctrl-C ends it
 
 fs::path in_search_path()
@@ -228,9 +228,9 @@ Run run_builder(const fs::path& builder, const std::vector<std::string>& argumen
             if (!progress) return;
             // TetGen does not tell how far it is.
             const bool knows = run.report.fraction >= 0 || options.time_limit_s <= elapsed_s;
-            const double most_min = std::ceil((options.time_limit_s - elapsed_s) / 60);
+            const double max_minutes = std::ceil((options.time_limit_s - elapsed_s) / 60);
             progress(fmt::format("building {}: {}", label, run.report.stage), run.report.fraction,
-                     knows ? run.report.detail : fmt::format("at most {:.0f} min more", most_min));
+                     knows ? run.report.detail : fmt::format("at most {:.0f} min more", max_minutes));
         });
     return run;
 }
@@ -270,7 +270,7 @@ BuildEnd build_scene(const fs::path& mesh, const fs::path& out, const std::strin
         ending_of(run.outcome, tried), run.report, run.outcome.wall_s);
     if (!options.mesh_will_do || !run.only_tets_failed()) throw error;
     BuildOptions mesh_only = options;
-    mesh_only.time_limit_s = std::max(options.time_limit_s, least_mesh_only_s);
+    mesh_only.time_limit_s = std::max(options.time_limit_s, min_mesh_only_s);
     std::vector<std::string> arguments = arguments_of(mesh, out, label, mesh_only);
     arguments.emplace_back("--mesh-only");
     const Run second = run_builder(builder, arguments, label, mesh_only, progress);

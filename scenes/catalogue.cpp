@@ -121,10 +121,10 @@ std::optional<std::uint32_t> lattice_resolution(const std::string& name)
 {
     if (name == "lattice") return usual_lattice;
     const auto resolution = number_behind("lattice:", name);
-    if (resolution && (*resolution < least_lattice || *resolution > most_lattice))
+    if (resolution && (*resolution < min_lattice || *resolution > max_lattice))
         throw Error(ErrorKind::usage,
                     fmt::format("scene {}: behind the colon stands the number of its cubes along an axis, {} to {}",
-                                name, least_lattice, most_lattice));
+                                name, min_lattice, max_lattice));
     return resolution;
 }
 

@@ -47,7 +47,7 @@ struct ProceduralScene {
 [[nodiscard]] std::optional<ProceduralScene> find_procedural(const std::string& name);
 
 /// Cubes along an axis that `lattice` can have; of these more than 563 have more tets than links can name.
-inline constexpr std::uint32_t least_lattice = 4, most_lattice = 563;
+inline constexpr std::uint32_t min_lattice = 4, max_lattice = 563;
 /// What `lattice` has where no number is given: 200 MB in layout half32.
 inline constexpr std::uint32_t usual_lattice = 64;
 [[nodiscard]] constexpr std::uint64_t lattice_tets(std::uint64_t resolution)

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t largest_member = std::size_t{256} << 20;
+constexpr std::size_t max_member = std::size_t{256} << 20;
 // The same place in Debian 12 (libcgal-demo 5.5.1) and 13 (6.0.1).
 constexpr const char* package_archive = "usr/share/doc/libcgal-dev/data.tar.gz";
 
@@ -57,7 +57,7 @@ fs::path unpacked(const CatalogueEntry& entry, const fs::path& archive)
     const std::string key = fmt::format("{} {} {}", archive.string(), fs::file_size(archive), date);
     fs::path target = cached_mesh_path(fs::path(entry.archive_member).filename().string(), hash_of(key));
     if (is_file(target)) return target;
-    const std::vector<std::byte> bytes = read_archive_member(archive, entry.archive_member, largest_member);
+    const std::vector<std::byte> bytes = read_archive_member(archive, entry.archive_member, max_member);
     AtomicFile file(target);
     file.write(bytes);
     file.commit();

@@ -61,7 +61,7 @@ constexpr std::array<SectionKind, 7> kinds = {{{"information", 1},
                                                {"domain lines", sizeof(float)}}};
 enum SectionId : std::size_t { information, mesh_vertices, triangles, origins, tet_vertices, tets, domain_lines };
 
-constexpr std::uint32_t most_divisions = 128; // those of the finest cubes; the entry grid grows with their square
+constexpr std::uint32_t max_divisions = 128; // those of the finest cubes; the entry grid grows with their square
 
 using Table = std::array<SectionEntry, kinds.size()>;
 constexpr std::size_t header_bytes = sizeof(FileHeader) + sizeof(Table) + sizeof(std::uint64_t);
@@ -199,7 +199,7 @@ std::vector<Element> SceneReader::read_section(SectionId id)
 void SceneReader::set_lines(Domain& domain, const std::vector<float>& lines) const
 {
     const std::uint64_t per_axis = std::uint64_t{domain.divisions} + 1;
-    if (domain.divisions == 0 || domain.divisions > most_divisions || lines.size() != 3 * per_axis)
+    if (domain.divisions == 0 || domain.divisions > max_divisions || lines.size() != 3 * per_axis)
         refuse("domain lines", fmt::format("{} lines for {} divisions", lines.size(), domain.divisions));
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto first = lines.begin() + static_cast<std::ptrdiff_t>(axis * per_axis);

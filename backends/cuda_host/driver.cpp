@@ -34,8 +34,8 @@ using namespace cuda;
 
 constexpr int emulated_version = 13000;
 constexpr int emulated_capability = 90;
-constexpr unsigned most_shared_bytes = 48 * 1024; // of a block, as CUDA has it without an attribute
-constexpr std::size_t device_alignment = 256;     // as cuMemAlloc's
+constexpr unsigned max_shared_bytes = 48 * 1024; // of a block, as CUDA has it without an attribute
+constexpr std::size_t device_alignment = 256;    // as cuMemAlloc's
 constexpr std::size_t copy_piece = std::size_t{1} << 20;
 
 thread_local int host_threads = 0; // of this thread's next launches; 0: all
@@ -111,7 +111,7 @@ Result device_name(char* name, int size, Ordinal)
 Result device_attribute(int* value, int attribute, Ordinal)
 {
     switch (attribute) {
-    case attribute_block_threads: *value = most_block_threads; return success;
+    case attribute_block_threads: *value = max_block_threads; return success;
     case attribute_warp_size: *value = warp_size; return success;
     case attribute_multiprocessors: *value = omp_get_num_procs(); return success;
     case attribute_capability_major: *value = emulated_capability / 10; return success;
@@ -331,7 +331,7 @@ Result launch(FunctionHandle function, unsigned grid_x, unsigned grid_y, unsigne
               unsigned block_y, unsigned block_z, unsigned shared_bytes, StreamHandle, void** parameters, void**)
 {
     const std::uint64_t threads = std::uint64_t{block_x} * block_y * block_z;
-    if (grid_x == 0 || threads == 0 || threads > most_block_threads || shared_bytes > most_shared_bytes)
+    if (grid_x == 0 || threads == 0 || threads > max_block_threads || shared_bytes > max_shared_bytes)
         return error_invalid_value;
     if (grid_y != 1 || grid_z != 1) return error_not_supported;
     run_grid(function->entry, grid_x, {block_x, block_y, block_z}, parameters);

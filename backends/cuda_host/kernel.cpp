@@ -10,7 +10,7 @@ namespace {
 
 #ifdef SET_ENTRY
 // What a block may have at most: no launch asks for more.
-thread_local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * tetrace::cuda_host::most_block_threads];
+thread_local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * tetrace::cuda_host::max_block_threads];
 #endif
 static_assert(sizeof(Hit) == sizeof(tetrace::Hit) && sizeof(LaunchParams) == sizeof(tetrace::LaunchParams));
 } // namespace

@@ -39,7 +39,7 @@ struct Dimensions {
 extern constinit thread_local Dimensions current_thread, current_block, block_size;
 
 constexpr std::uint32_t warp_size = 1;
-constexpr std::uint32_t most_block_threads = 1024;
+constexpr std::uint32_t max_block_threads = 1024;
 
 // Operands are never NaN. A device has an instruction for this; the host's library would make a call, to handle NaN.
 inline float lesser(float a, float b)

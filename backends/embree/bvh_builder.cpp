@@ -14,7 +14,7 @@
 namespace tetrace {
 namespace {
 
-constexpr unsigned most_in_leaf = 4; // triangles
+constexpr unsigned max_in_leaf = 4; // triangles
 /// Embree halves by number, whatever the heuristic says, from this many levels above its limit on.
 constexpr unsigned embrees_last_levels = 8;
 
@@ -122,12 +122,12 @@ struct EmbreeRelease {
 };
 
 RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& primitives, const TriangleMesh& mesh,
-                                  std::uint32_t most_depth)
+                                  std::uint32_t max_depth)
 {
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
-    arguments.maxDepth = most_depth + embrees_last_levels; // a tree that is not too deep is the heuristic's alone
-    arguments.maxLeafSize = most_in_leaf;
+    arguments.maxDepth = max_depth + embrees_last_levels; // a tree that is not too deep is the heuristic's alone
+    arguments.maxLeafSize = max_in_leaf;
     arguments.bvh = bvh;
     arguments.primitives = primitives.data();
     arguments.primitiveCount = mesh.triangles.size();
@@ -142,14 +142,14 @@ RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& pr
 }
 
 /// Nothing if the tree would be deeper than Embree was told.
-std::optional<Bvh> build_with_embree(const TriangleMesh& mesh, unsigned threads, std::uint32_t most_depth)
+std::optional<Bvh> build_with_embree(const TriangleMesh& mesh, unsigned threads, std::uint32_t max_depth)
 {
     const std::string config = threads == 0 ? "" : "threads=" + std::to_string(threads);
     const std::unique_ptr<RTCDeviceTy, EmbreeRelease> device(rtcNewDevice(config.c_str()));
     if (device == nullptr) throw Error(ErrorKind::internal, "Embree: no device could be made");
     const std::unique_ptr<RTCBVHTy, EmbreeRelease> bvh(rtcNewBVH(device.get()));
     auto primitives = build_primitives(mesh);
-    const auto arguments = build_arguments(bvh.get(), primitives, mesh, most_depth);
+    const auto arguments = build_arguments(bvh.get(), primitives, mesh, max_depth);
     const auto* root = static_cast<const EmbreeNode*>(rtcBuildBVH(&arguments));
     const RTCError error = rtcGetDeviceError(device.get());
     if (error == RTC_ERROR_OUT_OF_MEMORY)
@@ -173,9 +173,9 @@ void check_bvh_input(const TriangleMesh& mesh)
         for (const auto v : mesh.triangles[i]) {
             if (v >= mesh.vertices.size()) refuse("triangle " + std::to_string(i) + " has a missing corner");
             for (int axis = 0; axis < 3; ++axis)
-                if (!(std::abs(mesh.vertices[v][axis]) <= largest_bvh_coordinate))
+                if (!(std::abs(mesh.vertices[v][axis]) <= max_bvh_coordinate))
                     refuse("triangle " + std::to_string(i) + " has a corner that is not finite or beyond " +
-                           std::to_string(static_cast<int>(largest_bvh_coordinate)) +
+                           std::to_string(static_cast<int>(max_bvh_coordinate)) +
                            " domain units; place the mesh in the domain");
         }
     }
@@ -183,22 +183,22 @@ void check_bvh_input(const TriangleMesh& mesh)
 
 } // namespace
 
-BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads, std::uint32_t most_depth)
+BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads, std::uint32_t max_depth)
 {
     check_bvh_input(mesh);
     const Stopwatch watch;
     std::fenv_t environment; // Embree asserts rounding to nearest, and may leave the thread flushing denormals
     std::fegetenv(&environment);
     std::fesetenv(FE_DFL_ENV);
-    auto bvh = build_with_embree(mesh, threads, most_depth);
+    auto bvh = build_with_embree(mesh, threads, max_depth);
     std::fesetenv(&environment);
 
     BuiltBvh built;
-    const bool fits = bvh && depth_of(*bvh) <= most_depth;
+    const bool fits = bvh && depth_of(*bvh) <= max_depth;
     built.bvh = fits ? std::move(*bvh) : build_balanced_bvh(mesh);
     if (!fits)
         built.fall_back = "triangles are halved by number: by the surface area heuristic more than " +
-                          std::to_string(most_depth) + " nodes would stand above a leaf";
+                          std::to_string(max_depth) + " nodes would stand above a leaf";
     built.spatial_splits = built.bvh.references.size() - mesh.triangles.size();
     built.build_s = watch.seconds();
     return built;

@@ -10,7 +10,7 @@ namespace tetrace {
 
 /// The largest coordinate, in domain units, for which a BVH is built: the same limit as for rays and walks
 /// (core/base/exact.h).
-inline constexpr float largest_bvh_coordinate = 64;
+inline constexpr float max_bvh_coordinate = 64;
 
 /// A BVH and how it was built.
 struct BuiltBvh {
@@ -23,10 +23,10 @@ struct BuiltBvh {
 /// Builds a binary BVH by the surface area heuristic with spatial splits, with Embree; leaves have 1 to 4 triangles,
 /// and at most BVH2_STACK inner nodes stand above a leaf: where the heuristic would have more, triangles are halved by
 /// number (build_balanced_bvh()), and fall_back says so. The tree does not depend on the number of threads.
-/// mesh: in domain units. threads: of Embree; 0: all. most_depth: in place of BVH2_STACK.
+/// mesh: in domain units. threads: of Embree; 0: all. max_depth: in place of BVH2_STACK.
 /// Throws Error{invalid_input} for a mesh without triangles, or with a corner that is missing, not finite or beyond
-/// largest_bvh_coordinate; Error{unsupported} where Embree runs out of memory.
+/// max_bvh_coordinate; Error{unsupported} where Embree runs out of memory.
 /// Source: Stich, Friedrich, Dietrich 2009, Spatial Splits in Bounding Volume Hierarchies; Embree's rtcBuildBVH.
-[[nodiscard]] BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads = 0, std::uint32_t most_depth = BVH2_STACK);
+[[nodiscard]] BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads = 0, std::uint32_t max_depth = BVH2_STACK);
 
 } // namespace tetrace

@@ -49,7 +49,7 @@ public:
 
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
-        return opencl::measure_device(*context(device, options.threads), largest_buffer(devices().at(device), options));
+        return opencl::measure_device(*context(device, options.threads), max_buffer(devices().at(device), options));
     }
 
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override

@@ -15,7 +15,7 @@ namespace tetrace::opencl {
 
 namespace {
 
-constexpr std::size_t largest_group = std::size_t{TILE_WIDTH} * 8;
+constexpr std::size_t max_group = std::size_t{TILE_WIDTH} * 8;
 
 template <class Value>
 Value asked(const cl::Device& device, cl_device_info what)
@@ -81,9 +81,9 @@ std::string reason_against(const cl::Device& device, std::size_t group_items)
     if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "its driver says that it is not available";
     if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "its driver has no compiler for OpenCL C";
     if (!device.getInfo<CL_DEVICE_ENDIAN_LITTLE>()) return "it is big-endian, packed scenes are not";
-    if (group_items < largest_group)
+    if (group_items < max_group)
         return "its work groups have " + std::to_string(group_items) + " items, a tile needs " +
-               std::to_string(largest_group);
+               std::to_string(max_group);
     if (device.getInfo<CL_DEVICE_VERSION>().starts_with("OpenCL 1.0") ||
         device.getInfo<CL_DEVICE_VERSION>().starts_with("OpenCL 1.1"))
         return "it offers " + trimmed(device.getInfo<CL_DEVICE_VERSION>()) + ", the kernels need OpenCL 1.2";

@@ -23,7 +23,7 @@ enum Argument : cl_uint {
 /// More kernels are not in flight together.
 constexpr std::size_t max_queues = 8;
 
-constexpr std::size_t smallest_buffer_bytes = 16; // OpenCL has no empty buffers
+constexpr std::size_t min_buffer_bytes = 16; // OpenCL has no empty buffers
 
 /// The most items that any device holds in a compute unit at once (NVIDIA's number). Groups that do not fit start when
 /// all work is done. A processor's unit is one thread, which works on one group at a time.
@@ -31,7 +31,7 @@ constexpr std::size_t resident_items = 2048;
 
 cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
-    return {context, flags, std::max(bytes, smallest_buffer_bytes)};
+    return {context, flags, std::max(bytes, min_buffer_bytes)};
 }
 
 cl::Buffer make_uploaded(const cl::Context& context, const cl::CommandQueue& queue, std::span<const std::byte> bytes)
@@ -47,7 +47,7 @@ OpenclSession::OpenclSession(std::shared_ptr<Context> context, const KernelId& k
                              const SessionOptions& options)
     : context_(std::move(context)), kernel_id_(kernel), cache_(options.program_cache),
       starts_outside_(kernel.task == Task::trace && structure_of(kernel.layout) == Structure::cdt),
-      tile_height_(tile_height_of(options)), max_buffer_bytes_(largest_buffer(context_->facts(), options)),
+      tile_height_(tile_height_of(options)), max_buffer_bytes_(max_buffer(context_->facts(), options)),
       domain_(domain_of(scene)), tet_parts_(tet_parts(scene, max_buffer_bytes_)), scene_bytes_(scene.bytes()),
       launches_(tile_height_)
 {

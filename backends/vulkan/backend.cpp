@@ -57,7 +57,7 @@ public:
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override
     {
         return vulkan::measure_device(vulkan::Context(found().devices.at(device)),
-                                      largest_buffer(devices().at(device), options));
+                                      max_buffer(devices().at(device), options));
     }
 
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override

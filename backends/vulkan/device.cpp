@@ -103,7 +103,7 @@ void describe(const vk::raii::PhysicalDevice& device, FoundDevice& found)
                                 .get<vk::PhysicalDeviceDriverProperties>();
         found.facts.driver = text_of(driver.driverName) + " " + text_of(driver.driverInfo);
         found.facts.implementation = implementation_of(text_of(driver.driverName), text_of(driver.driverInfo));
-        found.facts.most_steps = most_steps_of(found.facts.implementation);
+        found.facts.max_steps = max_steps_of(found.facts.implementation);
     }
     if (has_extension(extensions, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME))
         found.facts.pci =
@@ -165,7 +165,7 @@ std::string implementation_of(std::string_view driver_name, std::string_view dri
     return implementation_name(driver_name == "llvmpipe" ? "lavapipe" : driver_name, driver_info);
 }
 
-std::uint32_t most_steps_of(std::string_view implementation)
+std::uint32_t max_steps_of(std::string_view implementation)
 {
     constexpr std::string_view lavapipe = "lavapipe";
     constexpr unsigned first_without_limit = 25;
@@ -196,8 +196,8 @@ std::string why_not_usable(const Limits& limits)
     if (!limits.queue_family) return "no queue of the device both computes and has timestamps";
     if (limits.push_constant_bytes < sizeof(LaunchParams))
         return too_small("bytes of push constants", limits.push_constant_bytes, sizeof(LaunchParams));
-    if (limits.storage_buffers < least_storage_buffers)
-        return too_small("storage buffers of a shader", limits.storage_buffers, least_storage_buffers);
+    if (limits.storage_buffers < min_storage_buffers)
+        return too_small("storage buffers of a shader", limits.storage_buffers, min_storage_buffers);
     if (limits.group_items < tile_items) return too_small("items of a work group", limits.group_items, tile_items);
     if (limits.group_height < 8) return too_small("height of a work group", limits.group_height, 8);
     return {};

@@ -50,7 +50,7 @@ struct FoundDevice {
 };
 
 /// For the structure with the most arrays: a device with fewer buffers cannot be used.
-inline constexpr std::uint32_t least_storage_buffers = storage_buffers_needed(5, false);
+inline constexpr std::uint32_t min_storage_buffers = storage_buffers_needed(5, false);
 
 /// Every device of every driver, or one entry that says why there is none. Throws nothing.
 [[nodiscard]] std::vector<FoundDevice> find_devices();
@@ -63,7 +63,7 @@ inline constexpr std::uint32_t least_storage_buffers = storage_buffers_needed(5,
 /// ends the loops of an invocation after 65,535 iterations in all, without an error (tests/expected/README.md,
 /// `loop_of_70000_iterations`). A walk that asks whether it goes in circles follows its path twice: 2 * 28,000 steps
 /// and the first STEPS_BEFORE_DOUBT leave 5,439 iterations for ties and for the search of the entry.
-[[nodiscard]] std::uint32_t most_steps_of(std::string_view implementation);
+[[nodiscard]] std::uint32_t max_steps_of(std::string_view implementation);
 
 /// A driver's name and version in short, from VkPhysicalDeviceDriverProperties: "lavapipe-22.3", "radv-22.3"; of
 /// NVIDIA's drivers the branch, "nvidia-580". Names that are not known are in lower case, a version that is not found

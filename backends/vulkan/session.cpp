@@ -58,12 +58,12 @@ constexpr std::uint32_t structure_binding = 0; // of a driver's BVH, as in rt/it
 constexpr TexelBinding rays_as_texels{FIRST_QUADS_BINDING + RAYS_BINDING, vk::Format::eR32G32B32A32Uint};
 
 /// Of a dispatch, or of a launch of a pipeline.
-std::uint32_t most_tiles(const FoundDevice& found, const KernelId& kernel, unsigned tile_height)
+std::uint32_t max_tiles(const FoundDevice& found, const KernelId& kernel, unsigned tile_height)
 {
     const std::uint32_t groups = found.limits.groups;
     if (tracer_of(kernel) == RayTracer::queries) return groups;
     return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(groups, found.ray_tracing.most_rays / (TILE_WIDTH * tile_height)));
+        std::min<std::uint64_t>(groups, found.ray_tracing.max_rays / (TILE_WIDTH * tile_height)));
 }
 
 void require_variant(const KernelId& kernel, const TetParts& parts)
@@ -78,8 +78,8 @@ void require_variant(const KernelId& kernel, const TetParts& parts)
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const PackedScene& scene,
                              const SessionOptions& options)
-    : context_(found), tet_parts_(tet_parts(scene, largest_buffer(found.facts, options))),
-      max_buffer_bytes_(largest_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
+    : context_(found), tet_parts_(tet_parts(scene, max_buffer(found.facts, options))),
+      max_buffer_bytes_(max_buffer(found.facts, options)), tile_height_(tile_height_of(options)), kernel_(kernel),
       program_cache_(options.program_cache), in_texels_(is_in_texels(found, scene, tet_parts_)),
       stack_entries_(in_texels_ ? array_entries(scene.stack_entries) : 0), domain_(domain_of(scene)),
       launches_(tile_height_, found.limits.groups)
@@ -94,9 +94,9 @@ VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, c
 
 VulkanSession::VulkanSession(const FoundDevice& found, const KernelId& kernel, const TriangleMesh& mesh,
                              const SessionOptions& options)
-    : context_(found, tracer_of(kernel)), max_buffer_bytes_(largest_buffer(found.facts, options)),
+    : context_(found, tracer_of(kernel)), max_buffer_bytes_(max_buffer(found.facts, options)),
       tile_height_(tile_height_of(options)), kernel_(kernel), program_cache_(options.program_cache),
-      launches_(tile_height_, most_tiles(found, kernel, tile_height_))
+      launches_(tile_height_, max_tiles(found, kernel, tile_height_))
 {
     acceleration_.emplace(context_, mesh);
     bytes_ = acceleration_->bytes();

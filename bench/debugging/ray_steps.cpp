@@ -183,7 +183,7 @@ RayOnDevice follow_ray(RowRun& row, std::size_t view, const ImagePixel& pixel)
     const auto trace = [&](std::uint32_t cap) {
         TraceJob job = image;
         job.max_steps = cap;
-        const std::uint32_t shown = std::min(ray.hit.steps, most_shown_steps); // 0 at first: not known
+        const std::uint32_t shown = std::min(ray.hit.steps, max_shown_steps); // 0 at first: not known
         progress_line().show("following the ray on " + row.backend->name(),
                              shown == 0 ? -1 : static_cast<double>(cap) / shown);
         static_cast<void>(row.session->trace(job, hits));
@@ -192,8 +192,8 @@ RayOnDevice follow_ray(RowRun& row, std::size_t view, const ImagePixel& pixel)
     ray.hit = trace(image.max_steps);
     if (row.key.kernel.structure == Structure::cdt) {
         const bool has_end = line.given && line.given->end < NO_END;
-        const auto path = walk_path(ray.hit, image.max_steps, trace, most_shown_steps);
-        ray.is_cut = ray.hit.steps > most_shown_steps;
+        const auto path = walk_path(ray.hit, image.max_steps, trace, max_shown_steps);
+        ray.is_cut = ray.hit.steps > max_shown_steps;
         ray.steps = steps_of(path, ray.hit, ray.is_cut, has_end, row.packed->data, row.scene->loaded().scene);
         add_products(ray, line, row.scene->loaded().scene.tets);
     } else

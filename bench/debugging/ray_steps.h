@@ -32,7 +32,7 @@ struct RayOnDevice {
 };
 
 /// The most steps that are followed.
-inline constexpr std::uint32_t most_shown_steps = 1000;
+inline constexpr std::uint32_t max_shown_steps = 1000;
 
 /// Follows the row's ray of a pixel: traces the image, or all given rays of the view, again and again, each time with a
 /// cap of one step more, until the ray's walk ends; each step is the tet in which the walk was cut off. Then computes

@@ -228,7 +228,7 @@ Cell product_cell(const RayStep& step, std::size_t edge)
     return step.face ? Cell(number_text(step.products[edge])) : Cell();
 }
 
-std::size_t most_steps(const Trace& trace)
+std::size_t max_steps(const Trace& trace)
 {
     std::size_t most = 0;
     for (const ShownRay& ray : trace.devices)
@@ -284,7 +284,7 @@ Table step_table(const Trace& trace)
                  {.key = "from", .title = "on", .rank = 0},
                  {.key = "mark", .title = " ", .rank = 0}});
     const auto first = first_of_all(trace);
-    for (std::size_t i = 0; i < most_steps(trace); ++i) {
+    for (std::size_t i = 0; i < max_steps(trace); ++i) {
         const auto ways = ways_of(trace, i);
         for (const Way& way : ways) {
             const bool is_first = first == i && &way == &ways.back();
@@ -386,7 +386,7 @@ ShownTrace shown_trace(const ResultValue& section)
         sheet.table(answer_table(trace));
         sheet.gap();
     }
-    if (most_steps(trace) > 0) {
+    if (max_steps(trace) > 0) {
         sheet.table(step_table(trace));
         sheet.gap();
     }

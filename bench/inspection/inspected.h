@@ -39,7 +39,7 @@ struct Inspected {
     Count scratch_bytes;     ///< memory of a lane (NVIDIA) or subgroup (AMD) for what has no register
     Count lanes;             ///< of a subgroup
     Count subgroups;         ///< that a SIMD (AMD) or a multiprocessor (NVIDIA) holds at once
-    Count most_subgroups;    ///< that it holds of an empty kernel
+    Count max_subgroups;     ///< that it holds of an empty kernel
     Count code_bytes;
     Count instructions, branches, loads, loads_in_loops;
     std::optional<double> latency_cycles, cycles_a_subgroup; ///< ACO's estimates: latency, inverse throughput
@@ -50,8 +50,8 @@ struct Inspected {
 
     [[nodiscard]] std::optional<double> occupancy() const
     {
-        if (!subgroups || !most_subgroups || *most_subgroups == 0) return std::nullopt;
-        return static_cast<double>(*subgroups) / static_cast<double>(*most_subgroups);
+        if (!subgroups || !max_subgroups || *max_subgroups == 0) return std::nullopt;
+        return static_cast<double>(*subgroups) / static_cast<double>(*max_subgroups);
     }
     /// Whether any register went to memory.
     [[nodiscard]] bool spills() const

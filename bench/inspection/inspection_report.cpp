@@ -131,7 +131,7 @@ nlohmann::json row_json(const Inspected& row)
                                                                {"scratch_bytes", row.scratch_bytes},
                                                                {"lanes", row.lanes},
                                                                {"subgroups", row.subgroups},
-                                                               {"most_subgroups", row.most_subgroups},
+                                                               {"most_subgroups", row.max_subgroups},
                                                                {"code_bytes", row.code_bytes},
                                                                {"instructions", row.instructions},
                                                                {"branches", row.branches},

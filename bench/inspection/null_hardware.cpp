@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* no_radv = "no RADV here, Mesa's Vulkan driver for AMD's GPUs; install mesa-vulkan-drivers";
-constexpr double most_child_s = 600; // of a child; all programs of a target take about a minute
+constexpr double max_child_s = 600; // of a child; all programs of a target take about a minute
 
 /// RADV's file among those that the Vulkan loader reads; empty where there is none.
 fs::path driver_file()
@@ -174,7 +174,7 @@ Answer ask_family(const std::string& family, const fs::path& driver, const std::
         arguments.push_back(std::to_string(number));
     double done = 0;
     const auto count = [&](const std::string& line) { done += line == compiled_word ? 1 : 0; };
-    const ChildOutcome outcome = run_child(fs::read_symlink("/proc/self/exe"), arguments, {.time_s = most_child_s},
+    const ChildOutcome outcome = run_child(fs::read_symlink("/proc/self/exe"), arguments, {.time_s = max_child_s},
                                            count, [&](double) { tell(done / static_cast<double>(numbers.size())); });
     if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "inspect: interrupted");
     Answer answer{unknown, {}};
@@ -193,7 +193,7 @@ Answer ask_family(const std::string& family, const fs::path& driver, const std::
     const std::string words = last_line(outcome.errors);
     if (!most) return {{}, words.empty() ? "the driver told nothing" : words};
     for (Inspected& row : answer.rows) {
-        row.most_subgroups = most;
+        row.max_subgroups = most;
         if (row.status == InspectedStatus::skipped) {
             row.status = InspectedStatus::error;
             row.reason = "the driver ended before it came to this program" + (words.empty() ? "" : ": " + words);

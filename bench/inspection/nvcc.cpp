@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double most_kernel_s = 300; // of one kernel; the slowest take 10
+constexpr double max_kernel_s = 300; // of one kernel; the slowest take 10
 constexpr std::uint64_t persistent_block = 128;
 
 fs::path find_program(const char* name)
@@ -50,7 +50,7 @@ fs::path find_program(const char* name)
 
 ChildOutcome run(const fs::path& program, const std::vector<std::string>& arguments)
 {
-    ChildOutcome outcome = run_child(program, arguments, {.time_s = most_kernel_s});
+    ChildOutcome outcome = run_child(program, arguments, {.time_s = max_kernel_s});
     if (outcome.end == ChildOutcome::End::interrupted) throw Error(ErrorKind::interrupted, "inspect: interrupted");
     return outcome;
 }
@@ -135,7 +135,7 @@ void take(Inspected& row, const Compiled& compiled, const std::string& entry)
     if (const auto warps =
             resident_warps(capability, *row.registers, block, block * stack_bytes_of_item(row.point.kernel.layout))) {
         row.subgroups = warps->resident;
-        row.most_subgroups = warps->most;
+        row.max_subgroups = warps->most;
     }
     const CodeFigures ptx = read_ptx(compiled.ptx, entry);
     row.loads = ptx.loads;

@@ -111,7 +111,7 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
         entry.views = static_cast<double>(row.scene->views().size());
         entry.views_left = entry.views + 1 + entry.views * runs;
         entry.runs = runs;
-        entry.samples = std::min(samples, fewest_samples);
+        entry.samples = std::min(samples, min_samples);
         entry.sample_s = sample_s;
         entries_.push_back(entry);
         views_to_judge_[row.scene] = entry.views;
@@ -135,7 +135,7 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
 double Budget::Entry::need_s() const
 {
     const double pass_s = view_s * views;
-    const double each_s = pass_s < sample_s ? std::min(sample_s + 2 * pass_s, (most_passes + 1) * pass_s) : pass_s;
+    const double each_s = pass_s < sample_s ? std::min(sample_s + 2 * pass_s, (max_passes + 1) * pass_s) : pass_s;
     const unsigned latencies = latency_passes(static_cast<unsigned>(samples), passes_for(sample_s, pass_s));
     return views_left * view_s + runs * (samples * each_s + (views > 1 ? latencies * pass_s : 0));
 }

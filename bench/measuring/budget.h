@@ -11,10 +11,10 @@
 namespace tetrace {
 
 /// Passes of a sample: a launch of Vulkan's lists them all.
-inline constexpr std::uint32_t most_passes = 4096;
+inline constexpr std::uint32_t max_passes = 4096;
 
 /// Keeps a run within the seconds of --budget. A row needs a pass over its views to be verified, its first view once
-/// more, a warm-up pass, and fewest_samples samples with their passes of single launches (latency_passes()). Where the
+/// more, a warm-up pass, and min_samples samples with their passes of single launches (latency_passes()). Where the
 /// rows need more than is left, the slowest end as skipped; their text gives their cost and the --budget that runs
 /// them. The others get all the time that they need, whatever the order of the rows. If judging the rays and openmp's
 /// rows that others are compared with do not fit by themselves, whole scenes are skipped, the last one first, and of

@@ -42,7 +42,7 @@ const RowRun* find_reference(const std::vector<RowRun>& rows, const std::vector<
     return first;
 }
 
-std::size_t fewest_in_run(const std::vector<std::vector<double>>& runs)
+std::size_t min_in_run(const std::vector<std::vector<double>>& runs)
 {
     return std::ranges::min(runs, {}, &std::vector<double>::size).size();
 }
@@ -56,7 +56,7 @@ Comparison compare_rates(const RowRun& reference, const RowRun& row)
     const MedianRatio rate =
         spans_runs ? ratio_over_runs(above, below) : ratio_of_medians(reference.samples_s, row.samples_s);
     Comparison comparison{&reference, rate.value, {}, spans_runs ? above.size() : 1};
-    if (std::min(fewest_in_run(above), fewest_in_run(below)) >= fewest_samples)
+    if (std::min(min_in_run(above), min_in_run(below)) >= min_samples)
         comparison.interval = FactorInterval{rate.low, rate.high};
     return comparison;
 }

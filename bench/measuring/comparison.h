@@ -14,7 +14,7 @@ namespace tetrace {
 struct Comparison {
     const RowRun* reference = nullptr;
     double ratio = 0; ///< row's rate over reference's, from medians of device seconds; above 1 the row is faster
-    std::optional<FactorInterval> interval; ///< of the ratio; empty if either has fewer than fewest_samples in a run
+    std::optional<FactorInterval> interval; ///< of the ratio; empty if either has fewer than min_samples in a run
     std::size_t runs = 1; ///< that the interval spans, see ratio_over_runs(); of 1 it is of the samples, 95 %
 };
 

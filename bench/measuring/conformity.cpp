@@ -60,7 +60,7 @@ std::string conformity_text(const RowRun& row)
     const Conformity conformity = conformity_of(row);
     const Traced* result = traced(row);
     switch (conformity) {
-    case Conformity::within_ulps: return fmt::format("within {} ulp", result->largest_ulps);
+    case Conformity::within_ulps: return fmt::format("within {} ulp", result->max_ulps);
     case Conformity::not_exact: return "not exact: " + defects(*row.self_test);
     case Conformity::wrong: return result != nullptr ? "wrong: " + rays_text(result->different) : "wrong";
     case Conformity::uncompared: return oracle_text(row);

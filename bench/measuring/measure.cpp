@@ -302,7 +302,7 @@ unsigned affordable_samples(unsigned asked, double sweep_s, double left_s)
 {
     if (sweep_s * asked <= left_s) return asked;
     const auto fitting = static_cast<unsigned>(std::max(0.0, left_s / sweep_s));
-    return std::clamp(fitting, std::min(asked, fewest_samples), asked);
+    return std::clamp(fitting, std::min(asked, min_samples), asked);
 }
 
 Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags, Budget& budget,

@@ -23,7 +23,7 @@ void poison(std::vector<Hit>& hits)
 /// Lost rays that took as many steps as the row's device can, if that is fewer than the proof allows.
 std::uint64_t count_lost_at_device_cap(const RowRun& row, std::span<const Hit> hits)
 {
-    const std::uint32_t cap = row.device.most_steps;
+    const std::uint32_t cap = row.device.max_steps;
     if (cap == 0 || row.scene->counts().tets < cap) return 0;
     return static_cast<std::uint64_t>(
         std::ranges::count_if(hits, [cap](const Hit& hit) { return hit.face_id == LOST && hit.steps >= cap; }));
@@ -39,7 +39,7 @@ public:
         Reference& reference = find(*reference_of(compared.key));
         if (reference.view != view) trace(reference, view, 0);
         // A walk that is shorter than both caps is the same under either.
-        const std::uint32_t cap = compared.device.most_steps;
+        const std::uint32_t cap = compared.device.max_steps;
         const bool has_longer =
             cap != 0 && std::ranges::any_of(reference.hits, [cap](const Hit& hit) { return hit.steps >= cap; });
         if (has_longer) trace(reference, view, cap);
@@ -61,9 +61,9 @@ private:
             throw Error(ErrorKind::internal, "openmp, which the row is compared with, failed: " + reason_of(row));
         reference.hits.resize(ray_count(row, view));
         poison(reference.hits);
-        const std::uint32_t own = std::exchange(row.device.most_steps, cap);
+        const std::uint32_t own = std::exchange(row.device.max_steps, cap);
         static_cast<void>(trace_view(row, view, reference.hits));
-        row.device.most_steps = own;
+        row.device.max_steps = own;
         reference.view = cap == 0 ? std::optional(view) : std::nullopt;
     }
 
@@ -192,7 +192,7 @@ private:
         image.compared = true;
         image.different = differences.count;
         image.inexact = differences.inexact;
-        image.largest_ulps = differences.largest_ulps;
+        image.max_ulps = differences.max_ulps;
         if (!differences.first) return;
         const std::size_t ray = *differences.first;
         const std::uint32_t pixel = pixel_of_ray(row, view, ray);

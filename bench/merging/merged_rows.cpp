@@ -195,7 +195,7 @@ std::vector<nlohmann::json> merged_entries(const std::vector<ShardResult>& shard
                 continue;
             }
             strip(entry, stripped);
-            const std::size_t scene = is_view ? number_of(scenes, entry.at("scene")) : most_shards;
+            const std::size_t scene = is_view ? number_of(scenes, entry.at("scene")) : max_shards;
             const EntryPlace place{scene, entry.at(is_view ? "view" : "batch").get<std::uint64_t>()};
             parts.emplace(place, std::move(entry));
         }

@@ -35,12 +35,12 @@ unsigned number_in(const Environment& environment, Names names)
     unsigned number = 0;
     const char* const end = text.data() + text.size();
     const auto [rest, problem] = std::from_chars(text.data(), end, number);
-    if (problem != std::errc() || rest != end || number > most_shards)
+    if (problem != std::errc() || rest != end || number > max_shards)
         throw Error(
             ErrorKind::usage,
             fmt::format("the environment's {} is '{}', and a rank's is a number up to {}; --shard K/N says what "
                         "this process does",
-                        *names.begin(), text, most_shards));
+                        *names.begin(), text, max_shards));
     return number;
 }
 

@@ -115,7 +115,7 @@ ShardResult read_shard(const std::filesystem::path& path)
                            shard.result.head.verb));
     const auto number_at = [&](const char* key) {
         const ResultValue value = head->at(key);
-        if (value.count() < 1 || value.count() > most_shards) value.reject("is no number of a shard");
+        if (value.count() < 1 || value.count() > max_shards) value.reject("is no number of a shard");
         return static_cast<unsigned>(value.count());
     };
     shard.shard = {number_at("number"), number_at("of")};

@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t largest_file = std::size_t{16} << 20, most_views = 100'000, longest_name = 100;
+constexpr std::size_t max_file = std::size_t{16} << 20, max_views = 100'000, longest_name = 100;
 
 /// A file, and the entry of it that is being read.
 class CameraReader {
@@ -37,7 +37,7 @@ public:
         const auto views = whole.find("views");
         if (views == whole.end() || !views->is_array() || views->empty())
             reject("views: is not a list of one view or more");
-        if (views->size() > most_views) reject("views: has more than 100,000 views");
+        if (views->size() > max_views) reject("views: has more than 100,000 views");
         for (std::size_t i = 0; i < views->size(); ++i)
             set.views.push_back(aim_of(views->at(i), fmt::format("views[{}]", i)));
         return set;
@@ -54,9 +54,9 @@ private:
         std::error_code ignored;
         if (!std::filesystem::exists(path_, ignored)) reject("there is no such file", ErrorKind::missing);
         if (!std::filesystem::is_regular_file(path_, ignored)) reject("it is no file");
-        const std::optional<std::string> bytes = file_bytes(path_, largest_file + 1);
+        const std::optional<std::string> bytes = file_bytes(path_, max_file + 1);
         if (!bytes) reject(fmt::format("{}; check its rights and its disk", std::strerror(errno)));
-        if (bytes->size() > largest_file) reject("it is larger than 16 MiB");
+        if (bytes->size() > max_file) reject("it is larger than 16 MiB");
         try {
             return json::parse(*bytes);
         } catch (const json::exception& problem) {

@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::uint64_t most_pixels = 1u << 20; // along a side, more than any image has
+constexpr std::uint64_t max_pixels = 1u << 20; // along a side, more than any image has
 
 /// "X,Y".
 ImagePixel parse_pixel(const std::string& option, const std::string& text)
@@ -17,7 +17,7 @@ ImagePixel parse_pixel(const std::string& option, const std::string& text)
     if (comma == std::string::npos || text.find(',', comma + 1) != std::string::npos)
         reject_value(option, text, "X,Y, two whole numbers from 0");
     const auto number = [&](const std::string& part) {
-        return static_cast<std::uint32_t>(parse_count(option, part, 0, most_pixels));
+        return static_cast<std::uint32_t>(parse_count(option, part, 0, max_pixels));
     };
     return {number(text.substr(0, comma)), number(text.substr(comma + 1))};
 }

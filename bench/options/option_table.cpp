@@ -351,7 +351,7 @@ FileArguments file_arguments(Verb verb)
     if (verb == Verb::compare) return {"A.json B.json [C.json...]", 2, 26};
     if (verb == Verb::show) return {"RESULT.json", 1, 1};
     if (verb == Verb::report) return {"RESULT|FOLDER...", 1, 1000};
-    if (verb == Verb::merge) return {"RESULT...", 1, most_shards};
+    if (verb == Verb::merge) return {"RESULT...", 1, max_shards};
     return {};
 }
 

@@ -223,16 +223,16 @@ std::string parse_label(const std::string& text)
 
 SearchSize parse_searches(const std::string& text)
 {
-    constexpr std::uint32_t most_tets = 1'000'000, most_rays = 1u << 20;
+    constexpr std::uint32_t max_tets = 1'000'000, max_rays = 1u << 20;
     const auto cross = text.find('x');
     SearchSize size;
     const bool read = cross != std::string::npos && read_whole(std::string_view(text).substr(0, cross), size.tets) &&
                       read_whole(std::string_view(text).substr(cross + 1), size.rays);
-    const bool in_range = size.tets >= 1 && size.tets <= most_tets && size.rays >= 1 && size.rays <= most_rays;
+    const bool in_range = size.tets >= 1 && size.tets <= max_tets && size.rays >= 1 && size.rays <= max_rays;
     if (!read || !in_range || size.rays % TILE_WIDTH != 0)
         reject_value("--searches", text,
-                     fmt::format("TETSxRAYS, 1 to {} tets with {} to {} rays each, a multiple of {}", most_tets,
-                                 TILE_WIDTH, most_rays, TILE_WIDTH));
+                     fmt::format("TETSxRAYS, 1 to {} tets with {} to {} rays each, a multiple of {}", max_tets,
+                                 TILE_WIDTH, max_rays, TILE_WIDTH));
     return size;
 }
 
@@ -246,7 +246,7 @@ Shard parse_shard(const std::string& text)
     const std::size_t slash = text.find('/');
     if (slash == std::string::npos) reject_value("--shard", text, "K/N, the K-th of N shards: 1/4 to 4/4");
     Shard shard;
-    shard.of = static_cast<unsigned>(parse_count("--shard", text.substr(slash + 1), 1, most_shards));
+    shard.of = static_cast<unsigned>(parse_count("--shard", text.substr(slash + 1), 1, max_shards));
     shard.number = static_cast<unsigned>(parse_count("--shard", text.substr(0, slash), 1, shard.of));
     return shard;
 }

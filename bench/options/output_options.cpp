@@ -13,7 +13,7 @@ std::vector<OptionRow> sharing_options()
         {"Sharing", "--ranks", "LIST",
          "Print also how long the run would take by these numbers of ranks, by simulation from the wall time of every "
          "view and batch in the journals of 'reproduce'. Default: none.",
-         bit(Verb::merge), true, append_count("--ranks", &Options::ranks, 1, most_shards)},
+         bit(Verb::merge), true, append_count("--ranks", &Options::ranks, 1, max_shards)},
         {"Sharing", "--wait", "TIME",
          "Under srun and mpirun, how long rank 0 waits for a rank that neither works nor has written its result before "
          "it gives it up. Default: 2m.",

@@ -20,7 +20,7 @@ struct Shard {
     friend bool operator==(const Shard&, const Shard&) = default;
 };
 
-inline constexpr unsigned most_shards = 65'536;
+inline constexpr unsigned max_shards = 65'536;
 
 /// "2/4".
 [[nodiscard]] std::string text_of(const Shard& shard);

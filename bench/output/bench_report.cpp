@@ -25,7 +25,7 @@ std::string timed_sentence(const BenchResult& result)
                    : "";
     const std::string in_all =
         measurement.wall_s > 0 ? fmt::format(", {} in all", seconds_text(measurement.wall_s)) : "";
-    const char* const few = measurement.samples < fewest_samples ? " Fewer than 5 samples give no interval." : "";
+    const char* const few = measurement.samples < min_samples ? " Fewer than 5 samples give no interval." : "";
     std::string text = fmt::format("medians of {}{} samples per row{}, rows interleaved at random{}.",
                                    measurement.runs > 1 ? fmt::format("{} runs of ", measurement.runs) : "",
                                    measurement.samples, instead, in_all);
@@ -213,7 +213,7 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
     if (sum.rays == 0) return "nothing.";
     std::string text = fmt::format("{} rays, all by exact arithmetic: {} agree, {} ties", with_commas(sum.rays),
                                    with_commas(sum.agreed), with_commas(sum.ties));
-    if (sum.ties > 0) text += fmt::format(" (by curves at most {:.1e} from their rays)", sum.largest_tie_distance);
+    if (sum.ties > 0) text += fmt::format(" (by curves at most {:.1e} from their rays)", sum.max_tie_distance);
     if (sum.offset > 0)
         text += fmt::format(", {} right for the offset origins that BVHs start from", with_commas(sum.offset));
     return text + fmt::format(", {} settled for us, {} wrong, {} lost.", with_commas(sum.settled),

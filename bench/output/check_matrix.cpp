@@ -120,8 +120,7 @@ Table answers_table(const std::string& scene, const std::vector<RowRun>& all)
         const Traced& result = *traced(*answer.first);
         const Verdicts& verdicts = result.verdicts;
         table.add({answer.kernel, hash_text(hash_of_answers(*answer.first)), verdicts.rays, verdicts.agreed,
-                   verdicts.ties,
-                   verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.largest_tie_distance)) : Cell(),
+                   verdicts.ties, verdicts.ties > 0 ? Cell(fmt::format("{:.1e}", verdicts.max_tie_distance)) : Cell(),
                    verdicts.settled, verdicts.offset, verdicts.wrong, verdicts.lost, devices_of(answer, rows)});
     }
     return table;

@@ -170,7 +170,7 @@ std::string summary_text(const ResultComparison& comparison)
     if (const std::size_t count = comparison.count(RowOutcome::different); count > 0)
         text += fmt::format("; {} DIFFERENT, not compared", count);
     if (const std::size_t count = too_few_count(comparison); count > 0)
-        text += fmt::format("; {} with fewer than {} samples, so no interval", count, fewest_samples);
+        text += fmt::format("; {} with fewer than {} samples, so no interval", count, min_samples);
     if (const auto mean = comparison.geometric_mean())
         text += fmt::format("; geometric mean of B / A {:.3f}{}", *mean,
                             noisy_count(comparison) > 0 ? ", with the NOISY rows in it" : "");
@@ -215,7 +215,7 @@ std::string verdicts_text(double tolerance)
         "SAME: the interval lies within the tolerance, {:.3f} to {:.3f}. FASTER, SLOWER: it does not hold "
         "1. UNSURE: it does, and reaches beyond the tolerance, or there are fewer than {} samples, which give no "
         "interval; more would tell. NOISY: the machine itself changed, by its pulse.",
-        1 / (1 + tolerance), 1 + tolerance, fewest_samples);
+        1 / (1 + tolerance), 1 + tolerance, min_samples);
 }
 
 Sheet comparison_sheet(const ResultComparison& comparison, const Options& options)

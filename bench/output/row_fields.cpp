@@ -345,9 +345,7 @@ std::vector<RowField> answer_fields()
          recorded("count", required, "another answer, which a curve within rounding of the ray gives: its witness"),
          csv("ties"), check("ties")},
         {"verification", "largest_tie_distance",
-         [](const Traced& trace) {
-             return trace.verdicts.ties > 0 ? json(trace.verdicts.largest_tie_distance) : json();
-         },
+         [](const Traced& trace) { return trace.verdicts.ties > 0 ? json(trace.verdicts.max_tie_distance) : json(); },
          recorded("not_negative"), check("largest", "", 12)},
         {"verification", "settled", in(&Traced::verdicts, &Verdicts::settled),
          recorded("count", required, "with the exact ray, although some do"), check("settled")},
@@ -364,8 +362,8 @@ std::vector<RowField> answer_fields()
         {"", "conformity", &RowFacts::conformity, recorded("line", optional, "of `check`, as in tetrace.matrix"),
          check("conformity")},
         {"verification", "different_from_openmp", if_compared(&Traced::different), recorded("count"), check("differ")},
-        {"verification", "largest_ulps", if_compared(&Traced::largest_ulps),
-         recorded("count", optional, "of t, u and v"), check("ulps")},
+        {"verification", "largest_ulps", if_compared(&Traced::max_ulps), recorded("count", optional, "of t, u and v"),
+         check("ulps")},
         {"verification", "first_different",
          [](const Traced& trace) {
              return trace.first_different ? differing_ray_json(*trace.first_different) : json();

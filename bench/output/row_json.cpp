@@ -66,7 +66,7 @@ nlohmann::json scene_json(const SceneWork& scene, const Options& options)
         object["start_walk"] = {{"walked", walk->counts.walked},
                                 {"located", walk->counts.located},
                                 {"steps", walk->counts.steps},
-                                {"most_steps", walk->counts.most_steps},
+                                {"most_steps", walk->counts.max_steps},
                                 {"exact_s", walk->exact_s}};
     if (!loaded.file.empty()) object["file"] = loaded.file.filename().string();
     return object;

@@ -11,7 +11,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::size_t most_charts = 2; // more do not fit a first screen
+constexpr std::size_t max_charts = 2; // more do not fit a first screen
 
 /// The rows of one device that traced the same rays: which structure is faster?
 struct Contest {
@@ -125,7 +125,7 @@ Html rates_answer(const ReportInput& input)
     const auto groups = rated_groups(input.files, input.rows);
     const auto contests = contests_of(groups, input.files.size());
     if (contests.empty()) return {};
-    const std::size_t shown = std::min(contests.size(), most_charts);
+    const std::size_t shown = std::min(contests.size(), max_charts);
     Html charts;
     for (std::size_t i = 0; i < shown; ++i)
         charts += chart_of(contests[i]);

@@ -15,7 +15,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::uintmax_t largest_file = std::uintmax_t{64} << 20;
+constexpr std::uintmax_t max_file = std::uintmax_t{64} << 20;
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
 
 /// Why a file is not a picture.
@@ -63,7 +63,7 @@ std::string picture_bytes(const std::filesystem::path& path)
     std::error_code problem;
     if (!std::filesystem::exists(path, problem)) throw Problem{ErrorKind::missing, "there is no such file"};
     if (!std::filesystem::is_regular_file(path, problem)) throw not_valid("it is no file");
-    if (std::filesystem::file_size(path, problem) > largest_file) throw not_valid("it is larger than 64 MiB");
+    if (std::filesystem::file_size(path, problem) > max_file) throw not_valid("it is larger than 64 MiB");
     auto bytes = file_bytes(path);
     if (!bytes) throw not_valid(std::strerror(errno));
     return *std::move(bytes);

@@ -22,7 +22,7 @@ struct DeviceRoof {
     std::string title;
     DeviceKind kind = DeviceKind::cpu;
     Roofline roofline;
-    std::optional<double> launch_s, largest_launch_share;
+    std::optional<double> launch_s, max_launch_share;
 };
 
 std::string without_structure(const std::string& kernel)
@@ -44,8 +44,7 @@ void add_row(DeviceRoof& roof, const ReportRow& row, const ReportInput& input)
     roof.roofline.points.push_back({row.name(), without_structure(row.kernel_and_rays()) + "  " + row.row->scene,
                                     scene_number(input.files.at(row.file), row.row->scene), *rate.bytes_per_step,
                                     *rate.msteps_per_s, rate.ceiling_bytes_per_s.value_or(0)});
-    if (rate.launch_share)
-        roof.largest_launch_share = std::max(roof.largest_launch_share.value_or(0), *rate.launch_share);
+    if (rate.launch_share) roof.max_launch_share = std::max(roof.max_launch_share.value_or(0), *rate.launch_share);
 }
 
 /// Empty for a device without a measured bandwidth, or without a row that has steps.
@@ -76,10 +75,10 @@ std::string launch_text(const DeviceRoof& roof)
 {
     std::string text;
     if (roof.launch_s) text = fmt::format("An empty launch takes {} µs", short_number(1e6 * *roof.launch_s));
-    if (roof.largest_launch_share)
+    if (roof.max_launch_share)
         text += fmt::format("{} at most {} of a row's wall time",
                             text.empty() ? "Launching and waiting take" : "; launching and waiting are",
-                            short_percent(*roof.largest_launch_share));
+                            short_percent(*roof.max_launch_share));
     return text.empty() ? text : text + ".";
 }
 

@@ -38,7 +38,7 @@ RayTotals totals_from(const json& t)
 json verdicts_json(const Verdicts& v)
 {
     json object = {{"counts", {v.rays, v.agreed, v.ties, v.settled, v.wrong, v.lost, v.offset}},
-                   {"largest_tie_distance", v.largest_tie_distance}};
+                   {"largest_tie_distance", v.max_tie_distance}};
     if (v.first_wrong) object["first_wrong"] = wrong_ray_json(*v.first_wrong);
     return object;
 }
@@ -54,7 +54,7 @@ Verdicts verdicts_from(const json& object)
     verdicts.wrong = number_from(c.at(4));
     verdicts.lost = number_from(c.at(5));
     verdicts.offset = number_from(c.at(6));
-    verdicts.largest_tie_distance = amount_from(object.at("largest_tie_distance"));
+    verdicts.max_tie_distance = amount_from(object.at("largest_tie_distance"));
     if (object.contains("first_wrong")) verdicts.first_wrong = wrong_ray_from(object["first_wrong"]);
     return verdicts;
 }
@@ -69,7 +69,7 @@ json verdict_json(const ImageVerdict& verdict)
     if (verdict.visits.rays > 0)
         object["visits"] = {verdict.visits.rays, verdict.visits.nodes, verdict.visits.triangles};
     if (verdict.lost_at_device_cap > 0) object["lost_at_device_cap"] = verdict.lost_at_device_cap;
-    if (verdict.compared) object["compared"] = {verdict.different, verdict.inexact, verdict.largest_ulps};
+    if (verdict.compared) object["compared"] = {verdict.different, verdict.inexact, verdict.max_ulps};
     if (verdict.first_different) object["first_different"] = differing_ray_json(*verdict.first_different);
     return object;
 }
@@ -95,7 +95,7 @@ ImageVerdict verdict_from(const json& object)
         const json& compared = object["compared"];
         verdict.different = number_from(compared.at(0));
         verdict.inexact = number_from(compared.at(1));
-        verdict.largest_ulps = number_from(compared.at(2));
+        verdict.max_ulps = number_from(compared.at(2));
     }
     if (object.contains("first_different")) verdict.first_different = differing_ray_from(object["first_different"]);
     return verdict;
@@ -156,7 +156,7 @@ ImageRecord record_from(const json& object)
                           object.at("wall_samples_s"),
                           object.at("sampled_s")};
     if (object.contains("passes")) record.passes = count_from<std::uint32_t>(object["passes"]);
-    if (record.passes < 1 || record.passes > most_passes)
+    if (record.passes < 1 || record.passes > max_passes)
         throw std::domain_error(fmt::format("{} passes of a sample", record.passes));
     if (object.contains("gpu")) record.gpu = gpu_readings_from(object["gpu"]);
     return record;

@@ -24,7 +24,7 @@ constexpr const char* head_key = "journal";
 const json finished_line = {{"finished", true}};
 
 constexpr std::string_view before_checksum = R"({"checksum":")", before_entry = R"(","entry":)";
-constexpr std::size_t largest_journal = std::size_t{1} << 30;
+constexpr std::size_t max_journal = std::size_t{1} << 30;
 
 /// In one line; what is not UTF-8, such as a path may be, is replaced.
 std::string json_text(const json& value)
@@ -80,7 +80,7 @@ std::string read_text(int file, const std::filesystem::path& path)
     struct stat found {};
     if (::fstat(file, &found) != 0) fail_at("reading", path);
     auto size = static_cast<std::size_t>(found.st_size);
-    if (size > largest_journal)
+    if (size > max_journal)
         throw Error(ErrorKind::invalid_input, fmt::format("the journal '{}' is larger than 1 GiB, which no journal is; "
                                                           "remove the file to begin anew",
                                                           path.string()));

@@ -72,8 +72,8 @@ struct FastestOlder {
 /// Table 6, on the GPU: frames a second over the views, minimum and maximum. Its BVH is that of Aila, Laine and Karras.
 struct FrameRates {
     std::string_view scene;
-    double least_cdt = 0, most_cdt = 0;
-    double least_bvh = 0, most_bvh = 0;
+    double min_cdt = 0, max_cdt = 0;
+    double min_bvh = 0, max_bvh = 0;
 };
 /// Empty for other scenes than the paper's.
 [[nodiscard]] std::optional<FrameRates> frames_of(std::string_view scene);

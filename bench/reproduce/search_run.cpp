@@ -16,7 +16,7 @@ using nlohmann::json;
 using Faces = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t batch_rays = 1'638'400;
-constexpr std::uint32_t fewest_batches = 20;
+constexpr std::uint32_t min_batches = 20;
 
 /// openmp's faces of a batch, for comparison with other backends' faces: from openmp's own row, else found only for the
 /// comparison.
@@ -199,7 +199,7 @@ bool is_reference(const RowKey& key)
 std::uint32_t tets_of_batch(const SearchSize& size)
 {
     const std::uint32_t fitting = std::max(batch_rays / size.rays, 1u);
-    return std::clamp(size.tets / fewest_batches, 1u, fitting);
+    return std::clamp(size.tets / min_batches, 1u, fitting);
 }
 
 std::uint32_t batch_count(const SearchSize& size)

@@ -58,7 +58,7 @@ Claim decided(const ClaimOfRows& what, const RecordedRuns& runs, DeviceKind kind
                                           what.text_of(rows.back()));
         }
     if (is_short) {
-        claim.evidence = fmt::format("It takes {} views that differ.", least_views);
+        claim.evidence = fmt::format("It takes {} views that differ.", min_views);
         return claim;
     }
     if (rows.empty()) {

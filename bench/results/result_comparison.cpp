@@ -118,7 +118,7 @@ std::string ComparedRow::note() const
 {
     if (is_noisy()) return disturbance;
     if (has_too_few_samples())
-        return fmt::format("fewer than {} samples, so no interval: {} in A and {} in B", fewest_samples,
+        return fmt::format("fewer than {} samples, so no interval: {} in A and {} in B", min_samples,
                            before->samples_s.size(), after->samples_s.size());
     if (outcome == RowOutcome::different) return difference;
     const std::string a = why_untimed("A", before), b = why_untimed("B", after);

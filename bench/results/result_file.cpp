@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint64_t oldest_schema_version = 1;
 // The largest result so far has 2.3 MB and 65,000 values. What a value takes in memory its text does not show: 60 MB of
 // "[]," took 1.3 GB.
-constexpr std::size_t largest_file = std::size_t{64} << 20;
-constexpr std::size_t most_values = 6'000'000;
+constexpr std::size_t max_file = std::size_t{64} << 20;
+constexpr std::size_t max_values = 6'000'000;
 constexpr int deepest = 64;                // results have 12 levels; the library writes a value by a call a level
 constexpr std::size_t longest_name = 1000; // of a row, in bytes
 
@@ -40,7 +40,7 @@ std::string read_bytes(const std::filesystem::path& path)
     std::vector<char> piece(1 << 16);
     while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())), file.gcount() > 0) {
         bytes.append(piece.data(), static_cast<std::size_t>(file.gcount()));
-        if (bytes.size() > largest_file)
+        if (bytes.size() > max_file)
             reject_file(path, ErrorKind::invalid_input, "it is larger than 64 MiB, which no result is");
     }
     if (file.bad()) reject_file(path, ErrorKind::invalid_input, std::strerror(errno));
@@ -63,7 +63,7 @@ nlohmann::json parse(const std::filesystem::path& path, Repetitions repetitions)
         std::size_t values = 0;
         return nlohmann::json::parse(bytes, [&](int depth, Event event, const nlohmann::json& parsed) {
             const bool is_value = event == Event::object_start || event == Event::array_start || event == Event::value;
-            if (is_value && ++values > most_values)
+            if (is_value && ++values > max_values)
                 reject_file(path, ErrorKind::invalid_input, "it has more than 6,000,000 values, which no result has");
             if (depth > deepest)
                 reject_file(path, ErrorKind::invalid_input, "its values are nested deeper than 64 levels");

@@ -41,7 +41,7 @@ void open_session(RowRun& row, const SceneData& data, const Options& options)
 {
     SessionOptions session = session_options(options);
     if (row.key.threads != 0) session.threads = row.key.threads;
-    row.max_buffer_bytes = largest_buffer(row.device, session);
+    row.max_buffer_bytes = max_buffer(row.device, session);
     row.session = row.backend->open(row.key.device, row.key.kernel, data, session);
 }
 
@@ -69,7 +69,7 @@ std::string traced_reason(const RowRun& row, const Traced& traced)
     add(traced.verdicts.lost, "lost");
     if (traced.lost_at_device_cap > 0)
         text += fmt::format(" ({} after {} steps, where loops of {} may end early)", traced.lost_at_device_cap,
-                            row.device.most_steps, row.device.implementation);
+                            row.device.max_steps, row.device.implementation);
     add(traced.verdicts.wrong, "wrong");
     if (row.key.kernel.math == MathMode::fast && is_portable(row.key.kernel) && !traced.verdicts.clean())
         text += "; math mode fast is held to no proof";
@@ -94,7 +94,7 @@ void Traced::add(const ImageVerdict& image)
     compared = compared || image.compared;
     different += image.different;
     inexact += image.inexact;
-    largest_ulps = std::max(largest_ulps, image.largest_ulps);
+    max_ulps = std::max(max_ulps, image.max_ulps);
     lost_at_device_cap += image.lost_at_device_cap;
     if (!first_different) first_different = image.first_different;
     kernel_s += image.kernel_s;

@@ -48,7 +48,7 @@ struct ImageVerdict {
     bool compared = false; ///< as in Traced, and so are the members down to first_different
     std::uint64_t different = 0;
     std::uint64_t inexact = 0;
-    std::uint64_t largest_ulps = 0;
+    std::uint64_t max_ulps = 0;
     std::optional<DifferingRay> first_different;
     std::uint64_t lost_at_device_cap = 0; ///< as in Traced
     std::uint64_t hit_hash = 0;           ///< of this image's hits
@@ -61,12 +61,12 @@ struct Traced {
     std::optional<std::uint64_t> entering = {}; ///< rays that enter the domain's box, see enters(); empty: not known
     Visits visits;                              ///< see count_visits()
     Verdicts verdicts;
-    bool compared = false;          ///< with openmp; openmp's own rows and Embree's have nothing to compare with
-    std::uint64_t different = 0;    ///< rays that differ from openmp's by more than the device's self-test allows
-    std::uint64_t inexact = 0;      ///< rays that differ from openmp's in some bit, allowed or not
-    std::uint64_t largest_ulps = 0; ///< of t, u and v, among those allowed
+    bool compared = false;       ///< with openmp; openmp's own rows and Embree's have nothing to compare with
+    std::uint64_t different = 0; ///< rays that differ from openmp's by more than the device's self-test allows
+    std::uint64_t inexact = 0;   ///< rays that differ from openmp's in some bit, allowed or not
+    std::uint64_t max_ulps = 0;  ///< of t, u and v, among those allowed
     std::optional<DifferingRay> first_different;
-    std::uint64_t lost_at_device_cap = 0;   ///< lost rays with Device::most_steps steps, fewer than the proof allows
+    std::uint64_t lost_at_device_cap = 0;   ///< lost rays with Device::max_steps steps, fewer than the proof allows
     std::uint64_t hit_hash = 0;             ///< of all hits, view after view; 0 where shards had them, not known
     std::uint64_t views_hash = 0;           ///< of the hashes of the views, one after the other; shards know it too
     std::vector<std::uint64_t> view_hashes; ///< of each view's hits

@@ -166,10 +166,10 @@ void read_verification(Traced& traced, const ResultValue& value)
     verdicts.offset = count_at(value, "offset");
     verdicts.wrong = count_at(value, "wrong");
     verdicts.lost = count_at(value, "lost");
-    verdicts.largest_tie_distance = number_at(value, "largest_tie_distance");
+    verdicts.max_tie_distance = number_at(value, "largest_tie_distance");
     traced.compared = value.find("compared_with_openmp") && value.at("compared_with_openmp").flag();
     traced.different = count_at(value, "different_from_openmp");
-    traced.largest_ulps = count_at(value, "largest_ulps");
+    traced.max_ulps = count_at(value, "largest_ulps");
 }
 
 /// The rays that `check` prints.

@@ -20,7 +20,7 @@ constexpr double normal_quantile = 1.959964; // of 1 - tail
 
 bool bounds_anything(std::size_t views, Sampling sampling)
 {
-    return views >= least_views && sampling != Sampling::chosen;
+    return views >= min_views && sampling != Sampling::chosen;
 }
 
 /// How many of n numbers are left out on each side of their median's interval: the most that a fair coin, thrown n
@@ -143,7 +143,7 @@ Estimate ratio_of_sums(const std::vector<double>& numerator, const std::vector<d
 std::optional<Estimate> correlation(const std::vector<double>& x, const std::vector<double>& y, Sampling sampling)
 {
     const Moments m = moments_of(x, y);
-    if (x.size() < least_views || !(m.xx > 0) || !(m.yy > 0)) return std::nullopt;
+    if (x.size() < min_views || !(m.xx > 0) || !(m.yy > 0)) return std::nullopt;
     const double r = std::clamp(m.xy / std::sqrt(m.xx * m.yy), -1.0, 1.0);
     if (!bounds_anything(x.size(), sampling)) return Estimate{r, {}, {}, false};
     if (std::abs(r) == 1) return Estimate{r, r, r, false}; // its z is infinite

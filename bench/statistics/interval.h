@@ -38,7 +38,7 @@ enum class Sampling {
 
 /// Fewer views than these bound nothing: of the bootstrap's intervals at a nominal 95 %, 84 % hold the truth at 5
 /// views, 88 % at 8 (normal variables).
-inline constexpr std::size_t least_views = 10;
+inline constexpr std::size_t min_views = 10;
 
 /// The mean of counts, one a view, as an estimate of the mean over the whole set.
 /// whole: exact. even: percentile bootstrap over the views (2,000 resamples, fixed seed), without a correction for the
@@ -58,7 +58,7 @@ inline constexpr std::size_t least_views = 10;
                                      Sampling sampling = Sampling::even);
 
 /// Pearson's correlation with its interval by Fisher's z, which takes the views as independent draws of two normal
-/// variables. Empty for fewer than least_views pairs, or where one of the two does not vary.
+/// variables. Empty for fewer than min_views pairs, or where one of the two does not vary.
 /// Throws Error{internal} for lists of different lengths.
 [[nodiscard]] std::optional<Estimate> correlation(const std::vector<double>& x, const std::vector<double>& y,
                                                   Sampling sampling = Sampling::even);

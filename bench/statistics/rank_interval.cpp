@@ -10,7 +10,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::size_t most_counted = 50; // samples; counting takes n * m * n * m / 2 steps
+constexpr std::size_t max_counted = 50; // samples; counting takes n * m * n * m / 2 steps
 
 /// The lower half of the distribution of U, the number of pairs in which the one set has the larger value, where both
 /// sets are drawn from one distribution: P(U = u) for u up to n * m / 2, by the recursion of Mann and Whitney.
@@ -23,8 +23,8 @@ std::vector<double> pair_count_distribution(std::size_t n, std::size_t m)
     for (std::size_t i = 1; i <= n; ++i)
         for (std::size_t j = 1; j <= m; ++j)
             for (std::size_t u = size; u-- > 0;) { // downwards: of[j][u - j] still is that of i - 1 samples
-                const double largest_is_ours = u >= j ? of[j][u - j] : 0;
-                of[j][u] = (static_cast<double>(i) * largest_is_ours + static_cast<double>(j) * of[j - 1][u]) /
+                const double max_is_ours = u >= j ? of[j][u - j] : 0;
+                of[j][u] = (static_cast<double>(i) * max_is_ours + static_cast<double>(j) * of[j - 1][u]) /
                            static_cast<double>(i + j);
             }
     return of[m];
@@ -89,7 +89,7 @@ double quotient_of_rank(std::size_t rank, const std::vector<double>& numerator, 
 
 } // namespace
 
-double smallest_error(std::size_t n, std::size_t m)
+double min_error(std::size_t n, std::size_t m)
 {
     const auto log_factorial = [](std::size_t k) { return std::lgamma(static_cast<double>(k) + 1); };
     const double log_share = log_factorial(n) + log_factorial(m) - log_factorial(n + m);
@@ -99,7 +99,7 @@ double smallest_error(std::size_t n, std::size_t m)
 
 std::optional<std::size_t> quotients_left_out(std::size_t n, std::size_t m, double error)
 {
-    const bool few = n <= most_counted && m <= most_counted;
+    const bool few = n <= max_counted && m <= max_counted;
     const std::size_t values = few ? counted_values(n, m, error / 2) : approximate_values(n, m, error / 2);
     if (values == 0) return std::nullopt;
     return values - 1;

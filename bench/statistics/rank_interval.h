@@ -17,7 +17,7 @@ struct FactorInterval {
 /// Mann-Whitney test. Its ends are order statistics of all quotients of a sample of the one and a sample of the other.
 /// If the two distributions differ only in the factor, whatever their shape, the interval misses it in at most `error`
 /// of all cases. That holds for any number of samples, and for ties, since the ends belong to the interval. A few
-/// outliers do not move it. Empty for too few samples to keep to `error` (see smallest_error(): 0.0079 for 5 and 5).
+/// outliers do not move it. Empty for too few samples to keep to `error` (see min_error(): 0.0079 for 5 and 5).
 /// Above 50 samples the normal approximation serves. Samples are independent, positive and finite, as are their
 /// quotients. Source: Mann and Whitney, "On a Test of Whether one of Two Random Variables is Stochastically Larger than
 /// the Other" (1947); Lehmann, "Nonparametrics: Statistical Methods Based on Ranks" (1975), sections 1.2 and 2.6.
@@ -26,7 +26,7 @@ struct FactorInterval {
 
 /// The error of the widest interval that n and m samples can give, from the smallest quotient to the largest:
 /// 2 / binomial(n + m, n), rounded up a little; at most 1.
-[[nodiscard]] double smallest_error(std::size_t n, std::size_t m);
+[[nodiscard]] double min_error(std::size_t n, std::size_t m);
 
 /// How many of the smallest quotients of n and m samples lie outside an interval of that error, and how many of the
 /// largest: its ends are the next ones. Empty where not even all n * m quotients make an interval.

@@ -23,8 +23,8 @@ SpeedChange compare_speed(const std::vector<double>& before_s, const std::vector
 {
     SpeedChange change;
     change.ratio = statistics_of(before_s).median / statistics_of(after_s).median;
-    if (std::min(before_s.size(), after_s.size()) < fewest_samples) return change;
-    const double smallest = smallest_error(before_s.size(), after_s.size());
+    if (std::min(before_s.size(), after_s.size()) < min_samples) return change;
+    const double smallest = min_error(before_s.size(), after_s.size());
     const double error = std::max(smallest, comparison_error / static_cast<double>(rows));
     change.interval = rank_interval(before_s, after_s, error);
     if (!change.interval) return change;
@@ -38,7 +38,7 @@ SpeedChange compare_speed(const std::vector<double>& before_s, const std::vector
 std::size_t samples_needed(std::size_t rows)
 {
     std::size_t samples = 1;
-    while (smallest_error(samples, samples) > comparison_error / static_cast<double>(rows))
+    while (min_error(samples, samples) > comparison_error / static_cast<double>(rows))
         ++samples;
     return samples;
 }

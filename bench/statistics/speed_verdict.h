@@ -44,7 +44,7 @@ struct SpeedChange {
 ///
 /// The interval is that of rank_interval(), widened where need be to contain the ratio of the medians (with two humps
 /// in the samples a median can leap). Its error is comparison_error / rows; where a row has too few samples for that,
-/// the smallest that they allow: 5 samples and 5 give 0.0079. With fewer than fewest_samples there is no interval.
+/// the smallest that they allow: 5 samples and 5 give 0.0079. With fewer than min_samples there is no interval.
 ///
 /// Chosen by simulation beside the percentile bootstrap of the ratio of medians with 99 % (2,000 resamples): 2,000
 /// comparisons of one row each, error 0.01. Noise: A normal, 2 %; B 1 % and exponential delays of 1 %; C Student's t

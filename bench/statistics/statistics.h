@@ -14,7 +14,7 @@ inline constexpr double noisy_pulse = 1.25;
 /// The one rule on samples: with fewer, a row's rate has no interval, neither beside another row of its run nor beside
 /// the same row of another result. Of 3 samples, the bootstrap's 95 % intervals hold the true ratio in 90 % of cases
 /// (median_ratio.h), and ranks give none at all for `compare`'s 1 % of false alarms (speed_verdict.h).
-inline constexpr unsigned fewest_samples = 5;
+inline constexpr unsigned min_samples = 5;
 
 /// Median and quartiles of a row's samples.
 struct Statistics {

@@ -11,7 +11,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::size_t prose_width = 110, least_width = 40, label_width = 10;
+constexpr std::size_t prose_width = 110, min_width = 40, label_width = 10;
 
 /// Each line as it is, or wrapped behind its own indent where the terminal is narrower.
 std::string fitted(const std::string& lines, std::size_t width)
@@ -80,7 +80,7 @@ std::string Sheet::text_of(const Words& words, std::size_t width)
 
 std::string Sheet::text(const SheetStyle& style) const
 {
-    const std::size_t width = style.width == 0 ? 0 : std::max(style.width, least_width);
+    const std::size_t width = style.width == 0 ? 0 : std::max(style.width, min_width);
     std::string text;
     for (const auto& part : parts_) {
         if (const auto* words = std::get_if<Words>(&part)) {

@@ -161,13 +161,13 @@ private:
 
     // Places on both sides of each piece into which the lines cut each other inside the tube: every cell that the lines
     // make has one. With few of the lines, cells are missed.
-    void choose_places(std::size_t most_lines)
+    void choose_places(std::size_t max_lines)
     {
         places_.push_back({});
         add_answer_places();
         for (const auto& [x, y] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}})
             places_.push_back(Double2{0.5 * x + 0.25 * y, 0.5 * y - 0.25 * x} * radius_);
-        const std::size_t count = std::min(lines_.size(), most_lines);
+        const std::size_t count = std::min(lines_.size(), max_lines);
         for (std::size_t i = 0; i < count; ++i) {
             const EdgeLine& line = lines_[i];
             const Double2 foot = line.point - line.along * dot(line.point, line.along);

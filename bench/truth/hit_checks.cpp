@@ -21,7 +21,7 @@ bool is_triangle(const Hit& hit)
     return hit.face_id < POISON; // NO_HIT, LOST and POISON are the largest
 }
 
-std::uint64_t largest_ulps(const Hit& a, const Hit& b)
+std::uint64_t max_ulps(const Hit& a, const Hit& b)
 {
     return std::max({ulps_between(a.t, b.t), ulps_between(a.u, b.u), ulps_between(a.v, b.v)});
 }
@@ -58,7 +58,7 @@ bool is_same_hit(const Hit& a, const Hit& b, Allowance allowed)
     if (has_same_bits(a, b)) return true;
     if (allowed.any_triangle && is_triangle(a) && is_triangle(b)) return true;
     return allowed.ulps > 0 && a.face_id == b.face_id && a.tet == b.tet && a.steps == b.steps &&
-           largest_ulps(a, b) <= allowed.ulps;
+           max_ulps(a, b) <= allowed.ulps;
 }
 
 Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed)
@@ -72,7 +72,7 @@ Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> referen
             ++differences.count;
             if (!differences.first) differences.first = i;
         } else if (hits[i].face_id == reference[i].face_id) {
-            differences.largest_ulps = std::max(differences.largest_ulps, largest_ulps(hits[i], reference[i]));
+            differences.max_ulps = std::max(differences.max_ulps, max_ulps(hits[i], reference[i]));
         }
     }
     return differences;

@@ -35,7 +35,7 @@ struct Differences {
     std::uint64_t count = 0;          ///< differ by more than allowed
     std::optional<std::size_t> first; ///< index of the first of those
     std::uint64_t inexact = 0;        ///< differ in some bit, allowed or not
-    std::uint64_t largest_ulps = 0;   ///< of t, u and v where allowed
+    std::uint64_t max_ulps = 0;       ///< of t, u and v where allowed
 };
 
 /// Whether two hits count as one answer: the same bits in face, tet and steps, and t, u and v within the allowed

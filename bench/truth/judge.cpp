@@ -15,7 +15,7 @@ void Verdicts::add(const Verdicts& other)
     for (const auto count : {&Verdicts::rays, &Verdicts::agreed, &Verdicts::ties, &Verdicts::settled, &Verdicts::offset,
                              &Verdicts::wrong, &Verdicts::lost})
         this->*count += other.*count;
-    largest_tie_distance = std::max(largest_tie_distance, other.largest_tie_distance);
+    max_tie_distance = std::max(max_tie_distance, other.max_tie_distance);
     if (!first_wrong) first_wrong = other.first_wrong;
 }
 
@@ -62,7 +62,7 @@ std::optional<Flaw> Judge::judge(Verdicts& verdicts, const JudgedRay& judged, co
     case Settlement::Kind::exact: ++(is_clear ? verdicts.agreed : verdicts.settled); break;
     case Settlement::Kind::tie:
         ++verdicts.ties;
-        verdicts.largest_tie_distance = std::max(verdicts.largest_tie_distance, settlement.distance);
+        verdicts.max_tie_distance = std::max(verdicts.max_tie_distance, settlement.distance);
         break;
     }
     return std::nullopt;

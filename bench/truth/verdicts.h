@@ -27,7 +27,7 @@ struct Verdicts {
     std::uint64_t offset = 0;  ///< of given rays: right only for the offset origin that a BVH starts from
     std::uint64_t wrong = 0;
     std::uint64_t lost = 0;
-    double largest_tie_distance = 0;     ///< in domain units, of all ties' witnesses from their rays
+    double max_tie_distance = 0;         ///< in domain units, of all ties' witnesses from their rays
     std::optional<WrongRay> first_wrong; ///< the first wrong or lost ray
     std::vector<std::uint32_t> flawed;   ///< of one image: pixels (y * width + x) of its wrong and lost rays, ascending
 

@@ -22,11 +22,11 @@ TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y)
     return job;
 }
 
-std::vector<std::uint32_t> walk_path(const Hit& last, std::uint32_t most_steps,
+std::vector<std::uint32_t> walk_path(const Hit& last, std::uint32_t max_steps,
                                      const std::function<Hit(std::uint32_t cap)>& trace, std::uint32_t most)
 {
     std::vector<std::uint32_t> path;
-    const std::uint32_t steps = std::min(last.steps, most_steps); // a faulty device may report any number
+    const std::uint32_t steps = std::min(last.steps, max_steps); // a faulty device may report any number
     for (std::uint32_t cap = 1; cap < steps && path.size() < most; ++cap)
         path.push_back(trace(cap).tet);
     if (last.tet != NO_TET && path.size() < most) path.push_back(last.tet);

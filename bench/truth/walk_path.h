@@ -13,8 +13,8 @@ namespace tetrace {
 
 /// The first tets that a walk leaves, in order, as positions in the packed scene, up to the given number. A walk that
 /// is cut off after k steps reports the tet that it was in. last: its hit without a cap of ours. trace: its hit with a
-/// cap of steps. most_steps: no more are believed.
-[[nodiscard]] std::vector<std::uint32_t> walk_path(const Hit& last, std::uint32_t most_steps,
+/// cap of steps. max_steps: no more are believed.
+[[nodiscard]] std::vector<std::uint32_t> walk_path(const Hit& last, std::uint32_t max_steps,
                                                    const std::function<Hit(std::uint32_t cap)>& trace,
                                                    std::uint32_t most);
 

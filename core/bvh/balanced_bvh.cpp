@@ -6,7 +6,7 @@
 namespace tetrace {
 namespace {
 
-constexpr std::size_t most_balanced_leaf = 4; // triangles
+constexpr std::size_t max_balanced_leaf = 4; // triangles
 
 class BalancedBuilder {
 public:
@@ -29,7 +29,7 @@ private:
     {
         const auto node = static_cast<std::uint32_t>(bvh_.nodes.size());
         bvh_.nodes.emplace_back();
-        if (count <= most_balanced_leaf) {
+        if (count <= max_balanced_leaf) {
             bvh_.nodes[node].first = static_cast<std::uint32_t>(first);
             bvh_.nodes[node].count = static_cast<std::uint32_t>(count);
             for (std::size_t i = first; i < first + count; ++i)

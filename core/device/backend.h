@@ -36,7 +36,7 @@ struct Device {
     std::uint64_t max_buffer_bytes = 0; ///< the largest buffer that a kernel can be given; 0: memory is the limit
     unsigned max_group_items = 0;       ///< the most work items of a group; 0: does not apply
     unsigned group_width = 0;           ///< items or rays in lockstep (warp, subgroup, packet); 0: unknown, or none
-    std::uint32_t most_steps = 0;       ///< longer walks may end early, without an error; 0: no limit
+    std::uint32_t max_steps = 0;        ///< longer walks may end early, without an error; 0: no limit
     double timer_period_s = 0;          ///< resolution of the clock that Session::wait reads; 0: unknown
     unsigned threads = 1;               ///< hardware threads or compute units
     bool usable = true;
@@ -77,7 +77,7 @@ struct TraceJob {
 };
 
 /// The cap of walks through so many tets: one step more than there are tets, because a path visits none twice
-/// (docs/spec/project.md, P6); less on a device with most_steps.
+/// (docs/spec/project.md, P6); less on a device with max_steps.
 [[nodiscard]] std::uint32_t step_cap(std::uint64_t tets, const Device& device);
 
 /// Lets the job's rays start in a tet.

@@ -30,14 +30,14 @@ std::string dashed(std::string_view words)
     return name;
 }
 
-/// The text's first version number, cut to at most `most_numbers` numbers.
-std::string version_in(std::string_view text, int most_numbers)
+/// The text's first version number, cut to at most `max_numbers` numbers.
+std::string version_in(std::string_view text, int max_numbers)
 {
     const auto* const begin = std::ranges::find_if(text, is_digit);
     const auto* end = begin;
     for (int numbers = 0; end != text.end(); ++end) {
         if (is_digit(*end)) continue;
-        if (*end != '.' || ++numbers == most_numbers) break;
+        if (*end != '.' || ++numbers == max_numbers) break;
     }
     std::string version(begin, end);
     while (version.ends_with('.'))

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint32_t first_launch_rays = 16'384;
 constexpr double launch_target_s = 0.1;
-constexpr double largest_growth = 4;
-constexpr std::uint32_t most_targets = 10; // of all passes of a launch: a second, half of the shortest watchdog
+constexpr double max_growth = 4;
+constexpr std::uint32_t max_targets = 10; // of all passes of a launch: a second, half of the shortest watchdog
 
 } // namespace
 
@@ -81,7 +81,7 @@ void LaunchSize::took(std::uint32_t tiles, double seconds)
     if (tiles == 0) return;
     const double fitting = seconds > 0 ? tiles * launch_target_s / seconds : no_limit;
     // A launch shorter than the limit says little about longer ones, so the size grows in steps but shrinks at once.
-    const double largest = std::min<double>(no_limit, std::max<double>(tiles_, tiles * largest_growth));
+    const double largest = std::min<double>(no_limit, std::max<double>(tiles_, tiles * max_growth));
     tiles_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, largest));
 }
 
@@ -103,7 +103,7 @@ void Launches::start(std::span<const LaunchParams> images, std::uint32_t passes,
     while (passes > 0) {
         const bool fits = !is_first_pass_ && tiles > 0 && tiles <= size_.tiles();
         const std::uint32_t together =
-            fits ? std::min(passes, most_targets * (size_.tiles() / static_cast<std::uint32_t>(tiles))) : 1;
+            fits ? std::min(passes, max_targets * (size_.tiles() / static_cast<std::uint32_t>(tiles))) : 1;
         start_passes(images, together, enqueue, take_times);
         passes -= together;
     }

@@ -24,7 +24,7 @@ const PackedScene& packed_scene(const Backend& backend, std::size_t device, cons
     return *scene.packed;
 }
 
-std::uint64_t largest_buffer(const Device& device, const SessionOptions& options)
+std::uint64_t max_buffer(const Device& device, const SessionOptions& options)
 {
     if (device.max_buffer_bytes == 0 || options.max_buffer_bytes == 0)
         return device.max_buffer_bytes + options.max_buffer_bytes;

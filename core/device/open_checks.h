@@ -15,7 +15,7 @@ void require_kernel(const Backend& backend, std::size_t device, const KernelId& 
 
 /// Bytes of the largest buffer that a session may make: the device's limit, or the options' if they set one; 0 is no
 /// limit.
-[[nodiscard]] std::uint64_t largest_buffer(const Device& device, const SessionOptions& options);
+[[nodiscard]] std::uint64_t max_buffer(const Device& device, const SessionOptions& options);
 
 /// Pixel rows of a tile: as the options say, else 8, by measurement (results/tiles.md).
 [[nodiscard]] unsigned tile_height_of(const SessionOptions& options);

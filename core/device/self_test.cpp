@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::uint32_t smallest_normal = 0x00800000u;
+constexpr std::uint32_t min_normal = 0x00800000u;
 
 std::uint32_t bits(float value)
 {
@@ -69,8 +69,8 @@ std::vector<Quad> make_operations()
         quads.push_back({PROBE_COPY, word, 0, 0}); // a signalling NaN, a NaN with a payload, denormals
     // Denormal operands, and denormal results of normal operands.
     quads.push_back({PROBE_ADD, 1u, 1u, 0});
-    quads.push_back({PROBE_ADD, smallest_normal + 1, smallest_normal | 0x80000000u, 0});
-    quads.push_back({PROBE_MULTIPLY, smallest_normal, 0, bits(0.5f)});
+    quads.push_back({PROBE_ADD, min_normal + 1, min_normal | 0x80000000u, 0});
+    quads.push_back({PROBE_MULTIPLY, min_normal, 0, bits(0.5f)});
     quads.push_back({PROBE_MULTIPLY, 3u, 0, bits(2.0f)});
     return quads;
 }

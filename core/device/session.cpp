@@ -49,7 +49,7 @@ TraceJob column_of(std::size_t rays)
 std::uint32_t step_cap(std::uint64_t tets, const Device& device)
 {
     const auto proved = static_cast<std::uint32_t>(tets + 1);
-    return device.most_steps == 0 ? proved : std::min(proved, device.most_steps);
+    return device.max_steps == 0 ? proved : std::min(proved, device.max_steps);
 }
 
 void start_in(TraceJob& job, const PackedScene& packed, const Scene& scene, std::uint32_t tet)

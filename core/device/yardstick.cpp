@@ -13,20 +13,20 @@ namespace {
 constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
 constexpr double enough_s = 3e-3; ///< of a pass: much longer than a launch and the clock's resolution
 constexpr std::uint64_t enough_bytes = 128 * mebibyte;
-constexpr unsigned most_times = 4096;
+constexpr unsigned max_times = 4096;
 constexpr double patient_s = 0.3;
-constexpr int most_passes = 6;
+constexpr int max_passes = 6;
 
 /// The best of several passes; the first, which may touch pages, does not count.
 CopyRate rate_of(std::uint64_t bytes, const CopyTask& copy)
 {
     // On a busy machine a thread that waits for its turn may take as long as a pass should.
-    auto times = static_cast<unsigned>(std::clamp<std::uint64_t>(enough_bytes / bytes, 1, most_times));
-    for (double seconds = copy(bytes, times); seconds < enough_s && times < most_times; seconds = copy(bytes, times))
+    auto times = static_cast<unsigned>(std::clamp<std::uint64_t>(enough_bytes / bytes, 1, max_times));
+    for (double seconds = copy(bytes, times); seconds < enough_s && times < max_times; seconds = copy(bytes, times))
         times *= 2;
     const Stopwatch watch;
     double best_s = copy(bytes, times);
-    for (int pass = 1; pass < most_passes && watch.seconds() < patient_s; ++pass)
+    for (int pass = 1; pass < max_passes && watch.seconds() < patient_s; ++pass)
         best_s = std::min(best_s, copy(bytes, times));
     return {2 * bytes, best_s > 0 ? 2.0 * static_cast<double>(bytes) * times / best_s : 0};
 }

@@ -64,10 +64,10 @@ Channel::Pair Channel::make_pair()
 
 bool Channel::send(std::span<const std::byte> bytes, int file) const
 {
-    if (bytes.size() > most_message_bytes)
+    if (bytes.size() > max_message_bytes)
         throw Error(ErrorKind::internal, "a message of " + std::to_string(bytes.size()) +
                                              " bytes for a driver's process, at most " +
-                                             std::to_string(most_message_bytes) + " are possible");
+                                             std::to_string(max_message_bytes) + " are possible");
     Envelope envelope(const_cast<std::byte*>(bytes.data()), bytes.size()); // sendmsg() only reads
     envelope.put_file(file);
     ssize_t sent = 0;
@@ -84,7 +84,7 @@ bool Channel::wait(int milliseconds) const
 
 std::optional<Message> Channel::receive() const
 {
-    buffer_.resize(most_message_bytes);
+    buffer_.resize(max_message_bytes);
     Envelope envelope(buffer_.data(), buffer_.size());
     ssize_t got = 0;
     while ((got = ::recvmsg(socket_.get(), envelope.header(), MSG_CMSG_CLOEXEC)) < 0 && errno == EINTR) {

@@ -16,7 +16,7 @@ struct Message {
 };
 
 /// The largest message; what may be larger goes through SharedMemory.
-inline constexpr std::size_t most_message_bytes = 128 * 1024;
+inline constexpr std::size_t max_message_bytes = 128 * 1024;
 
 /// One end of a socket for whole messages.
 class Channel {
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] static Pair make_pair();
 
     /// file: goes with the message; -1 for none. False where the other end is closed. Throws Error{internal} for a
-    /// message above most_message_bytes.
+    /// message above max_message_bytes.
     [[nodiscard]] bool send(std::span<const std::byte> bytes, int file = -1) const;
     /// Whether receive() would return at once. Waits up to that long.
     [[nodiscard]] bool wait(int milliseconds) const;

@@ -19,8 +19,8 @@ namespace tetrace {
 namespace {
 
 constexpr int tick_ms = 100;
-constexpr double most_of_a_tick_s = 1; ///< we were stopped too, if it took longer
-constexpr double farewell_s = 5;       ///< for a process to end after its socket is closed
+constexpr double max_tick_s = 1; ///< we were stopped too, if it took longer
+constexpr double farewell_s = 5;      ///< for a process to end after its socket is closed
 
 /// What posix_spawn() is told. Only its own calls may run before the program is replaced: other threads hold locks.
 class SpawnPlan {
@@ -152,7 +152,7 @@ bool DriverChild::await_answer(double limit_s) const
     double waited_s = 0;
     for (Stopwatch tick; waited_s < limit_s; tick = Stopwatch()) {
         if (channel_.wait(static_cast<int>(std::clamp(1e3 * (limit_s - waited_s), 1.0, double{tick_ms})))) return true;
-        waited_s += std::min(tick.seconds(), most_of_a_tick_s);
+        waited_s += std::min(tick.seconds(), max_tick_s);
     }
     return false;
 }

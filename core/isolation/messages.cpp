@@ -9,7 +9,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::size_t most_text_bytes = 64 * 1024; ///< of an exception: a compiler's log may be longer
+constexpr std::size_t max_text_bytes = 64 * 1024; ///< of an exception: a compiler's log may be longer
 
 enum class Ended : std::uint32_t { well, error, bad_alloc, other };
 
@@ -18,8 +18,8 @@ template <class Visit>
 void each_text(Device& device, const Visit& visit)
 {
     auto& [name, kind, driver, implementation, id, uuid, pci, memory_bytes, max_buffer_bytes, max_group_items,
-           group_width, most_steps, timer_period_s, threads, usable, compile_only, broken, reason] = device;
-    static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, most_steps,
+           group_width, max_steps, timer_period_s, threads, usable, compile_only, broken, reason] = device;
+    static_cast<void>(std::tie(kind, memory_bytes, max_buffer_bytes, max_group_items, group_width, max_steps,
                                timer_period_s, threads, usable, compile_only, broken)); // see each_number()
     for (std::string* text : {&name, &driver, &implementation, &id, &uuid, &pci, &reason})
         visit(*text);
@@ -33,7 +33,7 @@ void each_number(Device& device, const Visit& visit)
     visit(device.max_buffer_bytes);
     visit(device.max_group_items);
     visit(device.group_width);
-    visit(device.most_steps);
+    visit(device.max_steps);
     visit(device.timer_period_s);
     visit(device.threads);
     visit(device.usable);
@@ -104,7 +104,7 @@ void put_failure(ByteWriter& to, Ended how, ErrorKind kind, std::string_view tex
 {
     to.put(how);
     to.put(kind);
-    to.put_text(text.substr(0, most_text_bytes));
+    to.put_text(text.substr(0, max_text_bytes));
 }
 
 } // namespace

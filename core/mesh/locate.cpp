@@ -70,7 +70,7 @@ Float3 nudged(Float3 point, int choice, float by)
 
 } // namespace
 
-WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint32_t most_steps)
+WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint32_t max_steps)
 {
     WalkEnd end{WalkEnd::Kind::too_far, NO_TET, 0};
     std::uint32_t tet = from;
@@ -86,15 +86,15 @@ WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint
         if (beyond == 4) return {WalkEnd::Kind::arrived, tet, end.steps};
         const std::uint32_t link = mesh.tets[tet].links[beyond];
         if (link == NO_LINK) return {WalkEnd::Kind::outside, NO_TET, end.steps}; // the domain is convex
-        if (end.steps == most_steps) return end;
+        if (end.steps == max_steps) return end;
         tet = link_tet(link);
     }
 }
 
 std::uint32_t locate(const TetMesh& mesh, Float3 point)
 {
-    const std::size_t most_steps = std::min<std::size_t>(2 * mesh.tets.size() + 16, UINT32_MAX);
-    const WalkEnd end = walk_to(mesh, 0, point, static_cast<std::uint32_t>(most_steps));
+    const std::size_t max_steps = std::min<std::size_t>(2 * mesh.tets.size() + 16, UINT32_MAX);
+    const WalkEnd end = walk_to(mesh, 0, point, static_cast<std::uint32_t>(max_steps));
     return end.kind == WalkEnd::Kind::too_far ? search_all(mesh, point) : end.tet;
 }
 

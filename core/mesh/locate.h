@@ -25,8 +25,8 @@ struct WalkEnd {
 
 /// The same walk from a given tet, which is short where the tet is near the point. Each step crosses a face that
 /// separates its tet from the point, by exact orientation tests.
-/// from: a tet of the mesh. most_steps: it gives up rather than take more.
-[[nodiscard]] WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint32_t most_steps);
+/// from: a tet of the mesh. max_steps: it gives up rather than take more.
+[[nodiscard]] WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint32_t max_steps);
 
 /// Where the rays of a view start.
 struct Start {

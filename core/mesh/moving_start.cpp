@@ -23,7 +23,7 @@ std::optional<Start> MovingStart::walk(Float3 origin)
         if (gave_up) return NO_TET;
         const WalkEnd end = walk_to(scene_->tets, from, point, limit_.steps);
         counts_.steps += end.steps;
-        counts_.most_steps = std::max(counts_.most_steps, end.steps);
+        counts_.max_steps = std::max(counts_.max_steps, end.steps);
         gave_up = end.kind == WalkEnd::Kind::too_far;
         if (end.tet != NO_TET) from = end.tet; // where a camera is moved to is near
         return end.tet;

@@ -16,10 +16,10 @@ struct MoveLimit {
 
 /// What a moving camera's starts took.
 struct MoveCounts {
-    std::uint32_t walked = 0;  ///< starts found by walking from the one before
-    std::uint32_t located = 0; ///< starts found by exact location: the first, those behind one outside or too far off
-    std::uint64_t steps = 0;   ///< from tet to tet, of all walks, also of those that gave up
-    std::uint32_t most_steps = 0; ///< of a single walk
+    std::uint32_t walked = 0;    ///< starts found by walking from the one before
+    std::uint32_t located = 0;   ///< starts found by exact location: the first, those behind one outside or too far off
+    std::uint64_t steps = 0;     ///< from tet to tet, of all walks, also of those that gave up
+    std::uint32_t max_steps = 0; ///< of a single walk
 };
 
 /// The starts of a camera that moves from view to view. The tet of a new position is found by walking from that of the

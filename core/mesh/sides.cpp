@@ -15,7 +15,7 @@ namespace {
 constexpr double camera_radii = 3; // core/rays/camera_set.h: the farthest is 2.9 away; core/rays/aim.h: own ones 3
 constexpr double bounds_needed = 3;
 
-double least_distance(const Scene& scene)
+double min_distance(const Scene& scene)
 {
     const BoundingSphere sphere = bounding_sphere(scene.mesh);
     const double in_domain = std::sqrt(3.0);
@@ -89,7 +89,7 @@ std::string face_too_thin(const Scene& scene, const EntryGrid& grid, double need
 std::string find_weak_side(const Scene& scene, const EntryGrid& grid)
 {
     std::string found = domain_too_large(scene.domain);
-    const double needed = least_distance(scene);
+    const double needed = min_distance(scene);
     if (found.empty()) found = mesh_too_near(scene, needed);
     if (found.empty()) found = face_too_thin(scene, grid, needed);
     return found;

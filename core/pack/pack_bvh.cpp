@@ -54,8 +54,8 @@ PackedScene pack_bvh(const TriangleMesh& mesh, const Bvh& bvh, Layout layout)
     if (bvh.references.size() > traits.most)
         refuse_to_pack(layout, bvh.references.size(), "references of leaves to triangles", traits.most);
     for (const auto& node : bvh.nodes)
-        if (node.count > most_leaf_references)
-            refuse_to_pack(layout, node.count, "triangles in a leaf", most_leaf_references);
+        if (node.count > max_leaf_references)
+            refuse_to_pack(layout, node.count, "triangles in a leaf", max_leaf_references);
     PackedScene packed = (*pack_nodes)(mesh, bvh);
     packed.layout = layout;
     return packed;

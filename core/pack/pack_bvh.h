@@ -10,7 +10,7 @@
 namespace tetrace {
 
 /// The most references in a leaf of a binary BVH: bvh2 and bvh4 have four bits for their number.
-inline constexpr std::uint32_t most_leaf_references = 15;
+inline constexpr std::uint32_t max_leaf_references = 15;
 
 /// Packs a BVH in a layout of BVHs (kernels/layouts/layout.h); its boxes are enlarged by BOX_MARGIN.
 /// bvh: of this mesh, valid (see find_defect). Nodes are in depth-first order, leaf triangles in the order of their

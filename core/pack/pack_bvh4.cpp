@@ -12,7 +12,7 @@
 namespace tetrace {
 namespace {
 
-static_assert(four_wide.leaf_triangles <= most_leaf_references);
+static_assert(four_wide.leaf_triangles <= max_leaf_references);
 
 /// The words of a node as a device reads them.
 using Bvh4Node = std::array<std::uint32_t, 4 * std::size_t{BVH4_NODE_QUADS}>;
@@ -87,9 +87,9 @@ private:
 
 PackedScene pack_bvh4(const TriangleMesh& mesh, const Bvh& bvh)
 {
-    constexpr std::uint32_t most_depth = BVH4_STACK / 3 * 2; // of two binary levels, three children wait
-    if (const auto depth = depth_of(bvh); depth > most_depth)
-        refuse_to_pack(Layout::bvh4, depth, "inner nodes above a leaf", most_depth);
+    constexpr std::uint32_t max_depth = BVH4_STACK / 3 * 2; // of two binary levels, three children wait
+    if (const auto depth = depth_of(bvh); depth > max_depth)
+        refuse_to_pack(Layout::bvh4, depth, "inner nodes above a leaf", max_depth);
     const Bvh binary = with_single_leaves(mesh, bvh);
     const auto packed_as = [&](Collapse collapse) {
         return Bvh4Packer(mesh, make_wide(binary, four_wide, collapse)).pack();

@@ -142,9 +142,9 @@ private:
 
 PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh)
 {
-    constexpr std::uint32_t most_depth = 3 * CWBVH_STACK; // three binary levels make one level of eight children
-    if (const auto depth = depth_of(bvh); depth > most_depth)
-        refuse_to_pack(Layout::cwbvh, depth, "inner nodes above a leaf", most_depth);
+    constexpr std::uint32_t max_depth = 3 * CWBVH_STACK; // three binary levels make one level of eight children
+    if (const auto depth = depth_of(bvh); depth > max_depth)
+        refuse_to_pack(Layout::cwbvh, depth, "inner nodes above a leaf", max_depth);
     const Bvh binary = with_single_leaves(mesh, bvh);
     WideBvh wide = make_wide(binary, eight_wide, Collapse::cheapest);
     std::string fall_back;

@@ -7,9 +7,9 @@ namespace tetrace {
 namespace {
 
 /// The sine of the least angle between the line of sight and up: about a thousandth of a degree.
-constexpr double least_sine_of_up = 0x1p-16;
+constexpr double min_sine_of_up = 0x1p-16;
 /// Between origin and target, in radii: nearer ones leave no digits of the direction.
-constexpr double least_sight = 0x1p-16;
+constexpr double min_sight = 0x1p-16;
 
 } // namespace
 
@@ -18,10 +18,10 @@ std::string why_no_camera(const Aim& aim)
     const Double3 sight = aim.target - aim.origin;
     if (!(length(aim.origin) <= farthest_aim)) return "origin: is more than 3 radii from the scene's centre";
     if (!(length(aim.target) <= 1e6)) return "target: is more than 1,000,000 radii from the scene's centre";
-    if (!(length(sight) >= least_sight)) return "target: is where the origin is";
+    if (!(length(sight) >= min_sight)) return "target: is where the origin is";
     const double size = length(aim.up);
     if (!(size >= 1e-6 && size <= 1e6)) return "up: has a length below 0.000001 or above 1,000,000";
-    if (!(length(cross(normalized(sight), normalized(aim.up))) >= least_sine_of_up))
+    if (!(length(cross(normalized(sight), normalized(aim.up))) >= min_sine_of_up))
         return "up: is along the line of sight";
     return {};
 }

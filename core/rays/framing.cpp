@@ -75,10 +75,10 @@ private:
         if (volume == 0 || (a.z <= 0 && b.z <= 0 && c.z <= 0)) return;
         int low_x = 0, high_x = glimpse_size, low_y = 0, high_y = glimpse_size;
         if (in_front) {
-            const auto [least_x, most_x] = std::minmax({a.x / a.z, b.x / b.z, c.x / c.z});
-            const auto [least_y, most_y] = std::minmax({a.y / a.z, b.y / b.z, c.y / c.z});
-            low_x = first_pixel(least_x), high_x = std::min(glimpse_size, first_pixel(most_x) + 1);
-            low_y = first_pixel(least_y), high_y = std::min(glimpse_size, first_pixel(most_y) + 1);
+            const auto [min_x, max_x] = std::minmax({a.x / a.z, b.x / b.z, c.x / c.z});
+            const auto [min_y, max_y] = std::minmax({a.y / a.z, b.y / b.z, c.y / c.z});
+            low_x = first_pixel(min_x), high_x = std::min(glimpse_size, first_pixel(max_x) + 1);
+            low_y = first_pixel(min_y), high_y = std::min(glimpse_size, first_pixel(max_y) + 1);
         }
         for (int y = low_y; y < high_y; ++y)
             for (int x = low_x; x < high_x; ++x) {

@@ -37,7 +37,7 @@ tetrace::Float3 clean_direction(Double3 direction)
 using ray_kernel::clean_direction;
 
 constexpr std::uint32_t image_tile = 8;       // pixels along a side of the tiles that rays are ordered by
-constexpr std::uint32_t most_draws = 64;      // attempts at a direction; a face that accepts none of them makes no ray
+constexpr std::uint32_t max_draws = 64;       // attempts at a direction; a face that accepts none of them makes no ray
 constexpr double shortest_to_light = 0x1p-10; // of a shadow ray, in domain units
 
 std::uint32_t stream_of(RayKind kind)
@@ -95,7 +95,7 @@ std::optional<GivenRay> leaving(const RayStart& start, Float3 direction, float e
 std::optional<GivenRay> cosine_given(RayKind kind, const RaySource& source, const RayStart& start, float end,
                                      std::uint32_t triangle, std::uint32_t pixel)
 {
-    for (std::uint32_t draw = 0; draw < most_draws; ++draw) {
+    for (std::uint32_t draw = 0; draw < max_draws; ++draw) {
         const Double3 sum = start.inward + random_direction({stream_of(kind), source.view_number, pixel, draw});
         if (length(sum) < 0x1p-10) continue; // its direction would be mostly rounding error
         if (const auto ray = leaving(start, clean_direction(normalized(sum)), end, triangle, pixel)) return ray;

@@ -110,7 +110,7 @@ bool enters(const RayStart& start, Float3 direction)
 {
     const Double3 along = to_double(direction);
     const double rise = dot(start.inward, along);
-    if (!(rise >= least_sine * length(along)) || rise == 0) return false;
+    if (!(rise >= min_sine * length(along)) || rise == 0) return false;
     const Double3 origin = to_double(start.origin);
     const double back = dot(start.inward, start.corners[0] - origin) / rise;
     return depth_in(start.corners, start.inward, origin + along * back) >= crossing_margin;

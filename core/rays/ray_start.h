@@ -22,7 +22,7 @@ struct RayStart {
 inline constexpr double edge_margin = 0x1p-17;
 
 /// The least sine of the angle between a face and a ray that leaves it.
-inline constexpr double least_sine = 0x1p-6;
+inline constexpr double min_sine = 0x1p-6;
 
 /// hit: of an input triangle; its tet numbered as in the scene.
 /// Throws Error{internal} where the tet has no face of that triangle.
@@ -31,7 +31,7 @@ inline constexpr double least_sine = 0x1p-6;
 /// The same without tets: on the triangle that was hit, on the side that a ray of this direction came from; no link.
 [[nodiscard]] RayStart ray_start(const TriangleMesh& mesh, const Hit& hit, Float3 direction);
 
-/// Whether a ray from there goes into the tet at an angle of at least least_sine, and its line meets the face's plane
+/// Whether a ray from there goes into the tet at an angle of at least min_sine, and its line meets the face's plane
 /// inside the face, 2^-19 away from its edges: then a walk enters by that face, however it rounds.
 [[nodiscard]] bool enters(const RayStart& start, Float3 direction);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int unit_log2 = 16;
 constexpr std::int64_t one = std::int64_t{1} << unit_log2;
-constexpr std::int64_t least_determinant = std::int64_t{1} << (3 * unit_log2 - 20);
+constexpr std::int64_t min_determinant = std::int64_t{1} << (3 * unit_log2 - 20);
 
 /// In units of 2^-16. Corners are below 2^17 in magnitude, directions below 2^18, origins below 2^20, so that a side
 /// product is below 2^62.
@@ -79,7 +79,7 @@ Corners tet_of(std::uint32_t number)
         const std::int64_t determinant =
             dot(cross(corners[1] - corners[0], corners[2] - corners[0]), corners[3] - corners[0]);
         if (determinant > 0) std::swap(corners[2], corners[3]); // negative, as for packed tets
-        if (std::abs(determinant) >= least_determinant) return corners;
+        if (std::abs(determinant) >= min_determinant) return corners;
     }
 }
 

@@ -15,7 +15,7 @@
 
 // The vertex at which a product with `factors` is the smallest (or, with them negated, the largest) of all that lie in
 // a box: rounding is monotone, so no vertex in the box has a smaller one.
-KERNEL_FN Vec3 least_corner(DomainBox box, Vec3 factors)
+KERNEL_FN Vec3 min_corner(DomainBox box, Vec3 factors)
 {
     return VEC3(factors.x < real(0.0f) ? box.high.x : box.low.x, factors.y < real(0.0f) ? box.high.y : box.low.y,
                 factors.z < real(0.0f) ? box.high.z : box.low.z);
@@ -26,8 +26,8 @@ KERNEL_FN Vec3 least_corner(DomainBox box, Vec3 factors)
 KERNEL_FN bool sees_on_one_side(DomainBox box, Ray ray, Vec3 factors)
 {
     Vec3 negated = VEC3(-factors.x, -factors.y, -factors.z);
-    return dot3(sub3(least_corner(box, factors), ray.origin), factors) > real(0.0f) ||
-           dot3(sub3(least_corner(box, negated), ray.origin), factors) < real(0.0f);
+    return dot3(sub3(min_corner(box, factors), ray.origin), factors) > real(0.0f) ||
+           dot3(sub3(min_corner(box, negated), ray.origin), factors) < real(0.0f);
 }
 
 // The box of all vertices on a side.

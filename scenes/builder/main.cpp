@@ -118,7 +118,7 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
         ->check(CLI::IsMember({cdt, rays}).description(""))
         ->type_name(cdt + "|" + rays);
     app.add_option("--effort", options.effort, "of the optimiser, 0 (none, and no more points) to 3; default: 2")
-        ->check(CLI::Range(0, most_effort).description(""))
+        ->check(CLI::Range(0, max_effort).description(""))
         ->type_name("N");
     app.add_option("--optimise-for", options.optimise_for_s,
                    "the optimiser stops after so many seconds, with what it has reached; default: 300")

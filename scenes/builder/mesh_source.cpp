@@ -24,10 +24,10 @@ void MeshSource::fail(const std::string& place, const std::string& problem) cons
     fail(place, problem, "the file is damaged or cut short: fetch or export it again");
 }
 
-void MeshSource::require_room(const std::string& elements, std::int64_t count, std::size_t least_bytes) const
+void MeshSource::require_room(const std::string& elements, std::int64_t count, std::size_t min_bytes) const
 {
     if (count < 0) fail("header", fmt::format("a negative number of {}, {}", elements, count));
-    const auto most = bytes_.size() / least_bytes + 1;
+    const auto most = bytes_.size() / min_bytes + 1;
     if (static_cast<std::uint64_t>(count) > most)
         fail("header", fmt::format("it announces {} {}, but {} bytes cannot hold more than {}", count, elements,
                                    bytes_.size(), most));

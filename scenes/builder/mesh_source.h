@@ -28,8 +28,8 @@ public:
     /// fail() with the remedy that fits files cut short or edited by hand.
     [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
 
-    /// Throws where `count` elements of at least `least_bytes` each cannot be in the file.
-    void require_room(const std::string& elements, std::int64_t count, std::size_t least_bytes) const;
+    /// Throws where `count` elements of at least `min_bytes` each cannot be in the file.
+    void require_room(const std::string& elements, std::int64_t count, std::size_t min_bytes) const;
     /// Adds a vertex; throws where a coordinate is no finite float.
     void add_vertex(Float3 position, const std::string& place);
     /// Adds a polygon as triangles (cut_polygon); throws where an index is not below `vertex_count`.

@@ -116,7 +116,7 @@ private:
 
 std::vector<std::array<std::size_t, 3>> cut_polygon(std::span<const Float3> corners)
 {
-    if (corners.size() < 4 || corners.size() > most_concave_corners) return fan(corners.size());
+    if (corners.size() < 4 || corners.size() > max_concave_corners) return fan(corners.size());
     const FlatPolygon polygon(corners);
     if (is_fan_sound(polygon, corners.size())) return fan(corners.size());
     return EarCutter(polygon, corners.size()).cut();

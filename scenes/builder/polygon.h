@@ -10,7 +10,7 @@
 namespace tetrace {
 
 /// Corners up to which polygons that are not convex are cut without overlap; those with more are cut into fans.
-inline constexpr std::size_t most_concave_corners = 1000;
+inline constexpr std::size_t max_concave_corners = 1000;
 
 /// Cuts a polygon into triangles of its corners (numbers from 0), turned as it is: a fan from its first corner where
 /// that does not overlap, else by ears. Flatness is not asked for: it is seen along its mean normal. A polygon that

@@ -250,7 +250,7 @@ Float3 placed(const Matrix& matrix, const Values& positions, std::size_t i)
     return to_float(Double3{coordinate(0), coordinate(1), coordinate(2)});
 }
 
-constexpr std::size_t most_vertices = std::size_t{1} << 28;
+constexpr std::size_t max_vertices = std::size_t{1} << 28;
 
 void add_primitive(MeshSource& source, const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                    const Matrix& matrix, const std::string& place)
@@ -259,8 +259,8 @@ void add_primitive(MeshSource& source, const tinygltf::Model& model, const tinyg
     if (attribute == primitive.attributes.end()) return;
     const Values positions(source, model, attribute->second, TINYGLTF_TYPE_VEC3, place + ", positions");
     const std::size_t first = source.soup().mesh.vertices.size();
-    if (positions.count() > most_vertices - first) // nodes may name the same mesh again and again
-        source.fail(place, fmt::format("with all its nodes the file has more than {} vertices", most_vertices));
+    if (positions.count() > max_vertices - first) // nodes may name the same mesh again and again
+        source.fail(place, fmt::format("with all its nodes the file has more than {} vertices", max_vertices));
     for (std::size_t i = 0; i < positions.count(); ++i)
         source.add_vertex(placed(matrix, positions, i), fmt::format("{}, vertex {}", place, i));
     std::optional<Values> indices;

@@ -260,7 +260,7 @@ void add_strips(MeshSource& source, const std::vector<std::int64_t>& indices, st
     }
 }
 
-std::size_t least_bytes(const Element& element, Encoding encoding)
+std::size_t min_bytes(const Element& element, Encoding encoding)
 {
     if (encoding == Encoding::ascii) return std::max<std::size_t>(2 * element.properties.size(), 1);
     std::size_t bytes = 0;
@@ -296,7 +296,7 @@ void read_ply(MeshSource& source)
     const Header header = parse_header(source, lines);
     std::size_t vertex_count = 0;
     for (const Element& element : header.elements) {
-        source.require_room("elements '" + element.name + "'", element.count, least_bytes(element, header.encoding));
+        source.require_room("elements '" + element.name + "'", element.count, min_bytes(element, header.encoding));
         require_properties(source, element);
         if (element.name == "vertex") vertex_count += static_cast<std::size_t>(element.count);
     }

@@ -8,8 +8,8 @@
 namespace tetrace {
 namespace {
 
-constexpr std::uint64_t most_tests = 20'000'000; // a second or two; a mesh that needs more cannot be mended
-constexpr float step_size = 0x1p-24f;            // the spacing of floats in [1/2, 1)
+constexpr std::uint64_t max_tests = 20'000'000; // a second or two; a mesh that needs more cannot be mended
+constexpr float step_size = 0x1p-24f;           // the spacing of floats in [1/2, 1)
 
 bool is_bad(const TetMesh& mesh, const Tet& tet)
 {
@@ -47,7 +47,7 @@ public:
 private:
     std::vector<std::size_t> ranges_;
     std::vector<std::uint32_t> tets_;
-    std::uint64_t budget_ = most_tests;
+    std::uint64_t budget_ = max_tests;
 };
 
 // The 26 directions of a step, those along one axis first.
@@ -99,13 +99,13 @@ std::vector<std::uint32_t> bad_tets(const TetMesh& mesh)
 
 std::array<std::uint64_t, 3> mend_tets(TetMesh& mesh, const std::vector<Freedom>& freedom)
 {
-    constexpr int most_passes = 8;
+    constexpr int max_passes = 8;
     auto bad = bad_tets(mesh);
     const std::uint64_t before = bad.size();
     std::uint64_t moved = 0;
     if (bad.empty()) return {0, 0, 0};
     Stars stars(mesh);
-    for (int pass = 0; pass < most_passes && !bad.empty(); ++pass) {
+    for (int pass = 0; pass < max_passes && !bad.empty(); ++pass) {
         const std::uint64_t moved_before = moved;
         for (const std::uint32_t tet : bad)
             for (const std::uint32_t vertex : mesh.tets[tet].vertices)

@@ -10,7 +10,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr std::int32_t most_divisions = 128; // as in scenes/scene_file.cpp: the entry grid grows with their square
+constexpr std::int32_t max_divisions = 128; // as in scenes/scene_file.cpp: the entry grid grows with their square
 
 /// Orders of the axes; even permutations first.
 constexpr std::array<std::array<std::uint32_t, 3>, 6> orders = {
@@ -49,7 +49,7 @@ Scene CubeGrid::make(const std::string& name, const std::function<bool(const Cel
 void CubeGrid::make_lines()
 {
     scene_.domain.kind = DomainKind::tight;
-    const std::int32_t cubes = (n_ + most_divisions - 1) / most_divisions; // along a square's side
+    const std::int32_t cubes = (n_ + max_divisions - 1) / max_divisions; // along a square's side
     const std::int32_t divisions = (n_ + cubes - 1) / cubes;
     scene_.domain.divisions = static_cast<std::uint32_t>(divisions);
     for (std::vector<float>& axis : scene_.domain.lines)

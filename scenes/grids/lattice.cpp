@@ -53,9 +53,9 @@ void require_memory(std::uint64_t n)
 
 Scene make_lattice(std::uint32_t resolution)
 {
-    if (resolution < least_lattice || resolution > most_lattice)
+    if (resolution < min_lattice || resolution > max_lattice)
         throw Error(ErrorKind::usage, fmt::format("making scene lattice: {} cubes along an axis; {} to {} are accepted",
-                                                  resolution, least_lattice, most_lattice));
+                                                  resolution, min_lattice, max_lattice));
     require_memory(resolution);
     return CubeGrid(resolution)
         .make("lattice",

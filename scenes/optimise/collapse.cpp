@@ -5,7 +5,7 @@
 namespace tetrace {
 namespace {
 
-constexpr std::size_t most_collapsed_tets = 200;
+constexpr std::size_t max_collapsed_tets = 200;
 
 } // namespace
 
@@ -54,7 +54,7 @@ void Collapse::make_fresh(std::uint32_t vertex, std::uint32_t onto)
 
 double Collapse::try_vertex(std::uint32_t vertex, double least)
 {
-    if (!find_star(mesh_, vertex, most_collapsed_tets, star_)) return 0;
+    if (!find_star(mesh_, vertex, max_collapsed_tets, star_)) return 0;
     const double before = star_.cost(mesh_, mesh_.point(vertex));
     find_candidates(vertex, before - least);
     for (const Candidate& candidate : candidates_) {

@@ -133,7 +133,7 @@ void EdgeRemoval::emit(std::size_t i, std::size_t k)
 
 double EdgeRemoval::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
-    if (!find_ring(mesh_, tet, edge, most_around_edge, since, ring_)) return 0;
+    if (!find_ring(mesh_, tet, edge, max_around_edge, since, ring_)) return 0;
     const std::size_t last = ring_.vertices.size() - 1, open = ring_.is_open() ? 1 : 0;
     if (open == 1 && !ends_on_one_side()) return 0;
     double before = 0; // the free faces: those of an open ring's ends are on the boundary

@@ -5,7 +5,7 @@
 namespace tetrace {
 
 /// Most vertices round an edge that EdgeRemoval looks at: its work is the cube of their number.
-inline constexpr std::size_t most_around_edge = 8;
+inline constexpr std::size_t max_around_edge = 8;
 
 /// The tets round an edge, and the vertices across from it: tet i has the edge a b and ring vertices i and i + 1, so
 /// that (a, b, ring[i], ring[i + 1]) is positive. The ring of an edge on the boundary is open: it begins and ends with
@@ -50,8 +50,8 @@ private:
     EditableMesh& mesh_;
     EdgeRing ring_;
     /// Of the part i..k of the ring: cost of its cheapest triangulation, chord i k included; its middle vertex.
-    std::array<std::array<double, most_around_edge>, most_around_edge> cost_{};
-    std::array<std::array<std::size_t, most_around_edge>, most_around_edge> middle_{};
+    std::array<std::array<double, max_around_edge>, max_around_edge> cost_{};
+    std::array<std::array<std::size_t, max_around_edge>, max_around_edge> middle_{};
     std::vector<Corners> fresh_;
 };
 

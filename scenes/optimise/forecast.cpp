@@ -8,7 +8,7 @@ namespace tetrace {
 namespace {
 
 constexpr double highest_ratio = 0.95; // rounds come to an end
-constexpr double least_share = 0.05;   // of a round, from which its time is told
+constexpr double min_share = 0.05;     // of a round, from which its time is told
 constexpr double first_rounds = 6;     // as many as bunny has, before the first has ended
 
 } // namespace
@@ -23,15 +23,15 @@ void Forecast::end_round(double elapsed_s, double gain)
     last_gain_ = gain;
 }
 
-double Forecast::left_s(double elapsed_s, double share_of_round, double enough, std::uint32_t most_rounds) const
+double Forecast::left_s(double elapsed_s, double share_of_round, double enough, std::uint32_t max_rounds) const
 {
     const double in_round_s = elapsed_s - begin_s_;
     double round_s = last_s_ * time_ratio_; // of the current round
-    if (last_s_ == 0 || in_round_s > round_s) round_s = in_round_s / std::max(share_of_round, least_share);
+    if (last_s_ == 0 || in_round_s > round_s) round_s = in_round_s / std::max(share_of_round, min_share);
     double rounds = first_rounds; // after the current one
     if (last_gain_ > 0 && enough > 0)
         rounds = std::ceil(std::max(0.0, std::log(enough / last_gain_) / std::log(gain_ratio_) - 1));
-    rounds = std::min(rounds, static_cast<double>(most_rounds));
+    rounds = std::min(rounds, static_cast<double>(max_rounds));
     const double later_s = round_s * time_ratio_ * (1 - std::pow(time_ratio_, rounds)) / (1 - time_ratio_);
     return std::max(0.0, round_s - in_round_s) + later_s;
 }

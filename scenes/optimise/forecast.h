@@ -10,10 +10,9 @@ public:
     /// elapsed_s: since the first round began. gain: by which the round lowered the cost.
     void end_round(double elapsed_s, double gain);
 
-    /// Seconds until a round gains less than `enough`, or `most_rounds` more are done.
+    /// Seconds until a round gains less than `enough`, or `max_rounds` more are done.
     /// share_of_round: how much of the current one is done, in [0, 1].
-    [[nodiscard]] double left_s(double elapsed_s, double share_of_round, double enough,
-                                std::uint32_t most_rounds) const;
+    [[nodiscard]] double left_s(double elapsed_s, double share_of_round, double enough, std::uint32_t max_rounds) const;
 
 private:
     double begin_s_ = 0;                         ///< of the current round

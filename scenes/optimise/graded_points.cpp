@@ -14,7 +14,7 @@ namespace tetrace {
 namespace {
 
 // Levels: 2^level cells along each axis.
-constexpr std::uint32_t coarsest = 2, least_finest = 5, most_finest = 8;
+constexpr std::uint32_t coarsest = 2, min_finest = 5, max_finest = 8;
 constexpr double jitter = 0.1; // of a cell's size, to both sides: no two points may be cospherical
 constexpr std::uint32_t jitter_stream = 0x67726164;
 
@@ -38,8 +38,8 @@ double shortest(Double3 size)
 std::uint32_t finest_level(const TriangleMesh& mesh, Double3 size)
 {
     const double edge = mean_edge(mesh);
-    std::uint32_t level = least_finest;
-    while (level < most_finest && shortest(size) > edge * (1U << level))
+    std::uint32_t level = min_finest;
+    while (level < max_finest && shortest(size) > edge * (1U << level))
         ++level;
     return level;
 }
@@ -161,7 +161,7 @@ private:
 
     Double3 low_, size_;
     std::uint32_t finest_;
-    std::array<std::vector<std::uint8_t>, most_finest + 1> held_; ///< per level and cell: whether triangles are near it
+    std::array<std::vector<std::uint8_t>, max_finest + 1> held_; ///< per level and cell: whether triangles are near it
     std::vector<std::uint8_t> outside_; ///< of the finest level: reached from the boundary through empty cells
 };
 

@@ -8,7 +8,7 @@
 namespace tetrace {
 namespace {
 
-constexpr std::size_t most_round_edge = 24, most_in_cavity = 48;
+constexpr std::size_t max_around_edge = 24, max_in_cavity = 48;
 constexpr int steps_past_best = 8, regrowths = 2, insertion_halvings = 5;
 
 } // namespace
@@ -110,7 +110,7 @@ double Insertion::grow(Double3 at)
         add_neighbours(at, t);
     double best = cost;
     std::size_t best_size = cavity_.size();
-    for (int past = 0; past < steps_past_best && cavity_.size() < most_in_cavity && !candidates_.empty(); ++past) {
+    for (int past = 0; past < steps_past_best && cavity_.size() < max_in_cavity && !candidates_.empty(); ++past) {
         const auto next = std::min_element(candidates_.begin(), candidates_.end(),
                                            [](const Candidate& a, const Candidate& b) { return a.change < b.change; });
         if (next->change == impossible) break;
@@ -179,7 +179,7 @@ Double3 Insertion::better_point(Double3 at) const
 
 double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
-    if (!find_ring(mesh_, tet, edge, most_round_edge, since, ring_)) return 0;
+    if (!find_ring(mesh_, tet, edge, max_around_edge, since, ring_)) return 0;
     sides_ = ring_.is_open() ? mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) : 0;
     if (ring_.is_open() && sides_ == 0) return 0; // the domain is no box
     Double3 at = rounded_point((mesh_.point(ring_.a) + mesh_.point(ring_.b)) * 0.5);
@@ -191,7 +191,7 @@ double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
         at = better_point(at);
         gain = inside_area_ - outside_.cost(mesh_, at);
     }
-    if (gain <= least + least_share * inside_area_ || !may_be_at(at)) return 0;
+    if (gain <= least + min_share * inside_area_ || !may_be_at(at)) return 0;
     const std::uint32_t vertex = mesh_.add_vertex(at, sides_);
     fresh_.clear();
     for (const auto& [p, q, r] : faces_)

@@ -14,12 +14,12 @@ public:
     explicit Insertion(EditableMesh& mesh) : mesh_(mesh) {}
 
     /// Returns by how much cost fell; 0 where nothing changed, since it would not fall by more than `least`, and
-    /// least_share of the area of the free faces in the cavity.
+    /// min_share of the area of the free faces in the cavity.
     double try_edge(std::uint32_t tet, std::uint32_t edge, double least);
 
     std::uint32_t since = 1; ///< as in EdgeRemoval
 
-    static constexpr double least_share = 1e-3;
+    static constexpr double min_share = 1e-3;
 
 private:
     struct Candidate {

@@ -18,11 +18,11 @@ namespace {
 
 // Rounds end when one lowers the cost by less than this part of it.
 struct Effort {
-    std::uint32_t most_rounds;
+    std::uint32_t max_rounds;
     double share;
     bool inserts;
 };
-constexpr std::array<Effort, most_effort + 1> efforts = {
+constexpr std::array<Effort, max_effort + 1> efforts = {
     {{0, 1, false}, {2, 0.05, false}, {16, 0.003, false}, {40, 0.001, true}}};
 constexpr double negligible = 1e-12; // a gain, as a part of the boundary's area
 constexpr std::size_t no_regions = std::numeric_limits<std::size_t>::max();
@@ -31,7 +31,7 @@ constexpr double share_of_regions = 0.7; // of a round's time; the rest is for w
 class Optimiser {
 public:
     Optimiser(const TetMesh& mesh, const OptimiserLimits& limits, const Progress& progress)
-        : limits_(limits), effort_(efforts[static_cast<std::size_t>(std::clamp(limits.effort, 0, most_effort))]),
+        : limits_(limits), effort_(efforts[static_cast<std::size_t>(std::clamp(limits.effort, 0, max_effort))]),
           progress_(progress), given_(mesh), mesh_(arrays_of(mesh)), per_area_(2 / boundary_area(mesh_)),
           least_(negligible / per_area_)
     {
@@ -41,7 +41,7 @@ public:
 
     [[nodiscard]] OptimisedTets run()
     {
-        for (std::uint32_t i = 0; i < effort_.most_rounds && !ends_early(); ++i) {
+        for (std::uint32_t i = 0; i < effort_.max_rounds && !ends_early(); ++i) {
             const double gain = round();
             if (gain < effort_.share * cost_) break;
             forecast_.end_round(watch_.seconds(), gain);
@@ -55,7 +55,7 @@ public:
 
 private:
     double round();
-    std::size_t pass(std::uint32_t since, std::size_t most_tets);
+    std::size_t pass(std::uint32_t since, std::size_t max_tets);
     void work_on(const Regions& regions, std::size_t index, Region& region, Regions::Scratch& scratch);
     void count(const std::array<OperationTally, operation_count>& tallies);
     [[nodiscard]] bool ends_early() const { return report_.end != OptimiserEnd::finished; }
@@ -97,7 +97,7 @@ void Optimiser::tell(double share_of_round) const
 {
     if (!progress_) return;
     double left_s =
-        forecast_.left_s(watch_.seconds(), share_of_round, effort_.share * cost_, effort_.most_rounds - report_.rounds);
+        forecast_.left_s(watch_.seconds(), share_of_round, effort_.share * cost_, effort_.max_rounds - report_.rounds);
     if (limits_.time_limit_s > 0) left_s = std::min(left_s, std::max(0.0, limits_.time_limit_s - watch_.seconds()));
     progress_("optimising", watch_.seconds() / (watch_.seconds() + left_s),
               fmt::format("round {}: a line crosses {:.2f} faces, {:.2f} before", report_.rounds, cost_,
@@ -127,11 +127,11 @@ void Optimiser::count(const std::array<OperationTally, operation_count>& tallies
 }
 
 // Looks at what was marked with `since` or later. Returns the number of regions.
-std::size_t Optimiser::pass(std::uint32_t since, std::size_t most_tets)
+std::size_t Optimiser::pass(std::uint32_t since, std::size_t max_tets)
 {
     since_ = since;
     ++mark_;
-    const Regions regions(mesh_, report_.rounds, most_tets);
+    const Regions regions(mesh_, report_.rounds, max_tets);
     std::vector<Region> parts(regions.size());
     tallies_.assign(parts.size(), {});
     regions_done_ = 0;

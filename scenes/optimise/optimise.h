@@ -12,7 +12,7 @@
 namespace tetrace {
 
 /// How hard the optimiser tries: 0 leaves the tets as they are, 3 is the most.
-inline constexpr int most_effort = 3, default_effort = 2;
+inline constexpr int max_effort = 3, default_effort = 2;
 
 struct OptimiserLimits {
     int effort = default_effort;

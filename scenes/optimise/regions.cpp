@@ -37,8 +37,8 @@ int longest_axis(const MeshArrays& mesh, std::span<const std::uint32_t> tets)
 
 } // namespace
 
-Regions::Regions(const MeshArrays& whole, std::uint32_t pass, std::size_t most_tets)
-    : whole_(whole), pass_(pass), most_tets_(most_tets), position_(whole.tets.size(), NO_TET)
+Regions::Regions(const MeshArrays& whole, std::uint32_t pass, std::size_t max_tets)
+    : whole_(whole), pass_(pass), max_tets_(max_tets), position_(whole.tets.size(), NO_TET)
 {
     for (std::uint32_t t = 0; t < whole.tets.size(); ++t)
         if (whole.states[t] == TetState::reached) tets_.push_back(t);
@@ -52,7 +52,7 @@ void Regions::halve(std::size_t begin, std::size_t end, std::uint32_t depth)
     const auto first = tets_.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto last = tets_.begin() + static_cast<std::ptrdiff_t>(end);
     const std::size_t count = end - begin;
-    if (count <= most_tets_) {
+    if (count <= max_tets_) {
         std::sort(first, last); // nth_element() leaves an order that is not the same in all libraries
         ends_.push_back(end);
         return;

@@ -27,10 +27,10 @@ struct Region {
 
 /// The tets of a mesh that rays reach, in parts of about equal size (docs/spec/rays-tets.md, "In parallel"): they are
 /// halved by planes across the axis along which their centroids reach farthest, until a part has no more than
-/// `most_tets`. They depend on the mesh and `pass` alone, and differ from one pass to the next. Work: n log n.
+/// `max_tets`. They depend on the mesh and `pass` alone, and differ from one pass to the next. Work: n log n.
 class Regions {
 public:
-    Regions(const MeshArrays& whole, std::uint32_t pass, std::size_t most_tets);
+    Regions(const MeshArrays& whole, std::uint32_t pass, std::size_t max_tets);
 
     [[nodiscard]] std::size_t size() const { return ends_.size(); }
 
@@ -53,7 +53,7 @@ private:
 
     const MeshArrays& whole_;
     std::uint32_t pass_;
-    std::size_t most_tets_;
+    std::size_t max_tets_;
     std::vector<std::uint32_t> tets_;     ///< of all regions, one after the other; ascending in each
     std::vector<std::size_t> ends_;       ///< per region, in tets_
     std::vector<std::uint32_t> position_; ///< per tet of the whole mesh, in tets_; NO_TET for the hidden

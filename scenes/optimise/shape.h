@@ -9,7 +9,7 @@
 namespace tetrace {
 
 /// The least height of a tet that an operation makes, as a part of its longest edge (docs/spec/rays-tets.md, O2).
-inline constexpr double least_relative_height = 1e-3;
+inline constexpr double min_relative_height = 1e-3;
 
 [[nodiscard]] inline double squared(Double3 a)
 {
@@ -24,20 +24,20 @@ inline constexpr double least_relative_height = 1e-3;
 
 /// The least height of a boundary face that an operation makes: more than three times what docs/spec/project.md, P10,
 /// asks for, so that no ray sees the face turned over.
-inline constexpr double least_boundary_height = 0x1p-12;
+inline constexpr double min_boundary_height = 0x1p-12;
 
 /// Whether a boundary face may be made.
 [[nodiscard]] inline bool may_be_boundary_face(Double3 a, Double3 b, Double3 c)
 {
     const double edge = std::max({squared(b - a), squared(c - b), squared(a - c)});
-    return squared(cross(b - a, c - a)) >= least_boundary_height * least_boundary_height * edge;
+    return squared(cross(b - a, c - a)) >= min_boundary_height * min_boundary_height * edge;
 }
 
 /// A cost that nothing has.
 inline constexpr double impossible = std::numeric_limits<double>::infinity();
 
 /// Whether a tet may be made: it is positive (det(b-a, c-a, d-a) < 0, as core/mesh/tet_mesh.h has it) for certain, and
-/// no height of it is under least_relative_height. Corners are on the 2^-40 grid and at most 2^6 in magnitude, so that
+/// no height of it is under min_relative_height. Corners are on the 2^-40 grid and at most 2^6 in magnitude, so that
 /// differences are exact in double; a determinant beyond error bound A of ORIENT3D (Shewchuk 1997) has its exact sign.
 /// What that bound leaves undecided is refused, so that no answer needs exact arithmetic.
 [[nodiscard]] inline bool may_be_made(Double3 a, Double3 b, Double3 c, Double3 d)
@@ -53,7 +53,7 @@ inline constexpr double impossible = std::numeric_limits<double>::infinity();
     const Double3 uv = cross(u, v), wu = cross(w, u);
     const double face = std::max({squared(uv), squared(vw), squared(wu), squared(uv + vw + wu)}); // (2 area)^2
     const double edge = std::max({squared(u), squared(v), squared(w), squared(b - c), squared(c - d), squared(d - b)});
-    return volume * volume >= least_relative_height * least_relative_height * face * edge;
+    return volume * volume >= min_relative_height * min_relative_height * face * edge;
 }
 
 } // namespace tetrace

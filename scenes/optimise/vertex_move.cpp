@@ -7,9 +7,9 @@
 namespace tetrace {
 namespace {
 
-constexpr std::size_t most_moved_tets = 400;
+constexpr std::size_t max_moved_tets = 400;
 constexpr int solving_steps = 3, move_halvings = 6;
-constexpr double least_distance = 1e-7; // of a point from a line, in the weights
+constexpr double min_distance = 1e-7; // of a point from a line, in the weights
 
 // A symmetric 3 x 3 matrix, and the right side of the equations.
 struct Equations {
@@ -71,7 +71,7 @@ Double3 cheapest_point(const EditableMesh& mesh, std::span<const VertexStar::Lin
             const double edge_length = length(along);
             const Double3 t = along * (1 / edge_length);
             const Double3 across = (from - p) - t * dot(from - p, t);
-            equations.add_line(p, t, edge_length / std::max(length(across), least_distance));
+            equations.add_line(p, t, edge_length / std::max(length(across), min_distance));
         }
         if (holds_axis(sides, 0)) equations.hold(0, begin.x);
         if (holds_axis(sides, 1)) equations.hold(1, begin.y);
@@ -91,7 +91,7 @@ Double3 rounded_point(Double3 point)
 
 double try_move(EditableMesh& mesh, std::uint32_t vertex, double least, VertexStar& scratch)
 {
-    if (!find_star(mesh, vertex, most_moved_tets, scratch)) return 0;
+    if (!find_star(mesh, vertex, max_moved_tets, scratch)) return 0;
     const Double3 from = mesh.point(vertex);
     const double before = scratch.cost(mesh, from);
     const Double3 way = cheapest_point(mesh, scratch.edges, mesh.box_sides(vertex), from, solving_steps) - from;

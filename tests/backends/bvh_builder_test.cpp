@@ -16,7 +16,7 @@ using namespace tetrace::test;
 
 namespace {
 
-std::uint32_t largest_leaf(const Bvh& bvh)
+std::uint32_t max_leaf(const Bvh& bvh)
 {
     std::uint32_t largest = 0;
     for (const auto& node : bvh.nodes)
@@ -42,7 +42,7 @@ TEST(BvhBuilder, tree_of_a_surface_is_whole)
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
     EXPECT_EQ(built.fall_back, "");
     EXPECT_LE(depth_of(built.bvh), BVH2_STACK);
-    EXPECT_LE(largest_leaf(built.bvh), 4u);
+    EXPECT_LE(max_leaf(built.bvh), 4u);
 }
 
 TEST(BvhBuilder, needles_are_split)
@@ -100,7 +100,7 @@ TEST(BvhBuilder, triangles_that_nothing_tells_apart_are_shared_out)
     const Bvh bvh = build_bvh(mesh).bvh;
     EXPECT_EQ(find_defect(bvh, mesh), std::nullopt);
     EXPECT_LE(depth_of(bvh), 16u);
-    EXPECT_LE(largest_leaf(bvh), 4u);
+    EXPECT_LE(max_leaf(bvh), 4u);
 }
 
 TEST(BvhBuilder, triangles_without_area_are_kept)
@@ -130,7 +130,7 @@ TEST(BvhBuilder, tree_that_would_be_too_deep_is_balanced_instead)
     EXPECT_NE(built.fall_back.find("more than 32 nodes"), std::string::npos) << built.fall_back;
     EXPECT_EQ(find_defect(built.bvh, mesh), std::nullopt);
     EXPECT_LE(depth_of(built.bvh), 16u);
-    EXPECT_LE(largest_leaf(built.bvh), 4u);
+    EXPECT_LE(max_leaf(built.bvh), 4u);
 }
 
 TEST(BvhBuilder, deep_trees_are_the_heuristics_and_fit_the_stack)

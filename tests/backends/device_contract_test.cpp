@@ -160,7 +160,7 @@ TEST(LargestBuffer, is_the_smaller_of_the_devices_and_the_options)
     const auto largest = [](std::uint64_t of_device, std::uint64_t of_options) {
         Device device;
         device.max_buffer_bytes = of_device;
-        return largest_buffer(device, {.max_buffer_bytes = of_options});
+        return max_buffer(device, {.max_buffer_bytes = of_options});
     };
     EXPECT_EQ(largest(0, 0), 0u);
     EXPECT_EQ(largest(100, 0), 100u);

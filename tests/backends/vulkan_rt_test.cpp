@@ -247,7 +247,7 @@ TEST_P(VulkanRt, more_triangles_than_a_structure_holds_are_refused_with_both_num
     const TriangleMesh mesh = make_cubes(3).mesh;
     for (vulkan::FoundDevice found : vulkan::find_devices()) {
         if (!found.ray_tracing.why_not(GetParam()).empty()) continue;
-        found.ray_tracing.most_triangles = 7;
+        found.ray_tracing.max_triangles = 7;
         const std::string refused = error_of([&] { vulkan::VulkanSession(found, kernel(Task::trace), mesh, {}); });
         EXPECT_TRUE(refused.starts_with("unsupported: ")) << refused;
         EXPECT_TRUE(contains(refused, std::to_string(mesh.triangles.size())) && contains(refused, " 7")) << refused;
@@ -262,7 +262,7 @@ TEST_P(VulkanRt, an_image_in_launches_of_few_rays_and_tiles_of_any_height_have_t
         vulkan::VulkanSession whole(found, kernel(Task::trace), given.scene.mesh, {});
         const auto hits = traced(whole, given.job);
         found.limits.groups = 7;
-        found.ray_tracing.most_rays = 5 * TILE_WIDTH * 8;
+        found.ray_tracing.max_rays = 5 * TILE_WIDTH * 8;
         for (const unsigned height : {4u, 8u}) {
             vulkan::VulkanSession cut(found, kernel(Task::trace), given.scene.mesh, {.tile_height = height});
             EXPECT_EQ(traced(cut, given.job), hits) << height;

@@ -280,9 +280,9 @@ TEST(VulkanImplementation, is_read_from_whatever_drivers_say)
 TEST(VulkanImplementation, only_lavapipe_before_mesa_25_limits_the_steps_of_a_walk)
 {
     for (const char* const limited : {"lavapipe-22.3", "lavapipe-24.3", "lavapipe"})
-        EXPECT_EQ(vulkan::most_steps_of(limited), 28'000u) << limited;
+        EXPECT_EQ(vulkan::max_steps_of(limited), 28'000u) << limited;
     for (const char* const free : {"lavapipe-25.0", "lavapipe-26.1", "radv-22.3", "nvidia-580", "unknown"})
-        EXPECT_EQ(vulkan::most_steps_of(free), 0u) << free;
+        EXPECT_EQ(vulkan::max_steps_of(free), 0u) << free;
 }
 
 TEST(VulkanImplementation, hardware_that_radv_invents_is_told_from_hardware)

@@ -101,7 +101,7 @@ TEST(MovingStart, each_start_is_that_of_exact_location)
     EXPECT_EQ(camera.counts().located, 1u) << "the first alone";
     EXPECT_EQ(camera.counts().walked, 500u);
     EXPECT_GT(camera.counts().steps, 0u);
-    EXPECT_LT(camera.counts().most_steps, camera.counts().steps);
+    EXPECT_LT(camera.counts().max_steps, camera.counts().steps);
 }
 
 TEST(MovingStart, a_camera_that_goes_from_vertex_to_vertex_starts_where_exact_location_says)
@@ -141,7 +141,7 @@ TEST(MovingStart, a_walk_that_takes_too_many_steps_is_given_up_for_exact_locatio
     (void)camera.next(on_curve(0));
     EXPECT_EQ(camera.next(on_curve(1)), find_start(scene(), on_curve(1)));
     EXPECT_EQ(camera.counts().located, 2u);
-    EXPECT_EQ(camera.counts().most_steps, 3u);
+    EXPECT_EQ(camera.counts().max_steps, 3u);
 }
 
 TEST(MovingStart, a_camera_may_leave_the_domain_and_come_back)

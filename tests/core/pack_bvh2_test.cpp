@@ -47,14 +47,14 @@ public:
     std::vector<std::uint32_t> node_order; ///< as met, larger child first
     std::vector<std::uint32_t> leaf_order; ///< leaf triangles as met
     std::vector<Box> triangle_boxes;       ///< of the leaves of each triangle, merged
-    std::uint32_t most_waiting = 0;        ///< far children, on the worst ray's stack
+    std::uint32_t max_waiting = 0;         ///< far children, on the worst ray's stack
 
 private:
     Box read(std::uint32_t index, std::uint32_t waiting)
     {
         node_order.push_back(index);
         const Bvh2Node node = read_node(packed_, index);
-        most_waiting = std::max(most_waiting, waiting + 1);
+        max_waiting = std::max(max_waiting, waiting + 1);
         const int larger = half_area(node.box[1]) > half_area(node.box[0]) ? 1 : 0;
         for (const int side : {larger, 1 - larger})
             read_child(node.child[side], node.box[side], waiting + 1);
@@ -102,8 +102,8 @@ TEST_P(PackBvh2Of, every_triangle_is_reached_within_its_boxes)
     const Bvh2Reader read(packed, mesh);
     EXPECT_EQ(read.node_order, counted_up_to(packed.nodes.size() / BVH2_NODE_QUADS)) << "depth first, larger first";
     EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS));
-    EXPECT_LE(read.most_waiting, BVH2_STACK);
-    EXPECT_EQ(packed.stack_entries, read.most_waiting + 1) << "BVH2_END and those";
+    EXPECT_LE(read.max_waiting, BVH2_STACK);
+    EXPECT_EQ(packed.stack_entries, read.max_waiting + 1) << "BVH2_END and those";
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }

@@ -55,7 +55,7 @@ public:
     std::vector<std::uint32_t> node_order; ///< as met, the largest child first
     std::vector<std::uint32_t> leaf_order; ///< leaf triangles as met
     std::vector<Box> triangle_boxes;       ///< of the leaves of each triangle, merged
-    std::uint32_t most_waiting = 0;        ///< children, on the worst ray's stack
+    std::uint32_t max_waiting = 0;         ///< children, on the worst ray's stack
     std::size_t children = 0;
 
 private:
@@ -66,7 +66,7 @@ private:
         const std::uint32_t count = node.children();
         children += count;
         waiting += count - 1;
-        most_waiting = std::max(most_waiting, waiting);
+        max_waiting = std::max(max_waiting, waiting);
         std::vector<std::size_t> order = {0, 1, 2, 3};
         std::ranges::stable_sort(order, std::ranges::greater(),
                                  [&](std::size_t slot) { return slot < count ? half_area(node.box[slot]) : -1.0; });
@@ -127,8 +127,8 @@ TEST_P(PackBvh4Of, every_triangle_is_reached_within_its_boxes)
     const Bvh4Reader read(packed, mesh);
     EXPECT_EQ(read.node_order, counted_up_to(packed.nodes.size() / BVH4_NODE_QUADS)) << "depth first, largest first";
     EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS));
-    EXPECT_LE(read.most_waiting, BVH4_STACK);
-    EXPECT_EQ(packed.stack_entries, read.most_waiting + 1) << "BVH4_END and those";
+    EXPECT_LE(read.max_waiting, BVH4_STACK);
+    EXPECT_EQ(packed.stack_entries, read.max_waiting + 1) << "BVH4_END and those";
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
@@ -168,6 +168,6 @@ TEST(PackBvh4, trees_that_would_need_a_deeper_stack_are_made_shallow_and_say_so)
     const PackedScene packed = make_bvh_scene(mesh, Layout::bvh4);
     EXPECT_NE(packed.fall_back.find("room for 96"), std::string::npos) << packed.fall_back;
     const Bvh4Reader read(packed, mesh);
-    EXPECT_LE(read.most_waiting, BVH4_STACK);
-    EXPECT_EQ(packed.stack_entries, read.most_waiting + 1);
+    EXPECT_LE(read.max_waiting, BVH4_STACK);
+    EXPECT_EQ(packed.stack_entries, read.max_waiting + 1);
 }

@@ -78,7 +78,7 @@ public:
     std::vector<int> node_seen;
     std::vector<std::uint32_t> leaf_order; ///< leaf triangles as met
     std::vector<Box> triangle_boxes;       ///< of the leaves of each triangle, merged
-    std::uint32_t most_waiting = 0;        ///< pairs, on the worst ray's stack: what is left of each node above
+    std::uint32_t max_waiting = 0;         ///< pairs, on the worst ray's stack: what is left of each node above
     std::size_t children = 0;
 
 private:
@@ -100,7 +100,7 @@ private:
 
     void read_inner(const CwbvhNode& node, std::uint32_t waiting)
     {
-        most_waiting = std::max(most_waiting, waiting);
+        max_waiting = std::max(max_waiting, waiting);
         std::uint32_t next = node.child_base();
         for (std::size_t slot = 0; slot < 8; ++slot) {
             if (!is_inner(node.meta(slot))) continue;
@@ -154,8 +154,8 @@ TEST_P(PackCwbvhOf, every_triangle_is_reached_within_its_boxes)
     EXPECT_EQ(read.node_seen, std::vector<int>(read.node_seen.size(), 1));
     EXPECT_EQ(read.leaf_order, counted_up_to(packed.leaf_triangles.size() / LEAF_TRIANGLE_QUADS))
         << "in the order of their leaves";
-    EXPECT_LE(read.most_waiting, CWBVH_STACK);
-    EXPECT_EQ(packed.stack_entries, std::max(read.most_waiting, 1u));
+    EXPECT_LE(read.max_waiting, CWBVH_STACK);
+    EXPECT_EQ(packed.stack_entries, std::max(read.max_waiting, 1u));
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         EXPECT_TRUE(contains(read.triangle_boxes[i], grown(triangle_box(mesh, i), BOX_MARGIN))) << "triangle " << i;
 }
@@ -171,8 +171,8 @@ TEST(PackCwbvh, trees_that_would_be_too_deep_are_made_shallow_and_say_so)
     const PackedScene packed = pack_bvh(mesh, bvh, Layout::cwbvh);
     EXPECT_NE(packed.fall_back.find("room for 40"), std::string::npos) << packed.fall_back;
     const CwbvhReader read(packed, mesh);
-    EXPECT_LE(read.most_waiting, CWBVH_STACK);
-    EXPECT_EQ(packed.stack_entries, read.most_waiting);
+    EXPECT_LE(read.max_waiting, CWBVH_STACK);
+    EXPECT_EQ(packed.stack_entries, read.max_waiting);
     EXPECT_EQ(make_bvh_scene(nested_groups(2, 40, 20), Layout::cwbvh).fall_back, "");
 }
 

@@ -168,7 +168,7 @@ TEST(RaySet, secondary_rays_start_on_their_face_and_go_to_the_viewer_s_side)
             const Double3 corner = to_double(face_and_apex(scene, ray.link)[0]);
             // Each coordinate is rounded by at most half a unit in the last place of numbers below 1: 2^-25 each.
             ASSERT_LE(std::abs(dot(normal, to_double(ray.origin) - corner)), 0x1p-25 * std::sqrt(3.0));
-            ASSERT_GE(dot(normal, normalized(to_double(ray.direction))), least_sine);
+            ASSERT_GE(dot(normal, normalized(to_double(ray.direction))), min_sine);
             ASSERT_GT(dot(normal, to_double(outside().job.view.origin) - corner), 0) << "seen by the camera";
         }
 }
@@ -330,11 +330,11 @@ RaySet flat_rays_from_edges(const Scene& scene)
                  {std::array{0.0F, 0.0F}, {1.0F, 0.0F}, {0.5F, 0.5F}, {0.25F, 0.0F}, {0.0F, 1e-6F}}) {
                 const RayStart start = ray_start(scene, {triangle, tet, 1, u, v, 1});
                 const Double3 flat = normalized(cross(start.inward, random_direction({1, tet, triangle, 0})));
-                const double rise = (random.below(2) == 0 ? 1.01 : 8.0) * least_sine;
+                const double rise = (random.below(2) == 0 ? 1.01 : 8.0) * min_sine;
                 const Float3 direction = to_float(flat + start.inward * rise);
                 EXPECT_TRUE(enters(start, direction)) << "tet " << tet;
                 EXPECT_FALSE(enters(start, to_float(flat - start.inward * rise)));
-                EXPECT_FALSE(enters(start, to_float(flat + start.inward * (0.99 * least_sine))));
+                EXPECT_FALSE(enters(start, to_float(flat + start.inward * (0.99 * min_sine))));
                 set.rays.push_back({start.origin, direction, NO_END, start.link, triangle, 0});
             }
         }

@@ -24,8 +24,8 @@ thread_local tetrace::test::Patience patience;
 #define COUNT_TRIANGLE() ++tetrace::test::Warp::since_vote.triangles
 #include "backends/cuda/kernel.cu"
 
-constexpr uint most_warps = 2;
-thread_local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * most_warps * warpSize];
+constexpr uint max_warps = 2;
+thread_local uint group_words[STACK_ENTRY_WORDS * STACK_TOP * max_warps * warpSize];
 
 const uint4* quads(std::span<const tetrace::Quad> all)
 {

@@ -200,7 +200,7 @@ TEST(ImageRecord, comes_back_from_json_as_it_was)
         100, 76, 5, 5, 4, 3, 7, 1e-7, WrongRay{4, 1, 2, {7, 8, 0.1f, 0.2f, 0.3f, 9}, 6, 0.7f, "it is"}, {}};
     record.verdict.visits = {100, 2400, 470};
     record.verdict.compared = true;
-    record.verdict.different = 1, record.verdict.inexact = 2, record.verdict.largest_ulps = 3;
+    record.verdict.different = 1, record.verdict.inexact = 2, record.verdict.max_ulps = 3;
     record.verdict.first_different = DifferingRay{4, 5, 6, {1, 2, 0.5f, 0.25f, 0.1f, 3}, {2, 2, 0.5f, 0.25f, 0.1f, 3}};
     record.verdict.hit_hash = 0xFEDCBA9876543210u;
     record.verdict.kernel_s = 0.1, record.verdict.wall_s = 0.2, record.verdict.download_s = 0.3;

@@ -24,10 +24,10 @@ TEST(Operations, searches_cost_what_the_specification_says)
     EXPECT_EQ(cost_of(Method::maria).least, 28);
     EXPECT_EQ(cost_of(Method::maria).most, 28);
     EXPECT_EQ(cost_of(Method::maria).products, 2);
-    EXPECT_EQ(cost_of(Method::maria).most_products, 2);
+    EXPECT_EQ(cost_of(Method::maria).max_products, 2);
     EXPECT_EQ(cost_of(Method::ms06).least, 46);
     EXPECT_EQ(cost_of(Method::ms06).most, 69);
-    EXPECT_EQ(cost_of(Method::ms06).most_products, 3);
+    EXPECT_EQ(cost_of(Method::ms06).max_products, 3);
     EXPECT_NEAR(*cost_of(Method::ms06).products, 8.0 / 3, 5 * cost_of(Method::ms06).products_error);
     EXPECT_LT(cost_of(Method::ms06).products_error, 0.005);
     EXPECT_NEAR(*cost_of(Method::stp).products, 11.0 / 3, 5 * cost_of(Method::stp).products_error);

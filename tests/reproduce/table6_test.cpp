@@ -79,8 +79,8 @@ TEST(Table6, times_that_do_not_pair_are_refused)
 
 TEST(Table6, too_few_views_or_chosen_ones_bound_no_median)
 {
-    EXPECT_FALSE(median_of_views(std::vector<double>(least_views - 1, 2)).low);
-    EXPECT_TRUE(median_of_views(std::vector<double>(least_views, 2)).low);
+    EXPECT_FALSE(median_of_views(std::vector<double>(min_views - 1, 2)).low);
+    EXPECT_TRUE(median_of_views(std::vector<double>(min_views, 2)).low);
     EXPECT_FALSE(median_of_views(ramp(1), Sampling::chosen).low);
     EXPECT_THROW(static_cast<void>(median_of_views({})), Error);
 }

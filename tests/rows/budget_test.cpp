@@ -101,7 +101,7 @@ protected:
     void expect_measured(std::size_t row) const
     {
         EXPECT_EQ(status_of(rows_[row]), Status::ok) << reason_of(rows_[row]);
-        EXPECT_GE(rows_[row].samples_s.size(), fewest_samples);
+        EXPECT_GE(rows_[row].samples_s.size(), min_samples);
     }
 
     void expect_skipped(std::size_t row) const

@@ -144,7 +144,7 @@ TEST(BoxSides, edge_removal_finds_the_cheapest_of_all_triangulations_of_an_open_
         for (const std::uint32_t from : {0u, n - 2}) { // the ring is found from each of its tets
             EditableMesh mesh(start);
             EdgeRing ring;
-            ASSERT_TRUE(find_ring(mesh, from, 0, most_around_edge, from_any_tet, ring));
+            ASSERT_TRUE(find_ring(mesh, from, 0, max_around_edge, from_any_tet, ring));
             ASSERT_TRUE(ring.is_open());
             ASSERT_EQ(ring.tets.size(), n - 1);
             ASSERT_EQ(ring.vertices.size(), n);

@@ -165,7 +165,7 @@ TEST(EdgeRemoval, finds_the_cheapest_of_all_triangulations_of_the_ring)
         const std::uint32_t n = 3 + static_cast<std::uint32_t>(trial) % 6;
         EditableMesh mesh(fan(n, random));
         EdgeRing ring;
-        ASSERT_TRUE(find_ring(mesh, 0, 0, most_around_edge, from_any_tet, ring));
+        ASSERT_TRUE(find_ring(mesh, 0, 0, max_around_edge, from_any_tet, ring));
         ASSERT_EQ(ring.tets.size(), n);
         const double before = mesh.cost(), expected = cheapest(mesh, ring, 0, n - 1);
         const double gain = EdgeRemoval(mesh).try_edge(0, 0, anything);

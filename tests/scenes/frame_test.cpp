@@ -68,7 +68,7 @@ double domain_share(const TriangleMesh& mesh, const View& view)
 }
 
 struct Shares {
-    double entering = 0, hitting = 0, least_hitting = 1;
+    double entering = 0, hitting = 0, min_hitting = 1;
 };
 /// Means over the views, and the least of one view.
 Shares shares_of(const TriangleMesh& mesh, const std::vector<Aim>& own)
@@ -79,7 +79,7 @@ Shares shares_of(const TriangleMesh& mesh, const std::vector<Aim>& own)
         const double hitting = hit_share(mesh, view);
         shares.entering += domain_share(mesh, view) / own_view_count;
         shares.hitting += hitting / own_view_count;
-        shares.least_hitting = std::min(shares.least_hitting, hitting);
+        shares.min_hitting = std::min(shares.min_hitting, hitting);
     }
     return shares;
 }
@@ -112,7 +112,7 @@ TEST(Frame, is_filled_by_each_scene_that_has_views_of_its_own)
         const Shares shares = shares_of(row.procedural->usual(), row.views);
         EXPECT_GE(shares.entering, 0.95) << row.name;
         EXPECT_GE(shares.hitting, 0.6) << row.name;
-        EXPECT_GE(shares.least_hitting, 0.4) << row.name;
+        EXPECT_GE(shares.min_hitting, 0.4) << row.name;
     }
     EXPECT_EQ(scenes, 5u);
 }
@@ -122,7 +122,7 @@ TEST(Frame, is_filled_by_a_mesh_without_views_of_its_own)
     for (const TriangleMesh& mesh : {make_banana(2'000), make_cubes(8).mesh}) {
         const Shares shares = shares_of(mesh, {});
         EXPECT_GE(shares.entering, 0.95);
-        EXPECT_GE(shares.least_hitting, framed_hits - 0.05) << "the rule is kept in another image size";
+        EXPECT_GE(shares.min_hitting, framed_hits - 0.05) << "the rule is kept in another image size";
     }
 }
 
@@ -149,6 +149,6 @@ TEST(Frame, is_filled_by_bunny_and_armadillo)
         const Shares shares = shares_of(read_off(mesh_file(*find_in_catalogue(name))), {});
         EXPECT_GE(shares.entering, 0.95) << name;
         EXPECT_GE(shares.hitting, 0.6) << name;
-        EXPECT_GE(shares.least_hitting, 0.6) << name;
+        EXPECT_GE(shares.min_hitting, 0.6) << name;
     }
 }

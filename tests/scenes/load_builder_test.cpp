@@ -311,14 +311,14 @@ TEST_F(Load, reads_a_large_mesh_in_pieces)
 {
     constexpr std::uintmax_t large = std::uintmax_t{400} << 20; // a sparse file
     std::filesystem::resize_file(mesh, large);
-    const auto most_bytes = [] {
+    const auto max_bytes = [] {
         rusage usage{};
         ::getrusage(RUSAGE_SELF, &usage);
         return static_cast<std::uintmax_t>(usage.ru_maxrss) << 10;
     };
-    const std::uintmax_t before = most_bytes();
+    const std::uintmax_t before = max_bytes();
     EXPECT_TRUE(contains(error_of([&] { (void)load(); }), "another mesh"));
-    EXPECT_LT(most_bytes(), before + large / 2) << "the memory limit is the builder's alone";
+    EXPECT_LT(max_bytes(), before + large / 2) << "the memory limit is the builder's alone";
 }
 
 TEST_F(Load, trusts_no_builder_that_reports_success)

@@ -151,7 +151,7 @@ TEST(Cubes, refuse_resolutions_beyond_their_range)
 
 TEST(Lattice, is_a_valid_tet_mesh_at_every_small_size)
 {
-    for (std::uint32_t n = least_lattice; n <= 20; ++n) {
+    for (std::uint32_t n = min_lattice; n <= 20; ++n) {
         const Scene scene = make_lattice(n);
         EXPECT_EQ(scene.tets.tets.size(), lattice_tets(n));
         const auto defect = find_defect(scene.tets, scene.mesh.triangles.size());
@@ -196,10 +196,10 @@ TEST(Lattice, is_the_same_bits_everywhere)
 
 TEST(Lattice, refuses_sizes_beyond_its_range)
 {
-    for (const std::uint32_t n : {0u, least_lattice - 1, most_lattice + 1})
+    for (const std::uint32_t n : {0u, min_lattice - 1, max_lattice + 1})
         EXPECT_TRUE(contains(error_of([&] { (void)make_lattice(n); }), "usage: making scene lattice: "));
-    EXPECT_LE(lattice_tets(most_lattice), MAX_TETS);
-    EXPECT_GT(lattice_tets(most_lattice + 1), MAX_TETS);
+    EXPECT_LE(lattice_tets(max_lattice), MAX_TETS);
+    EXPECT_GT(lattice_tets(max_lattice + 1), MAX_TETS);
     EXPECT_EQ(lattice_resolution("lattice:138"), 138u);
     EXPECT_EQ(lattice_resolution("lattice"), usual_lattice);
     EXPECT_EQ(lattice_resolution("lattices"), std::nullopt);

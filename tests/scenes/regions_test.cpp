@@ -24,9 +24,9 @@ const Scene& cubes()
     return scene;
 }
 
-std::vector<Region> all_regions(const MeshArrays& mesh, std::uint32_t pass, std::size_t most_tets)
+std::vector<Region> all_regions(const MeshArrays& mesh, std::uint32_t pass, std::size_t max_tets)
 {
-    const Regions regions(mesh, pass, most_tets);
+    const Regions regions(mesh, pass, max_tets);
     std::vector<Region> parts;
     Regions::Scratch scratch;
     for (std::size_t i = 0; i < regions.size(); ++i)
@@ -39,11 +39,11 @@ std::vector<Region> all_regions(const MeshArrays& mesh, std::uint32_t pass, std:
 TEST(Regions, hold_each_tet_that_rays_reach_once)
 {
     const MeshArrays mesh = arrays_of(cubes().tets);
-    for (const std::size_t most_tets : {100, 700, 1'000'000}) {
+    for (const std::size_t max_tets : {100, 700, 1'000'000}) {
         std::size_t tets = 0;
         std::set<Corners> all;
-        for (const Region& region : all_regions(mesh, 0, most_tets)) {
-            EXPECT_LE(region.mesh.tets.size(), most_tets);
+        for (const Region& region : all_regions(mesh, 0, max_tets)) {
+            EXPECT_LE(region.mesh.tets.size(), max_tets);
             tets += region.mesh.tets.size();
             for (const Tet& tet : region.mesh.tets)
                 all.insert({region.vertices[tet.vertices[0]], region.vertices[tet.vertices[1]],

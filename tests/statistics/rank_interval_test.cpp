@@ -55,11 +55,11 @@ TEST(RankInterval, needs_samples_enough_for_its_error)
     EXPECT_FALSE(rank_interval({1, 1, 1}, {2, 2, 2}, 0.01));
     for (std::size_t n = 1; n < 12; ++n)
         for (std::size_t m = 1; m < 12; ++m) {
-            EXPECT_EQ(quotients_left_out(n, m, smallest_error(n, m)), 0u) << n << " and " << m;
-            EXPECT_FALSE(quotients_left_out(n, m, 0.999999 * smallest_error(n, m))) << n << " and " << m;
+            EXPECT_EQ(quotients_left_out(n, m, min_error(n, m)), 0u) << n << " and " << m;
+            EXPECT_FALSE(quotients_left_out(n, m, 0.999999 * min_error(n, m))) << n << " and " << m;
         }
-    EXPECT_NEAR(smallest_error(5, 5), 2.0 / 252, 1e-10);
-    EXPECT_NEAR(smallest_error(10, 10), 2.0 / 184756, 1e-12);
+    EXPECT_NEAR(min_error(5, 5), 2.0 / 252, 1e-10);
+    EXPECT_NEAR(min_error(10, 10), 2.0 / 184756, 1e-12);
 }
 
 TEST(RankInterval, ends_at_quotients_of_samples)

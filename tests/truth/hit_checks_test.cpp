@@ -43,7 +43,7 @@ TEST(CompareHits, parameters_may_differ_by_the_units_allowed_and_no_more)
             const Differences found = compare_hits(hits, std::vector<Hit>(1, right), {.ulps = 3});
             EXPECT_EQ(found.count, ulp <= 3 ? 0u : 1u) << ulp;
             EXPECT_EQ(found.inexact, 1u);
-            EXPECT_EQ(found.largest_ulps, ulp <= 3 ? ulp : 0u);
+            EXPECT_EQ(found.max_ulps, ulp <= 3 ? ulp : 0u);
             EXPECT_EQ(compare_hits(hits, std::vector<Hit>(1, right), {}).count, 1u);
         }
     }
@@ -66,7 +66,7 @@ TEST(CompareHits, either_triangle_will_do_where_any_hit_answers)
     const Differences found = compare_hits(ours, theirs, {.ulps = 3, .any_triangle = true});
     EXPECT_EQ(found.count, 2u) << "a miss and a lost ray are no hits";
     EXPECT_EQ(found.inexact, 3u);
-    EXPECT_EQ(found.largest_ulps, 0u) << "parameters on different triangles are not compared";
+    EXPECT_EQ(found.max_ulps, 0u) << "parameters on different triangles are not compared";
     EXPECT_EQ(compare_hits(theirs, ours, {.ulps = 3, .any_triangle = true}).count, 2u);
 }
 

@@ -137,9 +137,9 @@ TEST_F(Verify, a_lost_ray_makes_a_row_flawed)
 
 TEST_F(Verify, a_ray_lost_at_the_device_s_own_cap_is_explained)
 {
-    const auto limited = [&](std::uint32_t most_steps, std::uint32_t steps) {
+    const auto limited = [&](std::uint32_t max_steps, std::uint32_t steps) {
         RowRun row = open_row({"cubes", "openmp", {}, RayKind::primary, TetOrder::chains}, scene_, options_);
-        row.device.most_steps = most_steps;
+        row.device.max_steps = max_steps;
         row.device.implementation = "a device";
         row.key.backend = "other";
         verify_rows({&row}, scene_, options_);

@@ -3,7 +3,7 @@
 // Beams: steps that all rays of a packet take alike are done once, for the beam of all directions that its pixels span.
 // Each lane is the beam of one packet. A beam goes on while all its rays are sure to have the same answer in spite of
 // rounding (docs/spec/packets.md, K7).
-constexpr uint most_packets = tetrace::openmp::packet_block_size * tetrace::openmp::packet_block_size / LANES;
+constexpr uint max_packets = tetrace::openmp::packet_block_size * tetrace::openmp::packet_block_size / LANES;
 constexpr uint batches_in_turns = 4;
 constexpr float reach_x = 0.5f * (packet_width - 1); // from the middle of a beam to its outermost rays, in pixels
 constexpr float reach_y = 0.5f * (packet_height - 1);
@@ -11,23 +11,23 @@ constexpr float reach_y = 0.5f * (packet_height - 1);
 // The packets of a block, and how far their beams have come.
 struct Packets {
     uint count;
-    uint x[most_packets], y[most_packets]; // first pixels
-    uint record[most_packets];     // the record in front of which all rays are, or in whose tet they ended; NO_LINK
-                                   // where they share no way: some may be in the domain
-    uint carried[3][most_packets]; // of those in front of a record, see Front
-    uint turn[most_packets];       // of those too
-    uint exit[most_packets];       // of those that have ended
-    uint steps[most_packets];      // tets left
-    bool has_ended[most_packets];
+    uint x[max_packets], y[max_packets]; // first pixels
+    uint record[max_packets];     // the record in front of which all rays are, or in whose tet they ended; NO_LINK
+                                  // where they share no way: some may be in the domain
+    uint carried[3][max_packets]; // of those in front of a record, see Front
+    uint turn[max_packets];       // of those too
+    uint exit[max_packets];       // of those that have ended
+    uint steps[max_packets];      // tets left
+    bool has_ended[max_packets];
 };
 
 // The image's own coordinates. A point relative to the rays' origin is its depth times the direction of the pixel where
 // it is seen; `rows` transform it into that pixel times the depth, and the depth. A side of an edge is certain if it
-// exceeds the error bounds of the edge's ends: `doubt` times their distance from the middle, plus `least_doubt`.
+// exceeds the error bounds of the edge's ends: `doubt` times their distance from the middle, plus `min_doubt`.
 struct Eye {
     Vectors rows[3];
     Floats sense; // -1: columns are counted backwards, so that left in space is left here
-    Floats doubt, least_doubt;
+    Floats doubt, min_doubt;
 };
 
 LANE_FN double greatest_of(Place a)
@@ -62,7 +62,7 @@ LANE_FN Eye eye_of(const PacketJob& job)
     const bool is_usable = size_of(across) * size_of(upwards) * size_of(first) * volume < 0x1p16 &&
                            relative > 0x1p-60 && least > 0x1p-60 && least < 0x1p60;
     eye.doubt = all(static_cast<float>(relative));
-    eye.least_doubt = all(is_usable ? static_cast<float>(least) : __builtin_inff());
+    eye.min_doubt = all(is_usable ? static_cast<float>(least) : __builtin_inff());
     return eye;
 }
 
@@ -94,7 +94,7 @@ LANE_FN Imaged imaged(const PacketJob& job, const Eye& eye, const BeamWalk& walk
     };
     const Floats depth = along(eye.rows[2], Floats{});
     const Floats column = along(eye.rows[0], -(walk.column * depth)), row = along(eye.rows[1], -(walk.row * depth));
-    return {column, row, depth, fused(magnitude(column) + magnitude(row), eye.doubt, eye.least_doubt)};
+    return {column, row, depth, fused(magnitude(column) + magnitude(row), eye.doubt, eye.min_doubt)};
 }
 
 // Masks of the beams all of whose rays see q to the left of p, and of those all of whose rays see it to the right.

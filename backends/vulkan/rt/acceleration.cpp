@@ -26,7 +26,7 @@ void record_build_barrier(const Context& context, const vk::raii::CommandBuffer&
 
 void require_triangles_fit(const Context& context, const TriangleMesh& mesh)
 {
-    const std::uint64_t most = context.found().ray_tracing.most_triangles;
+    const std::uint64_t most = context.found().ray_tracing.max_triangles;
     if (mesh.triangles.size() <= most) return;
     throw Error(ErrorKind::unsupported, "the mesh has " + std::to_string(mesh.triangles.size()) +
                                             " triangles, a structure of '" + context.facts().name + "' " +

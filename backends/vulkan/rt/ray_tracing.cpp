@@ -74,7 +74,7 @@ void find_structure_limits(const vk::raii::PhysicalDevice& device, RayTracing& f
     const auto properties =
         device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
             .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>();
-    found.most_triangles = properties.maxPrimitiveCount;
+    found.max_triangles = properties.maxPrimitiveCount;
     found.scratch_alignment = std::max(1u, properties.minAccelerationStructureScratchOffsetAlignment);
 }
 
@@ -86,7 +86,7 @@ void find_pipeline_limits(const vk::raii::PhysicalDevice& device, RayTracing& fo
     const auto& rays = chain.get<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
     const std::uint64_t widest =
         std::uint64_t{compute.maxComputeWorkGroupCount[0]} * compute.maxComputeWorkGroupSize[0];
-    found.most_rays = std::min<std::uint64_t>(rays.maxRayDispatchInvocationCount, widest);
+    found.max_rays = std::min<std::uint64_t>(rays.maxRayDispatchInvocationCount, widest);
     found.handle_bytes = rays.shaderGroupHandleSize;
     found.handle_alignment = std::max({1u, rays.shaderGroupBaseAlignment, rays.shaderGroupHandleAlignment});
 }

@@ -23,9 +23,9 @@ enum class RayTracer { queries, pipeline };
 struct RayTracing {
     std::string no_queries = "the driver offers no Vulkan 1.1"; ///< why it cannot, and what is needed; empty if it can
     std::string no_pipeline = no_queries;
-    std::uint64_t most_triangles = 0;    ///< of a bottom level
+    std::uint64_t max_triangles = 0;     ///< of a bottom level
     std::uint32_t scratch_alignment = 1; ///< of the address of a build's scratch memory, in bytes
-    std::uint64_t most_rays = 0;         ///< of a launch of a pipeline
+    std::uint64_t max_rays = 0;          ///< of a launch of a pipeline
     std::uint32_t handle_bytes = 0;      ///< of a shader in a pipeline's shader table
     std::uint32_t handle_alignment = 1;  ///< of the address of each part of that table, in bytes
 

@@ -25,7 +25,7 @@ std::vector<std::vector<RowRun*>> sample_groups(std::vector<RowRun>& rows)
 
 std::uint32_t passes_for(double sample_s, double pass_s)
 {
-    constexpr double most = most_passes;
+    constexpr double most = max_passes;
     return pass_s > 0 ? static_cast<std::uint32_t>(std::clamp(std::ceil(sample_s / pass_s), 1.0, most)) : 1;
 }
 

@@ -29,7 +29,7 @@ private:
 /// interleaved within a group alone, so that no GPU rests while a processor works.
 [[nodiscard]] std::vector<std::vector<RowRun*>> sample_groups(std::vector<RowRun>& rows);
 
-/// Passes that make a sample at least so long; most_passes at most. pass_s: device seconds of one.
+/// Passes that make a sample at least so long; max_passes at most. pass_s: device seconds of one.
 [[nodiscard]] std::uint32_t passes_for(double sample_s, double pass_s);
 
 /// Passes with a launch for each view that a row gets in addition to its samples: 5 and no more than samples, but fewer

@@ -23,7 +23,7 @@ const char* const how_to_read_trends =
 constexpr double tolerance = 0.03;
 
 /// More lines than these are hard to read; the table has all.
-constexpr std::size_t most_lines = 28;
+constexpr std::size_t max_lines = 28;
 
 /// A work of one machine on several dates.
 struct Trend {
@@ -109,7 +109,7 @@ Html trend_chart(const Campaign& campaign, std::vector<Trend> trends, const std:
 {
     std::ranges::stable_sort(trends, [](const Trend& a, const Trend& b) { return a.change() > b.change(); });
     const std::size_t all = trends.size();
-    if (all > most_lines) trends.resize(most_lines);
+    if (all > max_lines) trends.resize(max_lines);
     LineChart chart{"Over dates: " + title, "date, UTC", "rate, as a part of the first", {}};
     chart.x_dates = true;
     for (const Trend& trend : trends) {
@@ -120,7 +120,7 @@ Html trend_chart(const Campaign& campaign, std::vector<Trend> trends, const std:
         chart.series.push_back(std::move(series));
     }
     const std::string caption =
-        all > most_lines ? fmt::format("The {} of {} rows that changed most.", most_lines, all) : "";
+        all > max_lines ? fmt::format("The {} of {} rows that changed most.", max_lines, all) : "";
     return figure("", draw(chart), caption);
 }
 

@@ -52,7 +52,7 @@ std::string with_decimals(double value, int decimals)
                        digits.substr(point));
 }
 
-constexpr double largest_plain = 1e15;
+constexpr double max_plain = 1e15;
 
 /// Days between ticks, about four of them in the range: hours, days, weeks, then quarters and years.
 double step_of_dates(double range)
@@ -162,7 +162,7 @@ std::string Axis::label(double tick) const
 {
     if (dates_) return date_label(tick, ticks_[1] - ticks_[0] < 1);
     const double step = logarithmic_ || ticks_.size() < 2 ? std::abs(tick) : ticks_[1] - ticks_[0];
-    if (std::abs(tick) >= largest_plain || (step > 0 && step < 1e-6)) return fmt::format("{:.3g}", tick);
+    if (std::abs(tick) >= max_plain || (step > 0 && step < 1e-6)) return fmt::format("{:.3g}", tick);
     const int decimals = step == 0 ? 0 : std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
     return with_decimals(tick, decimals);
 }
@@ -171,7 +171,7 @@ std::string short_number(double value)
 {
     const double size = std::abs(value);
     if (value == 0) return "0";
-    if (!std::isfinite(value) || size < 1e-6 || size >= largest_plain) return fmt::format("{:.3g}", value);
+    if (!std::isfinite(value) || size < 1e-6 || size >= max_plain) return fmt::format("{:.3g}", value);
     const int magnitude = static_cast<int>(std::floor(std::log10(size) + 1e-12));
     return with_decimals(value, std::max(0, 2 - magnitude));
 }
@@ -179,7 +179,7 @@ std::string short_number(double value)
 std::string fixed_number(double value, int decimals)
 {
     const double size = std::abs(value), last_place = std::pow(10.0, -decimals);
-    const bool is_plain = size >= last_place * (1 - 1e-9) && size < largest_plain;
+    const bool is_plain = size >= last_place * (1 - 1e-9) && size < max_plain;
     return is_plain ? with_decimals(value, decimals) : short_number(value);
 }
 

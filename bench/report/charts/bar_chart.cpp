@@ -12,7 +12,7 @@ namespace tetrace {
 
 namespace {
 
-constexpr double top = 6, bar_height = 13, gap = 10, axis_room = 38, widest_labels = 230, widest_values = 160;
+constexpr double top = 6, bar_height = 13, gap = 10, axis_room = 38, max_labels = 230, max_values = 160;
 
 /// Labels on the left, one below the other; then the plot; then room for the text right of each bar.
 struct RowFrame {
@@ -63,7 +63,7 @@ RowFrame frame_of(const std::vector<Row>& rows, double behind)
     double labels = 0;
     for (const Row& row : rows)
         labels = std::max({labels, text_width(row.label, label_size), text_width(row.sublabel, small_size)});
-    labels = std::min(labels, widest_labels);
+    labels = std::min(labels, max_labels);
     for (const Row& row : rows)
         frame.pitch = std::max(frame.pitch, 8 + line_height * static_cast<double>(label_lines(row, labels).size()));
     frame.left = labels + gap;
@@ -175,7 +175,7 @@ Html draw(const BarChart& chart)
 {
     double behind = 0, high = 0;
     for (const Bar& bar : chart.bars) {
-        behind = std::max(behind, std::min(value_width(bar), widest_values));
+        behind = std::max(behind, std::min(value_width(bar), max_values));
         high = std::max(high, largest(bar));
     }
     const RowFrame frame = frame_of(chart.bars, behind);

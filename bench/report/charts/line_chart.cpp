@@ -13,13 +13,13 @@ namespace tetrace {
 
 namespace {
 
-constexpr double top = 24, least_bottom = 264, left = 62, axis_room = 40;
+constexpr double top = 24, min_bottom = 264, left = 62, axis_room = 40;
 
 /// Margin between the first and the last label and the plot's ends.
 constexpr double above_labels = 6, below_labels = 4;
 
 /// Lines with up to this number of points mark each point with their shape; longer ones some.
-constexpr std::size_t most_marked = 24, marks_of_long_line = 8;
+constexpr std::size_t max_marked = 24, marks_of_long_line = 8;
 
 struct Range {
     double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
@@ -49,7 +49,7 @@ struct LineFrame {
 double bottom_of(std::size_t labels)
 {
     const double column = side_label_pitch * static_cast<double>(std::max<std::size_t>(labels, 1) - 1);
-    return std::max(least_bottom, top + above_labels + column + below_labels);
+    return std::max(min_bottom, top + above_labels + column + below_labels);
 }
 
 LineFrame frame_of(const LineChart& chart)
@@ -88,7 +88,7 @@ Html points_of(const Series& series, std::size_t number, const LineFrame& frame)
     if (!ascends(series)) return svg_cloud(places, number);
     std::string line;
     Html shapes;
-    const std::size_t stride = places.size() <= most_marked ? 1 : places.size() / marks_of_long_line;
+    const std::size_t stride = places.size() <= max_marked ? 1 : places.size() / marks_of_long_line;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const auto& [x, y] = places[i];
         line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x, y);

@@ -11,9 +11,9 @@ namespace {
 constexpr double leader = 22; ///< length of the slanted part of the line, and room around it
 } // namespace
 
-double side_labels_left(double widest_label)
+double side_labels_left(double max_label)
 {
-    return std::max(chart_width / 2, chart_width - widest_label - leader - 1);
+    return std::max(chart_width / 2, chart_width - max_label - leader - 1);
 }
 
 Html side_label(double point_x, double point_y, double plot_right, double label_y, const std::string& label,

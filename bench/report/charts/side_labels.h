@@ -13,7 +13,7 @@ inline constexpr double side_label_pitch = 17;
 inline constexpr double side_key_width = 13;
 
 /// Where a plot must end so that labels of that width fit to its right; the plot keeps at least half of the drawing.
-[[nodiscard]] double side_labels_left(double widest_label);
+[[nodiscard]] double side_labels_left(double max_label);
 
 /// A label right of a plot that ends at plot_right, at height label_y, with a thin line from the point that it labels,
 /// and with the shape of its series before it where one is given.

@@ -106,7 +106,7 @@ public:
         if (method_->products) {
             cost.products = products_ / count;
             cost.products_error = cost.mean_error / method_->products->each;
-            cost.most_products = products_in(cost.most, *method_->products, method_->method);
+            cost.max_products = products_in(cost.most, *method_->products, method_->method);
         }
         if (method_->start_products) cost.start_products = start_products_ / count;
         return cost;

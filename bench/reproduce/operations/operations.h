@@ -17,7 +17,7 @@ struct MethodCost {
     double mean_error = 0;                ///< standard error of the mean over these searches
     std::optional<double> products;       ///< side products of a search, on average; empty where it has none (plane)
     double products_error = 0;            ///< standard error of that mean
-    std::optional<double> most_products;  ///< of a single search
+    std::optional<double> max_products;   ///< of a single search
     std::optional<double> start_products; ///< in the tet where a ray starts
     double start = 0;                     ///< operations there, on average
 };

@@ -41,7 +41,7 @@ std::vector<PaperCell> cells_of(const MethodCost& cost)
             exact_cell(cost.most),
             cost.products ? PaperCell(Quantity{mean_of(*cost.products, cost.products_error), papers.products})
                           : PaperCell(),
-            optional_cell(cost.most_products, {}),
+            optional_cell(cost.max_products, {}),
             exact_cell(cost.start),
             optional_cell(cost.start_products, papers.start_products)};
 }
@@ -58,9 +58,9 @@ ClaimVerdict verdict_of(bool holds)
 
 Claim products_claim(const MethodCost& maria)
 {
-    const bool holds = maria.products == paper::maria_products && maria.most_products == paper::maria_products;
+    const bool holds = maria.products == paper::maria_products && maria.max_products == paper::maria_products;
     return {"maria-takes-two-side-products", "a search of maria takes exactly 2 side products", verdict_of(holds),
-            fmt::format("{} on average, {} at most.", *maria.products, *maria.most_products)};
+            fmt::format("{} on average, {} at most.", *maria.products, *maria.max_products)};
 }
 
 Claim operations_claim(const MethodCost& maria)

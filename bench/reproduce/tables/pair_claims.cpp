@@ -164,7 +164,7 @@ Claim amplitude_claim(const SceneRuns& runs, DeviceKind kind)
             const Amplitude cdt = cdt_s.size() < 3 ? Amplitude{1, 1} : amplitude_of(cdt_s),
                             bvh = cdt_s.size() < 3 ? Amplitude{1, 1} : amplitude_of(bvh_s);
             Estimate ratio{cdt.whole / bvh.whole, {}, {}, false};
-            if (cdt_s.size() >= least_views && run->sampling != Sampling::chosen) {
+            if (cdt_s.size() >= min_views && run->sampling != Sampling::chosen) {
                 ratio.low = cdt.inner / bvh.whole;
                 ratio.high = cdt.whole / bvh.inner;
             }

@@ -53,7 +53,7 @@ std::string agreement(const RowRun& row)
     const Traced& result = *traced(row);
     if (!result.compared) return on_reference(row.key) ? "reference" : "not compared";
     if (result.different > 0) return fmt::format("{} rays differ", with_commas(result.different));
-    return result.inexact == 0 ? "bit for bit" : fmt::format("within {} ulp", result.largest_ulps);
+    return result.inexact == 0 ? "bit for bit" : fmt::format("within {} ulp", result.max_ulps);
 }
 
 const std::vector<Column>& columns()
@@ -156,7 +156,7 @@ Claim count_claim(const std::vector<MethodRow>& rows, Method method, std::size_t
     return claim;
 }
 
-Claim fewest_claim(const std::vector<MethodRow>& rows, std::size_t population)
+Claim min_claim(const std::vector<MethodRow>& rows, std::size_t population)
 {
     Claim claim{"maria-has-the-fewest", "maria has fewer wrong results than each older method"};
     std::vector<Estimate> others;
@@ -209,7 +209,7 @@ std::string sampling_note(Sampling sampling, std::size_t population)
         return fmt::format("An interval is that of the mean over all rays of the camera set's {} views: percentile "
                            "bootstrap over the views traced, {} at least. Where none of these rays was seen there is "
                            "none: such rays come in crowds, and a view left out may have one.",
-                           with_commas(population), least_views);
+                           with_commas(population), min_views);
     case Sampling::chosen:
         return fmt::format("The views traced are not spread evenly over the camera set's {}: they say nothing of the "
                            "others, and the means have no interval.",
@@ -290,7 +290,7 @@ PaperTable table4(const SceneRuns& runs, std::size_t population)
     table.claims.push_back(count_claim(rows, Method::project, population, false)); // our method, which has a proof
     for (const Method method : older_methods())
         table.claims.push_back(count_claim(rows, method, population, true));
-    table.claims.push_back(fewest_claim(rows, population));
+    table.claims.push_back(min_claim(rows, population));
     table.claims.push_back(next_claim(rows, population));
     return table;
 }

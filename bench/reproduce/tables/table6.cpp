@@ -81,8 +81,7 @@ std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, cons
 {
     const auto frames = paper::frames_of(run.build.scene);
     if (!frames || (!is_cdt(row) && row.key.kernel.layout != Layout::bvh2)) return std::nullopt;
-    return is_cdt(row) ? std::pair(frames->least_cdt, frames->most_cdt)
-                       : std::pair(frames->least_bvh, frames->most_bvh);
+    return is_cdt(row) ? std::pair(frames->min_cdt, frames->max_cdt) : std::pair(frames->min_bvh, frames->max_bvh);
 }
 
 std::string papers_frames_text(const SceneRun& run, const RowRun& row)

@@ -48,8 +48,8 @@ void repair(Scene& scene, const std::function<void(const std::string&)>& tell)
         const std::vector<TrianglePair> pairs = intersecting_pairs(scene.mesh);
         if (info.passes == 0) info.crossing_pairs = pairs.size();
         if (pairs.empty()) break;
-        const bool grows = pairs.size() > most_pairs_of_pieces(info.crossing_pairs);
-        if (info.passes == most_repair_passes || grows) give_up(scene, pairs.size());
+        const bool grows = pairs.size() > max_pairs_of_pieces(info.crossing_pairs);
+        if (info.passes == max_repair_passes || grows) give_up(scene, pairs.size());
         if (tell) tell(fmt::format("repairing, pass {}: {} pairs cross", info.passes + 1, pairs.size()));
         cut.merge(cut_once(scene, pairs));
         const CleanUp cleaned = clean_up(scene.mesh, scene.origins);

@@ -8,11 +8,11 @@
 namespace tetrace {
 
 /// Passes after which repair() gives up. The crossing meshes of CGAL's data were clean after one (results/repair.md).
-inline constexpr std::uint32_t most_repair_passes = 10;
+inline constexpr std::uint32_t max_repair_passes = 10;
 
 /// Crossing pairs of pieces at which it gives up, for so many in the mesh: faces that nearly overlap are shattered, and
 /// each pass makes more.
-[[nodiscard]] constexpr std::uint64_t most_pairs_of_pieces(std::uint64_t crossing_pairs)
+[[nodiscard]] constexpr std::uint64_t max_pairs_of_pieces(std::uint64_t crossing_pairs)
 {
     return 10 * crossing_pairs + 1000;
 }
@@ -20,8 +20,8 @@ inline constexpr std::uint32_t most_repair_passes = 10;
 /// Cuts triangles that cross, overlap or touch along their exact intersections, until every two triangles meet only in
 /// shared vertices and edges. scene: cleaned (clean_up) and placed, with as many origins as triangles; mesh, origins
 /// and build.repair change. The mesh's bounding box does not grow. Throws BuilderFailure{BUILDER_SELF_INTERSECTION}
-/// where some pairs are left after most_repair_passes,
-/// or more than most_pairs_of_pieces().
+/// where some pairs are left after max_repair_passes,
+/// or more than max_pairs_of_pieces().
 void repair(Scene& scene, const std::function<void(const std::string& stage)>& tell = {});
 
 /// What was done, in one sentence.

@@ -58,7 +58,7 @@ BeamAnswer ask_beam(const PacketJob& job, const Eye& eye, const BeamWalk& walk, 
 void ask_beams(const PacketJob& job, bool has_doubts, const BeamQuestion* questions, BeamAnswer* answers)
 {
     Eye eye = eye_of(job);
-    if (!has_doubts) eye.doubt = eye.least_doubt = Floats{};
+    if (!has_doubts) eye.doubt = eye.min_doubt = Floats{};
     Packets packets;
     packets.count = LANES;
     for (uint i = 0; i < LANES; ++i) {
@@ -75,7 +75,7 @@ void walk_block(const PacketJob& job, std::uint32_t y, BeamEnd* ends)
 {
     Packets packets;
     const uint across = job.width / packet_width;
-    for (packets.count = 0; packets.count < most_packets; ++packets.count) {
+    for (packets.count = 0; packets.count < max_packets; ++packets.count) {
         packets.x[packets.count] = packets.count % across * packet_width;
         packets.y[packets.count] = y + packets.count / across * packet_height;
     }
@@ -91,4 +91,4 @@ void walk_block(const PacketJob& job, std::uint32_t y, BeamEnd* ends)
 #define PROBE(prefix, lanes) JOINED(prefix, lanes)
 
 constexpr tetrace::test::BeamProbe tetrace::test::PROBE(tetrace_beam_probe_, LANES) = {
-    LANES, packet_width, packet_height, ask_beams, walk_block, most_packets};
+    LANES, packet_width, packet_height, ask_beams, walk_block, max_packets};
