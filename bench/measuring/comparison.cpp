@@ -15,24 +15,24 @@ namespace {
 /// The API that a GPU's other APIs are compared with, where it has the row.
 constexpr const char* preferred_on_gpus = "cuda";
 
-std::vector<std::size_t> hardware_of(const std::vector<RowRun>& rows)
+std::vector<std::size_t> hardware_of(const std::vector<RowRecord>& rows)
 {
     std::vector<Device> devices;
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         devices.push_back(row.device);
     return physical_devices(devices);
 }
 
 /// The row's reference, which may be the row itself; null where there is none.
-const RowRun* find_reference(const std::vector<RowRun>& rows, const std::vector<std::size_t>& hardware,
-                             std::size_t index)
+const RowRecord* find_reference(const std::vector<RowRecord>& rows, const std::vector<std::size_t>& hardware,
+                                std::size_t index)
 {
-    const RowRun& row = rows[index];
+    const RowRecord& row = rows[index];
     const bool on_host = runs_on_host(row.device);
     const std::string preferred = on_host ? reference_backend().name() : preferred_on_gpus;
-    const RowRun* first = nullptr;
+    const RowRecord* first = nullptr;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const RowRun& other = rows[i];
+        const RowRecord& other = rows[i];
         if (hardware[i] != hardware[index] || !same_work(row.key, other.key) ||
             other.key.kernel.schedule != Schedule::tiles || !figures_of(other))
             continue;
@@ -49,7 +49,7 @@ std::size_t min_in_run(const std::vector<std::vector<double>>& runs)
 
 } // namespace
 
-Comparison compare_rates(const RowRun& reference, const RowRun& row)
+Comparison compare_rates(const RowRecord& reference, const RowRecord& row)
 {
     const auto above = samples_of_runs(reference), below = samples_of_runs(row);
     const bool spans_runs = above.size() > 1 && above.size() == below.size();
@@ -69,7 +69,7 @@ std::string interval_text(const Comparison& comparison)
 
 namespace {
 
-std::string arena_of(const RowRun& row, std::size_t hardware)
+std::string arena_of(const RowRecord& row, std::size_t hardware)
 {
     const RowKey& key = row.key;
     const std::string device = row.device.kind == DeviceKind::emulated ? fmt::format("{}:{}", key.backend, key.device)
@@ -84,7 +84,7 @@ TotalCost total_cost(const SetupCost& cost, double mrays_per_s)
 
 } // namespace
 
-Contenders contenders_of(const std::vector<RowRun>& rows)
+Contenders contenders_of(const std::vector<RowRecord>& rows)
 {
     const auto hardware = hardware_of(rows);
     Contenders found;
@@ -100,21 +100,21 @@ Contenders contenders_of(const std::vector<RowRun>& rows)
     return found;
 }
 
-std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRun>& rows)
+std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRecord>& rows)
 {
     const Contenders contenders = contenders_of(rows);
     std::vector<std::optional<Comparison>> result(rows.size());
     for (std::size_t i = 0; i < contenders.list.size(); ++i) {
         const auto best = best_bvh(contenders.list, i);
         if (!best) continue;
-        const RowRun& bvh = rows[contenders.index[*best]];
+        const RowRecord& bvh = rows[contenders.index[*best]];
         result[contenders.index[i]] =
             *best == i ? Comparison{&bvh, 1, {}} : compare_rates(bvh, rows[contenders.index[i]]);
     }
     return result;
 }
 
-std::optional<PaidBuild> paid_build(const RowRun& row, const std::optional<Comparison>& best_bvh)
+std::optional<PaidBuild> paid_build(const RowRecord& row, const std::optional<Comparison>& best_bvh)
 {
     if (!best_bvh || row.key.kernel.structure != Structure::cdt) return std::nullopt;
     const auto tets = setup_cost(row), bvh = setup_cost(*best_bvh->reference);
@@ -127,13 +127,13 @@ std::optional<PaidBuild> paid_build(const RowRun& row, const std::optional<Compa
     return PaidBuild{PaidBuild::When::later, *even.rays, *even.rays * ours.ray_s};
 }
 
-std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& rows)
+std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRecord>& rows)
 {
     const auto hardware = hardware_of(rows);
     std::vector<std::optional<Comparison>> result(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!is_portable(rows[i].key.kernel) || !figures_of(rows[i])) continue;
-        const RowRun* reference = find_reference(rows, hardware, i);
+        const RowRecord* reference = find_reference(rows, hardware, i);
         if (reference == nullptr || reference == &rows[i]) continue;
         result[i] = compare_rates(*reference, rows[i]);
     }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/rows/best_bvh.h"
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 #include "bench/statistics/rank_interval.h"
 
 #include <optional>
@@ -12,14 +12,14 @@ namespace tetrace {
 
 /// The speed of a row compared with its reference.
 struct Comparison {
-    const RowRun* reference = nullptr;
+    const RowRecord* reference = nullptr;
     double ratio = 0; ///< row's rate over reference's, from medians of device seconds; above 1 the row is faster
     std::optional<FactorInterval> interval; ///< of the ratio; empty if either has fewer than min_samples in a run
     std::size_t runs = 1; ///< that the interval spans, see ratio_over_runs(); of 1 it is of the samples, 95 %
 };
 
 /// The row's rate over reference's. Precondition: both have samples.
-[[nodiscard]] Comparison compare_rates(const RowRun& reference, const RowRun& row);
+[[nodiscard]] Comparison compare_rates(const RowRecord& reference, const RowRecord& row);
 
 /// "[0.95, 1.03]"; empty if there is no interval.
 [[nodiscard]] std::string interval_text(const Comparison& comparison);
@@ -28,7 +28,7 @@ struct Comparison {
 /// physical_devices()), with schedule tiles. On the host the reference runs under openmp; on a GPU under cuda, else
 /// under the first API that has it. A GPU's rows and the host's, which include emulations, are therefore never
 /// compared. Empty for references themselves, Embree's rows, and rows without a rate.
-[[nodiscard]] std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRun>& rows);
+[[nodiscard]] std::vector<std::optional<Comparison>> compare_rows(const std::vector<RowRecord>& rows);
 
 /// The timed rows as the comparison of tets with BVHs sees them; index: of each in `rows`. An arena is the host (of
 /// openmp and Embree), a GPU under all its APIs, or one emulated device of one backend.
@@ -36,11 +36,11 @@ struct Contenders {
     std::vector<Contender> list;
     std::vector<std::size_t> index;
 };
-[[nodiscard]] Contenders contenders_of(const std::vector<RowRun>& rows);
+[[nodiscard]] Contenders contenders_of(const std::vector<RowRecord>& rows);
 
 /// Each row compared with the fastest BVH of its arena, row by row. That BVH's own ratio is 1, without an interval.
 /// Empty for rows without a rate or a BVH to compare with.
-[[nodiscard]] std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRun>& rows);
+[[nodiscard]] std::vector<std::optional<Comparison>> compare_with_best_bvh(const std::vector<RowRecord>& rows);
 
 /// When building a row's tets has paid against the fastest BVH of its arena, both builds counted.
 struct PaidBuild {
@@ -55,6 +55,6 @@ inline constexpr auto enum_names<PaidBuild::When> = names_up_to<PaidBuild::When:
 
 /// best_bvh: the row's comparison with it. unclear: the interval of the ratio contains 1. Empty for rows of BVHs, and
 /// if a build time is not known.
-[[nodiscard]] std::optional<PaidBuild> paid_build(const RowRun& row, const std::optional<Comparison>& best_bvh);
+[[nodiscard]] std::optional<PaidBuild> paid_build(const RowRecord& row, const std::optional<Comparison>& best_bvh);
 
 } // namespace tetrace

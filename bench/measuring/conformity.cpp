@@ -6,7 +6,7 @@ namespace tetrace {
 
 namespace {
 
-Conformity compared_conformity(const RowRun& row, const Traced& result)
+Conformity compared_conformity(const RowRecord& row, const Traced& result)
 {
     if (result.different > 0) return Conformity::wrong;
     if (row.self_test && !row.self_test->is_exact()) return Conformity::not_exact;
@@ -14,7 +14,7 @@ Conformity compared_conformity(const RowRun& row, const Traced& result)
 }
 
 /// For rows that are not compared with openmp's answer.
-Conformity own_conformity(const RowRun& row)
+Conformity own_conformity(const RowRecord& row)
 {
     const KernelId& kernel = row.key.kernel;
     const bool is_reference = is_portable(kernel) && kernel.math == MathMode::exact;
@@ -34,7 +34,7 @@ std::string defects(const SelfTest& test)
     return text.substr(0, text.find(';'));
 }
 
-std::string oracle_text(const RowRun& row)
+std::string oracle_text(const RowRecord& row)
 {
     const Verdicts& verdicts = traced(row)->verdicts;
     if (verdicts.clean()) return "ok";
@@ -43,7 +43,7 @@ std::string oracle_text(const RowRun& row)
 
 } // namespace
 
-Conformity conformity_of(const RowRun& row)
+Conformity conformity_of(const RowRecord& row)
 {
     if (const Traced* result = traced(row))
         return result->compared ? compared_conformity(row, *result) : own_conformity(row);
@@ -55,7 +55,7 @@ Conformity conformity_of(const RowRun& row)
     }
 }
 
-std::string conformity_text(const RowRun& row)
+std::string conformity_text(const RowRecord& row)
 {
     const Conformity conformity = conformity_of(row);
     const Traced* result = traced(row);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 
 #include <string>
 
@@ -24,10 +24,10 @@ inline constexpr auto enum_names<Conformity> = names_up_to<Conformity::error>("r
                                                                               "not compared", "not exact", "wrong",
                                                                               "unsupported", "skipped", "error");
 
-[[nodiscard]] Conformity conformity_of(const RowRun& row);
+[[nodiscard]] Conformity conformity_of(const RowRecord& row);
 
 /// The cell with numbers and self-test findings: "within 2 ulp", "wrong: 12 rays", "not exact: contracts".
 /// Rows without anything to compare with show the oracle's status.
-[[nodiscard]] std::string conformity_text(const RowRun& row);
+[[nodiscard]] std::string conformity_text(const RowRecord& row);
 
 } // namespace tetrace

@@ -17,7 +17,7 @@ std::optional<double> quotient(std::uint64_t steps, std::uint64_t rays)
 }
 
 /// Empty where the wall clock was not read for every sample.
-void add_wall(Figures& figures, const RowRun& row)
+void add_wall(Figures& figures, const RowRecord& row)
 {
     if (row.wall_samples_s.size() != row.samples_s.size()) return;
     std::vector<double> overheads;
@@ -28,7 +28,7 @@ void add_wall(Figures& figures, const RowRun& row)
 }
 
 /// Empty unless views had a launch each.
-void add_latency(Figures& figures, const RowRun& row)
+void add_latency(Figures& figures, const RowRecord& row)
 {
     const auto& [joined, single] = row.launches;
     const std::vector<double>& samples_s = joined == single ? row.samples_s : row.latency_samples_s;
@@ -68,7 +68,7 @@ RayShares ray_shares(const Traced& traced)
     return shares;
 }
 
-std::optional<Figures> figures_of(const RowRun& row)
+std::optional<Figures> figures_of(const RowRecord& row)
 {
     const Status status = status_of(row);
     if ((status != Status::ok && status != Status::flawed) || row.samples_s.empty()) return std::nullopt;
@@ -88,12 +88,12 @@ std::optional<Figures> figures_of(const RowRun& row)
     return figures;
 }
 
-std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows)
+std::optional<double> ratio_to_single(const RowRecord& row, const std::vector<RowRecord>& rows)
 {
     if (!runs_on_host(row.device)) return std::nullopt;
     const auto figures = figures_of(row);
     double fastest = 0;
-    for (const RowRun& other : rows)
+    for (const RowRecord& other : rows)
         if (is_embree(other.key.kernel.layout) && other.key.kernel.method == Method::single &&
             same_rays(other.key, row.key))
             if (const auto single = figures_of(other)) fastest = std::max(fastest, single->mrays_per_s);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 #include "bench/statistics/statistics.h"
 
 #include <optional>
@@ -25,7 +25,7 @@ struct Figures {
 };
 
 /// Empty unless the row is ok or flawed and has samples.
-[[nodiscard]] std::optional<Figures> figures_of(const RowRun& row);
+[[nodiscard]] std::optional<Figures> figures_of(const RowRecord& row);
 
 /// Bytes that a step of the walk loads from its tet's record, on average (docs/spec/devices.md, W7): three or four
 /// vertices and a face. An estimate of the memory traffic: memory transfers whole lines, and caches hold some of them.
@@ -48,6 +48,6 @@ struct RayShares {
 /// The row's Mrays/s over those of Embree's single rays on the same scene, through the faster of its trees; empty where
 /// either has none, and for rows
 /// that do not run on the host, as Embree does.
-[[nodiscard]] std::optional<double> ratio_to_single(const RowRun& row, const std::vector<RowRun>& rows);
+[[nodiscard]] std::optional<double> ratio_to_single(const RowRecord& row, const std::vector<RowRecord>& rows);
 
 } // namespace tetrace

@@ -131,10 +131,10 @@ void Pulses::judge_rows(std::vector<RowRun>& rows, const std::optional<MachineLo
         if (!ratios.empty()) row.pulse_ratio = quantile(ratios, 0.5);
         const bool feels_load = load && runs_on_host(row.device);
         row.disturbance = disturbance_text(row.pulse_ratio, feels_load ? &*load : nullptr);
-        if (row.gpu && row.gpu->throttled() > 0)
+        if (row.readings && row.readings->throttled() > 0)
             row.disturbance +=
                 fmt::format("{}its GPU was throttled in {} of {} samples ({})", row.disturbance.empty() ? "" : "; ",
-                            row.gpu->throttled(), row.gpu->states.size(), row.gpu->reasons);
+                            row.readings->throttled(), row.readings->states.size(), row.readings->reasons);
     }
 }
 

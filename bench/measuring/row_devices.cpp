@@ -42,38 +42,38 @@ void attempt(RowDevice& device, const char* what, const Work& work)
     }
 }
 
-void measure_device(RowDevice& device, const SessionOptions& options)
+void measure_device(RowDevice& device, Backend& backend, const SessionOptions& options)
 {
     attempt(device, "yardstick", [&] {
         if (device.yardstick) return;
-        device.yardstick = yardstick_of(*device.backend, device.index, options);
+        device.yardstick = yardstick_of(backend, device.index, options);
         if (!device.yardstick && runs_on_host(device.device))
             device.yardstick = yardstick_of(reference_backend(), 0, options);
     });
     for (const MathMode math : device.math)
         attempt(device, "self-test", [&] {
-            if (const auto& test = self_test_of(*device.backend, device.index, math)) device.self_tests[math] = *test;
+            if (const auto& test = self_test_of(backend, device.index, math)) device.self_tests[math] = *test;
         });
 }
 
 } // namespace
 
-std::optional<std::size_t> device_of(const RowRun& row, const std::vector<RowDevice>& devices)
+std::optional<std::size_t> device_of(const RowRecord& row, const std::vector<RowDevice>& devices)
 {
     for (std::size_t i = 0; i < devices.size(); ++i)
-        if (devices[i].backend == row.backend && devices[i].index == row.key.device) return i;
+        if (devices[i].backend == row.key.backend && devices[i].index == row.key.device) return i;
     return std::nullopt;
 }
 
-std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows)
+std::vector<RowDevice> devices_of(const std::vector<RowRecord>& rows)
 {
     std::vector<RowDevice> devices;
-    for (const RowRun& row : rows) {
-        if (row.backend == nullptr || !row.device.usable) continue;
+    for (const RowRecord& row : rows) {
+        if (row.device.name.empty() || !row.device.usable) continue;
         auto found = device_of(row, devices);
         if (!found) {
             found = devices.size();
-            devices.push_back({row.backend, row.key.device, row.device, 0, {}, {}, {}, {}});
+            devices.push_back({row.key.backend, row.key.device, row.device, 0, {}, {}, {}, {}});
         }
         auto& math = devices[*found].math;
         if (std::ranges::find(math, row.key.kernel.math) == math.end()) math.push_back(row.key.kernel.math);
@@ -86,24 +86,25 @@ std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows)
     return devices;
 }
 
-void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options)
+void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options,
+                     const std::vector<Backend*>& backends)
 {
     for (RowDevice& device : devices) {
         const double done = static_cast<double>(&device - devices.data()) / static_cast<double>(devices.size());
-        progress_line().show("measuring the devices themselves", done, -1, device.backend->name());
-        measure_device(device, options);
+        progress_line().show("measuring the devices themselves", done, -1, device.backend);
+        measure_device(device, backend_named(device.backend, backends), options);
     }
     progress_line().clear();
 }
 
-std::optional<CopyShares> copy_shares(const RowRun& row, const std::vector<RowDevice>& devices)
+std::optional<CopyShares> copy_shares(const RowRecord& row, const std::vector<RowDevice>& devices)
 {
     const auto figures = figures_of(row);
     const auto place = device_of(row, devices);
     if (!figures || !figures->gb_per_s || !place || !devices[*place].yardstick) return std::nullopt;
     const Yardstick& yardstick = *devices[*place].yardstick;
     const double bytes_per_s = 1e9 * *figures->gb_per_s;
-    const double ceiling = yardstick.copy_bytes_per_s_of(row.session != nullptr ? row.session->bytes() : 0);
+    const double ceiling = yardstick.copy_bytes_per_s_of(row.setup.bytes.value_or(0));
     return CopyShares{bytes_per_s / yardstick.copy_bytes_per_s, bytes_per_s / ceiling, ceiling};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 #include "core/device/self_test.h"
 
 #include <map>
@@ -12,7 +12,7 @@ namespace tetrace {
 
 /// A device that rows of a run were opened on, and its abilities.
 struct RowDevice {
-    Backend* backend = nullptr;
+    std::string backend;   ///< its name
     std::size_t index = 0; ///< in the backend's devices()
     Device device;
     std::size_t hardware = 0;   ///< equal numbers mean the same hardware, see physical_devices()
@@ -23,15 +23,16 @@ struct RowDevice {
 };
 
 /// The devices of all opened rows, each once: grouped by hardware, emulations last within each group.
-[[nodiscard]] std::vector<RowDevice> devices_of(const std::vector<RowRun>& rows);
+[[nodiscard]] std::vector<RowDevice> devices_of(const std::vector<RowRecord>& rows);
 
 /// Measures yardstick and self-test of each device (see device_abilities.h). Where an API on the host has no yardstick
 /// of its own, openmp's is used; a yardstick that a device already has is kept. A device that fails keeps the reason as
 /// its problem; only Error{interrupted} is thrown.
-void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options);
+void measure_devices(std::vector<RowDevice>& devices, const SessionOptions& options,
+                     const std::vector<Backend*>& backends = all_backends());
 
 /// The index of the row's device in the list; empty where the row was not opened.
-[[nodiscard]] std::optional<std::size_t> device_of(const RowRun& row, const std::vector<RowDevice>& devices);
+[[nodiscard]] std::optional<std::size_t> device_of(const RowRecord& row, const std::vector<RowDevice>& devices);
 
 /// The row's estimated bandwidth over copy bandwidths of its device.
 struct CopyShares {
@@ -40,6 +41,6 @@ struct CopyShares {
     double ceiling_bytes_per_s; ///< that level's
 };
 /// Empty where the row has no estimated bandwidth, or its device no yardstick.
-[[nodiscard]] std::optional<CopyShares> copy_shares(const RowRun& row, const std::vector<RowDevice>& devices);
+[[nodiscard]] std::optional<CopyShares> copy_shares(const RowRecord& row, const std::vector<RowDevice>& devices);
 
 } // namespace tetrace

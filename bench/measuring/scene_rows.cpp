@@ -101,9 +101,9 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
     return result;
 }
 
-void require_answers(const std::vector<const RowRun*>& rows, const char* done)
+void require_answers(const std::vector<const RowRecord*>& rows, const char* done)
 {
-    const auto unanswered = [](const RowRun* row) {
+    const auto unanswered = [](const RowRecord* row) {
         const Status status = status_of(*row);
         return status == Status::skipped || status == Status::unsupported;
     };
@@ -113,18 +113,18 @@ void require_answers(const std::vector<const RowRun*>& rows, const char* done)
                                 row_name(rows.front()->key), reason_of(*rows.front())));
 }
 
-void require_answers(const std::vector<RowRun>& rows, const char* done)
+void require_answers(const std::vector<RowRecord>& rows, const char* done)
 {
-    std::vector<const RowRun*> all;
-    for (const RowRun& row : rows)
+    std::vector<const RowRecord*> all;
+    for (const RowRecord& row : rows)
         all.push_back(&row);
     require_answers(all, done);
 }
 
-Verdicts all_verdicts(const std::vector<RowRun>& rows)
+Verdicts all_verdicts(const std::vector<RowRecord>& rows)
 {
     Verdicts sum;
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         if (const Traced* result = traced(row)) sum.add(result->verdicts);
     return sum;
 }

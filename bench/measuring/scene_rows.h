@@ -27,10 +27,10 @@ struct SceneRows {
 
 /// A run without an answer from any device must not look like one that went well. Throws Error{missing} with a reason
 /// where every row is skipped or unsupported. done: "checked" or "measured".
-void require_answers(const std::vector<const RowRun*>& rows, const char* done);
-void require_answers(const std::vector<RowRun>& rows, const char* done);
+void require_answers(const std::vector<const RowRecord*>& rows, const char* done);
+void require_answers(const std::vector<RowRecord>& rows, const char* done);
 
 /// Result of verifying all rows.
-[[nodiscard]] Verdicts all_verdicts(const std::vector<RowRun>& rows);
+[[nodiscard]] Verdicts all_verdicts(const std::vector<RowRecord>& rows);
 
 } // namespace tetrace

@@ -325,7 +325,11 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
         progress_line().show(stage, 1, -1, row_label(row->key) + ", again");
         if (row->session == nullptr) continue;
         const double start_s = budget.now();
-        guarded(*row, [&] { verify_again(verifier, *row); });
+        guarded(*row, [&] {
+            verify_again(verifier, *row);
+            note_compiling(*row);
+            if (row->key.kernel.task == Task::rays) row->ray_hash = hash_of_rays(*row);
+        });
         budget.traced(*row, 1, budget.now() - start_s);
     }
     progress_line().clear();

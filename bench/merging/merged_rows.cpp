@@ -18,25 +18,20 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<RowRun> rows_of(const ShardResult& shard, bool searches)
+std::vector<RowRecord> rows_of(const ShardResult& shard, bool searches)
 {
     return searches ? read_search_rows(shard.result) : read_rows(shard.result);
 }
 
 /// What the whole run finds out again, or has no part of.
-void forget_answers(RowRun& row)
+void forget_answers(RowRecord& row)
 {
     row.samples_s.clear();
     row.wall_samples_s.clear();
     row.latency_samples_s.clear();
     row.run_samples.clear();
     row.launches = {};
-    if (traced(row) == nullptr) {
-        row.session.reset();
-        return;
-    }
-    row.outcome = Traced{};
-    row.recorded_reason.clear();
+    if (traced(row) != nullptr) row.outcome = Traced{};
 }
 
 /// The place of an entry in the whole run: scenes in the order of the shards' first entries.
@@ -109,7 +104,7 @@ void require_views(const Views& found, const std::vector<std::uint32_t>& asked, 
                     fmt::format("merging shards: views {} of {} are in no journal", fmt::join(missing, ", "), scene));
 }
 
-void add_answers(RowRun& row, const Views& views)
+void add_answers(RowRecord& row, const Views& views)
 {
     const std::string name = row_name(row.key);
     for (const auto& [view, entry] : views) {
@@ -124,21 +119,31 @@ void add_answers(RowRun& row, const Views& views)
     }
 }
 
-/// A sample traces all views once: sample by sample, the shards' sum. Where a budget took fewer of one shard, as few.
-void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
+/// The walk of a ray of the whole run, as the shard that found it has it.
+void add_walks(Traced& whole, const Traced& part)
 {
-    std::vector<const RowRun*> parts;
+    const auto is_same = [](const auto& a, const auto& b) {
+        return a && b && a->view == b->view && a->x == b->x && a->y == b->y;
+    };
+    if (is_same(whole.first_different, part.first_different)) whole.walk_of_different = part.walk_of_different;
+    if (is_same(whole.verdicts.first_wrong, part.verdicts.first_wrong)) whole.walk_of_wrong = part.walk_of_wrong;
+}
+
+/// A sample traces all views once: sample by sample, the shards' sum. Where a budget took fewer of one shard, as few.
+void add_samples(RowRecord& row, const std::vector<std::vector<RowRecord>>& shards)
+{
+    std::vector<const RowRecord*> parts;
     for (const auto& rows : shards)
-        for (const RowRun& part : rows)
+        for (const RowRecord& part : rows)
             if (part.key == row.key) parts.push_back(&part);
-    for (const RowRun* part : parts) {
+    for (const RowRecord* part : parts) {
         row.launches.joined += part->launches.joined;
         row.launches.single += part->launches.single;
     }
-    const auto is_same = [&](const RowRun* part) { return part->run_samples == parts.front()->run_samples; };
+    const auto is_same = [&](const RowRecord* part) { return part->run_samples == parts.front()->run_samples; };
     row.run_samples = std::ranges::all_of(parts, is_same) ? parts.front()->run_samples : std::vector<std::size_t>();
-    for (std::vector<double> RowRun::*samples :
-         {&RowRun::samples_s, &RowRun::wall_samples_s, &RowRun::latency_samples_s}) {
+    for (std::vector<double> RowRecord::*samples :
+         {&RowRecord::samples_s, &RowRecord::wall_samples_s, &RowRecord::latency_samples_s}) {
         std::vector<double> sum = parts.front()->*samples;
         for (std::size_t i = 1; i < parts.size(); ++i) {
             sum.resize(std::min(sum.size(), (parts[i]->*samples).size()));
@@ -150,7 +155,7 @@ void add_samples(RowRun& row, const std::vector<std::vector<RowRun>>& shards)
 }
 
 /// What speaks against the rate of one shard speaks against that of all.
-void add_disturbance(RowRun& row, const RowRun& part)
+void add_disturbance(RowRecord& row, const RowRecord& part)
 {
     if (part.pulse_ratio) row.pulse_ratio = std::max(row.pulse_ratio.value_or(0), *part.pulse_ratio);
     if (part.disturbance.empty() || row.disturbance.find(part.disturbance) != std::string::npos) return;
@@ -159,12 +164,12 @@ void add_disturbance(RowRun& row, const RowRun& part)
 
 } // namespace
 
-std::vector<RowRun> rows_of_shards(const std::vector<ShardResult>& shards, bool searches)
+std::vector<RowRecord> rows_of_shards(const std::vector<ShardResult>& shards, bool searches)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     for (const ShardResult& shard : shards)
-        for (RowRun& row : rows_of(shard, searches)) {
-            const auto same = [&](const RowRun& one) { return one.key == row.key; };
+        for (RowRecord& row : rows_of(shard, searches)) {
+            const auto same = [&](const RowRecord& one) { return one.key == row.key; };
             const auto known = std::ranges::find_if(rows, same);
             if (known == rows.end()) {
                 rows.push_back(std::move(row));
@@ -173,7 +178,7 @@ std::vector<RowRun> rows_of_shards(const std::vector<ShardResult>& shards, bool 
             add_disturbance(*known, row);
             if (traced(*known) != nullptr && traced(row) == nullptr) *known = std::move(row);
         }
-    for (RowRun& row : rows)
+    for (RowRecord& row : rows)
         forget_answers(row);
     return rows;
 }
@@ -206,14 +211,14 @@ std::vector<nlohmann::json> merged_entries(const std::vector<ShardResult>& shard
     return entries;
 }
 
-std::vector<RowRun> merged_rows(const std::vector<ShardResult>& shards, const std::vector<std::uint32_t>& views)
+std::vector<RowRecord> merged_rows(const std::vector<ShardResult>& shards, const std::vector<std::uint32_t>& views)
 {
-    std::vector<RowRun> rows = rows_of_shards(shards);
-    std::vector<std::vector<RowRun>> timed;
+    std::vector<RowRecord> rows = rows_of_shards(shards);
+    std::vector<std::vector<RowRecord>> timed;
     for (const ShardResult& shard : shards)
         timed.push_back(read_rows(shard.result));
     std::map<std::string, Views> found;
-    for (RowRun& row : rows) {
+    for (RowRecord& row : rows) {
         if (traced(row) == nullptr) continue;
         const std::string& scene = row.key.scene;
         if (!found.contains(scene)) {
@@ -221,6 +226,10 @@ std::vector<RowRun> merged_rows(const std::vector<ShardResult>& shards, const st
             require_views(found[scene], views, scene);
         }
         add_answers(row, found[scene]);
+        for (const auto& part : timed)
+            for (const RowRecord& one : part)
+                if (one.key == row.key && traced(row) != nullptr && traced(one) != nullptr)
+                    add_walks(std::get<Traced>(row.outcome), *traced(one));
         if (traced(row) != nullptr && is_of_one_kind(shards, row_name(row.key))) add_samples(row, timed);
     }
     return rows;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/merging/shard_results.h"
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,7 +12,7 @@ namespace tetrace {
 /// The rows of the whole run, without answers and times: what one shard knows of a row that all could run. A row that
 /// one of them could not run, or that it found wrong while it was repeated, ends as it does there.
 /// searches: the rows of searches in place of those of scenes.
-[[nodiscard]] std::vector<RowRun> rows_of_shards(const std::vector<ShardResult>& shards, bool searches = false);
+[[nodiscard]] std::vector<RowRecord> rows_of_shards(const std::vector<ShardResult>& shards, bool searches = false);
 
 /// The journal's entries of all shards in the order of the whole run: of each scene its views, ascending; then batches
 /// of searches; then the rest, each once. Times of rows that several kinds of machines took are left out, and so are
@@ -22,7 +22,7 @@ namespace tetrace {
 /// The rows of a run of `bench` or `check` with the answers of all shards, view after view, and the sums of their
 /// samples where one kind of machine took all of them.
 /// views: of the whole run. Throws Error{usage} naming a view that no journal has, or that several have.
-[[nodiscard]] std::vector<RowRun> merged_rows(const std::vector<ShardResult>& shards,
-                                              const std::vector<std::uint32_t>& views);
+[[nodiscard]] std::vector<RowRecord> merged_rows(const std::vector<ShardResult>& shards,
+                                                 const std::vector<std::uint32_t>& views);
 
 } // namespace tetrace

@@ -127,10 +127,6 @@ const VerbHelp verb_help[] = {
      "build time and memory; the ratio of their times, paired view by view; and the number of rays after which a "
      "slower build pays off. In --method and --layout, the values of BVHs select among the BVHs only, and those of "
      "the CDT among its rows only.\n\n"
-     "growth: how cost grows with the mesh: banana in several sizes (--sizes), traced as table6 traces its scenes. It "
-     "has what a ray visits, its time, the build and the memory, and the exponents of the power laws of the number of "
-     "occlusive faces that fit them. It is not in the paper, and made only if it is named. It traces every 64th view "
-     "unless --views is given.\n\n"
      "rivals: what this repository says about the speed of tets and BVHs, measured again by rules that the authors of "
      "the BVHs would accept (docs/rivals.md): a ratio is to the fastest BVH of the device, on the same rays, over "
      "scenes that suit tets and scenes that do not. It is a run of its own, as 'bench' does it: all views together, "
@@ -154,7 +150,6 @@ const VerbHelp verb_help[] = {
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
-     "  tetrace reproduce growth --sizes 1500,25000,400000,1000000 --backend openmp,embree\n"
      "  tetrace reproduce rivals --out rivals.json    15 minutes on two cores; with --scene bunny, 3\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",

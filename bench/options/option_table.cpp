@@ -37,23 +37,18 @@ std::vector<OptionRow> reproduce_options()
     return {
         {"Tables", "TABLE", "LIST",
          "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
-             ". Default: all except growth and rivals, which are not in the paper; rivals is a run of its own.",
+             ". Default: all except rivals, which is not in the paper and a run of its own.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--builds", "LIST",
          "Which builds of the scenes: 'ours', a CDT as the options of scenes say; 'paper', of banana, bunny and "
          "armadillo, a CDT near the paper's counts, in a domain that holds the cameras; 'rays', tets that are changed "
-         "until rays cross few faces, which decide no claim of the paper. growth has no 'paper'; cubes, lattices and "
+         "until rays cross few faces, which decide no claim of the paper. Cubes, lattices and "
          ".tet files have ours alone. Default: all.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
         {"Tables", "--searches", "TETSxRAYS",
          "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
          "10000x16384, as in the paper.",
          bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.searches = parse_searches(v); }},
-        {"Tables", "--sizes", "N",
-         "Sizes of growth: triangles of banana, or cubes along an axis with --scene cubes. Default: 1500, 6000, 25000, "
-         "100000 and 400000; 4, 8, 16, 32 and 64 cubes.",
-         bit(Verb::reproduce), true,
-         append_count("--sizes", &Options::sizes, 2, find_in_catalogue("banana")->procedural->most)},
     };
 }
 

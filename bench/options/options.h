@@ -52,12 +52,12 @@ enum class Picture { normals, steps };
 template <>
 inline constexpr auto enum_names<Picture> = names_up_to<Picture::steps>("normals", "steps");
 
-/// A table or a figure of the paper that `reproduce` measures again. Two are not in the paper: growth, how cost grows
-/// with the mesh, and rivals, our own claims about tets and BVHs.
-enum class PaperTarget { table3, table4, table5, table6, figure6, growth, rivals };
+/// A table or a figure of the paper that `reproduce` measures again. One is not in the paper: rivals, our own
+/// claims about tets and BVHs.
+enum class PaperTarget { table3, table4, table5, table6, figure6, rivals };
 template <>
 inline constexpr auto enum_names<PaperTarget> = names_up_to<PaperTarget::rivals>("table3", "table4", "table5", "table6",
-                                                                                 "figure6", "growth", "rivals");
+                                                                                 "figure6", "rivals");
 
 /// A build of a scene that `reproduce` traces: a CDT as the options ask for, one as near to the paper's counts as
 /// known, or tets for rays.
@@ -97,7 +97,6 @@ struct Options {
     std::vector<std::string> arguments; ///< the command line without what shards of one run may differ in
     std::string job;                    ///< of the launcher that started this rank, as Rank::job
     bool is_silent = false;             ///< whether standard output gets nothing: another rank prints for all
-    std::vector<unsigned> ranks;        ///< of `merge`, to simulate
     double wait_s = 120;                ///< of rank 0, for a rank without a sign of life
 
     std::vector<std::filesystem::path> files; ///< result files that the verb reads, as many as file_arguments() says
@@ -145,7 +144,6 @@ struct Options {
     std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; rivals comes alone
     std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: all
     SearchSize searches;                  ///< of `reproduce`
-    std::vector<std::uint32_t> sizes;     ///< of `reproduce growth`; empty: growth_sizes()
     bool resume = false;                  ///< of `reproduce`: continue from the journal
 
     std::vector<std::string> gpus;                    ///< of `inspect`: targets; empty: those of targets_of()

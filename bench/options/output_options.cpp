@@ -10,10 +10,6 @@ std::vector<OptionRow> sharing_options()
          "Do the K-th of N shares of the run: every N-th view and batch of searches, of those selected. 'merge' makes "
          "one result of all N. 1/1 is the whole run. Default: under srun and mpirun the rank's share, else 1/1.",
          sharing, false, [](Options& o, const std::string& v) { o.shard = parse_shard(v); }},
-        {"Sharing", "--ranks", "LIST",
-         "Print also how long the run would take by these numbers of ranks, by simulation from the wall time of every "
-         "view and batch in the journals of 'reproduce'. Default: none.",
-         bit(Verb::merge), true, append_count("--ranks", &Options::ranks, 1, max_shards)},
         {"Sharing", "--wait", "TIME",
          "Under srun and mpirun, how long rank 0 waits for a rank that neither works nor has written its result before "
          "it gives it up. Default: 2m.",

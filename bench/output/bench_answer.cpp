@@ -14,24 +14,24 @@ namespace {
 
 /// Rows that may be ranked with each other: the same rays on one piece of hardware, in any structure and layout.
 struct Contest {
-    const RowRun* any = nullptr;
-    std::vector<const RowRun*> rows; ///< timed ones
+    const RowRecord* any = nullptr;
+    std::vector<const RowRecord*> rows; ///< timed ones
 
-    [[nodiscard]] const RowRun& fastest() const
+    [[nodiscard]] const RowRecord& fastest() const
     {
-        return **std::ranges::max_element(rows, {}, [](const RowRun* row) { return rate_of(*row); });
+        return **std::ranges::max_element(rows, {}, [](const RowRecord* row) { return rate_of(*row); });
     }
-    [[nodiscard]] static double rate_of(const RowRun& row) { return figures_of(row)->mrays_per_s; }
+    [[nodiscard]] static double rate_of(const RowRecord& row) { return figures_of(row)->mrays_per_s; }
 };
 
 /// Emulated devices are in none: they are not to be ranked.
 std::vector<Contest> contests_of(const BenchResult& result)
 {
     std::vector<Contest> contests;
-    const auto hardware_of = [&](const RowRun& row) {
+    const auto hardware_of = [&](const RowRecord& row) {
         return result.devices.at(*device_of(row, result.devices)).hardware;
     };
-    for (const RowRun& row : result.run.rows) {
+    for (const RowRecord& row : result.rows) {
         if (!figures_of(row) || !device_of(row, result.devices) || row.device.kind == DeviceKind::emulated) continue;
         const auto same = std::ranges::find_if(contests, [&](const Contest& other) {
             return same_rays(other.any->key, row.key) && hardware_of(*other.any) == hardware_of(row);
@@ -51,7 +51,7 @@ std::string contest_title(const Contest& contest, bool with_device)
     return with_device ? fmt::format("{} ({})", title, contest.any->device.name) : title;
 }
 
-std::string row_text(const RowRun& row)
+std::string row_text(const RowRecord& row)
 {
     std::string remarks;
     if (status_of(row) == Status::flawed) remarks = "flawed";
@@ -77,7 +77,7 @@ std::string joined(const std::vector<Contest>& contests, const Phrase& phrase)
 std::vector<Contender> contenders_of(const Contest& contest)
 {
     std::vector<Contender> list;
-    for (const RowRun* row : contest.rows) {
+    for (const RowRecord* row : contest.rows) {
         const KernelId& kernel = row->key.kernel;
         list.push_back({row_text(*row), "", kernel.structure == Structure::bvh, is_embree(kernel.layout),
                         is_single_ray(kernel), Contest::rate_of(*row)});
@@ -133,9 +133,9 @@ std::string structures_text(const std::vector<Contest>& contests)
 std::string apis_text(const BenchResult& result)
 {
     std::map<std::string, std::map<std::string, std::vector<double>>> ratios;
-    for (std::size_t i = 0; i < result.run.rows.size(); ++i)
+    for (std::size_t i = 0; i < result.rows.size(); ++i)
         if (const auto& comparison = result.comparisons.at(i)) {
-            const std::string &row = result.run.rows[i].key.backend, &reference = comparison->reference->key.backend;
+            const std::string &row = result.rows[i].key.backend, &reference = comparison->reference->key.backend;
             if (row != reference) ratios[reference][row].push_back(comparison->ratio);
         }
     std::vector<std::string> parts;
@@ -173,7 +173,7 @@ Sheet answer_of(const BenchResult& result)
     Sheet sheet;
     if (!contests.empty())
         sheet.labelled("Fastest", joined(contests, [](const Contest& contest) {
-                                      const RowRun& best = contest.fastest();
+                                      const RowRecord& best = contest.fastest();
                                       return fmt::format("{}, {:.1f} Mrays/s", row_text(best), Contest::rate_of(best));
                                   }) + ".");
     std::string compared = structures_text(contests);
@@ -181,14 +181,14 @@ Sheet answer_of(const BenchResult& result)
     if (!compared.empty()) sheet.labelled("Compared", compared + ".");
     if (is_timed(result)) {
         Steadiness steadiness{result.measurement.load, result.measurement.pulses};
-        for (const RowRun& row : result.run.rows)
+        for (const RowRecord& row : result.rows)
             steadiness.count(row);
         sheet.labelled("Trust", trust_text(steadiness));
     }
     return sheet;
 }
 
-void Steadiness::count(const RowRun& row)
+void Steadiness::count(const RowRecord& row)
 {
     const auto figures = figures_of(row);
     if (!figures) return;

@@ -14,7 +14,7 @@ struct Steadiness {
     std::vector<Pulse> pulses = {};
     std::size_t timed = 0, noisy = 0, disturbed = 0; ///< rows
 
-    void count(const RowRun& row);
+    void count(const RowRecord& row);
 };
 
 /// Whether to trust them, as a sentence. Precondition: a row was timed.

@@ -32,7 +32,7 @@ std::string timed_sentence(const BenchResult& result)
     if (!result.scenes.empty()) {
         const ResultValue scene(result.scenes.front(), "scene");
         std::uint32_t passes = 1;
-        for (const RowRun& row : result.run.rows)
+        for (const RowRecord& row : result.rows)
             passes = std::max(passes, row.passes);
         text += fmt::format(" A sample is {} views of {} at {}x{} on {} threads, traced together{}.",
                             scene.at("views").items().size(), scene.at("camera_set").line(), scene.at("width").count(),
@@ -44,11 +44,11 @@ std::string timed_sentence(const BenchResult& result)
 
 /// "rays: 45 % enter the domain, 16 % hit", kind after kind; nothing else says how much of a rate is rays that miss the
 /// scene.
-std::string share_sentences(const std::string& scene, const std::vector<RowRun>& rows)
+std::string share_sentences(const std::string& scene, const std::vector<RowRecord>& rows)
 {
     std::string text;
     std::set<RayKind> told;
-    for (const RowRun* row : rows_of(scene, rows)) {
+    for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
         const RayShares shares = result != nullptr ? ray_shares(*result) : RayShares{};
         if (!shares.hit || !told.insert(row->key.rays).second) continue;
@@ -60,11 +60,11 @@ std::string share_sentences(const std::string& scene, const std::vector<RowRun>&
 }
 
 /// How many steps a ray of each kind takes in the scene; the same for all its rows of one method.
-std::string steps_sentences(const std::string& scene, const std::vector<RowRun>& rows)
+std::string steps_sentences(const std::string& scene, const std::vector<RowRecord>& rows)
 {
     std::string text;
     std::set<RayKind> told;
-    for (const RowRun* row : rows_of(scene, rows)) {
+    for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
         const MeanSteps mean = result != nullptr ? mean_steps(result->totals) : MeanSteps{};
         if (!mean.all || !told.insert(row->key.rays).second) continue;
@@ -78,10 +78,10 @@ std::string steps_sentences(const std::string& scene, const std::vector<RowRun>&
 }
 
 /// What a ray visits in each BVH, kind after kind.
-std::string visits_sentences(const std::string& scene, const std::vector<RowRun>& rows)
+std::string visits_sentences(const std::string& scene, const std::vector<RowRecord>& rows)
 {
     std::string text;
-    for (const RowRun* row : rows_of(scene, rows)) {
+    for (const RowRecord* row : rows_of(scene, rows)) {
         const Traced* result = traced(*row);
         if (result == nullptr || result->visits.rays == 0) continue;
         const auto rays = static_cast<double>(result->visits.rays);
@@ -123,7 +123,7 @@ const char* const time_columns =
 Sheet closing_lines(const BenchResult& result)
 {
     Sheet sheet;
-    sheet.labelled("Verified", verdict_sentence(result.run.rows));
+    sheet.labelled("Verified", verdict_sentence(result.rows));
     if (is_timed(result)) {
         sheet.labelled("Timed", timed_sentence(result));
         sheet.labelled("Rates", fmt::format(fmt::runtime(rate_columns), interval_meaning(result.measurement.runs)));
@@ -137,10 +137,10 @@ Sheet closing_lines(const BenchResult& result)
 }
 
 /// Of a row whose scene could not be loaded only the beginning of the reason: standard error has had all of it.
-std::string failure_text(const RowRun& row, Status status)
+std::string failure_text(const RowRecord& row, Status status)
 {
     std::string reason = reason_of(row);
-    if (row.scene == nullptr) reason = reason.substr(0, reason.find('\n'));
+    if (row.device.name.empty()) reason = reason.substr(0, reason.find('\n'));
     return fmt::format("{}: {}", name_of(status), reason);
 }
 
@@ -179,7 +179,7 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
 bool is_timed(const BenchResult& result)
 {
     return result.measurement.wall_s > 0 ||
-           std::ranges::any_of(result.run.rows, [](const RowRun& row) { return figures_of(row).has_value(); });
+           std::ranges::any_of(result.rows, [](const RowRecord& row) { return figures_of(row).has_value(); });
 }
 
 std::string scene_headline(const ResultValue& scene)
@@ -207,7 +207,7 @@ std::string scene_headline(const ResultValue& scene)
                        bvh ? fmt::format(", its BVH in {}", seconds_text(bvh->number())) : "");
 }
 
-std::string verdict_sentence(const std::vector<RowRun>& rows)
+std::string verdict_sentence(const std::vector<RowRecord>& rows)
 {
     const Verdicts sum = all_verdicts(rows);
     if (sum.rays == 0) return "nothing.";
@@ -220,15 +220,15 @@ std::string verdict_sentence(const std::vector<RowRun>& rows)
                               with_commas(sum.wrong), with_commas(sum.lost));
 }
 
-Sheet failure_lines(const std::vector<RowRun>& rows)
+Sheet failure_lines(const std::vector<RowRecord>& rows)
 {
     struct Failure {
-        const RowRun* first;
+        const RowRecord* first;
         std::string what;
         std::size_t count = 0;
     };
     std::vector<Failure> failures;
-    for (const RowRun& row : rows) {
+    for (const RowRecord& row : rows) {
         const Status status = status_of(row);
         if (status == Status::ok || status == Status::flawed) continue;
         const std::string what = failure_text(row, status);
@@ -254,9 +254,9 @@ Sheet bench_sheet(const BenchResult& result)
         const ResultValue value(scene, "scene");
         const std::string name = value.at("name").line();
         sheet.heading(scene_headline(value));
-        sheet.line(share_sentences(name, result.run.rows));
-        sheet.line(steps_sentences(name, result.run.rows));
-        sheet.prose(visits_sentences(name, result.run.rows));
+        sheet.line(share_sentences(name, result.rows));
+        sheet.line(steps_sentences(name, result.rows));
+        sheet.prose(visits_sentences(name, result.rows));
         sheet.gap();
         sheet.table(rate_table(name, result));
         sheet.gap();
@@ -271,7 +271,7 @@ Sheet bench_sheet(const BenchResult& result)
         sheet.table(device_table(result.devices));
         sheet.gap();
     }
-    sheet.append(failure_lines(result.run.rows));
+    sheet.append(failure_lines(result.rows));
     sheet.append(closing_lines(result));
     return sheet;
 }

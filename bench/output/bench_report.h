@@ -11,7 +11,7 @@ namespace tetrace {
 
 /// Everything that `tetrace bench` reports. Comparisons point into the rows.
 struct BenchResult {
-    SceneRows run;
+    std::vector<RowRecord> rows;
     Measurement measurement;
     std::vector<RowDevice> devices;
     std::vector<std::optional<Comparison>> comparisons; ///< row by row
@@ -37,9 +37,9 @@ struct BenchResult {
 [[nodiscard]] std::string scene_headline(const ResultValue& scene);
 
 /// The oracle's findings over all rows, in one sentence.
-[[nodiscard]] std::string verdict_sentence(const std::vector<RowRun>& rows);
+[[nodiscard]] std::string verdict_sentence(const std::vector<RowRecord>& rows);
 
 /// Rows without an answer and their reasons: a line for all rows of a scene that have the same one, and an empty line.
-[[nodiscard]] Sheet failure_lines(const std::vector<RowRun>& rows);
+[[nodiscard]] Sheet failure_lines(const std::vector<RowRecord>& rows);
 
 } // namespace tetrace

@@ -12,7 +12,7 @@ namespace {
 /// The rows' indices, ordered by device; rows that were not opened come last.
 std::vector<std::size_t> by_device(const BenchResult& result)
 {
-    const auto& rows = result.run.rows;
+    const auto& rows = result.rows;
     std::vector<std::size_t> places(rows.size()), order(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
         places[i] = device_of(rows[i], result.devices).value_or(result.devices.size());
@@ -22,7 +22,7 @@ std::vector<std::size_t> by_device(const BenchResult& result)
 }
 
 /// The heading of rows: rows under one heading may be ranked with each other.
-std::string heading_of(const RowRun& row, const std::vector<RowDevice>& devices)
+std::string heading_of(const RowRecord& row, const std::vector<RowDevice>& devices)
 {
     if (!device_of(row, devices)) return "not run";
     if (row.device.kind == DeviceKind::emulated) return "emulated by the processor, not to be ranked with GPUs";
@@ -35,12 +35,12 @@ public:
     Headings(Table& table, const BenchResult& result) : table_(&table), result_(&result)
     {
         std::set<std::string> all;
-        for (const RowRun& row : result.run.rows)
+        for (const RowRecord& row : result.rows)
             all.insert(heading_of(row, result.devices));
         needed_ = all.size() > 1;
     }
 
-    void before(const RowRun& row)
+    void before(const RowRecord& row)
     {
         std::string heading = heading_of(row, result_->devices);
         if (needed_ && heading != last_) table_->add_heading(heading);
@@ -68,12 +68,12 @@ std::string reference_name(const std::vector<RowFacts>& rows)
 std::vector<RowFacts> facts_of(const BenchResult& result)
 {
     std::vector<RowFacts> all;
-    for (const RowRun& row : result.run.rows) {
+    for (const RowRecord& row : result.rows) {
         RowFacts& facts = all.emplace_back(row);
         facts.comparison = result.comparisons.at(all.size() - 1);
         facts.best_bvh = result.best_bvhs.at(all.size() - 1);
         facts.paid_build = paid_build(row, facts.best_bvh);
-        facts.ratio_to_single = ratio_to_single(row, result.run.rows);
+        facts.ratio_to_single = ratio_to_single(row, result.rows);
         facts.copy_shares = copy_shares(row, result.devices);
     }
     return all;
@@ -123,7 +123,7 @@ Table device_table(const std::vector<RowDevice>& devices)
         hardware = device.hardware;
         const SelfTest* test = device.self_tests.empty() ? nullptr : &device.self_tests.begin()->second;
         const std::string verdict = test != nullptr ? test->text().substr(0, test->text().find(';')) : "";
-        table.add({device_label({{}, device.backend->name(), {}, {}, {}, device.index}), device.device.implementation,
+        table.add({device_label({{}, device.backend, {}, {}, {}, device.index}), device.device.implementation,
                    std::string(name_of(device.device.kind)),
                    device.yardstick ? Cell(1e-9 * device.yardstick->copy_bytes_per_s) : Cell(),
                    device.yardstick ? Cell(1e6 * device.yardstick->launch_s) : Cell(), text_cell(verdict),

@@ -11,27 +11,27 @@ namespace tetrace {
 
 namespace {
 
-using Pointers = std::vector<const RowRun*>;
+using Pointers = std::vector<const RowRecord*>;
 
 /// The distinct texts that `name` gives for the rows, in order of first appearance.
 template <class Name>
 std::vector<std::string> names_of(const Pointers& rows, const Name& name)
 {
     std::vector<std::string> names;
-    for (const RowRun* row : rows)
+    for (const RowRecord* row : rows)
         if (std::ranges::find(names, name(row->key)) == names.end()) names.push_back(name(row->key));
     return names;
 }
 
-const RowRun* row_at(const Pointers& rows, const std::string& kernel, const std::string& device)
+const RowRecord* row_at(const Pointers& rows, const std::string& kernel, const std::string& device)
 {
-    for (const RowRun* row : rows)
+    for (const RowRecord* row : rows)
         if (kernel_title(row->key) == kernel && device_label(row->key) == device) return row;
     return nullptr;
 }
 
 /// Of all hits; of merged shards, of their views' hashes.
-std::uint64_t hash_of_answers(const RowRun& row)
+std::uint64_t hash_of_answers(const RowRecord& row)
 {
     const Traced& result = *traced(row);
     return result.hit_hash != 0 ? result.hit_hash : result.views_hash;
@@ -40,14 +40,14 @@ std::uint64_t hash_of_answers(const RowRun& row)
 /// Rows of one kernel that gave the same hits.
 struct Answer {
     std::string kernel, devices;
-    const RowRun* first = nullptr;
+    const RowRecord* first = nullptr;
     std::size_t rows = 1;
 };
 
 std::vector<Answer> answers_of(const Pointers& rows)
 {
     std::vector<Answer> answers;
-    for (const RowRun* row : rows) {
+    for (const RowRecord* row : rows) {
         if (traced(*row) == nullptr) continue;
         const auto known = std::ranges::find_if(answers, [&](const Answer& answer) {
             return answer.kernel == kernel_title(row->key) && hash_of_answers(*answer.first) == hash_of_answers(*row);
@@ -64,14 +64,15 @@ std::vector<Answer> answers_of(const Pointers& rows)
 /// The devices' names; their number where all devices that traced the kernel agree, which keeps the line short.
 std::string devices_of(const Answer& answer, const Pointers& rows)
 {
-    const auto all = static_cast<std::size_t>(std::ranges::count_if(
-        rows, [&](const RowRun* row) { return traced(*row) != nullptr && kernel_title(row->key) == answer.kernel; }));
+    const auto all = static_cast<std::size_t>(std::ranges::count_if(rows, [&](const RowRecord* row) {
+        return traced(*row) != nullptr && kernel_title(row->key) == answer.kernel;
+    }));
     return answer.rows == all && all > 2 ? fmt::format("all {} devices", all) : answer.devices;
 }
 
 } // namespace
 
-Table matrix_table(const std::string& scene, const std::vector<RowRun>& all)
+Table matrix_table(const std::string& scene, const std::vector<RowRecord>& all)
 {
     const Pointers rows = rows_of(scene, all);
     const auto devices = names_of(rows, device_label);
@@ -82,7 +83,7 @@ Table matrix_table(const std::string& scene, const std::vector<RowRun>& all)
     for (const std::string& kernel : names_of(rows, kernel_title)) {
         std::vector<Cell> cells = {kernel};
         for (const std::string& device : devices) {
-            const RowRun* row = row_at(rows, kernel, device);
+            const RowRecord* row = row_at(rows, kernel, device);
             cells.push_back(row != nullptr ? Cell(conformity_text(*row)) : Cell());
         }
         table.add(std::move(cells));
@@ -102,7 +103,7 @@ std::vector<std::string> check_columns_of(const std::vector<RowKey>& keys)
     return sheet.column_keys();
 }
 
-Table answers_table(const std::string& scene, const std::vector<RowRun>& all)
+Table answers_table(const std::string& scene, const std::vector<RowRecord>& all)
 {
     Table table({{"row", "row"},
                  {.key = "hits", .title = "hit hash", .rank = 2},
@@ -126,11 +127,11 @@ Table answers_table(const std::string& scene, const std::vector<RowRun>& all)
     return table;
 }
 
-Table self_test_table(const std::vector<RowRun>& rows)
+Table self_test_table(const std::vector<RowRecord>& rows)
 {
     Table table({{"label", "device"}, {"name", "name"}, {"type", "type"}, {"self_test", "self-test, exact mode"}});
     std::vector<std::string> told;
-    for (const RowRun& row : rows) {
+    for (const RowRecord& row : rows) {
         const std::string label = device_label(row.key);
         if (!row.device.usable || row.key.kernel.math != MathMode::exact ||
             std::ranges::find(told, label) != told.end())
@@ -142,10 +143,10 @@ Table self_test_table(const std::vector<RowRun>& rows)
     return table;
 }
 
-nlohmann::json matrix_json(const std::vector<RowRun>& rows)
+nlohmann::json matrix_json(const std::vector<RowRecord>& rows)
 {
     nlohmann::json matrix = nlohmann::json::object();
-    for (const RowRun& row : rows) {
+    for (const RowRecord& row : rows) {
         auto& cell = matrix[row.key.scene][kernel_title(row.key)][device_label(row.key)];
         cell["cell"] = conformity_text(row);
         cell["conformity"] = name_of(conformity_of(row));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 #include "bench/terminal/table.h"
 
 #include <nlohmann/json.hpp>
@@ -14,18 +14,18 @@ namespace tetrace {
 
 /// Each device's result for each row: one line per kernel, one column per device, cells as conformity_text() gives
 /// them.
-[[nodiscard]] Table matrix_table(const std::string& scene, const std::vector<RowRun>& rows);
+[[nodiscard]] Table matrix_table(const std::string& scene, const std::vector<RowRecord>& rows);
 
 /// The keys of all columns of the three tables of a check of these rows.
 [[nodiscard]] std::vector<std::string> check_columns_of(const std::vector<RowKey>& keys);
 
 /// The distinct answers: the hash of each answer's hits, the devices that gave it, and the oracle's counts.
-[[nodiscard]] Table answers_table(const std::string& scene, const std::vector<RowRun>& rows);
+[[nodiscard]] Table answers_table(const std::string& scene, const std::vector<RowRecord>& rows);
 
 /// Explains the columns of all matrices: each device and its self-test in exact mode, one per line.
-[[nodiscard]] Table self_test_table(const std::vector<RowRun>& rows);
+[[nodiscard]] Table self_test_table(const std::vector<RowRecord>& rows);
 
 /// {scene: {row: {device: {"cell": ..., "hit_hash": ...}}}}.
-[[nodiscard]] nlohmann::json matrix_json(const std::vector<RowRun>& rows);
+[[nodiscard]] nlohmann::json matrix_json(const std::vector<RowRecord>& rows);
 
 } // namespace tetrace

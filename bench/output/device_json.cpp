@@ -1,5 +1,11 @@
 #include "bench/output/device_json.h"
 
+#include "bench/results/read_into.h"
+#include "bench/results/result_file.h"
+#include "core/base/printable.h"
+
+#include <algorithm>
+
 namespace tetrace {
 
 namespace {
@@ -31,7 +37,29 @@ json device_json(const Device& device)
     set_known(object, "group_width", device.group_width);
     set_known(object, "timer_period_s", device.timer_period_s);
     set_known(object, "threads", device.threads);
+    set_known(object, "max_steps", device.max_steps);
     return object;
+}
+
+Device device_from(const ResultValue& value)
+{
+    Device device;
+    for (const auto& [key, member] : {std::pair("name", &Device::name),
+                                      {"driver", &Device::driver},
+                                      {"id", &Device::id},
+                                      {"implementation", &Device::implementation},
+                                      {"uuid", &Device::uuid},
+                                      {"pci", &Device::pci}})
+        device.*member = printable_line(value.text_at(key));
+    device.kind = device_kind_of(value);
+    read_member(device.memory_bytes, value, "memory_bytes");
+    read_member(device.max_buffer_bytes, value, "max_buffer_bytes");
+    read_member(device.max_group_items, value, "max_group_items");
+    read_member(device.group_width, value, "group_width");
+    read_member(device.timer_period_s, value, "timer_period_s");
+    read_member(device.threads, value, "threads");
+    read_member(device.max_steps, value, "max_steps");
+    return device;
 }
 
 json self_test_json(const SelfTest& test)
@@ -49,25 +77,25 @@ json self_test_json(const SelfTest& test)
             {"text", test.text()}};
 }
 
-json gpu_json(const GpuReadings& readings)
+SelfTest self_test_from(const ResultValue& value)
 {
-    json object = {{"dropped_samples", readings.dropped}};
-    const std::pair<const char*, std::optional<double> GpuState::*> told[] = {
-        {"clock_mhz", &GpuState::clock_mhz},
-        {"memory_clock_mhz", &GpuState::memory_clock_mhz},
-        {"power_w", &GpuState::power_w},
-        {"temperature_c", &GpuState::temperature_c}};
-    for (const auto& [key, member] : told)
-        if (const auto median = readings.median(member)) object[key] = *median;
-    set_known(object, "throttled_samples", readings.throttled());
-    set_known(object, "throttled_by", readings.reasons);
-    return object;
+    SelfTest test;
+    read_member(test.contracts, value, "contracts");
+    read_member(test.denormals_kept, value, "denormals_kept");
+    read_member(test.division_ulps, value, "division_ulps");
+    read_member(test.square_root_ulps, value, "square_root_ulps");
+    read_member(test.sums_right, value, "sums_right");
+    read_member(test.comparisons_right, value, "comparisons_right");
+    read_member(test.integers_right, value, "integers_right");
+    read_member(test.conversions_right, value, "conversions_right");
+    read_member(test.bits_kept, value, "bits_kept");
+    return test;
 }
 
 json row_device_json(const RowDevice& device)
 {
     json object = device_json(device.device);
-    object["backend"] = device.backend->name();
+    object["backend"] = device.backend;
     object["index"] = device.index;
     object["hardware"] = device.hardware;
     if (device.yardstick) {
@@ -80,6 +108,44 @@ json row_device_json(const RowDevice& device)
         object["self_test"][std::string(name_of(math))] = self_test_json(test);
     set_known(object, "problem", device.problem);
     return object;
+}
+
+namespace {
+
+/// As many as this program has room for.
+decltype(Yardstick::copies) copies_from(const ResultValue& device)
+{
+    decltype(Yardstick::copies) copies{};
+    const auto list = device.find("copies");
+    if (!list) return copies;
+    const auto items = list->items();
+    for (std::size_t i = 0; i < std::min(copies.size(), items.size()); ++i) {
+        const auto pair = items[i].items();
+        if (pair.size() != 2) items[i].reject("is not a pair of bytes and bytes per second");
+        copies[i] = {pair[0].count(), pair[1].number()};
+    }
+    return copies;
+}
+
+} // namespace
+
+RowDevice row_device_from(const ResultValue& value)
+{
+    RowDevice device;
+    device.backend = value.at("backend").line();
+    if (find_backend(device.backend) == nullptr) value.at("backend").reject("is not a backend of this tetrace");
+    device.index = value.at("index").count();
+    device.device = device_from(value);
+    device.hardware = value.at("hardware").count();
+    Yardstick yardstick{0, 0, copies_from(value)};
+    read_member(yardstick.copy_bytes_per_s, value, "copy_bytes_per_s");
+    read_member(yardstick.launch_s, value, "launch_s");
+    if (yardstick.copy_bytes_per_s > 0 || yardstick.launch_s > 0) device.yardstick = yardstick;
+    if (const auto tests = value.find("self_test"))
+        for (const auto& [math, test] : tests->members())
+            device.self_tests[math == "fast" ? MathMode::fast : MathMode::exact] = self_test_from(test);
+    device.problem = printable_text(value.text_at("problem"));
+    return device;
 }
 
 void set_steadiness(json& section, const std::optional<MachineLoad>& load, const std::vector<Pulse>& pulses)

@@ -2,6 +2,7 @@
 
 #include "bench/measuring/pulse.h"
 #include "bench/measuring/row_devices.h"
+#include "bench/results/result_value.h"
 
 #include <nlohmann/json.hpp>
 
@@ -10,14 +11,18 @@ namespace tetrace {
 /// A device as results record it (results/README.md); unknown members are left out.
 [[nodiscard]] nlohmann::json device_json(const Device& device);
 
+/// The reverse. Throws Error{invalid_input} naming file and key, as the other readers do.
+[[nodiscard]] Device device_from(const ResultValue& value);
+
 /// A self-test as results record it: its fields under their names, "exact", and its line of text.
 [[nodiscard]] nlohmann::json self_test_json(const SelfTest& test);
+
+[[nodiscard]] SelfTest self_test_from(const ResultValue& value);
 
 /// A device that rows ran on, with its yardstick and self-tests.
 [[nodiscard]] nlohmann::json row_device_json(const RowDevice& device);
 
-/// What a row's GPU told while its samples were taken.
-[[nodiscard]] nlohmann::json gpu_json(const GpuReadings& readings);
+[[nodiscard]] RowDevice row_device_from(const ResultValue& value);
 
 /// Sets a result's `load` and `pulses`, where they are known.
 void set_steadiness(nlohmann::json& section, const std::optional<MachineLoad>& load, const std::vector<Pulse>& pulses);

@@ -14,7 +14,7 @@ namespace tetrace {
 
 namespace {
 
-CaseOutcome outcome_of(const RowRun& row, bool failed)
+CaseOutcome outcome_of(const RowRecord& row, bool failed)
 {
     switch (conformity_of(row)) {
     case Conformity::error: return CaseOutcome::error;
@@ -24,7 +24,7 @@ CaseOutcome outcome_of(const RowRun& row, bool failed)
     }
 }
 
-std::string reason_text(const RowRun& row)
+std::string reason_text(const RowRecord& row)
 {
     const std::string reason = reason_of(row);
     return conformity_text(row) + (reason.empty() ? "" : ": " + reason);
@@ -71,7 +71,7 @@ std::string class_name(const std::string& backend, const std::string& device_nam
     return fmt::format("tetrace.{}{}{}", backend, device.empty() ? "" : ".", device);
 }
 
-std::string output_xml(const RowRun& row)
+std::string output_xml(const RowRecord& row)
 {
     std::string text = "conformity: " + conformity_text(row);
     const Traced* result = traced(row);
@@ -85,7 +85,7 @@ std::string case_xml(const std::string& class_name, const std::string& name, dou
                        xml_text(class_name), xml_text(name), time_s, parts);
 }
 
-std::string case_xml(const RowRun& row, CaseOutcome outcome)
+std::string case_xml(const RowRecord& row, CaseOutcome outcome)
 {
     const Traced* result = traced(row);
     const std::string details = outcome == CaseOutcome::failed ? differences_text(row) : std::string();
@@ -109,7 +109,7 @@ struct Suite {
         if (!test.driver.empty()) properties[test.label + ".driver"] = test.driver;
     }
 
-    void add(const RowRun& row, bool failed)
+    void add(const RowRecord& row, bool failed)
     {
         const CaseOutcome outcome = outcome_of(row, failed);
         count(outcome);
@@ -184,7 +184,7 @@ std::string document_xml(std::vector<Suite> suites)
 
 } // namespace
 
-std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed, const std::string& problem)
+std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed, const std::string& problem)
 {
     std::vector<Suite> suites;
     if (!problem.empty()) suites.emplace_back().add_problem(problem);

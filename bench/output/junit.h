@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ struct JunitCase {
 /// failed: whether the row fails the check (a method's own flaws may pass). Wrong rows have a failure element, errors
 /// an error element, unsupported and skipped rows a skipped element, each with its reason; cell and hash are the test's
 /// output. problem: why the check itself failed; it becomes a test case of its own, in error; none where it is empty.
-[[nodiscard]] std::string junit_xml(const std::vector<RowRun>& rows, const std::vector<bool>& failed,
+[[nodiscard]] std::string junit_xml(const std::vector<RowRecord>& rows, const std::vector<bool>& failed,
                                     const std::string& problem = {});
 
 /// The same of one suite of other test cases: "tetrace check <suite>".

@@ -4,8 +4,8 @@
 #include "bench/output/fields/comparison_fields.h"
 #include "bench/output/fields/field_parts.h"
 #include "bench/rows/ray_json.h"
-#include "bench/rows/row_tracing.h"
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 
 #include <fmt/format.h>
 
@@ -21,30 +21,137 @@ json text_or_nothing(const std::string& text)
     return text.empty() ? json() : json(text);
 }
 
-/// 0 is no hash, but that of what is not known.
-json hash_or_nothing(std::uint64_t hash)
+/// A name of kernels/kernel_list.inc.
+template <class Name>
+auto in_kernel(Name KernelId::*member)
 {
-    return hash == 0 ? json() : json(hash_text(hash));
+    return both([=](const RowKey& key) { return json(name_of(key.kernel.*member)); },
+                [=](RowKey& key, const ResultValue& value) {
+                    const std::string name = value.line();
+                    for (const Task task : values_of<Task>())
+                        for (const KernelId& kernel : kernels_of(task))
+                            if (name == name_of(kernel.*member)) {
+                                key.kernel.*member = kernel.*member;
+                                return;
+                            }
+                    value.reject(fmt::format("is '{}', which no kernel of this tetrace has", name));
+                });
 }
 
-json reason_or_nothing(const RowRun& row)
+std::uint64_t hash_from(const ResultValue& value)
+{
+    return std::stoull(value.hash(), nullptr, 16);
+}
+
+/// 0 is no hash, but that of what is not known.
+auto hash_or_nothing(std::uint64_t Traced::*member)
+{
+    return both([=](const Traced& trace) { return trace.*member == 0 ? json() : json(hash_text(trace.*member)); },
+                [=](Traced& trace, const ResultValue& value) { trace.*member = hash_from(value); });
+}
+
+/// One where no other number is given.
+auto above_one(std::uint32_t RowRecord::*member)
+{
+    return both([=](const RowRecord& row) { return row.*member > 1 ? json(row.*member) : json(); },
+                [=](RowRecord& row, const ResultValue& value) { read_into(row.*member, value); });
+}
+
+/// Of a structure that has steps.
+auto if_steps(std::uint64_t RayTotals::*member)
+{
+    return both([=](const Traced& trace) { return trace.totals.steps() > 0 ? json(trace.totals.*member) : json(); },
+                [=](Traced& trace, const ResultValue& value) { read_into(trace.totals.*member, value); });
+}
+
+/// What neither hits nor misses have is of lost rays. After their fields.
+auto all_steps()
+{
+    return both([](const Traced& trace) { return trace.totals.steps() > 0 ? json(trace.totals.steps()) : json(); },
+                [](Traced& trace, const ResultValue& value) {
+                    const std::uint64_t known = trace.totals.hit_steps + trace.totals.miss_steps;
+                    trace.totals.lost_steps = std::max(value.count(), known) - known;
+                });
+}
+
+json medians_of_runs(const RowRecord& row)
+{
+    if (row.run_samples.size() < 2 || row.samples_s.empty()) return {};
+    json medians;
+    for (const auto& run : samples_of_runs(row))
+        medians.push_back(quantile(run, 0.5));
+    return medians;
+}
+
+/// Runs have equally many samples.
+void set_runs(RowRecord& row, const ResultValue& medians)
+{
+    const std::size_t runs = medians.items().size();
+    if (runs > 0 && row.samples_s.size() % runs == 0) row.run_samples.assign(runs, row.samples_s.size() / runs);
+}
+
+json with_walk(json ray, const RayWalk& walk)
+{
+    if (!walk.openmp.empty()) ray["path"] = walk.openmp;
+    if (!walk.own.empty()) ray["own_path"] = walk.own;
+    if (!walk.command.empty()) ray["command"] = walk.command;
+    return ray;
+}
+
+/// A ray of a result, which anyone may have written, and its walk.
+template <class Ray>
+void set_ray(std::optional<Ray>& to, RayWalk& walk, Ray (*read)(const json&), const ResultValue& from)
+{
+    try {
+        to = read(from.json());
+    } catch (const std::exception& problem) {
+        from.reject(fmt::format("is not a ray: {}", problem.what()));
+    }
+    read_member(walk.openmp, from, "path");
+    read_member(walk.own, from, "own_path");
+    read_member(walk.command, from, "command");
+}
+
+auto first_different()
+{
+    return both(
+        [](const Traced& trace) {
+            const auto& ray = trace.first_different;
+            return ray ? with_walk(differing_ray_json(*ray), trace.walk_of_different) : json();
+        },
+        [](Traced& trace, const ResultValue& value) {
+            set_ray(trace.first_different, trace.walk_of_different, differing_ray_from, value);
+        });
+}
+
+auto first_wrong()
+{
+    return both(
+        [](const Traced& trace) {
+            const auto& ray = trace.verdicts.first_wrong;
+            return ray ? with_walk(wrong_ray_json(*ray), trace.walk_of_wrong) : json();
+        },
+        [](Traced& trace, const ResultValue& value) {
+            if (!value.find("exact")) return; // older results have Embree's answer in its place
+            auto& ray = trace.verdicts.first_wrong;
+            set_ray(ray, trace.walk_of_wrong, wrong_ray_from, value);
+            ray->reason = printable_text(ray->reason);
+        });
+}
+
+json reason_or_nothing(const RowRecord& row)
 {
     return text_or_nothing(reason_of(row));
 }
 
-std::string_view status_name(const RowRun& row)
+std::string_view status_name(const RowRecord& row)
 {
     return name_of(status_of(row));
 }
 
-json fall_back(const RowRun& row)
-{
-    return row.packed != nullptr ? text_or_nothing(row.packed->fall_back) : json();
-}
-
 /// Rays of the packets that Embree splits the row's packets into, since the processor has no wider ones; nothing where
 /// it does not.
-json narrower_packets(const RowRun& row)
+json narrower_packets(const RowRecord& row)
 {
     const unsigned native = row.device.group_width;
     const bool is_split =
@@ -57,7 +164,7 @@ json narrower_packets(const RowRun& row)
 std::string status_text(const RowFacts& facts)
 {
     const bool noisy = facts.figures && facts.figures->noisy;
-    std::string remarks = fall_back(*facts.row).is_null() ? "" : ", fall-back tree";
+    std::string remarks = facts.row->fall_back.empty() ? "" : ", fall-back tree";
     if (const json packets = narrower_packets(*facts.row); !packets.is_null())
         remarks += fmt::format(", in packets of {}", packets.get<unsigned>());
     if (noisy && status_of(*facts.row) == Status::ok) return "noisy" + remarks;
@@ -66,23 +173,19 @@ std::string status_text(const RowFacts& facts)
     return text + remarks + (noisy ? ", noisy" : "");
 }
 
-json compile_and_build_s(const SetupTimes& setup)
+/// A GPU's driver builds BVHs as it compiles: when the row is opened.
+json compile_and_build_s(const RowRecord& row)
 {
-    const double seconds = setup.compile_s + setup.build_s;
+    const bool is_built_by_driver = row.key.kernel.layout == Layout::rt;
+    const double seconds = row.setup.compile_s + (is_built_by_driver ? row.setup.bvh_build_s.value_or(0) : 0);
     return seconds > 0 ? json(seconds) : json();
 }
 
-std::optional<double> bvh_build_s(const RowFacts& facts)
-{
-    if (facts.setup.build_s > 0) return facts.setup.build_s;
-    return facts.row->packed != nullptr ? facts.row->packed->bvh_build_s : std::nullopt;
-}
-
 /// Reads what there is only of answers that were compared with openmp's.
-template <class Value>
-auto if_compared(Value Traced::*member)
+auto if_compared(std::uint64_t Traced::*member)
 {
-    return [=](const Traced& trace) { return trace.compared ? json(trace.*member) : json(); };
+    return both([=](const Traced& trace) { return trace.compared ? json(trace.*member) : json(); },
+                [=](Traced& trace, const ResultValue& value) { read_into(trace.*member, value); });
 }
 
 double a_ray(std::uint64_t count, const Visits& visits)
@@ -100,46 +203,50 @@ std::vector<RowField> identity_fields()
         {"", "row", kernel_title, rates("row"), times("row")},
         {"", "backend", device_label, rates({.title = "backend", .rank = 0}), times({.title = "backend", .rank = 0})},
         {"", "scene", &RowKey::scene, recorded("line", required), csv("scene")},
-        {"", "structure", in(&RowKey::kernel, named(&KernelId::structure)),
+        {"", "structure", in(&RowKey::kernel, &KernelId::structure),
          recorded(R"({ "enum": ["cdt", "bvh"] })", required), csv("structure")},
-        {"", "method", in(&RowKey::kernel, named(&KernelId::method)), recorded("line", required), csv("method")},
-        {"", "layout", in(&RowKey::kernel, named(&KernelId::layout)), recorded("line", required), csv("layout")},
+        {"", "method", in_kernel(&KernelId::method), recorded("line", required), csv("method")},
+        {"", "layout", in_kernel(&KernelId::layout), recorded("line", required), csv("layout")},
         {"", "backend", &RowKey::backend, recorded("line", required), csv("backend")},
-        {"", "device", [](const RowRun& row) { return row.device.name.empty() ? json() : device_json(row.device); },
+        {"", "device",
+         both([](const RowRecord& row) { return row.device.name.empty() ? json() : device_json(row.device); },
+              [](RowRecord& row, const ResultValue& value) { row.device = device_from(value); }),
          recorded("device", optional, "as in tetrace.devices, without what was measured of it")},
-        {"", "device", in(&RowRun::device, unless_empty(&Device::name)), csv("device")},
-        {"", "type", [](const RowRun& row) { return text_or_nothing(device_kind_text(row)); }, csv("type")},
-        {"", "device_index", [](const RowRun& row) { return row.device.name.empty() ? json() : json(row.key.device); },
+        {"", "device", [](const RowRecord& row) { return text_or_nothing(row.device.name); }, csv("device")},
+        {"", "type", [](const RowRecord& row) { return text_or_nothing(device_kind_text(row)); }, csv("type")},
+        {"", "device_index",
+         both([](const RowRecord& row) { return row.device.name.empty() ? json() : json(row.key.device); },
+              [](RowRecord& row, const ResultValue& value) { row.key.device = value.count(); }),
          recorded("count")},
-        {"", "rays", named(&RowKey::rays),
+        {"", "rays", &RowKey::rays,
          recorded(R"({ "enum": ["primary", "shadow", "ao", "diffuse", "random"] })", required, "their kind"),
          csv("rays")},
-        {"", "ray_order", named(&RowKey::ray_order), recorded(R"({ "enum": ["tiles", "morton", "shuffled"] })")},
+        {"", "ray_order", &RowKey::ray_order, recorded(R"({ "enum": ["tiles", "morton", "shuffled"] })")},
         {"", "ray_hash",
-         [](const RowRun& row) {
-             const bool are_given = row.scene != nullptr && traced(row) != nullptr && row.key.kernel.task == Task::rays;
-             return are_given ? json(hash_text(hash_of_rays(row))) : json();
-         },
+         both([](const RowRecord& row) { return row.ray_hash ? json(hash_text(*row.ray_hash)) : json(); },
+              [](RowRecord& row, const ResultValue& value) { row.ray_hash = hash_from(value); }),
          recorded("hash", optional,
                   "of the rays that are given, view after view: equal hashes are the same rays, bit for bit")},
-        {"", "math", in(&RowKey::kernel, named(&KernelId::math)),
-         recorded(R"({ "enum": ["exact", "fast"] })", required), csv("math")},
-        {"", "order", named(&RowKey::order),
+        {"", "math", in(&RowKey::kernel, &KernelId::math), recorded(R"({ "enum": ["exact", "fast"] })", required),
+         csv("math")},
+        {"", "order", &RowKey::order,
          recorded(R"({ "enum": ["chains", "hilbert", "reached", "input"] })", required, "of the tets in memory"),
          csv("order")},
-        {"", "schedule", in(&RowKey::kernel, named(&KernelId::schedule)),
+        {"", "schedule", in(&RowKey::kernel, &KernelId::schedule),
          recorded(R"({ "enum": ["tiles", "persistent", "packets", "native", "pipeline"] })", optional,
                   "how rays come to work items; results from before this key have it in the row's name"),
          csv("schedule")},
         {"", "status", status_name, recorded("status", required), csv("status")},
         {"", "reason", reason_or_nothing, recorded("text"), csv("reason")},
-        {"", "fall_back", fall_back,
+        {"", "fall_back", if_any(&RowRecord::fall_back),
          recorded("line", optional, "of our BVHs: why it is not the heuristic's best tree")},
         {"", "narrower_packets", narrower_packets,
          recorded("count", optional,
                   "of Embree's packets: rays of the packets that it splits them into, where the processor has no wider "
                   "ones")},
-        {"", "self_test", [](const RowRun& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },
+        {"", "self_test",
+         both([](const RowRecord& row) { return row.self_test ? self_test_json(*row.self_test) : json(); },
+              [](RowRecord& row, const ResultValue& value) { row.self_test = self_test_from(value); }),
          recorded("self_test", optional, "how the device computes in the row's math mode")},
     };
 }
@@ -200,31 +307,22 @@ std::vector<RowField> bandwidth_fields()
 std::vector<RowField> time_fields()
 {
     return {
-        {"", "bytes", [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
-         csv("size", "bytes")},
-        {"times", "clock",
-         [](const RowFacts& facts) { return traced(*facts.row) ? json(facts.row->backend->clock()) : json(); },
-         recorded("line", required)},
+        {"", "bytes", &RowSetup::bytes, csv("size", "bytes")},
+        {"times", "clock", if_any(&RowRecord::clock), recorded("line", required)},
         {"", "compile_and_build_s", compile_and_build_s, times("compile", "ms", 1, milliseconds)},
-        {"times", "compile_s", positive(&SetupTimes::compile_s), recorded("positive", optional, "of Embree: its build"),
+        {"times", "compile_s", if_any(&RowSetup::compile_s), recorded("positive", optional, "of Embree: its build"),
          csv("compile", "s", 6), report("compile", "", 1, milliseconds)},
-        {"times", "compile_cached",
-         [](const RowFacts& facts) { return facts.setup.compile_cached ? json(true) : json(); },
+        {"times", "compile_cached", if_any(&RowSetup::compile_cached),
          recorded(R"({ "type": "boolean" })", optional, "the kernel came from the cache of compiled programs"),
          times("cached")},
-        {"times", "upload_s", positive(&SetupTimes::upload_s), recorded("positive"), csv("upload", "s", 6),
+        {"times", "upload_s", if_any(&RowSetup::upload_s), recorded("positive"), csv("upload", "s", 6),
          times("upload", "ms", 1, milliseconds), report("upload", "", 1, milliseconds)},
-        {"times", "pack_s", [](const RowRun& row) { return row.packed != nullptr ? json(row.packed->pack_s) : json(); },
-         recorded("not_negative")},
-        {"times", "build_s",
-         [](const RowRun& row) {
-             const auto cost = setup_cost(row);
-             return cost ? json(cost->build_s) : json();
-         },
+        {"times", "pack_s", &RowSetup::pack_s, recorded("not_negative")},
+        {"times", "build_s", &RowSetup::build_s,
          recorded("not_negative", optional,
                   "what the row's structure took to build: TetGen and our optimiser, also if the scene came from the "
                   "cache; the builder of our BVHs; Embree, or a GPU's driver")},
-        {"times", "bvh_build_s", bvh_build_s,
+        {"times", "bvh_build_s", &RowSetup::bvh_build_s,
          recorded("not_negative", optional,
                   "of our BVHs, which share one tree; of layout rt the driver's, by the device's clock")},
         {"times", "first_kernel_s", &Traced::kernel_s,
@@ -232,28 +330,19 @@ std::vector<RowField> time_fields()
                   "the first pass over all views, in which devices compile what they left until then")},
         {"times", "first_wall_s", &Traced::wall_s, recorded("not_negative", required), csv("first", "s", 6),
          times("first", "ms", 1, milliseconds), report("first", "", 1, milliseconds)},
-        {"times", "samples_s", unless_empty(&RowRun::samples_s),
+        {"times", "samples_s", if_any(&RowRecord::samples_s),
          recorded("durations", optional, "kernel alone, all views, per pass")},
-        {"times", "runs",
-         [](const RowRun& row) {
-             if (row.run_samples.size() < 2 || row.samples_s.empty()) return json();
-             json medians;
-             for (const auto& run : samples_of_runs(row))
-                 medians.push_back(quantile(run, 0.5));
-             return medians;
-         },
+        {"times", "runs", both(medians_of_runs, set_runs),
          recorded("durations", optional, "medians of the runs, whose samples follow each other in samples_s"),
          csv("runs", "", 0, [](const json& runs) { return runs.is_null() ? Cell() : Cell(runs.size()); })},
-        {"times", "launches",
-         [](const RowRun& row) { return row.launches.joined > 0 ? json(row.launches.joined) : json(); },
+        {"times", "launches", in(&RowRecord::launches, if_any(&LaunchCounts::joined)),
          recorded(R"({ "type": "integer", "minimum": 1 })", optional,
                   "of a pass of a sample: 1, or as few as memory allows"),
          csv("launches")},
-        {"times", "latency_launches",
-         [](const RowRun& row) { return row.launches.single > 0 ? json(row.launches.single) : json(); },
+        {"times", "latency_launches", in(&RowRecord::launches, if_any(&LaunchCounts::single)),
          recorded(R"({ "type": "integer", "minimum": 1 })", optional,
                   "of a pass of latency_samples_s: views with rays")},
-        {"times", "latency_samples_s", unless_empty(&RowRun::latency_samples_s),
+        {"times", "latency_samples_s", if_any(&RowRecord::latency_samples_s),
          recorded("durations", optional,
                   "as samples_s, with a launch for each view; left out if samples_s are the same")},
         {"times", "latency_s", &Figures::latency_s,
@@ -268,12 +357,12 @@ std::vector<RowField> time_fields()
         {"times", "s_per_mray", &Figures::s_per_mray,
          recorded("positive", optional, "of a million rays, by the same line; with fixed_s if that is left out"),
          csv("per Mray", "s", 9)},
-        {"times", "passes", [](const RowRun& row) { return row.passes > 1 ? json(row.passes) : json(); },
+        {"times", "passes", above_one(&RowRecord::passes),
          recorded(R"({ "type": "integer", "minimum": 2 })", optional,
                   "of a sample, which traces all views so often; of `reproduce` the most of any view or batch; left "
                   "out where once is long enough"),
          csv("passes")},
-        {"times", "wall_samples_s", unless_empty(&RowRun::wall_samples_s),
+        {"times", "wall_samples_s", if_any(&RowRecord::wall_samples_s),
          recorded("durations", optional, "launch to the end of waiting, on the host's clock")},
         {"times", "median_s", in(&Figures::kernel_s, &Statistics::median), recorded("positive"), csv("median", "s", 6),
          times("kernel", "ms", 1, milliseconds), report("kernel", "", 1, milliseconds)},
@@ -284,10 +373,10 @@ std::vector<RowField> time_fields()
          rates({.title = "spread", .cell = percent<1>, .rank = 2})},
         {"times", "noisy", &Figures::noisy,
          recorded(R"({ "type": "boolean" })", optional, "spread above 5 %, or disturbed"), csv("noisy")},
-        {"times", "pulse", &RowRun::pulse_ratio,
+        {"times", "pulse", &RowRecord::pulse_ratio,
          recorded("positive", optional, "the pulse beside a sample over its fastest: the median over the samples"),
          csv("pulse", "", 3)},
-        {"times", "disturbed", unless_empty(&RowRun::disturbance),
+        {"times", "disturbed", if_any(&RowRecord::disturbance),
          recorded("line", optional, "what else than the spread speaks against the rate")},
         {"times", "overhead_s", &Figures::overhead_s,
          recorded(R"({ "type": "number" })", optional,
@@ -300,12 +389,19 @@ std::vector<RowField> time_fields()
         {"times", "wall_s", &Figures::wall_s,
          recorded("positive", optional, "launch to the end of waiting on the host's clock, median"),
          csv("wall", "s", 6), times("wall", "ms", 1, milliseconds), report("wall", "", 1, milliseconds)},
-        {"", "bytes", [](const RowRun& row) { return row.session ? json(row.session->bytes()) : json(); },
+        {"", "bytes", &RowSetup::bytes,
          recorded("count", optional, "of the structure and its scene data on the device"),
          times("size", "MB", 1, megabytes), report("size", "MB", 1, megabytes)},
-        {"", "gpu", [](const RowRun& row) { return row.gpu ? gpu_json(*row.gpu) : json(); },
-         recorded("gpu", optional, "what it told during the samples: medians")},
-        {"", "samples", [](const RowRun& row) { return row.samples_s.size(); }, csv("samples")},
+        {"gpu", "clock_mhz", &GpuSummary::clock_mhz, recorded("positive")},
+        {"gpu", "memory_clock_mhz", &GpuSummary::memory_clock_mhz, recorded("positive")},
+        {"gpu", "power_w", &GpuSummary::power_w, recorded("not_negative")},
+        {"gpu", "temperature_c", &GpuSummary::temperature_c, recorded(R"({ "type": "number" })")},
+        {"gpu", "dropped_samples", &GpuSummary::dropped_samples,
+         recorded("count", required, "taken again, since the GPU was throttled")},
+        {"gpu", "throttled_samples", if_any(&GpuSummary::throttled_samples),
+         recorded("count", optional, "kept, since it still was after that; the row is noisy then")},
+        {"gpu", "throttled_by", if_any(&GpuSummary::throttled_by), recorded("line")},
+        {"", "samples", [](const RowRecord& row) { return row.samples_s.size(); }, csv("samples")},
         {"", "status", status_text, rates({.title = "status", .rank = 0})},
     };
 }
@@ -327,9 +423,9 @@ std::vector<RowField> answer_fields()
          recorded("share", optional, "of the rays: hits over rays"), csv("hit share", "", 3)},
         {"counts", "misses", in(&Traced::totals, &RayTotals::misses), recorded("count", required)},
         {"counts", "lost", in(&Traced::totals, &RayTotals::lost), recorded("count", required)},
-        {"counts", "steps",
-         [](const Traced& trace) { return trace.totals.steps() > 0 ? json(trace.totals.steps()) : json(); },
-         recorded("count")},
+        {"counts", "hit_steps", if_steps(&RayTotals::hit_steps), recorded("count", optional, "of the rays that hit")},
+        {"counts", "miss_steps", if_steps(&RayTotals::miss_steps), recorded("count", optional, "of those that miss")},
+        {"counts", "steps", all_steps(), recorded("count", optional, "lost rays included")},
         {"visits", "nodes", &Visits::nodes, recorded("count", required)},
         {"visits", "triangles", &Visits::triangles, recorded("count", required)},
         {"visits", "mean_nodes", [](const Visits& visits) { return a_ray(visits.nodes, visits); },
@@ -345,7 +441,11 @@ std::vector<RowField> answer_fields()
          recorded("count", required, "another answer, which a curve within rounding of the ray gives: its witness"),
          csv("ties"), check("ties")},
         {"verification", "largest_tie_distance",
-         [](const Traced& trace) { return trace.verdicts.ties > 0 ? json(trace.verdicts.max_tie_distance) : json(); },
+         both(
+             [](const Traced& trace) {
+                 return trace.verdicts.ties > 0 ? json(trace.verdicts.max_tie_distance) : json();
+             },
+             [](Traced& trace, const ResultValue& value) { read_into(trace.verdicts.max_tie_distance, value); }),
          recorded("not_negative"), check("largest", "", 12)},
         {"verification", "settled", in(&Traced::verdicts, &Verdicts::settled),
          recorded("count", required, "with the exact ray, although some do"), check("settled")},
@@ -361,24 +461,19 @@ std::vector<RowField> answer_fields()
         {"verification", "compared_with_openmp", &Traced::compared, recorded(R"({ "type": "boolean" })", required)},
         {"", "conformity", &RowFacts::conformity, recorded("line", optional, "of `check`, as in tetrace.matrix"),
          check("conformity")},
+        {"verification", "lost_at_device_cap", if_any(&Traced::lost_at_device_cap),
+         recorded("count", optional, "lost after as many steps as the device's loops are known to take")},
         {"verification", "different_from_openmp", if_compared(&Traced::different), recorded("count"), check("differ")},
+        {"verification", "inexact", if_compared(&Traced::inexact),
+         recorded("count", optional, "rays of which some bit differs from openmp's, allowed or not")},
         {"verification", "largest_ulps", if_compared(&Traced::max_ulps), recorded("count", optional, "of t, u and v"),
          check("ulps")},
-        {"verification", "first_different",
-         [](const Traced& trace) {
-             return trace.first_different ? differing_ray_json(*trace.first_different) : json();
-         },
-         recorded("differing_ray")},
-        {"verification", "first_wrong",
-         in(&Traced::verdicts,
-            [](const Verdicts& verdicts) {
-                return verdicts.first_wrong ? wrong_ray_json(*verdicts.first_wrong) : json();
-            }),
-         recorded("wrong_ray")},
-        {"", "hit_hash", [](const Traced& trace) { return hash_or_nothing(trace.hit_hash); },
+        {"verification", "first_different", first_different(), recorded("differing_ray")},
+        {"verification", "first_wrong", first_wrong(), recorded("wrong_ray")},
+        {"", "hit_hash", hash_or_nothing(&Traced::hit_hash),
          recorded("hash", optional, "of all hits, view after view: equal hashes are equal answers, bit for bit"),
          csv("hit hash"), check("hits")},
-        {"", "views_hash", [](const Traced& trace) { return hash_or_nothing(trace.views_hash); },
+        {"", "views_hash", hash_or_nothing(&Traced::views_hash),
          recorded("hash", optional,
                   "of the hashes of the views' hits, view after view: as hit_hash, and known of merged shards too")},
         {"", "status", status_name, check("status")},

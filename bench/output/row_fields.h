@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/output/row_facts.h"
+#include "bench/output/field_value.h"
 #include "bench/terminal/table.h"
 
 namespace tetrace {

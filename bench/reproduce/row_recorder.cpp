@@ -20,7 +20,7 @@ using nlohmann::json;
 void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
 {
     row.passes = 1;
-    row.gpu.reset(); // the last part's
+    row.readings.reset(); // the last part's
     if (traced(row) == nullptr || images.empty()) return;
     Traced sum;
     row.samples_s.assign(images.front().samples_s.size(), 0);
@@ -30,8 +30,8 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
         sum.hit_hash = image.chained_hash; // 0 of merged shards, which chain only their own
         row.passes = std::max(row.passes, image.passes);
         if (image.gpu) {
-            if (!row.gpu) row.gpu.emplace();
-            row.gpu->add(*image.gpu);
+            if (!row.readings) row.readings.emplace();
+            row.readings->add(*image.gpu);
         }
         // A row that turned out wrong was no longer timed; it has no rate.
         for (std::size_t s = 0; s < std::min(row.samples_s.size(), image.samples_s.size()); ++s) {
@@ -44,12 +44,12 @@ void sum_up(RowRun& row, const std::vector<ImageRecord>& images)
 
 } // namespace
 
-bool is_whole(const RowRun& row)
+bool is_whole(const RowRecord& row)
 {
     return traced(row) != nullptr && traced(row)->totals.rays > 0;
 }
 
-bool is_cdt(const RowRun& row)
+bool is_cdt(const RowRecord& row)
 {
     return row.key.kernel.structure == Structure::cdt;
 }
@@ -185,7 +185,7 @@ void RowRecorder::time_group(const std::vector<RowRun*>& group, std::size_t part
     };
     take_pulse_if_due();
     for_timed_rows([&](RowRun& row) {
-        row.gpu.reset(); // the part before had its own
+        row.readings.reset(); // the part before had its own
         sampler.warmed_up(row, timed_launch(*row.session, job_of(row, part)).kernel_s);
     });
     for (unsigned sample = 0; sample < samples_; ++sample) {
@@ -211,7 +211,7 @@ void RowRecorder::take_sample(RowRun& row, std::size_t part, const Sampler& samp
     record.samples_s.push_back(sample.pass.kernel_s);
     record.wall_samples_s.push_back(sample.pass.wall_s);
     record.passes = row.passes;
-    record.gpu = row.gpu;
+    record.gpu = row.readings;
     if (watch_ == nullptr) return;
     record.sampled_s.emplace_back(sample.begin_s, sample.end_s);
     watch_->pulses().sampled(row, sample.begin_s, sample.end_s);
@@ -249,11 +249,11 @@ void RowRecorder::restore(std::size_t part, const json& entry)
 {
     check_entry(part, entry);
     for (const RowRun& row : run_->rows)
-        if (row.session != nullptr && !entry.at("rows").contains(row_name(row.key)))
+        if (traced(row) != nullptr && !entry.at("rows").contains(row_name(row.key)))
             reject_journal(
                 fmt::format("the journal has no answers of {}, which could not run then", row_name(row.key)));
     for (std::size_t i = 0; i < run_->rows.size(); ++i)
-        if (run_->rows[i].session != nullptr)
+        if (traced(run_->rows[i]) != nullptr)
             restore(i, part, outcome_from_json(entry["rows"][row_name(run_->rows[i].key)]));
 }
 
@@ -283,7 +283,7 @@ void RowRecorder::check_record(std::size_t i, std::size_t part, const ImageRecor
     if (record.verdict.totals.rays != rays)
         throw std::domain_error(
             fmt::format("{} has {} rays, not {}", row_name(row.key), record.verdict.totals.rays, rays));
-    const std::size_t samples = is_timed(row) ? samples_ : 0;
+    const std::size_t samples = has_answers(row) ? samples_ : 0;
     const auto is_time = [](double seconds) { return std::isfinite(seconds) && seconds > 0; };
     const bool is_stripped = is_merged() && record.samples_s.empty() && record.wall_samples_s.empty();
     if (is_stripped) return; // several kinds of machines took them
@@ -310,6 +310,7 @@ void RowRecorder::repeat_first_part()
                 static_cast<void>(timed_launch(*run_->rows[i].session, job_of(run_->rows[i], 0)));
                 if (hash_of_answers(run_->rows[i], 0) != run_->images[i].front().verdict.hit_hash)
                     throw Error(ErrorKind::wrong_result, "the first answers changed when they were asked for again");
+                note_compiling(run_->rows[i]);
             });
 }
 

@@ -20,10 +20,10 @@ struct RecordedRows {
 };
 
 /// Whether the row completed all parts with an answer.
-[[nodiscard]] bool is_whole(const RowRun& row);
+[[nodiscard]] bool is_whole(const RowRecord& row);
 
 /// Whether the row is one of the CDT, not of a BVH compared with it.
-[[nodiscard]] bool is_cdt(const RowRun& row);
+[[nodiscard]] bool is_cdt(const RowRecord& row);
 
 /// A run's progress, for the progress line.
 struct RunProgress {

@@ -1,6 +1,5 @@
 #include "bench/reproduce/scene_run.h"
 
-#include "bench/output/row_json.h"
 #include "bench/reproduce/paper.h"
 #include "bench/rows/rows.h"
 #include "core/base/hash.h"
@@ -140,11 +139,8 @@ SceneRuns runs_of_cdt(const SceneRuns& runs)
 
 void SceneRun::close()
 {
-    row_records = json::array();
-    for (RowRun& row : rows) {
-        row_records.push_back(row_json(RowFacts(row)));
+    for (RowRun& row : rows)
         row.session.reset();
-    }
     verifier.reset();
 }
 
@@ -168,14 +164,13 @@ void load_scene_of(SceneRun& run, const Options& options)
 
 } // namespace
 
-SceneRun recorded_scene_run(const SceneBuild& build, const Options& options, std::vector<RowRun> rows)
+SceneRun recorded_scene_run(const SceneBuild& build, const Options& options, const std::vector<RowRecord>& rows)
 {
     SceneRun run;
     run.build = build;
     load_scene_of(run, options);
-    run.rows = std::move(rows);
-    for (RowRun& row : run.rows)
-        row.scene = run.scene.get();
+    for (const RowRecord& row : rows)
+        run.rows.emplace_back(closed_row(row)).scene = run.scene.get();
     run.images.resize(run.rows.size());
     return run;
 }

@@ -29,7 +29,6 @@ struct SceneBuild {
     bool methods = true;    ///< whether to trace all methods of the cdt that were asked for, or only maria (and the
                             ///< fastest walk through tets for rays)
     bool rivals = false;    ///< whether to trace the BVHs as well
-    bool growth = false;    ///< whether it is one of the sizes of growth, which has tables of its own
 };
 
 /// A scene with its rows, and the results for each view.
@@ -41,14 +40,10 @@ struct SceneRun : RecordedRows {
     std::unique_ptr<FlatTets> flat; ///< null where nothing needs it
     double open_s = 0;              ///< seconds for loading the scene and opening its rows
 
-    std::vector<std::optional<SetupCost>> costs; ///< row by row; empty where nothing needs it
-
     std::vector<std::string> flawed_pictures, extreme_pictures; ///< names of files in the result's folder
     std::vector<std::string> picture_problems;                  ///< why one is missing, one sentence each
-    nlohmann::json row_records;                                 ///< the rows as results have them; made by close()
 
-    /// Keeps what results need of the devices, and frees the rest: scenes run one after the other, and memory is
-    /// limited.
+    /// Frees what results do not need: scenes run one after the other, and memory is limited.
     void close();
 };
 
@@ -74,7 +69,8 @@ using SceneRuns = std::vector<const SceneRun*>;
 [[nodiscard]] SceneRun open_scene_run(const SceneBuild& build, const Options& options);
 
 /// Loads the scene alone, for rows that were read from results, for merging. Throws what load_work() throws.
-[[nodiscard]] SceneRun recorded_scene_run(const SceneBuild& build, const Options& options, std::vector<RowRun> rows);
+[[nodiscard]] SceneRun recorded_scene_run(const SceneBuild& build, const Options& options,
+                                          const std::vector<RowRecord>& rows);
 
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
 /// journal. Views that are in the journal are taken from there. journal, watch: may be null.

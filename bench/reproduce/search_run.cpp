@@ -208,14 +208,15 @@ std::uint32_t batch_count(const SearchSize& size)
     return (size.tets + batch_tets - 1) / batch_tets;
 }
 
-SearchRun recorded_search_run(const Options& options, std::vector<RowRun> rows)
+SearchRun recorded_search_run(const Options& options, const std::vector<RowRecord>& rows)
 {
     SearchRun run;
     run.size = options.searches;
     run.batch_tets = tets_of_batch(run.size);
     run.shard = shard_of(options);
     run.threads = resolved_threads(options);
-    run.rows = std::move(rows);
+    for (const RowRecord& row : rows)
+        run.rows.push_back(closed_row(row));
     run.images.resize(run.rows.size());
     return run;
 }

@@ -28,7 +28,7 @@ struct SearchRun : RecordedRows {
 [[nodiscard]] SearchRun open_search_run(const Options& options, const std::vector<Backend*>& backends = all_backends());
 
 /// A run of rows that were read from results, for merging: it has no tets.
-[[nodiscard]] SearchRun recorded_search_run(const Options& options, std::vector<RowRun> rows);
+[[nodiscard]] SearchRun recorded_search_run(const Options& options, const std::vector<RowRecord>& rows);
 
 /// Does every batch with every row. Compares each face with openmp's and judges it by exact arithmetic, outside the
 /// timing; then times the batch and appends it to the journal. Batches that are in the journal are taken from there.

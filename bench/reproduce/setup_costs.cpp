@@ -38,19 +38,15 @@ SetupCosts::SetupCosts(Journal* journal) : journal_(journal)
     }
 }
 
-std::vector<std::optional<SetupCost>> SetupCosts::of(const std::vector<RowRun>& rows)
+void SetupCosts::restore(std::vector<RowRun>& rows)
 {
-    std::vector<std::optional<SetupCost>> costs;
-    for (const RowRun& row : rows) {
-        auto cost = setup_cost(row);
-        if (cost) {
-            const auto [place, is_new] = known_.emplace(row_name(row.key), *cost);
-            if (is_new && journal_ != nullptr) journal_->append(cost_entry(place->first, *cost));
-            cost = place->second;
-        }
-        costs.push_back(cost);
+    for (RowRun& row : rows) {
+        const auto cost = setup_cost(row);
+        if (!cost) continue;
+        const auto [place, is_new] = known_.emplace(row_name(row.key), *cost);
+        if (is_new && journal_ != nullptr) journal_->append(cost_entry(place->first, *cost));
+        set_setup_cost(row, place->second);
     }
-    return costs;
 }
 
 } // namespace tetrace

@@ -3,9 +3,7 @@
 #include "bench/reproduce/journal.h"
 #include "bench/rows/row_run.h"
 
-#include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +15,8 @@ public:
     /// journal: may be null. Throws Error{usage} where one of its costs is damaged.
     explicit SetupCosts(Journal* journal);
 
-    /// Row by row, the setup_cost() of rows just opened. Costs that are in the journal are taken from there; the others
-    /// are added to it.
-    [[nodiscard]] std::vector<std::optional<SetupCost>> of(const std::vector<RowRun>& rows);
+    /// Gives rows that were just opened the costs that the journal has of them; others are added to it.
+    void restore(std::vector<RowRun>& rows);
 
 private:
     Journal* journal_;

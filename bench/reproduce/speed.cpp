@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 /// The rated row that differs from the given one only in its method; none where there is none.
-std::size_t find_beside(const RecordedRows& run, const RowRun& other, Method method)
+std::size_t find_beside(const RecordedRows& run, const RowRecord& other, Method method)
 {
     RowKey wanted = other.key;
     wanted.kernel.method = method;
@@ -49,7 +49,7 @@ struct Ratios {
     std::string missing;
     bool noisy = false;
 
-    void add(const RecordedRows& run, const RowRun& other, Method above, Method below)
+    void add(const RecordedRows& run, const RowRecord& other, Method above, Method below)
     {
         const std::size_t a = find_beside(run, other, above), b = find_beside(run, other, below);
         if (a == none || b == none) {
@@ -124,7 +124,7 @@ Estimate relative_to(double reference, const Estimate& number)
 
 IsMeant of_kind(DeviceKind kind)
 {
-    return [=](const RowRun& row) { return row.device.kind == kind; };
+    return [=](const RowRecord& row) { return row.device.kind == kind; };
 }
 
 } // namespace
@@ -138,7 +138,7 @@ void withdraw_if_noisy(Claim& claim, bool noisy)
                     100 * noisy_spread);
 }
 
-bool is_noisy(const RowRun& row)
+bool is_noisy(const RowRecord& row)
 {
     const auto figures = figures_of(row);
     return figures && figures->noisy;
@@ -157,7 +157,7 @@ const std::vector<Method>& older_methods()
     return methods;
 }
 
-std::string status_with_reason(const RowRun& row)
+std::string status_with_reason(const RowRecord& row)
 {
     std::string status(name_of(status_of(row)));
     if (is_noisy(row)) status = status_of(row) == Status::ok ? "noisy" : status + ", noisy";
@@ -184,7 +184,7 @@ std::vector<double> view_steps(const RecordedRows& run, std::size_t row)
     return steps;
 }
 
-std::optional<paper::Place> paper_place(const RowRun& row)
+std::optional<paper::Place> paper_place(const RowRecord& row)
 {
     switch (row.device.kind) {
     case DeviceKind::cpu: return paper::Place::cpu;
@@ -194,7 +194,7 @@ std::optional<paper::Place> paper_place(const RowRun& row)
     return std::nullopt;
 }
 
-std::string series_name(const RowRun& row)
+std::string series_name(const RowRecord& row)
 {
     return fmt::format("{} {} {} {}", row.key.scene, name_of(row.key.kernel.method), name_of(row.key.kernel.layout),
                        device_label(row.key));
@@ -207,7 +207,7 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
         return claim;
     }
     Ratios ratios;
-    for_rows_of(Method::maria, runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
+    for_rows_of(Method::maria, runs, is_meant, [&](const RecordedRows& run, const RowRecord& row) {
         for (const Method method : older_methods())
             ratios.add(run, row, method, Method::maria);
     });
@@ -218,7 +218,7 @@ Claim fastest_claim(Claim claim, const RecordedRuns& runs, const IsMeant& is_mea
 Claim fastest_older_claim(Claim claim, const RecordedRuns& runs, Method method, const IsMeant& is_meant)
 {
     Ratios ratios;
-    for_rows_of(method, runs, is_meant, [&](const RecordedRows& run, const RowRun& row) {
+    for_rows_of(method, runs, is_meant, [&](const RecordedRows& run, const RowRecord& row) {
         for (const Method other : older_methods())
             if (other != method) ratios.add(run, row, other, method);
     });
@@ -230,7 +230,7 @@ Claim slower_claim(Claim claim, const RecordedRuns& runs, Method method, double 
 {
     Ratios ratios;
     for_rows_of(Method::maria, runs, is_meant,
-                [&](const RecordedRows& run, const RowRun& row) { ratios.add(run, row, method, Method::maria); });
+                [&](const RecordedRows& run, const RowRecord& row) { ratios.add(run, row, method, Method::maria); });
     ratios.decide(claim, [&](std::vector<Estimate> estimates) {
         for (Estimate& ratio : estimates)
             ratio = relative_to(1 + slower, ratio);
@@ -245,7 +245,7 @@ Claim slower_claim(Claim claim, const RecordedRuns& runs, Method method, double 
 Claim overtaking_claim(Claim claim, const RecordedRuns& runs)
 {
     Ratios ratios;
-    for_rows_of(Method::plucker, runs, of_kind(DeviceKind::gpu), [&](const RecordedRows& run, const RowRun& row) {
+    for_rows_of(Method::plucker, runs, of_kind(DeviceKind::gpu), [&](const RecordedRows& run, const RowRecord& row) {
         ratios.add(run, row, Method::stp, Method::plucker);
     });
     ratios.decide(claim);

@@ -20,24 +20,24 @@ namespace tetrace {
 
 /// The paper's device that the row's is compared with: a CPU with its CPU, a GPU with its GPU, and nothing that
 /// emulates one.
-[[nodiscard]] std::optional<paper::Place> paper_place(const RowRun& row);
+[[nodiscard]] std::optional<paper::Place> paper_place(const RowRecord& row);
 
 /// "bunny maria tet80 openmp": a row in a figure.
-[[nodiscard]] std::string series_name(const RowRun& row);
+[[nodiscard]] std::string series_name(const RowRecord& row);
 
 /// The runs that a claim is about; rows of different runs are never compared.
 using RecordedRuns = std::vector<const RecordedRows*>;
 /// For tables of rates: the row's status, "noisy" where that is all that speaks against it, with its reason.
-[[nodiscard]] std::string status_with_reason(const RowRun& row);
+[[nodiscard]] std::string status_with_reason(const RowRecord& row);
 
 /// Whether the claim is about this row of maria.
-using IsMeant = std::function<bool(const RowRun&)>;
+using IsMeant = std::function<bool(const RowRecord&)>;
 
 // Claims of speed are not testable where one of their rows is noisy.
 
 // claim: its id and text.
 
-[[nodiscard]] bool is_noisy(const RowRun& row);
+[[nodiscard]] bool is_noisy(const RowRecord& row);
 /// The interval over views does not cover the load of other users on the machine: noisy rows decide nothing.
 void withdraw_if_noisy(Claim& claim, bool noisy);
 

@@ -44,7 +44,7 @@ Claim decided(const ClaimOfRows& what, const RecordedRuns& runs, DeviceKind kind
     bool noisy = false, is_short = false;
     for (const RecordedRows* run : runs)
         for (std::size_t i = 0; i < run->rows.size(); ++i) {
-            const RowRun& row = run->rows[i];
+            const RowRecord& row = run->rows[i];
             const auto seconds = view_seconds(*run, i);
             if (row.key.kernel.method != Method::maria || row.device.kind != kind || seconds.empty()) continue;
             const auto steps = view_steps(*run, i);

@@ -55,7 +55,7 @@ Yardstick yardstick_of(const json& entry)
 
 std::string device_key(const RowDevice& device)
 {
-    return fmt::format("{}:{}", device.backend->name(), device.index);
+    return fmt::format("{}:{}", device.backend, device.index);
 }
 
 } // namespace

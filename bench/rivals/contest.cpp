@@ -17,9 +17,9 @@ namespace {
 using Place = std::tuple<DeviceKind, std::size_t, std::string>;
 
 /// Empty if nothing is known. A row whose scene could not be loaded has no device: openmp's and Embree's is the host's.
-std::optional<Place> place_of(const RowRun& row, std::size_t hardware)
+std::optional<Place> place_of(const RowRecord& row, std::size_t hardware)
 {
-    if (row.backend == nullptr) {
+    if (row.device.name.empty()) {
         if (!on_reference(row.key) && !is_embree(row.key.kernel.layout)) return std::nullopt;
         return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}};
     }
@@ -28,33 +28,45 @@ std::optional<Place> place_of(const RowRun& row, std::size_t hardware)
 }
 
 /// Adds the row's API unless it is there.
-void add_device(Contest& contest, const RowRun& row)
+void add_device(Contest& contest, const RowRecord& row)
 {
     const std::string label = device_label(row.key);
-    if (std::ranges::any_of(contest.rows, [&](const RowRun* other) { return device_label(other->key) == label; }))
+    if (std::ranges::any_of(contest.rows, [&](const RowRecord* other) { return device_label(other->key) == label; }))
         return;
     contest.device += (contest.device.empty() ? "" : ", ") + label;
 }
 
 } // namespace
 
-std::vector<Contest> contests_of(const std::vector<RowRun>& rows)
+std::vector<ContestScene> contest_scenes(const std::vector<nlohmann::json>& scenes)
+{
+    std::vector<ContestScene> found;
+    for (const nlohmann::json& scene : scenes)
+        found.push_back({scene.at("name"),
+                         scene.at("tets_kind") == name_of(TetsKind::rays) ? TetsKind::rays : TetsKind::cdt,
+                         scene.contains("own_views")});
+    return found;
+}
+
+std::vector<Contest> contests_of(const std::vector<RowRecord>& rows, const std::vector<ContestScene>& scenes)
 {
     std::vector<Device> devices;
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         devices.push_back(row.device);
     const auto hardware = physical_devices(devices);
     std::vector<Contest> contests;
     std::vector<Place> places;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const RowRun& row = rows[i];
+        const RowRecord& row = rows[i];
         const auto place = place_of(row, hardware[i]);
         if (!place || (is_portable(row.key.kernel) && row.key.kernel.math == MathMode::fast)) continue;
         std::size_t c = 0;
         while (c < contests.size() && (places[c] != *place || !same_rays(contests[c].rows.front()->key, row.key)))
             ++c;
         if (c == contests.size()) {
-            contests.push_back({row.key.scene, row.key.rays, std::get<DeviceKind>(*place), {}, {}});
+            contests.push_back({row.key.scene, row.key.rays, std::get<DeviceKind>(*place), {}, {}, {}});
+            const auto scene = std::ranges::find(scenes, row.key.scene, &ContestScene::name);
+            if (scene != scenes.end()) contests.back().facts = *scene;
             places.push_back(*place);
         }
         add_device(contests[c], row);
@@ -63,7 +75,7 @@ std::vector<Contest> contests_of(const std::vector<RowRun>& rows)
     return contests;
 }
 
-bool is_of(const RowRun& row, Walk walk)
+bool is_of(const RowRecord& row, Walk walk)
 {
     const KernelId& kernel = row.key.kernel;
     if (kernel.structure != Structure::cdt) return false;
@@ -80,7 +92,7 @@ bool is_of(const RowRun& row, Walk walk)
     return false;
 }
 
-bool is_of(const RowRun& row, Rival rival)
+bool is_of(const RowRecord& row, Rival rival)
 {
     const KernelId& kernel = row.key.kernel;
     if (kernel.structure != Structure::bvh) return false;
@@ -94,11 +106,11 @@ bool is_of(const RowRun& row, Rival rival)
     return false;
 }
 
-const RowRun* fastest(const std::vector<const RowRun*>& rows)
+const RowRecord* fastest(const std::vector<const RowRecord*>& rows)
 {
-    const RowRun* found = nullptr;
+    const RowRecord* found = nullptr;
     double rate = 0;
-    for (const RowRun* row : rows)
+    for (const RowRecord* row : rows)
         if (const auto figures = figures_of(*row); figures && figures->mrays_per_s > rate) {
             found = row;
             rate = figures->mrays_per_s;
@@ -106,7 +118,7 @@ const RowRun* fastest(const std::vector<const RowRun*>& rows)
     return found;
 }
 
-Estimate rate_ratio(const RowRun& row, const RowRun& over)
+Estimate rate_ratio(const RowRecord& row, const RowRecord& over)
 {
     const Comparison comparison = compare_rates(over, row);
     Estimate estimate{comparison.ratio, {}, {}};
@@ -123,7 +135,7 @@ std::string title_of(const Contest& contest)
                                             : fmt::format("{}, {} rays", contest.scene, name_of(contest.rays));
 }
 
-std::string rated_label(const RowRun& row)
+std::string rated_label(const RowRecord& row)
 {
     const Figures figures = *figures_of(row);
     std::string remarks;

@@ -15,9 +15,7 @@ namespace {
 /// Also if the scene could not be loaded.
 bool may_have_tets(const Contest& contest, TetsKind kind)
 {
-    return std::ranges::any_of(contest.rows, [&](const RowRun* row) {
-        return row->scene == nullptr || row->scene->loaded().scene.build.optimised.tets == kind;
-    });
+    return !contest.facts || contest.facts->tets == kind;
 }
 
 /// Of that name, and seen as the catalogue's scene is: a file of the user's may have its name.
@@ -25,9 +23,7 @@ bool is_the_scene(const Contest& contest, std::string_view name)
 {
     const auto scene = std::ranges::find(rival_scenes(), name, &RivalScene::name);
     const bool has_views = scene != rival_scenes().end() && scene->has_own_views;
-    return is_scene(contest.scene, name) && std::ranges::all_of(contest.rows, [&](const RowRun* row) {
-               return row->scene == nullptr || has_views == !row->scene->loaded().views.empty();
-           });
+    return is_scene(contest.scene, name) && (!contest.facts || has_views == contest.facts->has_own_views);
 }
 
 bool is_about(const RivalClaim& claim, const Contest& contest)
@@ -40,16 +36,16 @@ bool is_about(const RivalClaim& claim, const Contest& contest)
 }
 
 /// Why the rows have no rate; empty if one has, or if there are none.
-std::string reason_without_rate(const std::vector<const RowRun*>& rows)
+std::string reason_without_rate(const std::vector<const RowRecord*>& rows)
 {
     if (rows.empty() || fastest(rows) != nullptr) return {};
-    const RowRun& first = *rows.front();
+    const RowRecord& first = *rows.front();
     const Status status = status_of(first);
     return status == Status::ok || status == Status::flawed ? std::string("not timed")
                                                             : fmt::format("{}: {}", name_of(status), reason_of(first));
 }
 
-bool is_noisy_row(const RowRun& row)
+bool is_noisy_row(const RowRecord& row)
 {
     return figures_of(row)->noisy;
 }
@@ -63,7 +59,7 @@ bool wants_slow_walks(const RivalClaim& claim)
 /// A walk that was not timed could be the fastest. Only one could, if the claim names its kernel.
 void add_untimed_walks(JudgedClaim& judged, const Contest& contest)
 {
-    for (const RowRun* row : rows_of(contest, judged.claim->walk)) {
+    for (const RowRecord* row : rows_of(contest, judged.claim->walk)) {
         if (figures_of(*row) || status_of(*row) == Status::unsupported) continue;
         judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
                                                row_label(row->key), reason_without_rate({row})));
@@ -75,13 +71,13 @@ void add_untimed_walks(JudgedClaim& judged, const Contest& contest)
 void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
 {
     const std::size_t before = judged.obstacles.size();
-    for (const RowRun* row : rows_of(contest, judged.claim->rival))
+    for (const RowRecord* row : rows_of(contest, judged.claim->rival))
         if (!figures_of(*row) && status_of(*row) != Status::unsupported)
             judged.obstacles.push_back(fmt::format("{}: no rate of {}, which could be faster: {}", title_of(contest),
                                                    row_label(row->key), reason_without_rate({row})));
     const bool needs_embree = contest.place == DeviceKind::cpu && judged.claim->rival != Rival::our_single;
     if (needs_embree &&
-        std::ranges::none_of(contest.rows, [](const RowRun* row) { return is_embree(row->key.kernel.layout); }))
+        std::ranges::none_of(contest.rows, [](const RowRecord* row) { return is_embree(row->key.kernel.layout); }))
         judged.obstacles.push_back(
             fmt::format("{}: Embree, whose rays could be faster, has no rows in this run", title_of(contest)));
     if (judged.obstacles.size() > before && wants_slow_walks(*judged.claim)) judged.may_refute = false;
@@ -90,8 +86,8 @@ void add_untimed_rivals(JudgedClaim& judged, const Contest& contest)
 void add_contest(JudgedClaim& judged, const Contest& contest)
 {
     const auto walks = rows_of(contest, judged.claim->walk), rivals = rows_of(contest, judged.claim->rival);
-    const RowRun *const walk = fastest(walks), *const rival = fastest(rivals);
-    const auto add_missing = [&](std::string_view what, const std::vector<const RowRun*>& rows) {
+    const RowRecord *const walk = fastest(walks), *const rival = fastest(rivals);
+    const auto add_missing = [&](std::string_view what, const std::vector<const RowRecord*>& rows) {
         const std::string reason = rows.empty() ? "no such row was selected" : reason_without_rate(rows);
         judged.obstacles.push_back(fmt::format("{}: no rate of {}: {}", title_of(contest), what, reason));
     };
@@ -107,7 +103,7 @@ void add_contest(JudgedClaim& judged, const Contest& contest)
         return;
     }
     judged.numbers.push_back({&contest, walk, rival, *value});
-    for (const RowRun* row : {walk, rival})
+    for (const RowRecord* row : {walk, rival})
         if (is_noisy_row(*row))
             judged.obstacles.push_back(fmt::format("{}: {} is noisy, so measure again on a quieter machine",
                                                    title_of(contest), row_label(row->key)));

@@ -11,7 +11,7 @@ namespace tetrace {
 /// A claim's measure in one contest.
 struct ClaimNumber {
     const Contest* contest = nullptr;
-    const RowRun *walk = nullptr, *rival = nullptr; ///< both with rates
+    const RowRecord *walk = nullptr, *rival = nullptr; ///< both with rates
     Estimate value;
 };
 

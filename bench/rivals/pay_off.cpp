@@ -18,7 +18,7 @@ double seconds_until_paid(double more_s, double ratio)
     return ratio > 1 ? more_s / (ratio - 1) : never;
 }
 
-std::optional<Estimate> tracing_until_paid(const RowRun& walk, const RowRun& other)
+std::optional<Estimate> tracing_until_paid(const RowRecord& walk, const RowRecord& other)
 {
     const auto ours = setup_cost(walk), others = setup_cost(other);
     if (!ours || !others) return std::nullopt;

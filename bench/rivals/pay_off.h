@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/rows/row_run.h"
+#include "bench/rows/row_record.h"
 #include "bench/statistics/interval.h"
 
 #include <optional>
@@ -13,6 +13,6 @@ namespace tetrace {
 
 /// The same of a walk and another row, builds and packing counted, with an interval from that of the ratio of their
 /// rates. Empty if a build time is unknown. Precondition: both rows have rates.
-[[nodiscard]] std::optional<Estimate> tracing_until_paid(const RowRun& walk, const RowRun& other);
+[[nodiscard]] std::optional<Estimate> tracing_until_paid(const RowRecord& walk, const RowRecord& other);
 
 } // namespace tetrace

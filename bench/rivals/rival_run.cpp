@@ -11,11 +11,6 @@ namespace tetrace {
 
 namespace {
 
-const Backend& backend_of(const RowKey& key)
-{
-    return **std::ranges::find_if(all_backends(), [&](const Backend* one) { return one->name() == key.backend; });
-}
-
 const RivalScene* find_scene(const std::string& label)
 {
     const auto found =
@@ -33,7 +28,7 @@ bool is_wanted(const RowKey& key, const Options& options)
 {
     const RivalScene* const scene = find_scene(key.scene);
     if (!has_rays(scene, key.rays)) return false;
-    const bool is_emulated = backend_of(key).devices().at(key.device).kind == DeviceKind::emulated;
+    const bool is_emulated = backend_named(key.backend).devices().at(key.device).kind == DeviceKind::emulated;
     if (is_emulated && (key.rays != RayKind::primary || (scene != nullptr && !scene->has_all_rays))) return false;
     const bool is_other_tree = is_embree(key.kernel.layout) && key.kernel.layout != Layout::embree;
     if (is_other_tree && options.layouts.empty())
@@ -53,7 +48,7 @@ void add_native(std::vector<RowKey>& rows, RowKey key)
 {
     if (!on_reference(key) || key.kernel.schedule != Schedule::tiles) return;
     key.kernel.schedule = Schedule::native;
-    if (backend_of(key).has_kernel(key.kernel)) rows.push_back(std::move(key));
+    if (backend_named(key.backend).has_kernel(key.kernel)) rows.push_back(std::move(key));
 }
 
 } // namespace

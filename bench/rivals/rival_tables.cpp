@@ -43,7 +43,7 @@ std::vector<std::string> old_runs(const std::vector<RivalClaim>& claims)
 template <class Numerator, class Denominator>
 PaperCell ratio_cell(const Contest& contest, Numerator walk, Denominator rival)
 {
-    const RowRun *const first = fastest(rows_of(contest, walk)), *const second = fastest(rows_of(contest, rival));
+    const RowRecord *const first = fastest(rows_of(contest, walk)), *const second = fastest(rows_of(contest, rival));
     if (first == nullptr || second == nullptr) return {};
     return Quantity{rate_ratio(*first, *second), {}};
 }
@@ -55,7 +55,7 @@ std::string title_of(RowKey key)
     return kernel_title(key);
 }
 
-PaperCell label_cell(const RowRun* row)
+PaperCell label_cell(const RowRecord* row)
 {
     return row == nullptr ? PaperCell() : PaperCell(fmt::format("{}, {}", title_of(row->key), device_label(row->key)));
 }
@@ -63,7 +63,7 @@ PaperCell label_cell(const RowRun* row)
 /// The shares of the rays, in percent, by the first row with an answer.
 std::array<PaperCell, 2> share_cells(const Contest& contest)
 {
-    for (const RowRun* row : contest.rows)
+    for (const RowRecord* row : contest.rows)
         if (const Traced* result = traced(*row); result != nullptr && result->totals.rays > 0) {
             const RayShares shares = ray_shares(*result);
             const auto cell = [](const std::optional<double>& share) {
@@ -74,14 +74,14 @@ std::array<PaperCell, 2> share_cells(const Contest& contest)
     return {};
 }
 
-PaperCell build_cell(const RowRun* row)
+PaperCell build_cell(const RowRecord* row)
 {
     const auto cost = row == nullptr ? std::nullopt : setup_cost(*row);
     return cost ? exact_cell(cost->once_s()) : PaperCell();
 }
 
 /// When the walk's tets have paid: as billions of rays, and as seconds of tracing.
-std::array<PaperCell, 2> paid_cells(const RowRun* walk, const RowRun* bvh)
+std::array<PaperCell, 2> paid_cells(const RowRecord* walk, const RowRecord* bvh)
 {
     if (walk == nullptr || bvh == nullptr) return {};
     const auto paid = paid_build(*walk, compare_rates(*bvh, *walk));
@@ -95,8 +95,8 @@ std::array<PaperCell, 2> paid_cells(const RowRun* walk, const RowRun* bvh)
 std::string embree_note(const std::vector<Contest>& contests)
 {
     for (const Contest& contest : contests)
-        for (const RowRun* row : contest.rows)
-            if (is_embree(row->key.kernel.layout) && row->backend != nullptr)
+        for (const RowRecord* row : contest.rows)
+            if (is_embree(row->key.kernel.layout) && !row->device.name.empty())
                 return fmt::format("{}; it traces {} rays in lockstep on this processor.", row->device.driver,
                                    row->device.group_width);
     return {};
@@ -130,8 +130,8 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
          "the fastest BVH."}};
     if (const std::string note = embree_note(contests); !note.empty()) table.notes.push_back(note);
     for (const Contest& contest : contests) {
-        const RowRun *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
-                                                                             fastest(rows_of(contest, Rival::any));
+        const RowRecord *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
+                                                                                fastest(rows_of(contest, Rival::any));
         const auto paid = paid_cells(walk, bvh), shares = share_cells(contest);
         table.rows.push_back({contest.scene, std::string(name_of(contest.rays)), contest.device, shares[0], shares[1],
                               ratio_cell(contest, Walk::any, Rival::any),
@@ -142,7 +142,7 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
     return table;
 }
 
-std::string status_text(const RowRun& row)
+std::string status_text(const RowRecord& row)
 {
     const auto figures = figures_of(row);
     std::string text(name_of(status_of(row)));
@@ -151,7 +151,7 @@ std::string status_text(const RowRun& row)
     return reason.empty() ? text : text + ": " + reason;
 }
 
-void add_row(PaperTable& table, const Contest& contest, const RowRun& row, const RowRun* bvh)
+void add_row(PaperTable& table, const Contest& contest, const RowRecord& row, const RowRecord* bvh)
 {
     const auto figures = figures_of(row);
     const auto number = [&](double value) { return figures ? exact_cell(value) : PaperCell(); };
@@ -177,8 +177,8 @@ PaperTable rows_table(const std::vector<Contest>& contests)
                       {"status", "status"}},
                      {}};
     for (const Contest& contest : contests) {
-        const RowRun* const bvh = fastest(rows_of(contest, Rival::any));
-        for (const RowRun* row : contest.rows)
+        const RowRecord* const bvh = fastest(rows_of(contest, Rival::any));
+        for (const RowRecord* row : contest.rows)
             add_row(table, contest, *row, bvh);
     }
     return table;
@@ -209,9 +209,10 @@ PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out, 
     return table;
 }
 
-std::vector<PaperTable> rival_tables(const std::vector<RowRun>& rows, LeftOut left_out)
+std::vector<PaperTable> rival_tables(const std::vector<RowRecord>& rows, const std::vector<ContestScene>& scenes,
+                                     LeftOut left_out)
 {
-    const auto contests = contests_of(rows);
+    const auto contests = contests_of(rows, scenes);
     return {claims_table(contests, left_out), scenes_table(contests), rows_table(contests)};
 }
 

@@ -12,8 +12,8 @@ namespace tetrace {
 /// - rivals-scenes: one row per scene, kind of rays and device: shares of rays, what building costs, and the ratios of
 ///   walks to BVHs;
 /// - rivals-rows: every row with its rate and its ratio to the fastest BVH of the same contest.
-/// rows: of the run, with their sessions open.
-[[nodiscard]] std::vector<PaperTable> rival_tables(const std::vector<RowRun>& rows, LeftOut left_out);
+[[nodiscard]] std::vector<PaperTable> rival_tables(const std::vector<RowRecord>& rows,
+                                                   const std::vector<ContestScene>& scenes, LeftOut left_out);
 
 /// The first of them.
 [[nodiscard]] PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out,

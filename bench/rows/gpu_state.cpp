@@ -20,6 +20,17 @@ std::optional<double> GpuReadings::median(std::optional<double> GpuState::*membe
     return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
+GpuSummary GpuReadings::summary() const
+{
+    return {median(&GpuState::clock_mhz),
+            median(&GpuState::memory_clock_mhz),
+            median(&GpuState::power_w),
+            median(&GpuState::temperature_c),
+            dropped,
+            throttled(),
+            reasons};
+}
+
 void GpuReadings::add_reason(const std::string& reason)
 {
     if (reasons.find(reason) == std::string::npos) reasons += (reasons.empty() ? "" : ", ") + reason;

@@ -14,6 +14,14 @@ struct GpuState {
     std::string throttled;
 };
 
+/// Medians of what a row's GPU reported while the samples were taken; what it did not report is left out.
+struct GpuSummary {
+    std::optional<double> clock_mhz, memory_clock_mhz, power_w, temperature_c;
+    std::uint32_t dropped_samples = 0;   ///< taken again, since the GPU was throttled
+    std::uint32_t throttled_samples = 0; ///< kept although the GPU was throttled: it still was in the third attempt
+    std::string throttled_by;            ///< each reason once, of dropped samples and of throttled ones
+};
+
 /// What the GPU of a row told while the row's samples were taken.
 struct GpuReadings {
     std::vector<GpuState> states; ///< one a sample that was kept, while its last view was traced
@@ -24,6 +32,7 @@ struct GpuReadings {
     [[nodiscard]] std::uint32_t throttled() const;
     /// The median over the samples; empty where none tells.
     [[nodiscard]] std::optional<double> median(std::optional<double> GpuState::*member) const;
+    [[nodiscard]] GpuSummary summary() const;
     void add_reason(const std::string& reason);
     /// Adds those of other samples.
     void add(const GpuReadings& others);

@@ -21,10 +21,10 @@ void add_table(Sheet& sheet, const Table& table)
 }
 
 /// Devices that compute differently from what exact mode guarantees, each once.
-std::set<std::string> inexact_devices(const std::vector<RowRun>& rows)
+std::set<std::string> inexact_devices(const std::vector<RowRecord>& rows)
 {
     std::set<std::string> sentences;
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         if (conformity_of(row) == Conformity::not_exact)
             sentences.insert(
                 fmt::format("{}: its answers are openmp's here, but its self-test in exact mode found: {}; "
@@ -35,17 +35,17 @@ std::set<std::string> inexact_devices(const std::vector<RowRun>& rows)
 
 } // namespace
 
-RowFacts check_facts(const RowRun& row)
+RowFacts check_facts(const RowRecord& row)
 {
     RowFacts facts(row);
     facts.conformity = conformity_text(row);
     return facts;
 }
 
-Table check_table(const std::vector<RowRun>& rows)
+Table check_table(const std::vector<RowRecord>& rows)
 {
     Table table(columns_of(&RowField::check));
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         table.add(cells_of(&RowField::check, check_facts(row)));
     return table;
 }
@@ -64,7 +64,7 @@ Sheet check_sheet(const CheckFindings& found)
     }
     add_table(sheet, self_test_table(rows));
     sheet.append(failure_lines(rows));
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         sheet.verbatim(differences_text(row));
     for (const std::string& sentence : inexact_devices(rows))
         sheet.line(sentence);

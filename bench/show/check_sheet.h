@@ -11,19 +11,18 @@ namespace tetrace {
 
 /// What `tetrace check` found; refers to the rows.
 struct CheckFindings {
-    const std::vector<RowRun>* rows = nullptr;
+    const std::vector<RowRecord>* rows = nullptr;
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;   ///< devices, a sentence each
 };
 
 /// What a row's fields are read from, its conformity included.
-[[nodiscard]] RowFacts check_facts(const RowRun& row);
+[[nodiscard]] RowFacts check_facts(const RowRecord& row);
 
 /// Every row, flat.
-[[nodiscard]] Table check_table(const std::vector<RowRun>& rows);
+[[nodiscard]] Table check_table(const std::vector<RowRecord>& rows);
 
-/// What `check` prints, and `show` prints again: without the walks of differing rays where the rows were read from a
-/// result.
+/// What `check` prints, and `show` prints again.
 [[nodiscard]] Sheet check_sheet(const CheckFindings& found);
 
 } // namespace tetrace

@@ -77,10 +77,10 @@ RunAgain bench_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
     BenchResult result;
-    result.run.rows = read_rows(file);
-    result.devices = read_devices(file, result.run.rows);
-    result.comparisons = compare_rows(result.run.rows);
-    result.best_bvhs = compare_with_best_bvh(result.run.rows);
+    result.rows = read_rows(file);
+    result.devices = read_devices(file, result.rows);
+    result.comparisons = compare_rows(result.rows);
+    result.best_bvhs = compare_with_best_bvh(result.rows);
     result.scenes = scenes_of(section);
     result.missing_scenes = sentences_at(section, "missing_scenes");
     result.missing_devices = sentences_at(section, "missing_devices");
@@ -104,15 +104,8 @@ RunAgain bench_again(const ResultFile& file)
 RunAgain check_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
-    const std::vector<RowRun> rows = read_rows(file);
+    const std::vector<RowRecord> rows = read_rows(file);
     Sheet sheet = check_sheet({&rows, scenes_of(section), sentences_at(section, "missing_devices")});
-    const auto differs = [](const RowRun& row) {
-        const Traced* found = traced(row);
-        return found != nullptr && (found->first_different || found->verdicts.first_wrong);
-    };
-    if (std::ranges::any_of(rows, differs))
-        sheet.labelled("Not here", "the tets that the differing rays walk through, and the commands that follow "
-                                   "them: 'path', 'own_path' and 'command' in the JSON.");
     return {std::move(sheet), check_table(rows)};
 }
 

@@ -1,7 +1,7 @@
+#include "bench/measuring/scene_records.h"
 #include "bench/merging/shard_results.h"
 #include "bench/merging/view_journal.h"
 #include "bench/output/bench_tables.h"
-#include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
@@ -39,14 +39,15 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     BenchResult result;
     result.missing_scenes = missing_default_scenes(options);
     Budget budget = flags.repetitions ? Budget() : Budget(options.budget_s);
-    result.run = open_and_verify(keys, options, image_seen, budget);
-    result.measurement = measure_rows(result.run.rows, options, flags, budget);
-    result.devices = devices_of(result.run.rows);
+    SceneRows run = open_and_verify(keys, options, image_seen, budget);
+    result.measurement = measure_rows(run.rows, options, flags, budget);
+    result.rows = records_of(run.rows);
+    result.devices = devices_of(result.rows);
     measure_devices(result.devices, session_options(options));
-    result.comparisons = compare_rows(result.run.rows);
-    result.best_bvhs = compare_with_best_bvh(result.run.rows);
+    result.comparisons = compare_rows(result.rows);
+    result.best_bvhs = compare_with_best_bvh(result.rows);
     result.missing_devices = missing_devices(options);
-    result.scenes = scene_records(result.run, options);
+    result.scenes = scene_records(run, options);
     result.threads = resolved_threads(options);
     result.samples_asked = options.samples;
     result.budget_s = options.budget_s;
@@ -75,8 +76,8 @@ int bench_command(const Options& options)
         deliver(options, report);
     else if (options.out)
         deliver_to_file(options, report);
-    require_answers(result.run.rows, "measured");
-    return exit_code(result.run.rows, true);
+    require_answers(result.rows, "measured");
+    return exit_code(result.rows, true);
 }
 
 } // namespace tetrace

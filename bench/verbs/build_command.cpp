@@ -1,6 +1,6 @@
 #include "bench/measuring/figures.h"
+#include "bench/measuring/scene_records.h"
 #include "bench/output/report.h"
-#include "bench/output/row_json.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 

@@ -1,7 +1,8 @@
 #include "bench/measuring/conformity.h"
+#include "bench/measuring/ray_walks.h"
+#include "bench/measuring/scene_records.h"
 #include "bench/merging/view_journal.h"
 #include "bench/options/anonymous.h"
-#include "bench/output/check_differences.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/output/junit.h"
@@ -26,34 +27,28 @@ bool on_standard_output(const std::optional<std::filesystem::path>& file)
 
 /// Without pictures where none were asked for.
 struct Checked {
-    SceneRows run;
+    std::vector<RowRecord> rows;
+    std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;
     std::unique_ptr<DifferencePictures> pictures;
 };
 
-nlohmann::json check_row_json(const RowRun& row)
-{
-    nlohmann::json object = row_json(check_facts(row));
-    add_paths(object, row);
-    return object;
-}
-
 nlohmann::json check_json(const Checked& checked, const Options& options)
 {
     nlohmann::json section = result_head(options);
-    section["scenes"] = scene_records(checked.run, options);
-    section["matrix"] = matrix_json(checked.run.rows);
+    section["scenes"] = checked.scenes;
+    section["matrix"] = matrix_json(checked.rows);
     section["rows"] = nlohmann::json::array();
-    for (const RowRun& row : checked.run.rows)
-        section["rows"].push_back(check_row_json(row));
+    for (const RowRecord& row : checked.rows)
+        section["rows"].push_back(row_json(check_facts(row)));
     section["missing_devices"] = checked.missing;
     return {{"tetrace", std::move(section)}};
 }
 
 Report check_report(const Checked& checked, const Options& options)
 {
-    const auto& rows = checked.run.rows;
-    Report report{check_sheet({&rows, scene_records(checked.run, options), checked.missing}), check_table(rows),
+    const auto& rows = checked.rows;
+    Report report{check_sheet({&rows, checked.scenes, checked.missing}), check_table(rows),
                   check_json(checked, options)};
     report.markdown = report.sheet.markdown({.columns = options.columns});
     if (checked.pictures != nullptr)
@@ -101,19 +96,23 @@ int check(const Options& options, Checked& checked)
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
     ViewJournal journal(options);
-    checked.run = open_and_verify(keys, options, [&](const SeenImage& image) {
+    SceneRows run = open_and_verify(keys, options, [&](const SeenImage& image) {
         journal.see(image);
         if (checked.pictures != nullptr) checked.pictures->see(image);
     });
     journal.write();
-    const auto& rows = checked.run.rows;
+    for (RowRun& row : run.rows)
+        note_walks(row);
+    checked.rows = records_of(run.rows);
+    checked.scenes = scene_records(run, options);
+    const auto& rows = checked.rows;
     if (!on_standard_output(options.junit))
         deliver(options, check_report(checked, options));
     else if (options.out)
         deliver_to_file(options, check_report(checked, options));
     require_judged(rows, options.required);
     require_answers(rows, "checked");
-    if (std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); })) return 1;
+    if (std::ranges::any_of(rows, [&](const RowRecord& row) { return fails_check(row, options); })) return 1;
     return exit_code(rows, options.allow_flawed);
 }
 
@@ -126,9 +125,9 @@ int list_selected(const Options& options)
 
 } // namespace
 
-void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends)
+void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends)
 {
-    for (const RowRun& row : rows) {
+    for (const RowRecord& row : rows) {
         const bool required = std::ranges::find(backends, row.key.backend) != backends.end();
         const Status status = status_of(row);
         if (required && (status == Status::skipped || status == Status::unsupported))
@@ -137,16 +136,16 @@ void require_judged(const std::vector<RowRun>& rows, const std::vector<std::stri
     }
 }
 
-bool fails_check(const RowRun& row, const Options& options)
+bool fails_check(const RowRecord& row, const Options& options)
 {
     return fails(row, options.allow_flawed) || conformity_of(row) == Conformity::not_exact;
 }
 
-void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem)
+void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem)
 {
     if (!options.junit) return;
     std::vector<bool> failed;
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         failed.push_back(fails_check(row, options));
     std::string xml = junit_xml(rows, failed, problem);
     if (options.anonymous) xml = anonymous_text(xml, options);
@@ -169,10 +168,10 @@ int check_command(const Options& asked)
         code = check(options, checked);
     } catch (const Error& error) {
         // Whoever reads the XML alone must not take a check without a result for a good one.
-        if (error.kind() != ErrorKind::interrupted) write_junit(checked.run.rows, options, error.what());
+        if (error.kind() != ErrorKind::interrupted) write_junit(checked.rows, options, error.what());
         throw;
     }
-    write_junit(checked.run.rows, options);
+    write_junit(checked.rows, options);
     return code;
 }
 

@@ -32,11 +32,11 @@ int merge_command(const Options& options);
                                     const BenchmarkFlags& flags, const ImageSeen& image_seen = {});
 
 /// Whether the row fails `check`. A row without an answer does not fail by itself (see exit_code and --require).
-[[nodiscard]] bool fails_check(const RowRun& row, const Options& options);
+[[nodiscard]] bool fails_check(const RowRecord& row, const Options& options);
 
 /// Throws Error{missing} naming the first row of a required backend that has not been judged: all its rows were
 /// selected, but none ran.
-void require_judged(const std::vector<RowRun>& rows, const std::vector<std::string>& backends);
+void require_judged(const std::vector<RowRecord>& rows, const std::vector<std::string>& backends);
 
 /// `check --defects`. options: with the default layouts of check.
 int check_defects(const Options& options);
@@ -49,7 +49,7 @@ void require_devices(const std::vector<std::string>& backends);
 
 /// Writes the file of --junit where it was asked for. problem: why the check ended early, or fails although no row
 /// does; empty where neither is so.
-void write_junit(const std::vector<RowRun>& rows, const Options& options, const std::string& problem = {});
+void write_junit(const std::vector<RowRecord>& rows, const Options& options, const std::string& problem = {});
 
 /// A command line of tetrace's with these arguments, as a shell takes it.
 [[nodiscard]] std::string command_of(const std::vector<std::string>& arguments);

@@ -221,13 +221,6 @@ Table part_table()
     return table;
 }
 
-const Backend& backend_named(const std::string& name)
-{
-    for (const Backend* backend : all_backends())
-        if (backend->name() == name) return *backend;
-    throw Error(ErrorKind::internal, "backend_named: there is no backend " + name);
-}
-
 } // namespace
 
 void require_devices(const std::vector<std::string>& backends)

@@ -1,6 +1,5 @@
 #include "bench/merging/machines.h"
 #include "bench/merging/merged_rows.h"
-#include "bench/merging/scaling.h"
 #include "bench/output/bench_tables.h"
 #include "bench/output/check_matrix.h"
 #include "bench/output/row_json.h"
@@ -74,62 +73,42 @@ std::vector<json> scenes_of(const Shards& shards, const std::vector<std::uint32_
 Merged merged_bench(const Shards& shards, const Options& options)
 {
     BenchResult result;
-    result.run.rows = merged_rows(shards, selected_views(options));
-    result.devices = read_devices(shards.front().result, result.run.rows);
-    result.comparisons = compare_rows(result.run.rows);
-    result.best_bvhs = compare_with_best_bvh(result.run.rows);
+    result.rows = merged_rows(shards, selected_views(options));
+    result.devices = read_devices(shards.front().result, result.rows);
+    result.comparisons = compare_rows(result.rows);
+    result.best_bvhs = compare_with_best_bvh(result.rows);
     result.scenes = scenes_of(shards, selected_views(options));
     result.missing_scenes = sentences_of(shards, "missing_scenes");
     result.missing_devices = sentences_of(shards, "missing_devices");
     result.threads = options.threads;
-    for (const RowRun& row : result.run.rows) {
+    for (const RowRecord& row : result.rows) {
         const auto runs = static_cast<unsigned>(std::max<std::size_t>(row.run_samples.size(), 1));
         result.measurement.runs = std::max(result.measurement.runs, runs);
         result.measurement.samples =
             std::max(result.measurement.samples, static_cast<unsigned>(row.samples_s.size() / runs));
     }
-    return {bench_report(result, options), exit_code(result.run.rows, true),
-            error_of([&] { require_answers(result.run.rows, "measured"); })};
-}
-
-/// The tets of a differing ray's walk, as the shard that found it has them.
-void copy_paths(json& row, const Shards& shards)
-{
-    for (const char* key : {"first_different", "first_wrong"}) {
-        if (!row.contains("verification") || !row["verification"].contains(key)) continue;
-        json& ray = row["verification"][key];
-        for (const ShardResult& shard : shards)
-            for (const json& other : shard.section().at("rows")) {
-                if (other.at("name") != row["name"] || !other.contains("verification")) continue;
-                const json found = other["verification"].value(key, json::object());
-                const auto is_same = [&](const char* part) {
-                    return found.value(part, json()) == ray.value(part, json());
-                };
-                if (is_same("view") && is_same("x") && is_same("y")) ray = found;
-            }
-    }
+    return {bench_report(result, options), exit_code(result.rows, true),
+            error_of([&] { require_answers(result.rows, "measured"); })};
 }
 
 Merged merged_check(const Shards& shards, const Options& options)
 {
-    const std::vector<RowRun> rows = merged_rows(shards, selected_views(options));
+    const std::vector<RowRecord> rows = merged_rows(shards, selected_views(options));
     const auto scenes = scenes_of(shards, selected_views(options));
     const auto missing = sentences_of(shards, "missing_devices");
     json section = result_head(options);
     section["scenes"] = scenes;
     section["matrix"] = matrix_json(rows);
     section["rows"] = json::array();
-    for (const RowRun& row : rows) {
+    for (const RowRecord& row : rows)
         section["rows"].push_back(row_json(check_facts(row)));
-        copy_paths(section["rows"].back(), shards);
-    }
     section["missing_devices"] = missing;
     Report report{check_sheet({&rows, scenes, missing}), check_table(rows), {}};
     report.json["tetrace"] = std::move(section);
     report.markdown = report.sheet.markdown();
     if (options.out) report.sheet.labelled("Result", options.out->string());
     write_junit(rows, options);
-    const bool fails = std::ranges::any_of(rows, [&](const RowRun& row) { return fails_check(row, options); });
+    const bool fails = std::ranges::any_of(rows, [&](const RowRecord& row) { return fails_check(row, options); });
     return {std::move(report), fails ? 1 : exit_code(rows, options.allow_flawed), error_of([&] {
                 require_judged(rows, options.required);
                 require_answers(rows, "checked");
@@ -137,9 +116,9 @@ Merged merged_check(const Shards& shards, const Options& options)
 }
 
 /// Throws Error{usage} where another machine than the shards' has other default scenes.
-void require_scenes(const std::vector<SceneBuild>& builds, const std::vector<RowRun>& rows)
+void require_scenes(const std::vector<SceneBuild>& builds, const std::vector<RowRecord>& rows)
 {
-    for (const RowRun& row : rows)
+    for (const RowRecord& row : rows)
         if (std::ranges::none_of(builds, [&](const SceneBuild& build) { return build.label == row.key.scene; }))
             throw Error(ErrorKind::usage,
                         fmt::format("merging shards: they have the scene {}, which is not available here; name the "
@@ -147,14 +126,14 @@ void require_scenes(const std::vector<SceneBuild>& builds, const std::vector<Row
                                     row.key.scene));
 }
 
-void add_scene(Reproduction& all, const SceneBuild& build, const Options& options, std::vector<RowRun>& rows,
+void add_scene(Reproduction& all, const SceneBuild& build, const Options& options, std::vector<RowRecord>& rows,
                Journal& journal)
 {
-    std::vector<RowRun> own;
-    for (RowRun& row : rows)
+    std::vector<RowRecord> own;
+    for (RowRecord& row : rows)
         if (row.key.scene == build.label) own.push_back(std::move(row));
     SceneRun& run = all.runs.emplace_back(recorded_scene_run(build, options, std::move(own)));
-    if (build.rivals || build.growth) run.costs = SetupCosts(&journal).of(run.rows);
+    if (build.rivals) SetupCosts(&journal).restore(run.rows);
     run_views(run, options, &journal, all.progress);
     run.picture_problems.emplace_back("Pictures are drawn by shards, each of its own views.");
     run.close();
@@ -168,15 +147,14 @@ Merged merged_reproduction(const Shards& shards, const Options& asked)
     all.missing_devices = sentences_of(shards, "missing_devices");
     all.devices = read_devices(shards.front().result, {});
     const auto builds = scene_builds(options);
-    std::vector<RowRun> rows = rows_of_shards(shards);
+    std::vector<RowRecord> rows = rows_of_shards(shards);
     require_scenes(builds, rows);
     Journal journal(merged_entries(shards));
     for (const SceneBuild& build : builds)
-        add_scene(all, build, options_of_build(build, options), rows, journal);
+        add_scene(all, build, options, rows, journal);
     if (wants(options, PaperTarget::table5)) {
         SearchRun& run = all.searches.emplace(recorded_search_run(options, rows_of_shards(shards, true)));
         run_searches(run, options, &journal, all.progress);
-        all.search_records = searches_json(run);
     }
     make_tables(all, options);
     return {reproduction_report(all, options), rows_exit_code(all), error_of([&] { require_any_answer(all); })};
@@ -201,8 +179,6 @@ int merge_command(const Options& asked)
     json& section = merged.report.json["tetrace"];
     set_origin(section, shards);
     Sheet more = machines_sheet(section["merged"]);
-    if (!asked.ranks.empty())
-        more.append(scaling_sheet(measured_scenes(shards), asked.ranks, camera_set_size(options)));
     merged.report.sheet.append(more);
     if (!merged.report.markdown.empty()) merged.report.markdown += more.markdown();
     deliver(options, merged.report);

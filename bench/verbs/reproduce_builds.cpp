@@ -55,8 +55,20 @@ SceneBuild in_rays(SceneBuild build, const SceneRequest& request)
     return build;
 }
 
-/// The builds of the scenes asked for. A scene without those that are wanted has ours.
-std::vector<SceneBuild> table_builds(const Options& options)
+} // namespace
+
+bool wants(const Options& options, PaperTarget target)
+{
+    return std::ranges::find(options.targets, target) != options.targets.end();
+}
+
+bool wants_scenes(const Options& options)
+{
+    const auto& targets = options.targets;
+    return std::ranges::any_of(targets, [](PaperTarget target) { return target != PaperTarget::table5; });
+}
+
+std::vector<SceneBuild> scene_builds(const Options& options)
 {
     const bool table3 = wants(options, PaperTarget::table3), table6 = wants(options, PaperTarget::table6);
     const bool table4 = wants(options, PaperTarget::table4), figure6 = wants(options, PaperTarget::figure6);
@@ -77,56 +89,6 @@ std::vector<SceneBuild> table_builds(const Options& options)
         if (rays_too) builds.push_back(in_rays(ours, of_rays[i]));
     }
     return builds;
-}
-
-/// Scenes in several sizes: banana and cubes where asked for, else banana. The BVHs, which are the same for all tets,
-/// are traced once.
-void add_growth_builds(std::vector<SceneBuild>& builds, const Options& options)
-{
-    static const std::vector<std::uint32_t> cubes_sizes = {4, 8, 16, 32, 64};
-    Options of_families = options;
-    std::erase_if(of_families.scenes, [](const std::string& name) { return name != "banana" && name != "cubes"; });
-    if (of_families.scenes.empty()) of_families.scenes = {"banana"};
-    const auto requests = scene_requests(of_families), of_rays = requests_for_rays(of_families);
-    for (std::size_t i = 0; i < requests.size(); ++i) {
-        const auto& standard = requests[i].name == "cubes" ? cubes_sizes : growth_sizes();
-        const auto& sizes = options.sizes.empty() ? standard : options.sizes;
-        const bool rays_too = wants_build(options, PaperBuild::rays) && is_tetrahedralized(requests[i].name);
-        const bool rays_alone = rays_too && !wants_build(options, PaperBuild::ours);
-        if (!rays_alone) std::ranges::move(growth_builds(requests[i], sizes), std::back_inserter(builds));
-        if (!rays_too) continue;
-        for (SceneBuild& build : growth_builds(of_rays[i], sizes, rays_build)) {
-            build.rivals = rays_alone;
-            builds.push_back(std::move(build));
-        }
-    }
-}
-
-} // namespace
-
-bool wants(const Options& options, PaperTarget target)
-{
-    return std::ranges::find(options.targets, target) != options.targets.end();
-}
-
-bool wants_scenes(const Options& options)
-{
-    const auto& targets = options.targets;
-    return std::ranges::any_of(
-        targets, [](PaperTarget target) { return target != PaperTarget::table5 && target != PaperTarget::growth; });
-}
-
-std::vector<SceneBuild> scene_builds(const Options& options)
-{
-    auto builds = table_builds(options);
-    if (wants(options, PaperTarget::growth)) add_growth_builds(builds, options);
-    return builds;
-}
-
-Options options_of_build(const SceneBuild& build, Options options)
-{
-    if (build.growth && options.views.empty() && options.camera_set == CameraSet::flight) options.views = growth_views;
-    return options;
 }
 
 } // namespace tetrace

@@ -12,10 +12,8 @@ namespace tetrace {
 [[nodiscard]] bool wants_scenes(const Options& options);
 
 /// The builds that the requested tables need: the scenes as the options say, those of the paper also as near to its
-/// counts as known, the same with tets for rays, and the sizes of growth.
+/// counts as known, and the same with tets for rays. A scene without those that
+/// are wanted has ours.
 [[nodiscard]] std::vector<SceneBuild> scene_builds(const Options& options);
-
-/// The options with the views that the build is traced from.
-[[nodiscard]] Options options_of_build(const SceneBuild& build, Options options);
 
 } // namespace tetrace

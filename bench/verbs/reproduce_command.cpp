@@ -16,13 +16,12 @@ namespace {
 
 using nlohmann::json;
 
-/// The builds of which the shard has a view.
+/// None if the shard has no view.
 std::vector<SceneBuild> builds_of_shard(const Options& options)
 {
+    if (selected_views(options).empty()) return {};
     auto builds = scene_builds(options);
     check_labels(builds);
-    std::erase_if(builds,
-                  [&](const SceneBuild& build) { return selected_views(options_of_build(build, options)).empty(); });
     return builds;
 }
 
@@ -33,17 +32,15 @@ bool searches_of_shard(const Options& options)
 
 std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& options)
 {
-    std::size_t parts =
-        wants(options, PaperTarget::table5) ? shard_of(options).share(batch_count(options.searches)) : 0;
-    for (const SceneBuild& build : builds)
-        parts += selected_views(options_of_build(build, options)).size();
-    return parts;
+    const bool searches = wants(options, PaperTarget::table5);
+    return builds.size() * selected_views(options).size() +
+           (searches ? shard_of(options).share(batch_count(options.searches)) : 0);
 }
 
 /// Each device once: all scenes run on the same devices, except those that could not be loaded.
 void add_devices(Reproduction& all, const RecordedRows& run, const Options& options, Yardsticks& yardsticks)
 {
-    auto devices = devices_of(run.rows);
+    auto devices = devices_of(records_of(run.rows));
     yardsticks.measure(devices, session_options(options)); // at the first call
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
@@ -79,7 +76,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                                   {"repair", how.repair},
                                   {"switches", how.switches},
                                   {"resolution", how.resolution},
-                                  {"views", selected_views(options_of_build(build, options))},
+                                  {"views", selected_views(options)},
                                   {"robustness", build.robustness},
                                   {"timing", build.timing}});
         for (const RowKey& key : rows_of_build(build, options))
@@ -143,13 +140,12 @@ struct Keeping {
     std::unique_ptr<ResultPictures> pictures;
 };
 
-void run_scene(Reproduction& all, const SceneBuild& build, const Options& asked, Keeping& keeping)
+void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping)
 {
-    const Options options = options_of_build(build, asked);
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
-    if (build.rivals || build.growth) run.costs = keeping.costs.of(run.rows);
+    if (build.rivals) keeping.costs.restore(run.rows);
     run_views(run, options, keeping.journal.get(), all.progress, &keeping.watch);
-    if (keeping.pictures != nullptr && !build.growth)
+    if (keeping.pictures != nullptr)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
     add_devices(all, run, options, keeping.yardsticks);
@@ -159,7 +155,6 @@ void run_all_searches(Reproduction& all, const Options& options, Keeping& keepin
 {
     SearchRun& run = all.searches.emplace(open_search_run(options));
     run_searches(run, options, keeping.journal.get(), all.progress, &keeping.watch);
-    all.search_records = searches_json(run);
     for (RowRun& row : run.rows)
         row.session.reset();
     add_devices(all, run, options, keeping.yardsticks);
@@ -175,10 +170,10 @@ int reproduce_rivals(const Options& asked)
         say(sentence);
     BenchResult result = run_bench(rival_rows(options), options, read_benchmark_flags({}));
     result.missing_scenes = missing;
-    const auto tables = rival_tables(result.run.rows, left_out(options));
+    const auto tables = rival_tables(result.rows, contest_scenes(result.scenes), left_out(options));
     deliver(options, rival_report(result, tables, options));
-    require_answers(result.run.rows, "measured");
-    return exit_code(result.run.rows, true);
+    require_answers(result.rows, "measured");
+    return exit_code(result.rows, true);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "bench/verbs/reproduction.h"
 
+#include "bench/measuring/scene_records.h"
 #include "bench/output/device_json.h"
-#include "bench/output/row_json.h"
 #include "bench/reproduce/tables/recorded_tables.h"
 
 #include <algorithm>
@@ -14,16 +14,16 @@ namespace {
 
 using nlohmann::json;
 
-/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 or growth lacks the
+/// Adds all methods of the paper where none of the CDT is named. Throws Error{usage} where table6 lacks the
 /// methods that it needs.
 void add_methods(Options& options)
 {
     const auto& methods = options.methods;
     const auto is_of_cdt = [](Method method) { return is_method_of(Structure::cdt, method); };
-    const bool with_rivals = wants(options, PaperTarget::table6) || wants(options, PaperTarget::growth);
+    const bool with_rivals = wants(options, PaperTarget::table6);
     const bool names_any = std::ranges::any_of(methods, is_of_cdt);
     if (with_rivals && names_any && std::ranges::find(methods, Method::maria) == methods.end())
-        throw Error(ErrorKind::usage, "table6 and growth compare maria with BVHs: add it to --method");
+        throw Error(ErrorKind::usage, "table6 compares maria with BVHs: add it to --method");
     if (names_any || (!methods.empty() && !with_rivals)) return;
     for (const KernelId& kernel : all_kernels())
         if (kernel.structure == Structure::cdt) options.methods.push_back(kernel.method);
@@ -53,9 +53,10 @@ json reproduction_json(const Reproduction& all, const Options& options)
             section["scenes"].back()["likeness"] = {{"kind", name_of(run.likeness.kind)},
                                                     {"compared", run.likeness.is_compared()},
                                                     {"reason", run.likeness.reason}};
-        section["rows"].insert(section["rows"].end(), run.row_records.begin(), run.row_records.end());
+        for (const RowRecord& row : records_of(run.rows))
+            section["rows"].push_back(row_json(RowFacts(row)));
     }
-    if (all.searches) section["searches"] = all.search_records;
+    if (all.searches) section["searches"] = searches_json(*all.searches);
     for (const RowDevice& device : all.devices)
         section["devices"].push_back(row_device_json(device));
     for (const PaperTable& table : all.tables)
@@ -78,21 +79,13 @@ std::string trust_of(const Reproduction& all)
     return steadiness.timed == 0 || steadiness.pulses.empty() ? std::string() : trust_text(steadiness);
 }
 
-/// records: of these rows.
-void judge_rows(std::vector<RowRun>& rows, json& records, const Pulses& pulses, const std::optional<MachineLoad>& load)
-{
-    pulses.judge_rows(rows, load);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        set_disturbance(records.at(i), rows[i]);
-}
-
 } // namespace
 
 Options with_defaults(Options options, std::vector<std::string>& missing)
 {
     if (options.targets.empty())
         for (const PaperTarget target : values_of<PaperTarget>())
-            if (target != PaperTarget::growth && target != PaperTarget::rivals) options.targets.push_back(target);
+            if (target != PaperTarget::rivals) options.targets.push_back(target);
     add_methods(options);
     if (!options.scenes.empty() || !wants_scenes(options)) return options;
     for (const char* const name : {"banana", "bunny", "armadillo"}) {
@@ -119,7 +112,9 @@ void check_labels(const std::vector<SceneBuild>& builds)
 
 void make_tables(Reproduction& all, const Options& options)
 {
-    const SceneRuns runs = all.runs_of(false);
+    SceneRuns runs;
+    for (const SceneRun& run : all.runs)
+        runs.push_back(&run);
     const auto add_figures = [&](std::vector<PaperFigure> figures) {
         std::ranges::move(figures, std::back_inserter(all.figures));
     };
@@ -140,12 +135,6 @@ void make_tables(Reproduction& all, const Options& options)
         all.tables.push_back(table6_pairs(runs));
         add_figures(table6_figures(runs));
     }
-    if (wants(options, PaperTarget::growth)) {
-        const SceneRuns sizes = all.runs_of(true);
-        all.tables.push_back(growth_table(sizes));
-        all.tables.push_back(growth_exponents(sizes));
-        add_figures(growth_figures(sizes));
-    }
     if (wants(options, PaperTarget::figure6)) {
         all.tables.push_back(figure6_table(runs));
         add_figures(figure6(runs));
@@ -155,7 +144,7 @@ void make_tables(Reproduction& all, const Options& options)
 Report rival_report(const BenchResult& result, const std::vector<PaperTable>& tables, const Options& options)
 {
     Steadiness steadiness{result.measurement.load, result.measurement.pulses};
-    for (const RowRun& row : result.run.rows)
+    for (const RowRecord& row : result.rows)
         steadiness.count(row);
     const PaperTables all = {tables,
                              {},
@@ -182,14 +171,13 @@ void judge_steadiness(Reproduction& all, MachineWatch& watch)
 {
     all.steadiness = {watch.load(), watch.pulses().found()};
     for (SceneRun& run : all.runs)
-        judge_rows(run.rows, run.row_records, watch.pulses(), all.steadiness.load);
-    if (all.searches)
-        judge_rows(all.searches->rows, all.search_records.at("rows"), watch.pulses(), all.steadiness.load);
+        watch.pulses().judge_rows(run.rows, all.steadiness.load);
+    if (all.searches) watch.pulses().judge_rows(all.searches->rows, all.steadiness.load);
 }
 
 void require_any_answer(const Reproduction& all)
 {
-    std::vector<const RowRun*> rows;
+    std::vector<const RowRecord*> rows;
     for (const SceneRun& run : all.runs)
         for (const RowRun& row : run.rows)
             rows.push_back(&row);
@@ -201,9 +189,9 @@ void require_any_answer(const Reproduction& all)
 
 int rows_exit_code(const Reproduction& all)
 {
-    int code = all.searches ? exit_code(all.searches->rows, true) : 0;
+    int code = all.searches ? exit_code(records_of(all.searches->rows), true) : 0;
     for (const SceneRun& run : all.runs)
-        code = code == 1 ? code : std::max(code, exit_code(run.rows, true));
+        code = code == 1 ? code : std::max(code, exit_code(records_of(run.rows), true));
     return code;
 }
 

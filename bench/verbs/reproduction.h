@@ -15,17 +15,7 @@ namespace tetrace {
 struct Reproduction {
     std::vector<SceneRun> runs;
     std::optional<SearchRun> searches;
-    nlohmann::json search_records; ///< as results record them; null without searches
     RunProgress progress;
-
-    /// growth: whether those of growth are meant, or those of all other tables.
-    [[nodiscard]] SceneRuns runs_of(bool growth) const
-    {
-        SceneRuns found;
-        for (const SceneRun& run : runs)
-            if (run.build.growth == growth) found.push_back(&run);
-        return found;
-    }
 
     std::vector<RowDevice> devices;
     std::vector<PaperTable> tables;
@@ -35,8 +25,8 @@ struct Reproduction {
 };
 
 /// The options with what is not named: all methods of the paper, and its scenes that are available here, else the
-/// embedded one. missing: gets a sentence for each of them that is not. Throws Error{usage} where table6 or growth
-/// lacks the methods that it needs.
+/// embedded one. missing: gets a sentence for each of them that is not. Throws Error{usage} where table6 lacks
+/// the methods that it needs.
 [[nodiscard]] Options with_defaults(Options options, std::vector<std::string>& missing);
 
 /// Throws Error{usage} where two scenes would have the same name.

@@ -9,10 +9,10 @@ namespace tetrace {
 namespace {
 
 /// The rows that were asked for: not openmp's, where others are named.
-std::vector<const RowRun*> asked_rows(const TraceRun& run)
+std::vector<const RowRecord*> asked_rows(const TraceRun& run)
 {
-    std::vector<const RowRun*> asked;
-    for (const RowRun& row : run.rows)
+    std::vector<const RowRecord*> asked;
+    for (const RowRecord& row : run.rows)
         if (run.rows.size() == 1 || &row != &run.rows.front()) asked.push_back(&row);
     return asked;
 }
@@ -29,7 +29,7 @@ int trace_command(const Options& options)
     if (reference != nullptr &&
         std::ranges::any_of(run.rays, [&](const RayOnDevice& ray) { return differs(ray, *reference); }))
         return exit_code(ErrorKind::wrong_result);
-    return exit_code(run.rows, true);
+    return exit_code(records_of(run.rows), true);
 }
 
 } // namespace tetrace

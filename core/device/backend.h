@@ -197,6 +197,11 @@ public:
 /// Every backend of this build, in CMake's order; those that cannot run here say so in their devices.
 [[nodiscard]] const std::vector<Backend*>& all_backends();
 
+/// Null if there is none of this name.
+[[nodiscard]] Backend* find_backend(std::string_view name, const std::vector<Backend*>& backends = all_backends());
+/// Throws Error{internal} if there is none of this name.
+[[nodiscard]] Backend& backend_named(std::string_view name, const std::vector<Backend*>& backends = all_backends());
+
 /// The backend with whose answers all others' are compared; it runs on the host, on one device.
 [[nodiscard]] Backend& reference_backend();
 

@@ -46,6 +46,19 @@ TraceJob column_of(std::size_t rays)
 
 } // namespace
 
+Backend* find_backend(std::string_view name, const std::vector<Backend*>& backends)
+{
+    const auto found = std::ranges::find_if(backends, [&](const Backend* one) { return one->name() == name; });
+    return found == backends.end() ? nullptr : *found;
+}
+
+Backend& backend_named(std::string_view name, const std::vector<Backend*>& backends)
+{
+    Backend* const found = find_backend(name, backends);
+    if (found == nullptr) throw Error(ErrorKind::internal, "there is no backend " + std::string(name));
+    return *found;
+}
+
 std::uint32_t step_cap(std::uint64_t tets, const Device& device)
 {
     const auto proved = static_cast<std::uint32_t>(tets + 1);

@@ -153,19 +153,12 @@ private:
     std::map<std::uint64_t, std::weak_ptr<const SentScene>> scenes_;
 };
 
-Backend* find(const std::string& name, const std::vector<Backend*>& backends)
-{
-    for (Backend* backend : backends)
-        if (backend->name() == name) return backend;
-    return nullptr;
-}
-
 } // namespace
 
 int serve_driver(const std::vector<std::string>& arguments, const std::vector<Backend*>& backends)
 {
     if (arguments.size() != 2) return exit_code(ErrorKind::usage);
-    Backend* const backend = find(arguments[0], backends);
+    Backend* const backend = find_backend(arguments[0], backends);
     if (backend == nullptr) return exit_code(ErrorKind::usage);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL); // a driver that hangs would not see the socket close
     if (std::to_string(::getppid()) != arguments[1]) return exit_code(ErrorKind::interrupted);

@@ -8,7 +8,7 @@
 namespace tetrace {
 namespace {
 
-constexpr std::size_t max_around_edge = 24, max_in_cavity = 48;
+constexpr std::size_t max_ring = 24, max_in_cavity = 48;
 constexpr int steps_past_best = 8, regrowths = 2, insertion_halvings = 5;
 
 } // namespace
@@ -179,7 +179,7 @@ Double3 Insertion::better_point(Double3 at) const
 
 double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
-    if (!find_ring(mesh_, tet, edge, max_around_edge, since, ring_)) return 0;
+    if (!find_ring(mesh_, tet, edge, max_ring, since, ring_)) return 0;
     sides_ = ring_.is_open() ? mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) : 0;
     if (ring_.is_open() && sides_ == 0) return 0; // the domain is no box
     Double3 at = rounded_point((mesh_.point(ring_.a) + mesh_.point(ring_.b)) * 0.5);

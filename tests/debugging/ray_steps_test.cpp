@@ -2,8 +2,10 @@
 
 #include "bench/debugging/device_products.h"
 #include "bench/debugging/trace_report.h"
+#include "bench/measuring/ray_walks.h"
 #include "bench/measuring/verify.h"
 #include "bench/output/check_differences.h"
+#include "bench/output/row_json.h"
 #include "bench/rows/scene_arguments.h"
 #include "core/device/self_test.h"
 #include "core/mesh/face_corners.h"
@@ -199,13 +201,12 @@ TEST_F(RaySteps, are_a_command_that_check_prints_for_its_first_differing_ray)
     spotted.key.backend = "cuda-host";
     spotted.session = std::make_unique<SpottedSession>(std::move(spotted.session));
     verify_rows({&spotted}, *scene_, options_);
+    note_walks(spotted);
     const std::string command = "tetrace trace --scene cubes --resolution 6 --size 24x24 --view 0 --pixel 12,11 "
                                 "--method maria --layout tet80 --backend cuda-host";
     EXPECT_TRUE(contains(differences_text(spotted), "\n  Step by step: " + command + "\n"))
         << differences_text(spotted);
-    nlohmann::json json;
-    add_paths(json, spotted);
-    EXPECT_EQ(json["verification"]["first_different"]["command"], command);
+    EXPECT_EQ(row_json(RowFacts(spotted))["verification"]["first_different"]["command"], command);
 
     std::istringstream words(command.substr(8));
     const Options again = parse_options({std::istream_iterator<std::string>(words), {}});
@@ -232,6 +233,7 @@ TEST_F(RaySteps, of_given_rays_and_bvhs_are_commands_too)
         given.key.backend = "cuda-host";
         given.session = std::make_unique<FirstGivenSession>(std::move(given.session));
         verify_rows({&given}, *scene_, options_);
+        note_walks(given);
         const auto& ray = traced(given)->first_different;
         ASSERT_TRUE(ray) << reason_of(given);
         const std::string command =

@@ -96,15 +96,6 @@ TEST_F(MergeReproduce, a_shard_without_anything_to_do_is_refused)
     EXPECT_TRUE(contains(ended.errors, "no view and no batch of searches is left")) << ended.errors;
 }
 
-TEST_F(MergeReproduce, says_how_the_run_would_scale)
-{
-    const std::string command = "reproduce table4 --layout tet80 --method maria --size 16 --views 0-1281:200" + scene;
-    const Ended ended = run("merge " + shards(command, 2) + "--ranks 1,4 --out all.json");
-    ASSERT_EQ(ended.code, 0) << ended.errors;
-    EXPECT_TRUE(contains(ended.out, "how this run scales, by simulation")) << ended.out;
-    EXPECT_TRUE(contains(ended.out, "no number of ranks takes less"));
-}
-
 class ResumedShard : public ReproduceTest {};
 
 TEST_F(ResumedShard, a_shard_that_was_killed_goes_on_alone_and_merges)

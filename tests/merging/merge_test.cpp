@@ -49,6 +49,7 @@ TEST_F(Merge, a_row_is_as_noisy_as_the_noisiest_of_its_shards_and_has_the_fewest
     const auto set = [](double pulse, const char* disturbed, std::size_t samples) {
         return [=](Json& section) {
             for (Json& row : section["rows"]) {
+                if (row["status"] == "unsupported") continue; // Embree 4 has no streams
                 Json& times = row["times"];
                 times["pulse"] = pulse;
                 times.erase("disturbed");
@@ -66,6 +67,7 @@ TEST_F(Merge, a_row_is_as_noisy_as_the_noisiest_of_its_shards_and_has_the_fewest
     change("2.json", set(6, "the machine was elsewhere", 3));
     ASSERT_EQ(run("merge " + files + "--out all.json").code, 0);
     for (const Json& row : section("all.json")["rows"]) {
+        if (row["status"] == "unsupported") continue;
         EXPECT_EQ(row["times"]["pulse"], 6);
         EXPECT_EQ(row["times"]["disturbed"], "the machine was elsewhere");
         EXPECT_EQ(row["times"]["noisy"], true);

@@ -24,7 +24,7 @@ protected:
         for (const Layout layout : {Layout::tet80, Layout::tet96})
             for (FakeBackend* backend : {&vulkan_, &opencl_, &cuda_host_, &openmp_, &cuda_, &vulkan_gpu_})
                 add_row(*backend, layout);
-        result_.devices = devices_of(result_.run.rows);
+        result_.devices = devices_of(result_.rows);
         for (RowDevice& device : result_.devices)
             device.yardstick = Yardstick{123.4e9, 123.4e-6};
         compare();
@@ -32,16 +32,16 @@ protected:
 
     void compare()
     {
-        result_.comparisons = compare_rows(result_.run.rows);
-        result_.best_bvhs = compare_with_best_bvh(result_.run.rows);
+        result_.comparisons = compare_rows(result_.rows);
+        result_.best_bvhs = compare_with_best_bvh(result_.rows);
     }
 
     void add_row(FakeBackend& backend, Layout layout)
     {
-        RowRun row;
-        row.key = {"bunny", backend.name(), {}, RayKind::primary, TetOrder::chains, 0};
+        RowRecord row;
+        row.key = {"bunny", backend.name(), {}, RayKind::primary, TetOrder::chains, &backend == &vulkan_gpu_ ? 1u : 0u};
         row.key.kernel.layout = layout;
-        row.backend = &backend;
+        row.clock = "a clock";
         row.device = backend.devices()[0];
         Traced result;
         result.totals.rays = 4'000'000'000;
@@ -49,7 +49,7 @@ protected:
         row.outcome = result;
         row.samples_s = {9, 10, 11, 10, 9, 11};
         row.wall_samples_s = {10, 11, 12, 11, 10, 12};
-        result_.run.rows.push_back(std::move(row));
+        result_.rows.push_back(std::move(row));
     }
 
     static Device device(const char* name, DeviceKind kind, const char* implementation, const char* uuid = "")
@@ -84,15 +84,14 @@ std::size_t widest(const std::string& text)
 
 TEST_F(BenchTables, a_run_ends_with_its_answer_and_whether_to_trust_it)
 {
-    RowRun bvh;
-    bvh.key = result_.run.rows[3].key; // openmp's
+    RowRecord bvh;
+    bvh.key = result_.rows[3].key; // openmp's
     bvh.key.kernel.structure = Structure::bvh;
     bvh.key.kernel.layout = Layout::bvh2;
-    bvh.backend = &openmp_;
     bvh.device = openmp_.devices()[0];
-    bvh.outcome = result_.run.rows[3].outcome;
+    bvh.outcome = result_.rows[3].outcome;
     bvh.samples_s = {5, 5, 5, 5, 5};
-    result_.run.rows.push_back(std::move(bvh));
+    result_.rows.push_back(std::move(bvh));
     compare();
     result_.measurement.wall_s = 1;
     result_.measurement.load = MachineLoad{0.05, 2.1, 2};
@@ -118,16 +117,16 @@ TEST_F(BenchTables, a_scene_says_how_many_of_its_rays_enter_the_domain_and_hit)
     result_.scenes.push_back(nlohmann::json::parse(R"({ "name": "bunny", "tets": 1, "occlusive_faces": 1,
         "free_faces": 1, "divisions": 8, "domain": "tight", "build_s": 1, "from_cache": false, "views": [0, 1],
         "camera_set": "smoke", "width": 8, "height": 8 })"));
-    for (RowRun& row : result_.run.rows) {
+    for (RowRecord& row : result_.rows) {
         Traced& traced = std::get<Traced>(row.outcome);
         traced.totals.hits = traced.totals.rays / 8;
         traced.entering = traced.totals.rays / 4 * 3;
     }
-    result_.run.rows[1].key.rays = RayKind::ao;
+    result_.rows[1].key.rays = RayKind::ao;
     const std::string text = bench_sheet(result_).text();
     EXPECT_TRUE(contains(text, "\nrays: 75 % enter the domain, 12 % hit\nao rays: 75 % enter the domain, 12 % hit\n"))
         << text;
-    for (RowRun& row : result_.run.rows)
+    for (RowRecord& row : result_.rows)
         std::get<Traced>(row.outcome).entering.reset();
     EXPECT_TRUE(contains(bench_sheet(result_).text(), "\nrays: 12 % hit\n")) << "of an older result";
 }
@@ -135,14 +134,13 @@ TEST_F(BenchTables, a_scene_says_how_many_of_its_rays_enter_the_domain_and_hit)
 TEST_F(BenchTables, walks_of_one_ray_are_compared_with_bvhs_of_one_ray_as_well)
 {
     const auto add = [&](const KernelId& kernel, double seconds) {
-        RowRun row;
-        row.key = result_.run.rows[3].key; // openmp's
+        RowRecord row;
+        row.key = result_.rows[3].key; // openmp's
         row.key.kernel = kernel;
-        row.backend = &openmp_;
         row.device = openmp_.devices()[0];
-        row.outcome = result_.run.rows[3].outcome;
+        row.outcome = result_.rows[3].outcome;
         row.samples_s = std::vector<double>(5, seconds);
-        result_.run.rows.push_back(std::move(row));
+        result_.rows.push_back(std::move(row));
     };
     add({.method = Method::project, .layout = Layout::half32, .schedule = Schedule::packets}, 2);
     add({Structure::bvh, Method::single, Layout::bvh2}, 20);
@@ -161,7 +159,7 @@ TEST_F(BenchTables, walks_of_one_ray_are_compared_with_bvhs_of_one_ray_as_well)
     EXPECT_TRUE(contains(table, "x best BVH")) << table;
     EXPECT_TRUE(contains(table, "0.40 [")) << "maria over packet16\n" << table;
     const nlohmann::json row = row_json(facts_of(result_).at(3));
-    EXPECT_EQ(row.at("rates").at("best_bvh"), row_name(result_.run.rows.back().key));
+    EXPECT_EQ(row.at("rates").at("best_bvh"), row_name(result_.rows.back().key));
     EXPECT_DOUBLE_EQ(row.at("rates").at("ratio_to_best_bvh"), 0.4);
     EXPECT_FALSE(row.contains("break_even")) << "no build time is known";
 }
@@ -176,14 +174,13 @@ TEST_F(BenchTables, the_fastest_bvh_is_that_of_all_bvh_rows_of_the_hardware)
         {Structure::bvh, Method::packet8, Layout::embree_medium, MathMode::fast},
     };
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        RowRun bvh;
-        bvh.key = result_.run.rows[3].key; // openmp's
+        RowRecord bvh;
+        bvh.key = result_.rows[3].key; // openmp's
         bvh.key.kernel = kernels[i];
-        bvh.backend = &openmp_;
         bvh.device = openmp_.devices()[0];
-        bvh.outcome = result_.run.rows[3].outcome;
+        bvh.outcome = result_.rows[3].outcome;
         bvh.samples_s = std::vector<double>(5, samples[i]);
-        result_.run.rows.push_back(std::move(bvh));
+        result_.rows.push_back(std::move(bvh));
     }
     compare();
     const std::string text = std::regex_replace(answer_of(result_).text(), std::regex("\\s+"), " ");
@@ -228,8 +225,8 @@ TEST_F(BenchTables, comparisons_show_their_interval_and_references_none)
 
 TEST_F(BenchTables, a_row_that_did_not_run_comes_last)
 {
-    result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
-    result_.run.rows[0].backend = nullptr;
+    result_.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
+    result_.rows[0].device = {};
     const std::string text = rate_table("bunny", result_).text();
     EXPECT_GT(text.find("not run"), text.find("H200 (gpu)")) << text;
 }
@@ -260,8 +257,8 @@ TEST_F(BenchTables, what_the_page_of_report_shows_is_in_json)
 
 TEST_F(BenchTables, a_row_tells_its_schedule_in_csv_and_json)
 {
-    result_.run.rows[0].key.kernel.schedule = Schedule::packets;
-    EXPECT_TRUE(row_json(RowFacts(result_.run.rows[0]))["schedule"] == "packets");
+    result_.rows[0].key.kernel.schedule = Schedule::packets;
+    EXPECT_TRUE(row_json(RowFacts(result_.rows[0]))["schedule"] == "packets");
     const Table table = flat_table(result_);
     const auto& columns = table.columns();
     const auto found = std::find_if(columns.begin(), columns.end(), [](const auto& c) { return c.key == "schedule"; });
@@ -273,18 +270,16 @@ TEST_F(BenchTables, a_row_tells_its_schedule_in_csv_and_json)
 
 TEST_F(BenchTables, a_row_whose_tree_is_a_fall_back_says_so_in_json_and_in_its_status)
 {
-    Packed packed;
-    result_.run.rows[0].packed = &packed;
-    EXPECT_FALSE(row_json(RowFacts(result_.run.rows[0])).contains("fall_back")) << "of the best tree";
+    EXPECT_FALSE(row_json(RowFacts(result_.rows[0])).contains("fall_back")) << "of the best tree";
     EXPECT_FALSE(contains(rate_table("bunny", result_).text(), "fall-back tree"));
-    packed.fall_back = "it is too deep";
-    EXPECT_EQ(row_json(RowFacts(result_.run.rows[0])).at("fall_back"), "it is too deep");
+    result_.rows[0].fall_back = "it is too deep";
+    EXPECT_EQ(row_json(RowFacts(result_.rows[0])).at("fall_back"), "it is too deep");
     EXPECT_TRUE(contains(rate_table("bunny", result_).text(), "fall-back tree"));
 }
 
 TEST_F(BenchTables, a_row_of_embrees_packets_names_the_narrower_ones_that_they_are_split_into)
 {
-    RowRun& row = result_.run.rows[0];
+    RowRecord& row = result_.rows[0];
     const auto packets = [&](Method method, unsigned native_width) {
         row.key.kernel = {
             .structure = Structure::bvh, .method = method, .layout = Layout::embree_robust, .math = MathMode::fast};
@@ -305,8 +300,8 @@ TEST_F(BenchTables, a_row_of_embrees_packets_names_the_narrower_ones_that_they_a
 
 TEST_F(BenchTables, a_row_without_an_answer_has_no_empty_group_in_json)
 {
-    result_.run.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
-    const nlohmann::json row = row_json(RowFacts(result_.run.rows[0]));
+    result_.rows[0].outcome = Failed{ErrorKind::internal, "no scene"};
+    const nlohmann::json row = row_json(RowFacts(result_.rows[0]));
     for (const char* group : {"counts", "visits", "verification", "times", "rates", "hit_hash"})
         EXPECT_FALSE(row.contains(group)) << group;
     EXPECT_EQ(row.at("reason"), "no scene");

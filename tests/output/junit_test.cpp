@@ -12,9 +12,9 @@ using namespace tetrace::test;
 
 namespace {
 
-RowRun skipped_row(const std::string& reason)
+RowRecord skipped_row(const std::string& reason)
 {
-    RowRun row;
+    RowRecord row;
     row.key = {"cubes", "other", {}};
     row.device.name = "a device <of & \"quotes\">";
     row.outcome = Skipped{Status::unsupported, reason};
@@ -49,7 +49,7 @@ TEST(Junit, texts_are_escaped_and_what_xml_cannot_hold_is_replaced)
 
 TEST(Junit, rows_without_an_answer_are_skipped_or_errors_with_their_reason)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(skipped_row("buffers of 3 < 4 & 5 \x01 GB"));
     rows.push_back(skipped_row(""));
     rows[1].outcome = Failed{ErrorKind::internal, "device lost"};
@@ -72,7 +72,7 @@ TEST(Junit, a_check_without_a_result_is_a_case_in_error)
 TEST(Junit, classes_have_no_version_and_properties_have_them)
 {
     const auto xml_of = [](const char* name, const char* driver) {
-        std::vector<RowRun> rows;
+        std::vector<RowRecord> rows;
         rows.push_back(skipped_row(""));
         rows[0].key.backend = "vulkan";
         rows[0].device.name = name;
@@ -97,9 +97,9 @@ TEST(Junit, a_wrong_row_is_a_failure_that_shows_the_first_difference)
     loaded.scene = make_cubes(4);
     loaded.scene.name = "cubes";
     SceneWork scene(std::move(loaded), options);
-    std::vector<RowRun> rows;
-    rows.push_back(open_row({"cubes", "openmp", {}}, scene, options));
-    verify_rows({&rows[0]}, scene, options);
+    RowRun row = open_row({"cubes", "openmp", {}}, scene, options);
+    verify_rows({&row}, scene, options);
+    std::vector<RowRecord> rows = {record_of(row)};
     Traced& result = std::get<Traced>(rows[0].outcome);
     result.compared = true;
     result.different = 1;

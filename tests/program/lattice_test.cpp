@@ -26,8 +26,10 @@ TEST_F(LatticeProgram, is_right_with_every_method_layout_and_schedule)
     EXPECT_EQ(result.at("scenes")[0].at("source"), "lattice, 7 along each axis");
     EXPECT_EQ(result.at("scenes")[0].at("tets"), 6 * 7 * 7 * 7);
     std::uint64_t hits = 0;
-    for (const json& row : result.at("rows"))
+    for (const json& row : result.at("rows")) {
+        if (row.at("status") == "unsupported") continue; // Embree 4 has no streams
         hits += row.at("counts").at("hits").get<std::uint64_t>();
+    }
     EXPECT_GT(hits, 0u);
 }
 

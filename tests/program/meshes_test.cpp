@@ -209,6 +209,7 @@ TEST_F(Meshes, whose_tets_cannot_be_built_are_traced_through_bvhs)
                           row["schedule"] == "packets" && row["status"] == "unsupported" ? "unsupported" : "error");
                 continue;
             }
+            if (row["method"] == "stream" && row["status"] == "unsupported") continue; // Embree 4 has none
             ++through_bvhs;
             EXPECT_EQ(row["status"], "ok") << row["name"] << row["reason"];
             EXPECT_GT(row["counts"][row["rays"] == "primary" ? "hits" : "rays"], 0) << row["name"];

@@ -26,12 +26,12 @@ KernelId kernel(Method method, Layout layout, Schedule schedule = Schedule::tile
 }
 
 /// A row on the host, or on an emulated device of another backend, that takes so long for 1,000 rays.
-RowRun row_of(const KernelId& kernel, double seconds, const std::string& backend = "openmp",
-              const std::string& scene = "bunny")
+RowRecord row_of(const KernelId& kernel, double seconds, const std::string& backend = "openmp",
+                 const std::string& scene = "bunny")
 {
-    RowRun row;
+    RowRecord row;
     row.key = {scene, backend, kernel};
-    row.backend = &reference_backend();
+    row.device.name = "a device";
     row.device.usable = true;
     row.device.kind = backend == "openmp" || backend == "embree" ? DeviceKind::cpu : DeviceKind::emulated;
     Traced result;
@@ -47,28 +47,28 @@ const KernelId half32 = kernel(Method::project, Layout::half32), tet64 = kernel(
                bvh2 = kernel(Method::single, Layout::bvh2), cwbvh = kernel(Method::single, Layout::cwbvh),
                native_bvh2 = kernel(Method::single, Layout::bvh2, Schedule::native);
 
-RowRun embree(Method method, double seconds, Layout layout = Layout::embree)
+RowRecord embree(Method method, double seconds, Layout layout = Layout::embree)
 {
-    RowRun row = row_of(kernel(method, layout), seconds, "embree");
+    RowRecord row = row_of(kernel(method, layout), seconds, "embree");
     row.key.kernel.math = MathMode::fast; // of the list's
     return row;
 }
 
-JudgedClaim judged(const RivalClaim& claim, const std::vector<RowRun>& rows, LeftOut left_out = {})
+JudgedClaim judged(const RivalClaim& claim, const std::vector<RowRecord>& rows, LeftOut left_out = {})
 {
     static RivalClaim kept; // a judged claim points to it
     kept = claim;
     static std::vector<Contest> contests;
-    contests = contests_of(rows);
+    contests = contests_of(rows, {});
     return judge(kept, contests, left_out);
 }
 
-ClaimVerdict verdict_of(const RivalClaim& claim, const std::vector<RowRun>& rows)
+ClaimVerdict verdict_of(const RivalClaim& claim, const std::vector<RowRecord>& rows)
 {
     return judged(claim, rows).verdict;
 }
 
-std::string evidence_of(const RivalClaim& claim, const std::vector<RowRun>& rows)
+std::string evidence_of(const RivalClaim& claim, const std::vector<RowRecord>& rows)
 {
     return to_claim(judged(claim, rows)).evidence;
 }
@@ -191,7 +191,7 @@ TEST(Rivals, other_rays_are_another_contest)
 {
     auto rows = list(row_of(half32, 1), row_of(bvh2, 2), row_of(bvh2, 0.5));
     rows[2].key.rays = RayKind::random;
-    EXPECT_EQ(contests_of(rows).size(), 2u);
+    EXPECT_EQ(contests_of(rows, {}).size(), 2u);
     EXPECT_EQ(verdict_of(claim_of(), rows), holds);
     RivalClaim random = claim_of();
     random.rays = {RayKind::random};
@@ -250,7 +250,7 @@ TEST(Rivals, a_gpus_rows_of_an_api_that_was_left_out_could_be_faster)
     RivalClaim claim = claim_of(Walk::half32, Rival::any);
     claim.place = DeviceKind::gpu;
     auto rows = list(row_of(half32, 1, "cuda"), row_of(bvh2, 2, "cuda"));
-    for (RowRun& row : rows) {
+    for (RowRecord& row : rows) {
         row.device.kind = DeviceKind::gpu;
         row.device.pci = "0000:01:00.0";
     }
@@ -290,7 +290,7 @@ TEST(Rivals, the_old_figure_stands_next_to_the_new_one)
     EXPECT_NE(evidence.find("Now 2.00 [1.9"), std::string::npos) << evidence;
     EXPECT_NE(evidence.find("is above 1 "), std::string::npos) << "the rule: " << evidence;
     const auto rows = list(row_of(half32, 1), row_of(bvh2, 2));
-    const PaperTable table = claims_table(contests_of(rows), {}, {claim_of()});
+    const PaperTable table = claims_table(contests_of(rows, {}), {}, {claim_of()});
     EXPECT_EQ(table.notes, std::vector<std::string>{"a machine: some views on a machine."});
     EXPECT_EQ(std::get<Quantity>(table.rows.at(0).at(1)).ours.value, 1) << "one holds";
 }
@@ -313,7 +313,7 @@ TEST(Rivals, every_claim_has_a_name_of_its_own_and_a_scene_of_the_run_or_of_the_
 TEST(Rivals, every_row_has_its_ratio_to_the_fastest_bvh)
 {
     const auto rows = list(row_of(packets, 1), row_of(bvh2, 4), embree(Method::packet16, 2));
-    const auto tables = rival_tables(rows, {});
+    const auto tables = rival_tables(rows, {}, {});
     ASSERT_EQ(tables.size(), 3u);
     const auto& table = tables.at(2);
     ASSERT_EQ(table.rows.size(), 3u);

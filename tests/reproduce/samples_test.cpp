@@ -187,13 +187,13 @@ TEST_F(Samples, are_taken_again_while_the_gpu_is_throttled)
     MachineWatch watch(host_, {}, host_clock(), 0, monitor(3, 4));
     const SceneRun scene = run_with_gpu(watch);
     const RowRun& row = scene.rows[0];
-    ASSERT_TRUE(row.gpu.has_value());
-    EXPECT_FALSE(scene.rows[1].gpu.has_value());
-    EXPECT_EQ(row.gpu->dropped, 2u);
-    EXPECT_EQ(row.gpu->states.size(), views * samples);
-    EXPECT_EQ(row.gpu->throttled(), 0u);
-    EXPECT_EQ(row.gpu->reasons, "heat");
-    EXPECT_EQ(row.gpu->median(&GpuState::clock_mhz), 1500);
+    ASSERT_TRUE(row.readings.has_value());
+    EXPECT_FALSE(scene.rows[1].readings.has_value());
+    EXPECT_EQ(row.readings->dropped, 2u);
+    EXPECT_EQ(row.readings->states.size(), views * samples);
+    EXPECT_EQ(row.readings->throttled(), 0u);
+    EXPECT_EQ(row.readings->reasons, "heat");
+    EXPECT_EQ(row.readings->median(&GpuState::clock_mhz), 1500);
     EXPECT_EQ(scene.images[0][1].gpu->dropped, 2u) << "in the first sample of the second view";
     EXPECT_FALSE(scene.images[0][0].gpu->dropped + scene.images[0][2].gpu->dropped > 0);
     for (const ImageRecord& image : scene.images[0])
@@ -204,7 +204,7 @@ TEST_F(Samples, of_a_gpu_that_stays_throttled_make_its_row_noisy_which_says_why)
 {
     MachineWatch watch(host_, {}, host_clock(), 0, monitor(0, 1'000'000));
     SceneRun scene = run_with_gpu(watch);
-    EXPECT_EQ(scene.rows[0].gpu->dropped, 2 * views * samples);
+    EXPECT_EQ(scene.rows[0].readings->dropped, 2 * views * samples);
     watch.pulses().judge_rows(scene.rows, {});
     EXPECT_TRUE(contains(scene.rows[0].disturbance, "its GPU was throttled in 12 of 12 samples (heat)"))
         << scene.rows[0].disturbance;
@@ -229,9 +229,9 @@ TEST_F(Samples, and_what_a_gpu_told_of_them_come_back_from_the_journal)
     EXPECT_EQ(launches_.size(), 4u) << "the first view again, and nothing else";
     EXPECT_EQ(asked_, asked);
     EXPECT_EQ(scene.rows[0].passes, 7u);
-    ASSERT_TRUE(scene.rows[0].gpu.has_value());
-    EXPECT_EQ(scene.rows[0].gpu->dropped, 3u);
-    EXPECT_EQ(scene.rows[0].gpu->throttled(), 1u);
+    ASSERT_TRUE(scene.rows[0].readings.has_value());
+    EXPECT_EQ(scene.rows[0].readings->dropped, 3u);
+    EXPECT_EQ(scene.rows[0].readings->throttled(), 1u);
     watch.pulses().judge_rows(scene.rows, {});
     EXPECT_TRUE(contains(scene.rows[0].disturbance, "throttled in 1 of 12 samples")) << scene.rows[0].disturbance;
 }

@@ -194,7 +194,7 @@ TEST(Table6, the_table_has_frames_of_the_papers_size_build_times_and_memory)
     SceneRun run = open_run();
     set_all(run, pixels / papers_pixels, pixels / papers_pixels / 4); // the CDT takes a second a frame in view 0
     const std::size_t cdt = find_row(run, Layout::tet80, Method::maria);
-    run.costs[cdt] = SetupCost{12, 0.5, 3'000'000};
+    set_setup_cost(run.rows[cdt], SetupCost{12, 0.5, 3'000'000});
     const PaperTable table = table6({&run});
     ASSERT_EQ(table.rows.size(), run.rows.size());
     EXPECT_NEAR(value_of(table, cdt, "most_frames_per_s"), 1, 1e-12);
@@ -238,8 +238,8 @@ TEST(Table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
     set_all(run, 1e-6 * pixels, 2e-6 * pixels); // 7 times that a view on average: 7 and 14 us a ray
     const std::size_t cdt = find_row(run, Layout::tet80, Method::maria),
                       bvh = find_row(run, Layout::bvh2, Method::single);
-    run.costs[cdt] = SetupCost{69, 2, 1};
-    run.costs[bvh] = SetupCost{0.5, 0.5, 1};
+    set_setup_cost(run.rows[cdt], SetupCost{69, 2, 1});
+    set_setup_cost(run.rows[bvh], SetupCost{0.5, 0.5, 1});
     EXPECT_NEAR(break_even(pair_of(run, Layout::tet80, Layout::bvh2))->rays.value(), 1e7, 1);
     EXPECT_FALSE(break_even(pair_of(run, Layout::tet80, Layout::cwbvh))) << "its build time is not known";
     const PaperTable table = table6_pairs({&run});
@@ -247,7 +247,7 @@ TEST(Table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
     EXPECT_NEAR(value_of(table, 0, "break_even_mrays"), 10, 1e-6);
     EXPECT_EQ(text_of(table, 0, "ahead"), "the CDT, from there on");
     EXPECT_EQ(value_of(table, 0, "won_percent"), 100);
-    run.costs[cdt] = SetupCost{0.5, 0.5, 1};
+    set_setup_cost(run.rows[cdt], SetupCost{0.5, 0.5, 1});
     EXPECT_EQ(text_of(table6_pairs({&run}), 0, "break_even_mrays"), "never");
     EXPECT_EQ(text_of(table6_pairs({&run}), 0, "ahead"), "the CDT, always");
     set_times(run, bvh, ramp(0.5e-6 * pixels));
@@ -262,8 +262,8 @@ TEST(Table6, rates_that_cannot_be_told_apart_pay_nothing)
     for (std::size_t view = 0; view < views; ++view)
         mixed[view] *= view % 2 == 0 ? 1.2 : 0.8;
     set_times(run, find_row(run, Layout::bvh2, Method::single), mixed);
-    for (auto& cost : run.costs)
-        cost = SetupCost{1, 1, 1};
+    for (RowRun& row : run.rows)
+        set_setup_cost(row, {1, 1, 1});
     EXPECT_FALSE(break_even(pair_of(run, Layout::tet80, Layout::bvh2)));
     EXPECT_EQ(text_of(table6_pairs({&run}), 0, "ahead"), "not to be told");
 }

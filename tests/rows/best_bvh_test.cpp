@@ -31,31 +31,31 @@ const std::vector<Contender> host = {contender("cdt half32", "host", 33),
                                      contender("cdt half32 on opencl", "opencl:0", 30)};
 
 /// A million rays in so many seconds; building took so long.
-RowRun row_of(Structure structure, Layout layout, Method method, const std::string& backend, DeviceKind kind,
-              double seconds, double build_s = 1)
+RowRecord row_of(Structure structure, Layout layout, Method method, const std::string& backend, DeviceKind kind,
+                 double seconds, double build_s = 1)
 {
-    RowRun row;
+    RowRecord row;
     row.key = {"bunny", backend, {structure, method, layout}, RayKind::primary, TetOrder::chains, 0};
     row.device.kind = kind;
     Traced result;
     result.totals.rays = 1'000'000;
     row.outcome = result;
     row.samples_s = {0.99 * seconds, seconds, 1.01 * seconds, seconds, 0.99 * seconds, 1.01 * seconds};
-    row.recorded_cost = SetupCost{build_s, 0, 1};
+    set_setup_cost(row, {build_s, 0, 1});
     return row;
 }
 
-RowRun tets_on(const std::string& backend, DeviceKind kind, double seconds, double build_s = 1)
+RowRecord tets_on(const std::string& backend, DeviceKind kind, double seconds, double build_s = 1)
 {
     return row_of(Structure::cdt, Layout::tet80, Method::maria, backend, kind, seconds, build_s);
 }
 
-RowRun bvh2_on(const std::string& backend, DeviceKind kind, double seconds, double build_s = 1)
+RowRecord bvh2_on(const std::string& backend, DeviceKind kind, double seconds, double build_s = 1)
 {
     return row_of(Structure::bvh, Layout::bvh2, Method::single, backend, kind, seconds, build_s);
 }
 
-RowRun embrees(Method method, double seconds)
+RowRecord embrees(Method method, double seconds)
 {
     return row_of(Structure::bvh, Layout::embree, method, "embree", DeviceKind::cpu, seconds);
 }
@@ -120,7 +120,7 @@ TEST(BestBvh, a_gpus_rows_compare_with_those_of_all_its_apis)
 {
     auto rows = list(tets_on("cuda", DeviceKind::gpu, 1), bvh2_on("cuda", DeviceKind::gpu, 3),
                      bvh2_on("vulkan", DeviceKind::gpu, 2), bvh2_on("vulkan", DeviceKind::gpu, 0.1));
-    for (RowRun& row : rows)
+    for (RowRecord& row : rows)
         row.device.uuid = "a";
     rows[3].device.uuid = "b";
     rows[3].key.device = 1;
@@ -164,6 +164,6 @@ TEST(PaidBuild, is_of_tets_whose_build_times_are_known)
     const auto best = compare_with_best_bvh(rows);
     EXPECT_FALSE(paid_build(rows[1], best[1])) << "a BVH";
     EXPECT_FALSE(paid_build(rows[0], std::nullopt)) << "no BVH beside it";
-    rows[1].recorded_cost.reset();
+    rows[1].setup = {};
     EXPECT_FALSE(paid_build(rows[0], best[0])) << "of an older result";
 }

@@ -9,9 +9,9 @@ using namespace tetrace::test;
 
 namespace {
 
-RowRun row_on(const std::string& backend, DeviceKind kind, double seconds, const std::string& uuid = "")
+RowRecord row_on(const std::string& backend, DeviceKind kind, double seconds, const std::string& uuid = "")
 {
-    RowRun row;
+    RowRecord row;
     row.key = {"bunny", backend, {}, RayKind::primary, TetOrder::chains, 0};
     row.device.kind = kind;
     row.device.uuid = uuid;
@@ -54,7 +54,7 @@ TEST(Comparison, of_several_runs_has_an_interval_over_them)
     auto rows = list(row_on("openmp", DeviceKind::cpu, 2), row_on("opencl", DeviceKind::emulated, 4));
     const std::vector<double> run = rows[1].samples_s;
     for (const double factor : {1.0, 1.25, 1.0})
-        for (RowRun& row : rows) {
+        for (RowRecord& row : rows) {
             if (row.run_samples.empty()) row.samples_s.clear();
             for (const double seconds : run)
                 row.samples_s.push_back(&row == &rows[0] ? seconds / 2 : seconds * factor);

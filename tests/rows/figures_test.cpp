@@ -7,9 +7,9 @@ using namespace tetrace;
 namespace {
 
 /// A row of 4,000,000 rays and 40,000,000 steps with a median of 0.5 s; figures are worked out by hand.
-RowRun timed_row(Layout layout = Layout::tet80)
+RowRecord timed_row(Layout layout = Layout::tet80)
 {
-    RowRun row;
+    RowRecord row;
     row.key = {"a", "openmp", {}, RayKind::primary, TetOrder::chains};
     row.key.kernel.layout = layout;
     row.device.kind = DeviceKind::cpu;
@@ -25,9 +25,9 @@ RowRun timed_row(Layout layout = Layout::tet80)
 }
 
 /// Embree's single rays, four times as fast as timed_row().
-RowRun single_row(const std::string& scene)
+RowRecord single_row(const std::string& scene)
 {
-    RowRun row = timed_row(Layout::embree);
+    RowRecord row = timed_row(Layout::embree);
     row.key.scene = scene;
     row.key.kernel.structure = Structure::bvh;
     row.key.kernel.method = Method::single;
@@ -57,7 +57,7 @@ TEST(Figures, shares_are_of_all_rays_and_left_out_if_they_are_not_known)
     result.entering = 3'000'000;
     EXPECT_DOUBLE_EQ(ray_shares(result).enter.value(), 0.75);
     EXPECT_FALSE(ray_shares(Traced{}).hit.has_value()) << "no rays";
-    RowRun misses = timed_row();
+    RowRecord misses = timed_row();
     std::get<Traced>(misses.outcome).totals.hits = 0;
     EXPECT_FALSE(figures_of(misses)->mhits_per_s.has_value()) << "no rate is 0";
 }
@@ -100,7 +100,7 @@ TEST(Figures, a_structure_without_steps_has_no_step_rate_and_no_bandwidth)
 
 TEST(Figures, latency_is_of_launches_of_one_view_and_the_fixed_cost_of_the_line_through_both)
 {
-    RowRun row = timed_row();
+    RowRecord row = timed_row();
     EXPECT_FALSE(figures_of(row)->latency_s.has_value());
     row.launches = {1, 4};
     row.samples_s = {0.5, 0.51, 0.5, 0.49, 0.5, 0.5};
@@ -119,7 +119,7 @@ TEST(Figures, latency_is_of_launches_of_one_view_and_the_fixed_cost_of_the_line_
 
 TEST(Figures, overhead_is_the_median_of_wall_minus_device_seconds_sample_by_sample)
 {
-    RowRun row = timed_row();
+    RowRecord row = timed_row();
     EXPECT_FALSE(figures_of(row)->overhead_s.has_value());
     row.wall_samples_s = {0.5625, 0.375, 0.75, 1.0, 0.53125};
     EXPECT_DOUBLE_EQ(figures_of(row)->overhead_s.value(), 0.0625);
@@ -136,7 +136,7 @@ TEST(Figures, mean_steps_are_apart_for_hits_and_misses)
 
 TEST(Figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_scene)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(single_row("b"));
     std::get<Traced>(rows.back().outcome).totals.rays *= 3; // another scene's: must not be taken
     rows.push_back(timed_row());
@@ -149,7 +149,7 @@ TEST(Figures, the_ratio_is_the_rows_rate_over_that_of_single_rays_on_the_same_sc
 
 TEST(Figures, the_ratio_is_over_the_faster_of_embrees_single_rays)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(timed_row());
     for (const Layout layout : {Layout::embree, Layout::embree_medium}) {
         rows.push_back(single_row(rows[0].key.scene));
@@ -164,7 +164,7 @@ TEST(Figures, the_ratio_is_over_the_faster_of_embrees_single_rays)
 
 TEST(Figures, the_ratio_is_over_single_rays_of_the_same_kind_and_order)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(single_row("a"));
     rows.push_back(timed_row());
     rows[1].key.ray_order = RayOrder::morton;
@@ -177,7 +177,7 @@ TEST(Figures, the_ratio_is_over_single_rays_of_the_same_kind_and_order)
 
 TEST(Figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(single_row("a"));
     rows.push_back(timed_row());
     rows[1].device.kind = DeviceKind::gpu;
@@ -188,28 +188,28 @@ TEST(Figures, a_gpus_row_is_not_compared_with_the_hosts_single_rays)
 
 TEST(Figures, a_row_has_rates_where_it_is_ok_or_flawed_and_was_timed)
 {
-    RowRun flawed = timed_row();
+    RowRecord flawed = timed_row();
     std::get<Traced>(flawed.outcome).verdicts.wrong = 1;
     EXPECT_TRUE(figures_of(flawed).has_value());
-    RowRun lost = timed_row();
+    RowRecord lost = timed_row();
     std::get<Traced>(lost.outcome).verdicts.lost = 1;
     EXPECT_TRUE(figures_of(lost).has_value());
-    RowRun different = timed_row();
+    RowRecord different = timed_row();
     std::get<Traced>(different.outcome).different = 1;
     EXPECT_FALSE(figures_of(different).has_value());
-    RowRun untimed = timed_row();
+    RowRecord untimed = timed_row();
     untimed.samples_s.clear();
     EXPECT_FALSE(figures_of(untimed).has_value());
-    RowRun failed = timed_row();
+    RowRecord failed = timed_row();
     failed.outcome = Failed{ErrorKind::internal, "driver gone"};
     EXPECT_FALSE(figures_of(failed).has_value());
 }
 
 namespace {
 
-RowRun row_with(Outcome outcome, Method method = Method::maria)
+RowRecord row_with(Outcome outcome, Method method = Method::maria)
 {
-    RowRun row;
+    RowRecord row;
     row.key.kernel.method = method;
     row.outcome = std::move(outcome);
     return row;
@@ -227,7 +227,7 @@ Traced judged(std::uint64_t wrong, std::uint64_t lost, std::uint64_t different)
 /// The exit code of two rows that are ok and a third; flawed ones pass in `bench` and with --allow-flawed.
 int code_with(Outcome outcome, bool flawed_passes)
 {
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(row_with(Traced{}));
     rows.push_back(row_with(std::move(outcome)));
     rows.push_back(row_with(Traced{}));
@@ -284,7 +284,7 @@ TEST(ExitCodes, an_error_gives_that_of_its_kind_unless_something_is_wrong)
     EXPECT_EQ(code_with(Failed{ErrorKind::internal, ""}, true), exit_code(ErrorKind::internal));
     EXPECT_EQ(code_with(Failed{ErrorKind::invalid_input, ""}, true), exit_code(ErrorKind::invalid_input));
     EXPECT_NE(code_with(Failed{ErrorKind::internal, ""}, true), 0);
-    std::vector<RowRun> rows;
+    std::vector<RowRecord> rows;
     rows.push_back(row_with(Failed{ErrorKind::internal, ""}));
     rows.push_back(row_with(judged(0, 1, 0)));
     EXPECT_EQ(exit_code(rows, true), 1);

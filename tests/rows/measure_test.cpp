@@ -241,15 +241,15 @@ TEST_F(Measure, a_sample_is_taken_again_while_its_gpu_is_throttled)
         return std::make_unique<ThrottledAt>(asked, 3, 4);
     };
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), no_budget(), {}, find));
-    ASSERT_TRUE(rows_[0].gpu.has_value());
-    EXPECT_FALSE(rows_[1].gpu.has_value());
+    ASSERT_TRUE(rows_[0].readings.has_value());
+    EXPECT_FALSE(rows_[1].readings.has_value());
     EXPECT_EQ(rows_[0].samples_s.size(), 30u);
-    EXPECT_EQ(rows_[0].gpu->states.size(), 30u);
-    EXPECT_EQ(rows_[0].gpu->dropped, 2u);
-    EXPECT_EQ(rows_[0].gpu->throttled(), 0u);
-    EXPECT_EQ(rows_[0].gpu->reasons, "heat");
-    EXPECT_EQ(rows_[0].gpu->median(&GpuState::clock_mhz), 1500);
-    EXPECT_EQ(rows_[0].gpu->median(&GpuState::power_w), std::nullopt);
+    EXPECT_EQ(rows_[0].readings->states.size(), 30u);
+    EXPECT_EQ(rows_[0].readings->dropped, 2u);
+    EXPECT_EQ(rows_[0].readings->throttled(), 0u);
+    EXPECT_EQ(rows_[0].readings->reasons, "heat");
+    EXPECT_EQ(rows_[0].readings->median(&GpuState::clock_mhz), 1500);
+    EXPECT_EQ(rows_[0].readings->median(&GpuState::power_w), std::nullopt);
 }
 
 TEST_F(Measure, a_row_whose_gpu_stays_throttled_is_noisy_and_says_why)
@@ -259,8 +259,8 @@ TEST_F(Measure, a_row_whose_gpu_stays_throttled_is_noisy_and_says_why)
     int asked = 0;
     const auto find = [&](const Device&) { return std::make_unique<ThrottledAt>(asked, 0, 1'000'000); };
     static_cast<void>(measure_rows(rows_, options_, read_benchmark_flags({}), no_budget(), {}, find));
-    EXPECT_EQ(rows_[0].gpu->dropped, 2u * 30);
-    EXPECT_EQ(rows_[0].gpu->throttled(), 30u);
+    EXPECT_EQ(rows_[0].readings->dropped, 2u * 30);
+    EXPECT_EQ(rows_[0].readings->throttled(), 30u);
     EXPECT_TRUE(contains(rows_[0].disturbance, "its GPU was throttled in 30 of 30 samples (heat)"))
         << rows_[0].disturbance;
     EXPECT_TRUE(figures_of(rows_[0])->noisy);
@@ -317,7 +317,7 @@ TEST_F(Measure, hits_that_change_after_verification_are_an_error_without_a_rate)
         EXPECT_EQ(status_of(row), Status::error);
         EXPECT_NE(reason_of(row).find("changed between verifying and measuring"), std::string::npos) << reason_of(row);
     }
-    EXPECT_EQ(exit_code(rows_, true), exit_code(ErrorKind::internal));
+    EXPECT_EQ(exit_code(records_of(rows_), true), exit_code(ErrorKind::internal));
 }
 
 TEST_F(Measure, hits_that_only_views_in_flight_together_change_are_an_error_that_names_the_view)

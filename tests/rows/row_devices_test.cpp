@@ -23,11 +23,10 @@ Device device(const char* name, DeviceKind kind, const char* uuid = "")
 // Backends are static as every backend is: what is found out about a device is kept by its address.
 
 /// A row of 1,000,000 steps in a millisecond: 44 GB/s in tet80.
-RowRun row_of(Backend& backend)
+RowRecord row_of(Backend& backend)
 {
-    RowRun row;
+    RowRecord row;
     row.key = {"a", backend.name(), {}, RayKind::primary, TetOrder::chains, 0};
-    row.backend = &backend;
     row.device = backend.devices()[0];
     Traced result;
     result.totals.rays = 1000;
@@ -36,20 +35,6 @@ RowRun row_of(Backend& backend)
     row.samples_s = {1e-3, 1e-3, 1e-3};
     return row;
 }
-
-/// Known by its size alone.
-class SessionOfBytes : public Session {
-public:
-    explicit SessionOfBytes(std::uint64_t bytes) : bytes_(bytes) {}
-    void start(std::span<const TraceJob>) override {}
-    [[nodiscard]] double wait() override { return 0; }
-    [[nodiscard]] SetupTimes setup_times() const override { return {}; }
-    [[nodiscard]] std::uint64_t bytes() const override { return bytes_; }
-
-private:
-    void read_output(std::span<std::uint32_t>) override {}
-    std::uint64_t bytes_;
-};
 
 } // namespace
 
@@ -62,10 +47,10 @@ TEST(RowDevices, are_listed_once_by_hardware_emulations_last)
     const auto devices = devices_of(rows);
     std::string order;
     for (const RowDevice& found : devices)
-        order += found.backend->name() + std::to_string(found.hardware) + " ";
+        order += found.backend + std::to_string(found.hardware) + " ";
     EXPECT_EQ(order, "openmp0 opencl0 cuda1 vulkan1 ");
     EXPECT_EQ(device_of(rows[2], devices), std::size_t{0});
-    EXPECT_FALSE(device_of(RowRun{}, devices).has_value());
+    EXPECT_FALSE(device_of(RowRecord{}, devices).has_value());
 }
 
 TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
@@ -76,7 +61,7 @@ TEST(RowDevices, bandwidth_is_a_share_of_that_of_the_rows_own_device)
     const auto rows = list(row_of(slow), row_of(fast));
     auto devices = devices_of(rows);
     EXPECT_FALSE(copy_shares(rows[0], devices).has_value()) << "not measured yet";
-    measure_devices(devices, {});
+    measure_devices(devices, {}, {&slow, &fast});
     EXPECT_DOUBLE_EQ(copy_shares(rows[0], devices).value().of_memory, 0.5);
     EXPECT_DOUBLE_EQ(copy_shares(rows[1], devices).value().of_memory, 0.1);
 }
@@ -90,9 +75,9 @@ TEST(RowDevices, a_row_s_ceiling_is_that_of_the_level_that_holds_its_scene)
     for (const auto& [bytes, ceiling] :
          {std::pair(500, 176e9), {4'000, 176e9}, {4'001, 88e9}, {64'000, 44e9}, {1 << 30, 44e9}}) {
         auto rows = list(row_of(gpu));
-        rows[0].session = std::make_unique<SessionOfBytes>(bytes);
+        rows[0].setup.bytes = bytes;
         auto devices = devices_of(rows);
-        measure_devices(devices, {});
+        measure_devices(devices, {}, {&gpu});
         const CopyShares shares = copy_shares(rows[0], devices).value();
         EXPECT_EQ(shares.ceiling_bytes_per_s, ceiling) << bytes;
         EXPECT_DOUBLE_EQ(shares.of_ceiling, 44e9 / ceiling) << bytes;
@@ -124,7 +109,7 @@ TEST(RowDevices, an_api_on_the_host_without_a_yardstick_has_openmps_and_one_on_a
 {
     static FakeBackend host("host", device("CPU", DeviceKind::cpu)), gpu("gpu", device("GPU", DeviceKind::gpu));
     auto devices = devices_of(list(row_of(host), row_of(gpu)));
-    measure_devices(devices, {.threads = 1});
+    measure_devices(devices, {.threads = 1}, {&host, &gpu});
     ASSERT_TRUE(devices[0].yardstick.has_value());
     EXPECT_GT(devices[0].yardstick->copy_bytes_per_s, 0);
     EXPECT_FALSE(devices[1].yardstick.has_value());
@@ -137,7 +122,7 @@ TEST(RowDevices, a_device_that_fails_keeps_the_reason_and_the_others_are_measure
     lost.measure = []() -> std::optional<Yardstick> { throw Error(ErrorKind::internal, "the device was lost"); };
     good.measure = [] { return Yardstick{1e9, 1e-6}; };
     auto devices = devices_of(list(row_of(lost), row_of(good)));
-    measure_devices(devices, {});
+    measure_devices(devices, {}, {&lost, &good});
     EXPECT_EQ(devices[0].problem, "yardstick: the device was lost");
     EXPECT_EQ(devices[1].problem, "");
     EXPECT_TRUE(devices[1].yardstick.has_value());

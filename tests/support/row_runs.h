@@ -19,13 +19,10 @@ namespace tetrace::test {
     return loaded;
 }
 
-/// The rows as one vector. They cannot be copied, so an initialiser list does not do.
 template <class... Rows>
-[[nodiscard]] std::vector<RowRun> list(Rows... rows)
+[[nodiscard]] std::vector<RowRecord> list(Rows... rows)
 {
-    std::vector<RowRun> result;
-    (result.push_back(std::move(rows)), ...);
-    return result;
+    return {std::move(rows)...};
 }
 
 } // namespace tetrace::test

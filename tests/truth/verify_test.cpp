@@ -1,6 +1,7 @@
 #include "bench/measuring/verify.h"
 
 #include "bench/measuring/conformity.h"
+#include "bench/measuring/ray_walks.h"
 #include "bench/output/check_differences.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/rows/ray_store.h"
@@ -183,7 +184,7 @@ TEST_F(Verify, a_ray_that_was_never_written_is_wrong_and_named)
     EXPECT_EQ(row.session, nullptr);
     std::vector<RowRun> rows(1);
     rows[0].outcome = row.outcome;
-    EXPECT_EQ(exit_code(rows, true), 1);
+    EXPECT_EQ(exit_code(records_of(rows), true), 1);
 }
 
 TEST_F(Verify, a_kernel_that_never_ran_is_wrong)
@@ -315,18 +316,17 @@ TEST_F(Verify, paths_of_tets_are_told_of_primary_rays_through_tets_alone)
 {
     const auto one_step_more = [](std::span<Hit> hits) { hits[17].steps += 1; };
     for (const Layout layout : {Layout::tet80, Layout::cwbvh}) {
-        const RowRun given = verified_given(RayKind::diffuse, layout, one_step_more);
+        RowRun given = verified_given(RayKind::diffuse, layout, one_step_more);
+        note_walks(given);
         const std::string text = differences_text(given);
         EXPECT_NE(text.find("rays differ from openmp's"), std::string::npos) << text;
         EXPECT_EQ(text.find("tets of"), std::string::npos) << text;
-        nlohmann::json object = {{"verification", nlohmann::json::object()}};
-        add_paths(object, given);
-        EXPECT_TRUE(object["verification"].empty()) << object;
     }
-    const RowRun primary = verified("other", [](std::span<Hit> hits) {
+    RowRun primary = verified("other", [](std::span<Hit> hits) {
         for (Hit& hit : hits)
             if (hit.face_id < POISON) hit.steps += 1;
     });
+    note_walks(primary);
     EXPECT_NE(differences_text(primary).find("tets of openmp"), std::string::npos);
 }
 

@@ -58,16 +58,16 @@ LaunchTimes Sampler::unthrottled(RowRun& row, const Work& work) const
 {
     GpuMonitor* const monitor = monitors_ == nullptr ? nullptr : monitors_->of(row);
     if (monitor == nullptr) return work(row.passes, {});
-    if (!row.gpu) row.gpu.emplace();
+    if (!row.readings) row.readings.emplace();
     for (int attempt = 1;; ++attempt) {
         GpuState state;
         const LaunchTimes sample = work(row.passes, [&] { state = monitor->read(); });
-        if (!state.throttled.empty()) row.gpu->add_reason(state.throttled);
+        if (!state.throttled.empty()) row.readings->add_reason(state.throttled);
         if (state.throttled.empty() || attempt == 3 || budget_->left_s() <= 0) {
-            row.gpu->states.push_back(std::move(state));
+            row.readings->states.push_back(std::move(state));
             return sample;
         }
-        ++row.gpu->dropped;
+        ++row.readings->dropped;
     }
 }
 

@@ -61,7 +61,7 @@ public:
 
     /// Takes a sample of row.passes passes, which grow where they were too short. Launching and waiting are those of a
     /// pass that is done alone before it, since several passes share theirs. Where the GPU was throttled meanwhile, the
-    /// sample is taken again, twice at most. row.gpu has what its GPU told. Throws what the work throws.
+    /// sample is taken again, twice at most. row.readings has what its GPU told. Throws what the work throws.
     [[nodiscard]] Sample take(RowRun& row, const Work& work) const;
 
 private:

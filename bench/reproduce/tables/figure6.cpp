@@ -37,14 +37,14 @@ double image_ms(const SceneRun& run, double view_s)
     return 1e3 * view_s * paper::image_pixels / static_cast<double>(run.scene->rays_per_view());
 }
 
-bool has_papers_times(const RowRun& row)
+bool has_papers_times(const RowRecord& row)
 {
     return row.key.kernel.method == Method::maria && paper_place(row) == paper::Place::cpu;
 }
 
 std::vector<PaperCell> figure6_cells(const SceneRun& run, std::size_t i)
 {
-    const RowRun& row = run.rows[i];
+    const RowRecord& row = run.rows[i];
     const auto steps = view_steps(run, i), seconds = view_seconds(run, i);
     const auto [fewest, most] = std::ranges::minmax_element(steps);
     const auto [shortest, longest] = std::ranges::minmax_element(seconds);
@@ -223,11 +223,11 @@ PaperTable figure6_table(const SceneRuns& runs)
         table.notes.push_back(std::move(note));
     for (const SceneRun* run : runs) {
         for_rated(*run, [&](std::size_t i) { table.rows.push_back(figure6_cells(*run, i)); });
-        for (const RowRun& row : run->rows)
+        for (const RowRecord& row : run->rows)
             if (is_cdt(row) && is_noisy(row))
                 table.notes.push_back(fmt::format("{} is noisy: its times decide nothing.", series_name(row)));
         for (std::size_t i = 0; i < run->rows.size(); ++i)
-            if (const RowRun& row = run->rows[i]; is_cdt(row) && view_seconds(*run, i).empty())
+            if (const RowRecord& row = run->rows[i]; is_cdt(row) && view_seconds(*run, i).empty())
                 table.notes.push_back(
                     fmt::format("{} has no rate: {}: {}.", series_name(row), name_of(status_of(row)), reason_of(row)));
     }

@@ -23,7 +23,7 @@ std::vector<RowPair> papers_pairs(const SceneRun* run, DeviceKind kind)
     if (run == nullptr) return {};
     auto pairs = fastest_pairs(*run);
     std::erase_if(pairs, [&](const RowPair& pair) {
-        const RowRun& bvh = run->rows[pair.bvh];
+        const RowRecord& bvh = run->rows[pair.bvh];
         return bvh.key.kernel.layout != Layout::bvh2 || bvh.device.kind != kind;
     });
     return pairs;
@@ -62,7 +62,7 @@ std::string no_pair_text(DeviceKind kind)
 
 std::string pair_evidence(const RowPair& pair)
 {
-    const RowRun& cdt = pair.run->rows[pair.cdt];
+    const RowRecord& cdt = pair.run->rows[pair.cdt];
     const auto cdt_frames = view_frames(*pair.run, pair.cdt), bvh_frames = view_frames(*pair.run, pair.bvh);
     const auto range = [](const std::vector<double>& frames) {
         const auto [least, most] = std::ranges::minmax_element(frames);

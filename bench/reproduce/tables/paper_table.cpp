@@ -252,7 +252,7 @@ PaperCell known_number(std::optional<double> value)
     return value ? exact_cell(*value) : PaperCell();
 }
 
-std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRun& row)
+std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRecord& row)
 {
     first.insert(first.end(), {std::string(name_of(row.key.kernel.method)), std::string(name_of(row.key.kernel.layout)),
                                device_label(row.key), known_text(device_kind_text(row))});

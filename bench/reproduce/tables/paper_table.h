@@ -31,7 +31,7 @@ using PaperCell = std::variant<std::monostate, std::string, Quantity>;
 /// An empty cell where the text is empty.
 [[nodiscard]] PaperCell known_text(std::string text);
 /// The labels that come first, then method, layout, device and its type.
-[[nodiscard]] std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRun& row);
+[[nodiscard]] std::vector<PaperCell> label_cells(std::vector<PaperCell> first, const RowRecord& row);
 /// The columns of label_cells() for a row's scene and build, then the others.
 [[nodiscard]] std::vector<Column> with_labels(const std::vector<Column>& others);
 

@@ -18,7 +18,7 @@ struct BestRate {
 std::optional<BestRate> best_rate(const SceneRun& run, paper::Place place)
 {
     std::optional<BestRate> best;
-    for (const RowRun& row : run.rows) {
+    for (const RowRecord& row : run.rows) {
         if (row.key.kernel.method != Method::maria || paper_place(row) != place) continue;
         const auto figures = figures_of(row);
         if (!figures || (best && best->mrays.value >= figures->mrays_per_s)) continue;

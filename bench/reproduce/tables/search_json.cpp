@@ -40,7 +40,7 @@ constexpr const char* shared_keys[] = {"name",   "method",       "layout",    "b
 
 json search_row_json(const SearchRun& run, std::size_t i)
 {
-    const RowRun& row = run.rows[i];
+    const RowRecord row = record_of(run.rows[i]);
     const json all = row_json(RowFacts(row));
     json object;
     for (const char* key : shared_keys)

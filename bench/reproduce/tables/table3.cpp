@@ -98,7 +98,7 @@ std::string walk_note(const SceneRun& run, const StartWalk& walk)
 }
 
 /// The rate of the paper's method on its device of the row's kind.
-std::optional<double> papers_mrays(const SceneRun& run, const RowRun& row)
+std::optional<double> papers_mrays(const SceneRun& run, const RowRecord& row)
 {
     const auto figures = paper::figures_of(run.build.scene);
     const auto place = paper_place(row);
@@ -106,7 +106,7 @@ std::optional<double> papers_mrays(const SceneRun& run, const RowRun& row)
     return figures->mrays(*place);
 }
 
-std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRun& row)
+std::vector<PaperCell> rate_cells(const SceneRun& run, const RowRecord& row)
 {
     auto cells = label_cells({run.build.scene, run.build.build}, row);
     if (const auto figures = figures_of(row)) {
@@ -198,7 +198,7 @@ PaperTable table3_rates(const SceneRuns& runs)
     for (const paper::Place place : {paper::Place::cpu, paper::Place::gpu})
         table.claims.push_back(mean_rate_claim(runs, place));
     for (const SceneRun* run : runs)
-        for (const RowRun& row : run->rows)
+        for (const RowRecord& row : run->rows)
             if (is_cdt(row)) table.rows.push_back(rate_cells(*run, row));
     return table;
 }

@@ -48,7 +48,7 @@ PaperCell share_cell(const std::vector<ImageRecord>& images, FlatWalks ImageReco
 }
 
 /// How the device's hits compare with openmp's: "bit for bit", "within 2 ulp", "12 rays differ".
-std::string agreement(const RowRun& row)
+std::string agreement(const RowRecord& row)
 {
     const Traced& result = *traced(row);
     if (!result.compared) return on_reference(row.key) ? "reference" : "not compared";
@@ -79,7 +79,7 @@ const std::vector<Column>& columns()
 
 std::vector<PaperCell> table4_cells(const SceneRun& run, std::size_t i)
 {
-    const RowRun& row = run.rows[i];
+    const RowRecord& row = run.rows[i];
     const std::string status(name_of(status_of(row)));
     std::vector<PaperCell> cells = {run.build.scene, run.build.build, std::string(name_of(row.key.kernel.method)),
                                     std::string(name_of(row.key.kernel.layout)), device_label(row.key)};
@@ -119,7 +119,7 @@ MethodCounts method_counts(const std::vector<MethodRow>& rows, Method method, st
 {
     MethodCounts sum;
     for (const MethodRow& row : rows) {
-        const RowRun& run = row.run->rows[row.row];
+        const RowRecord& run = row.run->rows[row.row];
         if (run.key.kernel.method != method) continue;
         const auto counts = counts_of(*row.run, row.row, flawed_rays);
         sum.counts.insert(sum.counts.end(), counts.begin(), counts.end());
@@ -266,7 +266,7 @@ std::vector<MethodRow> method_rows(const SceneRuns& runs)
         std::vector<Method> seen;
         for (const bool of_reference : {true, false})
             for (std::size_t i = 0; i < run->rows.size(); ++i) {
-                const RowRun& row = run->rows[i];
+                const RowRecord& row = run->rows[i];
                 const Method method = row.key.kernel.method;
                 const bool usable = is_cdt(row) && is_whole(row) && traced(row)->different == 0 &&
                                     on_reference(row.key) == of_reference;
@@ -304,7 +304,7 @@ PaperFigure table4_views(const SceneRuns& runs)
                        {"wrong or lost", "rays an image"},
                        {"Pictures show the view with the most of them, the surface darkened, such rays marked."}};
     for (const MethodRow& row : method_rows(runs)) {
-        const RowRun& run = row.run->rows[row.row];
+        const RowRecord& run = row.run->rows[row.row];
         PaperFigure::Series series{fmt::format("{} {}", row.run->build.label, name_of(run.key.kernel.method)), {}};
         const auto counts = counts_of(*row.run, row.row, flawed_rays);
         for (std::size_t view = 0; view < counts.size(); ++view)

@@ -33,7 +33,7 @@ const std::vector<Column>& search_columns()
     return list;
 }
 
-std::string face_agreement(const RowRun& row)
+std::string face_agreement(const RowRecord& row)
 {
     const Traced& result = *traced(row);
     if (is_reference(row.key)) return "reference";
@@ -47,7 +47,7 @@ PaperCell threads_cell(const SearchRun& run, const RowKey& key)
 }
 
 /// Share of the device's copy bandwidth, which is measured with all of its threads.
-PaperCell copy_cell(const SearchRun& run, const RowRun& row, double searches_per_s,
+PaperCell copy_cell(const SearchRun& run, const RowRecord& row, double searches_per_s,
                     const std::vector<RowDevice>& devices)
 {
     const auto place = device_of(row, devices);
@@ -57,14 +57,14 @@ PaperCell copy_cell(const SearchRun& run, const RowRun& row, double searches_per
 }
 
 /// The paper's time of one thread of its CPU, or of its GPU.
-std::optional<double> papers_ms(const RowRun& row)
+std::optional<double> papers_ms(const RowRecord& row)
 {
     const auto place = paper_place(row);
     if (!place || (*place == paper::Place::cpu && row.key.threads != 1)) return std::nullopt;
     return paper::search_ms(row.key.kernel.method, *place);
 }
 
-std::vector<PaperCell> rate_cells(const SearchRun& run, const RowRun& row, const std::vector<RowDevice>& devices)
+std::vector<PaperCell> rate_cells(const SearchRun& run, const RowRecord& row, const std::vector<RowDevice>& devices)
 {
     const auto figures = figures_of(row);
     if (!figures) return std::vector<PaperCell>(5);
@@ -73,7 +73,7 @@ std::vector<PaperCell> rate_cells(const SearchRun& run, const RowRun& row, const
             exact_cell(100 * figures->kernel_s.spread()), copy_cell(run, row, 1e6 * figures->mrays_per_s, devices)};
 }
 
-std::vector<PaperCell> count_cells(const RowRun& row)
+std::vector<PaperCell> count_cells(const RowRecord& row)
 {
     if (!is_whole(row)) return std::vector<PaperCell>(4);
     const Verdicts& verdicts = traced(row)->verdicts;
@@ -83,7 +83,7 @@ std::vector<PaperCell> count_cells(const RowRun& row)
     return {a_million(verdicts.wrong), a_million(verdicts.lost), a_million(verdicts.ties), face_agreement(row)};
 }
 
-std::vector<PaperCell> cells_of(const SearchRun& run, const RowRun& row, const std::vector<RowDevice>& devices)
+std::vector<PaperCell> cells_of(const SearchRun& run, const RowRecord& row, const std::vector<RowDevice>& devices)
 {
     auto cells = label_cells({}, row);
     cells.push_back(threads_cell(run, row.key));
@@ -99,7 +99,7 @@ Claim exact_claim(const SearchRun& run)
     Claim claim{
         "table5-maria-exact", "maria has no wrong result but ties", {}, "No row of maria came through all searches."};
     std::uint64_t rows = 0, searches = 0, wrong = 0, lost = 0, ties = 0;
-    for (const RowRun& row : run.rows) {
+    for (const RowRecord& row : run.rows) {
         if (row.key.kernel.method != Method::maria || !is_whole(row) || traced(row)->different > 0) continue;
         const Verdicts& verdicts = traced(row)->verdicts;
         rows += 1, searches += verdicts.rays, wrong += verdicts.wrong, lost += verdicts.lost, ties += verdicts.ties;
@@ -115,12 +115,12 @@ Claim exact_claim(const SearchRun& run)
     return claim;
 }
 
-bool on_one_thread(const RowRun& row)
+bool on_one_thread(const RowRecord& row)
 {
     return row.key.threads == 1;
 }
 
-bool on_gpu(const RowRun& row)
+bool on_gpu(const RowRecord& row)
 {
     return paper_place(row) == paper::Place::gpu;
 }
@@ -161,7 +161,7 @@ std::string face_text(std::uint32_t face)
 }
 
 /// Which search to look at where a row's faces are not the exact ones, or not openmp's; empty where all are.
-std::string first_flaw(const RowRun& row)
+std::string first_flaw(const RowRecord& row)
 {
     const Traced* result = traced(row);
     if (result == nullptr) return {};
@@ -196,7 +196,7 @@ std::vector<std::string> notes_of(const SearchRun& run)
             "of its CPU ({}) and on its GPU ({}); its tets and rays are random too, of distributions that it "
             "does not give.",
             with_commas(static_cast<std::uint64_t>(paper::searches)), paper::cpu_name, paper::gpu_name)};
-    for (const RowRun& row : run.rows)
+    for (const RowRecord& row : run.rows)
         if (const std::string flaw = first_flaw(row); !flaw.empty()) notes.push_back(flaw);
     return notes;
 }
@@ -208,7 +208,7 @@ PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices)
     PaperTable table{"table5", "Exit search alone, on random tets and rays",
                      fmt::format("{}, Table 5", paper::citation), search_columns(), notes_of(run)};
     table.claims = claims_of(run);
-    for (const RowRun& row : run.rows)
+    for (const RowRecord& row : run.rows)
         table.rows.push_back(cells_of(run, row, devices));
     return table;
 }

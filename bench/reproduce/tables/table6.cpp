@@ -20,7 +20,7 @@ std::string table6_source()
 }
 
 /// The paper's method; through tets for rays, of which the paper has no number, the suite's own too.
-bool is_compared(const SceneRun& run, const RowRun& row)
+bool is_compared(const SceneRun& run, const RowRecord& row)
 {
     const KernelId& kernel = row.key.kernel;
     if (!is_cdt(row) || kernel.method == Method::maria) return true;
@@ -28,13 +28,13 @@ bool is_compared(const SceneRun& run, const RowRun& row)
 }
 
 /// On one device in one math mode; a driver's own BVH has no mode to choose.
-bool run_alike(const RowRun& a, const RowRun& b)
+bool run_alike(const RowRecord& a, const RowRecord& b)
 {
     const bool has_mode = is_portable(a.key.kernel) && is_portable(b.key.kernel);
     return same_place(a.key, b.key) && (!has_mode || a.key.kernel.math == b.key.kernel.math);
 }
 
-bool run_beside(const RowRun& cdt, const RowRun& bvh)
+bool run_beside(const RowRecord& cdt, const RowRecord& bvh)
 {
     return is_embree(bvh.key.kernel.layout) ? on_reference(cdt.key) : run_alike(cdt, bvh);
 }
@@ -52,7 +52,7 @@ double rays_of(const SceneRun& run, std::size_t row)
 
 std::optional<SetupCost> cost_of(const SceneRun& run, std::size_t row)
 {
-    return row < run.costs.size() ? run.costs[row] : std::nullopt;
+    return setup_cost(run.rows[row]);
 }
 
 /// Whether the row is rated, and no other of the tets is faster on its device.
@@ -71,20 +71,20 @@ bool is_fastest_of_tets(const SceneRun& run, std::size_t cdt)
 }
 
 /// "single bvh2": a BVH's row without its device.
-std::string rival_name(const RowRun& row)
+std::string rival_name(const RowRecord& row)
 {
     return fmt::format("{} {}", name_of(row.key.kernel.method), name_of(row.key.kernel.layout));
 }
 
 /// The paper's range for the row's structure, on the paper's GPU; its BVH corresponds to bvh2.
-std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, const RowRun& row)
+std::optional<std::pair<double, double>> papers_frames(const SceneRun& run, const RowRecord& row)
 {
     const auto frames = paper::frames_of(run.build.scene);
     if (!frames || (!is_cdt(row) && row.key.kernel.layout != Layout::bvh2)) return std::nullopt;
     return is_cdt(row) ? std::pair(frames->min_cdt, frames->max_cdt) : std::pair(frames->min_bvh, frames->max_bvh);
 }
 
-std::string papers_frames_text(const SceneRun& run, const RowRun& row)
+std::string papers_frames_text(const SceneRun& run, const RowRecord& row)
 {
     if (!paper::has_scene(run.build.scene)) return "not its scene";
     if (is_for_rays(run)) return "not its tets";
@@ -112,7 +112,7 @@ const std::vector<Column>& frame_columns()
 
 std::vector<PaperCell> frame_cells(const SceneRun& run, std::size_t i)
 {
-    const RowRun& row = run.rows[i];
+    const RowRecord& row = run.rows[i];
     const auto figures = figures_of(row);
     const auto cost = cost_of(run, i);
     auto cells = label_cells({run.build.scene, run.build.build}, row);
@@ -186,7 +186,7 @@ bool is_with_best_bvh(const RowPair& pair)
 
 std::vector<PaperCell> pair_cells(const RowPair& pair)
 {
-    const RowRun &cdt = pair.run->rows[pair.cdt], &bvh = pair.run->rows[pair.bvh];
+    const RowRecord &cdt = pair.run->rows[pair.cdt], &bvh = pair.run->rows[pair.bvh];
     return {pair.run->build.scene,
             pair.run->build.build,
             std::string(name_of(cdt.key.kernel.method)),
@@ -206,7 +206,7 @@ std::vector<PaperCell> pair_cells(const RowPair& pair)
 /// "cwbvh opencl:1", or "Embree packet16"; without the device where all have the same one.
 std::string curve_name(const RowPair& pair, bool with_device)
 {
-    const RowRun& bvh = pair.run->rows[pair.bvh];
+    const RowRecord& bvh = pair.run->rows[pair.bvh];
     const std::string_view layout = name_of(bvh.key.kernel.layout);
     std::string name = is_embree(bvh.key.kernel.layout)
                            ? "Embree " + embree_title(name_of(bvh.key.kernel.method), layout)
@@ -281,7 +281,7 @@ std::vector<RowPair> fastest_pairs(const SceneRun& run)
 
 std::optional<RowPair> best_bvh_pair(const SceneRun& run, std::size_t cdt)
 {
-    const Contenders rows = contenders_of(run.rows);
+    const Contenders rows = contenders_of(records_of(run.rows));
     const auto place = std::ranges::find(rows.index, cdt);
     if (place == rows.index.end()) return std::nullopt;
     const auto best = best_bvh(rows.list, static_cast<std::size_t>(place - rows.index.begin()));
@@ -301,7 +301,7 @@ std::vector<RowPair> best_bvh_pairs(const SceneRun& run)
 
 std::string bvh_text(const RowPair& pair)
 {
-    const Contenders rows = contenders_of(pair.run->rows);
+    const Contenders rows = contenders_of(records_of(pair.run->rows));
     const auto place = std::ranges::find(rows.index, pair.bvh);
     return bvh_text(rows.list, static_cast<std::size_t>(place - rows.index.begin()));
 }

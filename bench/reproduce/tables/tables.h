@@ -126,26 +126,6 @@ struct RowPair {
 /// The views (indices) in which a row's rays leave the fewest and the most tets.
 [[nodiscard]] std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row);
 
-/// The default sizes: triangles of banana.
-[[nodiscard]] const std::vector<std::uint32_t>& growth_sizes();
-/// The default views: every 64th of the camera set.
-inline constexpr const char* growth_views = "0-1281:64";
-
-/// A scene in these sizes, ascending and each once. A size is the number of triangles for banana, and of cubes along an
-/// axis for cubes.
-/// request: what is built, except for its size; its name is "banana" or "cubes". build: our_build or rays_build.
-[[nodiscard]] std::vector<SceneBuild> growth_builds(const SceneRequest& request, std::vector<std::uint32_t> sizes,
-                                                    const std::string& build = our_build);
-
-/// The cost of tracing as one scene is refined: one row for each size and row of the run.
-[[nodiscard]] PaperTable growth_table(const SceneRuns& runs);
-
-/// The exponents of fitted power laws in the number of occlusive faces: one row for each build, kernel and device.
-[[nodiscard]] PaperTable growth_exponents(const SceneRuns& runs);
-
-/// Lines over the number of occlusive faces: a ray's time, one figure for each type of device, and what a ray visits.
-[[nodiscard]] std::vector<PaperFigure> growth_figures(const SceneRuns& runs);
-
 /// The searches and their rows as results record them (results/README.md): all data behind table5.
 /// Precondition: the sessions of rows without a failure are open.
 [[nodiscard]] nlohmann::json searches_json(const SearchRun& run);

@@ -1,0 +1,80 @@
+#include "bench/measuring/ray_walks.h"
+
+#include "bench/truth/walk_path.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tetrace {
+
+namespace {
+
+using Path = std::vector<std::uint32_t>;
+
+constexpr std::uint32_t recorded_tets = 200; ///< of a device's walk, which is traced anew for each
+
+TraceJob job_of(const RowRun& row, std::uint32_t view)
+{
+    const auto& numbers = row.scene->view_numbers();
+    const auto index = static_cast<std::size_t>(std::ranges::find(numbers, view) - numbers.begin());
+    return row.scene->job(index, &row.packed->data, row.device);
+}
+
+/// Whether the tets of a ray's walk are listed. BVHs leave none; of given rays 'tetrace trace' lists them.
+bool leaves_tets(const RowRun& row)
+{
+    return row.key.kernel.structure == Structure::cdt && row.key.kernel.task == Task::trace;
+}
+
+/// openmp's walk.
+Path path_of(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    if (row.packed == nullptr || !leaves_tets(row)) return {};
+    KernelId kernel = row.key.kernel;
+    kernel.schedule = Schedule::tiles;
+    return walk_path(row.packed->data, kernel, job_of(row, view), x, y);
+}
+
+/// The device's own walk; empty where the device can no longer trace it.
+Path own_path(const RowRun& row, const DifferingRay& ray)
+{
+    if (row.packed == nullptr || row.session == nullptr || !leaves_tets(row)) return {};
+    try {
+        return walk_path(*row.session, job_of(row, ray.view), ray.x, ray.y, recorded_tets);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
+        return {};
+    }
+}
+
+/// The command that follows the ray on this device and on openmp; empty for kernels that are not ours.
+std::string trace_command(const RowRun& row, std::uint32_t view, std::uint32_t x, std::uint32_t y)
+{
+    if (row.scene == nullptr || row.scene->arguments().empty() || !is_portable(row.key.kernel)) return {};
+    const KernelId& kernel = row.key.kernel;
+    std::string text = fmt::format("tetrace trace {} --view {} --pixel {},{} --method {} --layout {}",
+                                   row.scene->arguments(), view, x, y, name_of(kernel.method), name_of(kernel.layout));
+    if (kernel.math != MathMode::exact) text += fmt::format(" --math {}", name_of(kernel.math));
+    if (row.key.rays != RayKind::primary) text += fmt::format(" --rays {}", name_of(row.key.rays));
+    if (row.key.ray_order != RayOrder::tiles) text += fmt::format(" --ray-order {}", name_of(row.key.ray_order));
+    if (row.key.order != TetOrder::chains) text += fmt::format(" --order {}", name_of(row.key.order));
+    if (kernel.schedule != Schedule::tiles) text += fmt::format(" --schedule {}", name_of(kernel.schedule));
+    text += fmt::format(" --backend {}", row.key.backend);
+    return row.key.device == 0 ? text : text + fmt::format(" --device {}:{}", row.key.backend, row.key.device);
+}
+
+} // namespace
+
+void note_walks(RowRun& row)
+{
+    Traced* const result = std::get_if<Traced>(&row.outcome);
+    if (result == nullptr) return;
+    if (const auto& ray = result->verdicts.first_wrong)
+        result->walk_of_wrong = {
+            path_of(row, ray->view, ray->x, ray->y), {}, trace_command(row, ray->view, ray->x, ray->y)};
+    if (const auto& ray = result->first_different)
+        result->walk_of_different = {path_of(row, ray->view, ray->x, ray->y), own_path(row, *ray),
+                                     trace_command(row, ray->view, ray->x, ray->y)};
+}
+
+} // namespace tetrace
