@@ -7,7 +7,6 @@
 #include "bench/terminal/colour.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
-#include "core/base/printable.h"
 #include "core/base/stopwatch.h"
 #include "core/base/whole_file.h"
 #include "core/isolation/isolated_backend.h"
@@ -220,10 +219,9 @@ benchmark::ConsoleReporter::OutputOptions console_options(const BenchmarkFlags& 
     return static_cast<Console::OutputOptions>(colour | (flags.tabular ? Console::OO_Tabular : Console::OO_None));
 }
 
-std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::ostream& recorded, std::size_t runs)
+std::unique_ptr<RowReporter> make_display(const BenchmarkFlags& flags, std::size_t runs)
 {
     std::vector<std::unique_ptr<benchmark::BenchmarkReporter>> receivers;
-    receivers.push_back(make_reporter("json", recorded));
     if (flags.format) receivers.push_back(make_reporter(*flags.format, std::cout, console_options(flags)));
     return std::make_unique<RowReporter>(std::move(receivers), runs);
 }
@@ -328,9 +326,8 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     sweep.all = static_cast<double>(timed) * result.samples * result.runs;
     for (const RowRun& row : rows)
         if (is_timed(row)) (void)monitors.of(row); // starting one takes a second: not while a GPU waits for its sample
-    std::ostringstream json;
     const std::size_t reports = groups.size() * result.runs;
-    const auto display = make_display(flags, json, reports);
+    const auto display = make_display(flags, reports);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, reports);
     pulses.take();
     for (; sweep.run < result.runs; ++sweep.run) {
@@ -354,8 +351,6 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     require_printed(flags);
     if (file != nullptr) write_whole(flags.out, file->text());
     check_rows_after(rows);
-    // Of names Google Benchmark escapes no control character; the host's is its own.
-    result.google_benchmark = nlohmann::json::parse(printable_text(json.str()));
     result.wall_s = watch.seconds();
     return result;
 }

@@ -7,7 +7,6 @@
 #include "bench/options/benchmark_flags.h"
 #include "bench/rows/row_run.h"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -18,7 +17,6 @@ struct Measurement {
     unsigned samples = 0; ///< per row and run
     unsigned runs = 1;
     bool lowered = false;            ///< fewer than asked for, because of the budget
-    nlohmann::json google_benchmark; ///< its own JSON: context and benchmarks; null where nothing was timed
     double wall_s = 0;
     std::optional<MachineLoad> load; ///< while warming up and timing; empty where the system does not tell
     std::vector<Pulse> pulses;       ///< of the host and of each GPU

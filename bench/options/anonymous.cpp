@@ -102,7 +102,6 @@ std::string anonymous_text(const std::string& text, const Options& options)
 
 nlohmann::json anonymous_json(nlohmann::json result, const Options& options)
 {
-    if (result.is_object() && result.contains("context")) result["context"].erase("host_name");
     make_anonymous(result, options);
     return result;
 }

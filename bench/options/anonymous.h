@@ -11,7 +11,7 @@ namespace tetrace {
 /// with an absolute path, paths that the options name, and paths below the home folder. A home folder becomes "~".
 [[nodiscard]] std::string anonymous_text(const std::string& text, const Options& options);
 
-/// The result with anonymous_text() applied to all its texts, and without Google Benchmark's `context.host_name`.
+/// The result with anonymous_text() applied to all its texts.
 [[nodiscard]] nlohmann::json anonymous_json(nlohmann::json result, const Options& options);
 
 } // namespace tetrace

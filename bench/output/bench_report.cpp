@@ -168,10 +168,7 @@ nlohmann::json bench_json(const BenchResult& result, const Options& options)
         section["rows"].push_back(row_json(facts));
         if (facts.comparison) section["ratios"].push_back(ratio_json(facts));
     }
-    nlohmann::json json = result.measurement.google_benchmark;
-    if (json.is_null()) json = nlohmann::json::object();
-    json["tetrace"] = std::move(section);
-    return json;
+    return {{"tetrace", std::move(section)}};
 }
 
 } // namespace

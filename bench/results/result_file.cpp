@@ -54,7 +54,7 @@ std::string parse_message(const std::string& what)
     return place == std::string::npos ? what : what.substr(place + 2);
 }
 
-nlohmann::json parse(const std::filesystem::path& path, Repetitions repetitions)
+nlohmann::json parse(const std::filesystem::path& path)
 {
     using Event = nlohmann::json::parse_event_t;
     const std::string bytes = read_bytes(path);
@@ -67,8 +67,8 @@ nlohmann::json parse(const std::filesystem::path& path, Repetitions repetitions)
                 reject_file(path, ErrorKind::invalid_input, "it has more than 6,000,000 values, which no result has");
             if (depth > deepest)
                 reject_file(path, ErrorKind::invalid_input, "its values are nested deeper than 64 levels");
-            const bool is_dropped = repetitions == Repetitions::dropped && depth == 1 && event == Event::key &&
-                                    parsed.get_ref<const std::string&>() == "benchmarks";
+            const bool is_key = depth == 1 && event == Event::key;
+            const bool is_dropped = is_key && (parsed == "benchmarks" || parsed == "context");
             return !is_dropped;
         });
     } catch (const nlohmann::json::exception& problem) {
@@ -277,11 +277,11 @@ DeviceKind device_kind_of(const ResultValue& device)
     type.reject(fmt::format("is '{}', and a device is {}", name, fmt::join(enum_names<DeviceKind>, ", ")));
 }
 
-ResultFile read_result(const std::filesystem::path& path, Repetitions repetitions)
+ResultFile read_result(const std::filesystem::path& path)
 {
     ResultFile result;
     result.path = path;
-    result.json = parse(path, repetitions);
+    result.json = parse(path);
     const auto section = ResultValue(result.json, path.string()).find("tetrace");
     if (!section)
         reject_file(path, ErrorKind::invalid_input,

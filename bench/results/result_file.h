@@ -82,15 +82,11 @@ struct ResultFile {
 /// The kind of a device, from a device of a result. Throws Error{invalid_input} where its "type" names none.
 [[nodiscard]] DeviceKind device_kind_of(const ResultValue& device);
 
-/// What becomes of Google Benchmark's own repetitions, three quarters of a result of bench: their samples are in the
-/// section `tetrace` again.
-enum class Repetitions { dropped, kept };
-
 /// Reads a result as results/README.md states it, of any verb and of schema versions 1 and 2, which agree on all that
-/// ResultFile's members hold.
+/// ResultFile's members hold. Google Benchmark's own part, which older results of bench have besides, is left out.
 /// Throws Error{missing} for a missing file; Error{invalid_input} naming file and key for one that cannot be
 /// read, exceeds 64 MiB, 6,000,000 values or 64 levels, is no JSON, no result, of another schema version, lacks a key
 /// or has one of another type.
-[[nodiscard]] ResultFile read_result(const std::filesystem::path& path, Repetitions repetitions = Repetitions::dropped);
+[[nodiscard]] ResultFile read_result(const std::filesystem::path& path);
 
 } // namespace tetrace

@@ -61,7 +61,7 @@ int show_command(const Options& options)
 {
     if (options.out) check_not_an_input(*options.out, options.files);
     check_output(options);
-    deliver(options, shown(read_result(options.files.at(0), Repetitions::kept), options));
+    deliver(options, shown(read_result(options.files.at(0)), options));
     return 0;
 }
 

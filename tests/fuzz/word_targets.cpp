@@ -39,7 +39,7 @@ void read_options(std::string_view bytes)
 void read_result_file(std::string_view bytes)
 {
     const MemoryFile file(bytes);
-    may_refuse([&] { (void)result_text(read_result(file.path(), Repetitions::kept).json); });
+    may_refuse([&] { (void)result_text(read_result(file.path()).json); });
     may_refuse([&] { (void)read_result(file.path()); });
 }
 

@@ -228,7 +228,6 @@ TEST_F(Measure, rows_on_gpus_are_interleaved_with_each_other_alone)
         EXPECT_TRUE(row == 0 ? std::ranges::is_sorted(samples) : std::ranges::is_sorted(samples, std::greater<>()));
     }
     const Measurement measured = measure_rows(rows_, options_, read_benchmark_flags({}));
-    EXPECT_GE(measured.google_benchmark.at("benchmarks").size(), 2u * 30) << "one report";
 }
 
 TEST_F(Measure, a_sample_is_taken_again_while_its_gpu_is_throttled)
