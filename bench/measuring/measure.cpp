@@ -5,6 +5,7 @@
 #include "bench/rows/physical_device.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/terminal/colour.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
@@ -137,6 +138,7 @@ TimedPart warm_up_rows(std::vector<RowRun>& rows, unsigned samples, const Sample
 {
     double done = 0;
     for (RowRun& row : rows) {
+        if (is_interrupted()) break;
         budget.review_timed();
         const auto tell = [&](double part) {
             progress_line().show("warming up", (done + part) / static_cast<double>(rows.size()), -1,
@@ -185,6 +187,10 @@ double take_sample(RowRun& row, const Sweep& sweep)
 void run_row(benchmark::State& state, RowRun& row, Sweep& sweep)
 {
     for ([[maybe_unused]] const auto iteration : state) {
+        if (is_interrupted()) {
+            state.SkipWithError("interrupted");
+            return;
+        }
         double seconds = 0;
         if (traced(row) != nullptr) guarded(row, [&] { seconds = take_sample(row, sweep); });
         if (traced(row) == nullptr) {
@@ -287,6 +293,7 @@ void count_samples(RowRun& row)
 
 void check_rows_after(std::vector<RowRun>& rows)
 {
+    if (is_interrupted()) return;
     for (RowRun& row : rows)
         if (is_timed(row))
             guarded(row, [&] {
@@ -313,6 +320,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     join_views_of(rows);
     result.runs = options.runs;
     const TimedPart part = warm_up_rows(rows, options.samples, sampler, budget);
+    if (is_interrupted()) return result;
     const double for_samples_s = budget.left_s() - result.runs * part.latency_s - (result.runs - 1) * part.sweep_s;
     result.samples =
         flags.repetitions.value_or(affordable_samples(options.samples, result.runs * part.sweep_s, for_samples_s));
@@ -330,7 +338,7 @@ Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, cons
     const auto display = make_display(flags, reports);
     const auto file = flags.out.empty() ? nullptr : std::make_unique<FileReporter>(flags.out_format, reports);
     pulses.take();
-    for (; sweep.run < result.runs; ++sweep.run) {
+    for (; sweep.run < result.runs && !is_interrupted(); ++sweep.run) {
         if (sweep.run > 0) {
             reopen_rows(rows, options);
             static_cast<void>(warm_up_rows(rows, options.samples, sampler, budget));

@@ -16,7 +16,7 @@ namespace tetrace {
 struct Measurement {
     unsigned samples = 0; ///< per row and run
     unsigned runs = 1;
-    bool lowered = false;            ///< fewer than asked for, because of the budget
+    bool lowered = false; ///< fewer than asked for, because of the budget
     double wall_s = 0;
     std::optional<MachineLoad> load; ///< while warming up and timing; empty where the system does not tell
     std::vector<Pulse> pulses;       ///< of the host and of each GPU
@@ -34,8 +34,9 @@ struct Measurement {
 /// end with their reason, and so do rows for which the budget has no time. GPUs are asked for their clocks, power and
 /// throttling during each sample (see Sampler). Meanwhile the pulse is taken, and rows learn what it says of their
 /// rates. Writes the file of --benchmark_out. With options.runs above 1 all of it is done that often, each time with
-/// new sessions. host: its pulse; openmp::pulse_s() where it is empty. find_monitor: of a row's GPU. Throws
-/// Error{invalid_input} where that file, or what Google Benchmark prints, cannot be written.
+/// new sessions. After an interrupt, rows keep the samples that they have. host: its pulse; openmp::pulse_s() where it
+/// is empty. find_monitor: of a row's GPU. Throws Error{invalid_input} where that file, or what Google Benchmark
+/// prints, cannot be written.
 [[nodiscard]] Measurement measure_rows(std::vector<RowRun>& rows, const Options& options, const BenchmarkFlags& flags,
                                        Budget& budget = no_budget(), const Pulses::Work& host = {},
                                        const FindMonitor& find_monitor = find_gpu_monitor);

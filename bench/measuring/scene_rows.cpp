@@ -1,5 +1,6 @@
 #include "bench/measuring/scene_rows.h"
 
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 
 #include <algorithm>
@@ -29,6 +30,7 @@ void open_rows(SceneRows& result, const std::vector<RowKey>& keys, const SceneRe
         for (const RowKey& key : keys) {
             const double done = static_cast<double>(&key - keys.data()) / static_cast<double>(keys.size());
             progress_line().show("opening " + scene->label(), done, -1, row_label(key));
+            if (is_interrupted()) throw Error(ErrorKind::interrupted, "interrupted before any row had an answer");
             result.rows.push_back(open_row(key, *scene, options));
         }
         result.scenes.push_back(std::move(scene));

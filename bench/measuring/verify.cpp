@@ -2,6 +2,7 @@
 
 #include "bench/measuring/visits.h"
 #include "bench/rows/row_tracing.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/truth/given_oracle.h"
 #include "core/base/hash.h"
@@ -287,6 +288,31 @@ void verify_again(Verifier& verifier, RowRun& row)
 
 } // namespace
 
+namespace {
+
+std::vector<Outcome> outcomes_of(const std::vector<RowRun*>& rows)
+{
+    std::vector<Outcome> outcomes;
+    for (const RowRun* row : rows)
+        outcomes.push_back(row->outcome);
+    return outcomes;
+}
+
+/// Of an interrupted run: rows lose what they have of this view, and if it is the first, they have no answer.
+void end_before_view(const std::vector<RowRun*>& rows, const std::vector<Outcome>& before, SceneWork& scene,
+                     std::size_t view)
+{
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (traced(*rows[i]) == nullptr) continue;
+        rows[i]->outcome = before[i];
+        if (view == 0) end_interrupted(*rows[i]);
+    }
+    if (view > 0) scene.keep_first_views(view);
+    progress_line().clear();
+}
+
+} // namespace
+
 Allowance allowance_of(const RowRun& row)
 {
     const std::uint32_t ulps = row.self_test ? row.self_test->allowed_ulps() : 0;
@@ -306,7 +332,12 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
     for (std::size_t view = 0; view < views; ++view) {
         const double start_s = budget.now();
         double traced_s = 0;
+        const std::vector<Outcome> before = outcomes_of(rows);
         for (RowRun* row : rows) {
+            if (is_interrupted()) {
+                end_before_view(rows, before, scene, view);
+                return;
+            }
             progress_line().show(stage, done / static_cast<double>(views * rows.size()), -1,
                                  fmt::format("{}, view {} of {}", row_label(row->key), view + 1, views));
             done += 1;
@@ -320,10 +351,11 @@ void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Optio
             budget.review();
         }
         budget.judged(scene, budget.now() - start_s - traced_s);
+        something_to_keep();
     }
     for (RowRun* row : rows) {
         progress_line().show(stage, 1, -1, row_label(row->key) + ", again");
-        if (row->session == nullptr) continue;
+        if (row->session == nullptr || is_interrupted()) continue;
         const double start_s = budget.now();
         guarded(*row, [&] {
             verify_again(verifier, *row);

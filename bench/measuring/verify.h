@@ -51,6 +51,7 @@ private:
 /// Traces every view of a scene once with each of its rows, and judges each ray by two questions: does the device
 /// return what openmp returns (our kernels, exact mode), and is the method right (the oracle)? Then traces the first
 /// view again: its hits must be the same. Rows that cannot be traced end with their reason.
+/// After an interrupt, rows and scene keep the views that all rows have completed.
 /// rows: all of one scene, opened. budget: gets the time of each step, and may skip rows.
 void verify_rows(const std::vector<RowRun*>& rows, SceneWork& scene, const Options& options,
                  const ImageSeen& image_seen = {}, Budget& budget = no_budget());

@@ -129,6 +129,7 @@ Sheet closing_lines(const BenchResult& result)
         sheet.labelled("Rates", fmt::format(fmt::runtime(rate_columns), interval_meaning(result.measurement.runs)));
         sheet.labelled("Times", time_columns);
     }
+    if (result.interrupted) sheet.labelled("Stopped", interrupted_sentence);
     for (const auto& sentences : {result.missing_devices, result.missing_scenes})
         for (const std::string& sentence : sentences)
             sheet.labelled("Missing", sentence);

@@ -22,6 +22,7 @@ struct BenchResult {
     unsigned threads = 0;
     unsigned samples_asked = 0; ///< a row; known, as the next one is, where fewer were taken
     double budget_s = 0;
+    bool interrupted = false;
 };
 
 /// Whether any row has a rate.

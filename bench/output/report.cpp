@@ -5,6 +5,7 @@
 #include "bench/results/result_file.h"
 #include "bench/results/result_text.h"
 #include "bench/terminal/colour.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
@@ -148,6 +149,7 @@ nlohmann::json result_head(const Options& options)
         head["shard"] = {{"number", shard.number}, {"of", shard.of}, {"arguments", options.arguments}};
         if (!options.job.empty()) head["shard"]["job"] = options.job;
     }
+    if (is_interrupted()) head["interrupted"] = true;
     if (options.packet_lanes != 0) head["packet_lanes"] = options.packet_lanes;
     return head;
 }

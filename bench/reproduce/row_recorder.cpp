@@ -3,6 +3,7 @@
 #include "bench/measuring/sampling/sampler.h"
 #include "bench/rows/row_tracing.h"
 #include "bench/rows/rows.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 
 #include <algorithm>
@@ -108,12 +109,14 @@ void RowRecorder::run(std::size_t parts, const std::string& name, Journal* journ
     if (is_merged() && part < parts) reject_journal(fmt::format("{}: {} parts of {}", stage, part, parts));
     for (; part < parts; ++part) {
         progress.show(stage);
-        const json entry = run_part(part, part + 1 == parts);
-        if (journal != nullptr) journal->append(entry);
+        const auto entry = run_part(part, part + 1 == parts);
+        if (!entry) break;
+        something_to_keep();
+        if (journal != nullptr) journal->append(*entry);
         progress.done += 1;
         progress.here += 1;
     }
-    if (!is_merged()) repeat_first_part();
+    if (!is_merged() && part == parts) repeat_first_part();
     for (std::size_t i = 0; i < run_->rows.size(); ++i)
         sum_up(run_->rows[i], run_->images[i]);
     progress_line().clear();
@@ -137,14 +140,28 @@ void RowRecorder::take_pulse_if_due()
     if (watch_ != nullptr) watch_->pulses().take_if_due();
 }
 
+void RowRecorder::end_before_part(std::size_t part, const std::vector<Outcome>& before)
+{
+    for (std::size_t i = 0; i < run_->rows.size(); ++i) {
+        RowRun& row = run_->rows[i];
+        if (traced(row) == nullptr) continue;
+        row.outcome = before[i];
+        if (part == 0) end_interrupted(row);
+    }
+    if (part > 0) keep_first_parts(part);
+}
+
 /// The journal's entry of the part.
-json RowRecorder::run_part(std::size_t part, bool is_last)
+std::optional<json> RowRecorder::run_part(std::size_t part, bool is_last)
 {
     const Stopwatch watch;
+    std::vector<Outcome> before;
+    for (const RowRun& row : run_->rows)
+        before.push_back(row.outcome);
     records_.assign(run_->rows.size(), {});
     begun_.clear();
     for (std::size_t i = 0; i < run_->rows.size(); ++i)
-        if (run_->rows[i].session != nullptr) {
+        if (run_->rows[i].session != nullptr && !is_interrupted()) {
             begun_.push_back(i);
             guarded(run_->rows[i], [&] {
                 records_[i] = examine(i, part);
@@ -152,7 +169,11 @@ json RowRecorder::run_part(std::size_t part, bool is_last)
                 std::get<Traced>(run_->rows[i].outcome).add(records_[i].verdict);
             });
         }
-    if (samples_ > 0) time_rows(part);
+    if (samples_ > 0 && !is_interrupted()) time_rows(part);
+    if (is_interrupted()) {
+        end_before_part(part, before);
+        return std::nullopt;
+    }
     json entry = head_of(part);
     entry["rows"] = json::object();
     for (const std::size_t i : begun_) {
@@ -188,7 +209,7 @@ void RowRecorder::time_group(const std::vector<RowRun*>& group, std::size_t part
         row.readings.reset(); // the part before had its own
         sampler.warmed_up(row, timed_launch(*row.session, job_of(row, part)).kernel_s);
     });
-    for (unsigned sample = 0; sample < samples_; ++sample) {
+    for (unsigned sample = 0; sample < samples_ && !is_interrupted(); ++sample) {
         take_pulse_if_due();
         for_timed_rows([&](RowRun& row) { take_sample(row, part, sampler); });
     }

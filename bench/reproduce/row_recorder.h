@@ -6,6 +6,7 @@
 #include "bench/statistics/interval.h"
 #include "core/base/stopwatch.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,12 +77,16 @@ private:
     [[nodiscard]] virtual bool can_repeat_first_job() const = 0;
     /// Does the part once and judges every answer; leaves samples empty.
     [[nodiscard]] virtual ImageRecord examine(std::size_t row, std::size_t part) = 0;
+    /// Called once if the run is interrupted: only the first parts are complete.
+    virtual void keep_first_parts(std::size_t parts) = 0;
     /// Hash of the answers to the last launch, as ImageVerdict::hit_hash.
     [[nodiscard]] virtual std::uint64_t hash_of_answers(RowRun& row, std::size_t part) = 0;
 
     void watch_rows(const std::string& name);
     void take_pulse_if_due();
-    [[nodiscard]] nlohmann::json run_part(std::size_t part, bool is_last);
+    /// Empty if it was interrupted: the rows are as before the part.
+    [[nodiscard]] std::optional<nlohmann::json> run_part(std::size_t part, bool is_last);
+    void end_before_part(std::size_t part, const std::vector<Outcome>& before);
     void time_rows(std::size_t part);
     void time_group(const std::vector<RowRun*>& group, std::size_t part, const Sampler& sampler);
     void take_sample(RowRun& row, std::size_t part, const Sampler& sampler);

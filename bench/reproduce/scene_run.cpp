@@ -70,6 +70,12 @@ private:
         return record;
     }
 
+    void keep_first_parts(std::size_t parts) override
+    {
+        run_->scene->keep_first_views(parts);
+        run_->sampling = Sampling::chosen;
+    }
+
     [[nodiscard]] std::uint64_t hash_of_answers(RowRun& row, std::size_t) override
     {
         hits_.assign(run_->scene->rays_per_view(), Hit{POISON, POISON, 0, 0, 0, 0});

@@ -111,6 +111,12 @@ private:
         return loaded_ && tets_of(*loaded_) == tets_of(run_->shard.part(0));
     }
 
+    void keep_first_parts(std::size_t parts) override
+    {
+        run_->batches_done = static_cast<std::uint32_t>(parts);
+        run_->sampling = Sampling::chosen;
+    }
+
     [[nodiscard]] ImageRecord examine(std::size_t i, std::size_t part) override
     {
         RowRun& row = run_->rows[i];

@@ -3,16 +3,18 @@
 #include "bench/reproduce/row_recorder.h"
 
 #include <map>
+#include <optional>
 
 namespace tetrace {
 
 /// Exit searches alone: random tets, random rays that stab each (core/rays/search_set.h), in batches of whole tets.
 struct SearchRun : RecordedRows {
     SearchSize size;
-    std::uint32_t batch_tets = 0;  ///< of each batch; the last may have fewer
-    Shard shard;                   ///< the batches that are done
-    unsigned threads = 1;          ///< host threads of rows whose key gives none
-    std::map<Layout, Packed> tets; ///< the data that sessions work on
+    std::uint32_t batch_tets = 0; ///< of each batch; the last may have fewer
+    Shard shard;                  ///< the batches that are done, the first ones if the run is interrupted
+    std::optional<std::uint32_t> batches_done = {}; ///< of an interrupted run
+    unsigned threads = 1;                           ///< host threads of rows whose key gives none
+    std::map<Layout, Packed> tets;                  ///< the data that sessions work on
 };
 
 /// Whether this is the row that the others' faces are compared with: openmp on one thread.

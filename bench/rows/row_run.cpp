@@ -108,6 +108,13 @@ void note_compiling(RowRun& row)
     row.setup.upload_s = times.upload_s;
 }
 
+void end_interrupted(RowRun& row)
+{
+    row.outcome = Skipped{Status::skipped, "the run was interrupted before the row had an answer"};
+    row.session.reset();
+    row.setup = {};
+}
+
 void guarded(RowRun& row, const std::function<void()>& work)
 {
     try {

@@ -61,6 +61,13 @@ const BuiltBvh& SceneWork::bvh()
     return *bvh_;
 }
 
+void SceneWork::keep_first_views(std::size_t count)
+{
+    view_numbers_.resize(count);
+    views_.resize(count);
+    start_tets_.resize(count);
+}
+
 std::uint64_t SceneWork::entering(RayKind kind, RayOrder order, std::size_t view)
 {
     const auto [entry, is_new] = entering_.try_emplace({kind, view});

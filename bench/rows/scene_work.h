@@ -57,6 +57,9 @@ public:
     /// The given rays, for rows of other kinds than primary.
     [[nodiscard]] RayStore& given_rays() { return given_rays_; }
 
+    /// Forgets all views but the first ones: an interrupted run ends with those that it has completed.
+    void keep_first_views(std::size_t count);
+
     /// The number of a view's rays of a kind that enter the domain, counted at the first call. order: of given rays.
     [[nodiscard]] std::uint64_t entering(RayKind kind, RayOrder order, std::size_t view);
 

@@ -4,6 +4,7 @@
 #include "bench/output/bench_report.h"
 #include "bench/output/check_differences.h"
 #include "bench/output/check_matrix.h"
+#include "bench/output/report.h"
 
 #include <fmt/format.h>
 #include <set>
@@ -69,6 +70,7 @@ Sheet check_sheet(const CheckFindings& found)
     for (const std::string& sentence : inexact_devices(rows))
         sheet.line(sentence);
     sheet.labelled("Verified", verdict_sentence(rows));
+    if (found.interrupted) sheet.labelled("Stopped", interrupted_sentence);
     for (const std::string& sentence : found.missing)
         sheet.labelled("Missing", sentence);
     return sheet;

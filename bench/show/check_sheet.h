@@ -14,6 +14,7 @@ struct CheckFindings {
     const std::vector<RowRecord>* rows = nullptr;
     std::vector<nlohmann::json> scenes; ///< as results record them
     std::vector<std::string> missing;   ///< devices, a sentence each
+    bool interrupted = false;
 };
 
 /// What a row's fields are read from, its conformity included.

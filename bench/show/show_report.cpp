@@ -84,6 +84,7 @@ RunAgain bench_again(const ResultFile& file)
     result.scenes = scenes_of(section);
     result.missing_scenes = sentences_at(section, "missing_scenes");
     result.missing_devices = sentences_at(section, "missing_devices");
+    result.interrupted = section.find("interrupted").has_value();
     result.threads = small_count(section.at("threads"));
     if (const auto runs = section.find("runs")) result.measurement.runs = std::max(1u, small_count(*runs));
     result.measurement.samples = small_count(section.at("samples_a_row")) / result.measurement.runs;
@@ -105,7 +106,8 @@ RunAgain check_again(const ResultFile& file)
 {
     const ResultValue section = file.section();
     const std::vector<RowRecord> rows = read_rows(file);
-    Sheet sheet = check_sheet({&rows, scenes_of(section), sentences_at(section, "missing_devices")});
+    Sheet sheet = check_sheet(
+        {&rows, scenes_of(section), sentences_at(section, "missing_devices"), section.find("interrupted").has_value()});
     return {std::move(sheet), check_table(rows)};
 }
 

@@ -2,6 +2,7 @@
 #include "bench/merging/shard_results.h"
 #include "bench/merging/view_journal.h"
 #include "bench/output/bench_tables.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/error.h"
@@ -43,7 +44,8 @@ BenchResult run_bench(const std::vector<RowKey>& keys, const Options& options, c
     result.measurement = measure_rows(run.rows, options, flags, budget);
     result.rows = records_of(run.rows);
     result.devices = devices_of(result.rows);
-    measure_devices(result.devices, session_options(options));
+    result.interrupted = is_interrupted();
+    if (!result.interrupted) measure_devices(result.devices, session_options(options));
     result.comparisons = compare_rows(result.rows);
     result.best_bvhs = compare_with_best_bvh(result.rows);
     result.missing_devices = missing_devices(options);
@@ -65,6 +67,7 @@ int bench_command(const Options& options)
         selected_rows(options, [&](const std::string& name) { return benchmark_filter_keeps(flags.filter, name); });
     if (options.list || flags.list_tests) return list_rows(keys);
     check_output(options);
+    const StopWhenInterrupted stop;
     check_columns(options, bench_columns());
     if (!flags.out.empty()) check_writable("--benchmark_out", flags.out);
     ViewJournal journal(options);
@@ -76,6 +79,7 @@ int bench_command(const Options& options)
         deliver(options, report);
     else if (options.out)
         deliver_to_file(options, report);
+    if (result.interrupted) return exit_code(ErrorKind::interrupted);
     require_answers(result.rows, "measured");
     return exit_code(result.rows, true);
 }

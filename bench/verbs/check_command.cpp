@@ -9,6 +9,7 @@
 #include "bench/output/report.h"
 #include "bench/output/row_json.h"
 #include "bench/show/check_sheet.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "core/base/whole_file.h"
@@ -48,7 +49,7 @@ nlohmann::json check_json(const Checked& checked, const Options& options)
 Report check_report(const Checked& checked, const Options& options)
 {
     const auto& rows = checked.rows;
-    Report report{check_sheet({&rows, checked.scenes, checked.missing}), check_table(rows),
+    Report report{check_sheet({&rows, checked.scenes, checked.missing, is_interrupted()}), check_table(rows),
                   check_json(checked, options)};
     report.markdown = report.sheet.markdown({.columns = options.columns});
     if (checked.pictures != nullptr)
@@ -110,6 +111,7 @@ int check(const Options& options, Checked& checked)
         deliver(options, check_report(checked, options));
     else if (options.out)
         deliver_to_file(options, check_report(checked, options));
+    if (is_interrupted()) return exit_code(ErrorKind::interrupted);
     require_judged(rows, options.required);
     require_answers(rows, "checked");
     if (std::ranges::any_of(rows, [&](const RowRecord& row) { return fails_check(row, options); })) return 1;
@@ -162,6 +164,7 @@ int check_command(const Options& asked)
     if (options.defects) return check_defects(options);
     check_output(options);
     if (options.junit && !on_standard_output(options.junit)) check_writable("--junit", *options.junit);
+    const StopWhenInterrupted stop;
     Checked checked;
     int code = 0;
     try {

@@ -3,6 +3,7 @@
 #include "bench/reproduce/yardsticks.h"
 #include "bench/rivals/rival_run.h"
 #include "bench/rivals/rival_tables.h"
+#include "bench/terminal/interrupts.h"
 #include "bench/terminal/progress.h"
 #include "bench/verbs/commands.h"
 #include "bench/verbs/reproduction.h"
@@ -41,7 +42,7 @@ std::size_t parts_of(const std::vector<SceneBuild>& builds, const Options& optio
 void add_devices(Reproduction& all, const RecordedRows& run, const Options& options, Yardsticks& yardsticks)
 {
     auto devices = devices_of(records_of(run.rows));
-    yardsticks.measure(devices, session_options(options)); // at the first call
+    if (!is_interrupted()) yardsticks.measure(devices, session_options(options)); // at the first call
     if (devices.size() > all.devices.size()) all.devices = std::move(devices);
 }
 
@@ -168,10 +169,12 @@ int reproduce_rivals(const Options& asked)
     const Options options = rival_options(asked, missing);
     for (const std::string& sentence : missing)
         say(sentence);
+    const StopWhenInterrupted stop;
     BenchResult result = run_bench(rival_rows(options), options, read_benchmark_flags({}));
     result.missing_scenes = missing;
     const auto tables = rival_tables(result.rows, contest_scenes(result.scenes), left_out(options));
     deliver(options, rival_report(result, tables, options));
+    if (result.interrupted) return exit_code(ErrorKind::interrupted);
     require_answers(result.rows, "measured");
     return exit_code(result.rows, true);
 }
@@ -194,12 +197,17 @@ int reproduce_command(const Options& asked)
     for (const std::string& sentence : all.missing_scenes)
         say(sentence);
     all.progress.all = parts_of(builds, options);
+    const StopWhenInterrupted stop;
     for (const SceneBuild& build : builds)
-        run_scene(all, build, options, keeping);
-    if (searches) run_all_searches(all, options, keeping);
+        if (!is_interrupted()) run_scene(all, build, options, keeping);
+    if (searches && !is_interrupted()) run_all_searches(all, options, keeping);
     judge_steadiness(all, keeping.watch);
     make_tables(all, options);
     deliver(options, reproduction_report(all, options));
+    if (is_interrupted()) {
+        if (const std::string words = words_when_interrupted(); !words.empty()) say(words);
+        return exit_code(ErrorKind::interrupted);
+    }
     if (keeping.journal != nullptr) keeping.journal->finish();
     say_when_interrupted({});
     require_any_answer(all);

@@ -3,6 +3,7 @@
 #include "bench/measuring/scene_records.h"
 #include "bench/output/device_json.h"
 #include "bench/reproduce/tables/recorded_tables.h"
+#include "bench/terminal/interrupts.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -150,7 +151,8 @@ Report rival_report(const BenchResult& result, const std::vector<PaperTable>& ta
                              {},
                              result.missing_scenes,
                              result.missing_devices,
-                             is_timed(result) ? trust_text(steadiness) : std::string()};
+                             is_timed(result) ? trust_text(steadiness) : std::string(),
+                             result.interrupted};
     Report report{tables_sheet(all), tidy_table(tables, {}), bench_report(result, options).json, tables_markdown(all)};
     for (const PaperTable& table : tables)
         report.json["tetrace"]["tables"].push_back(table_json(table));
@@ -160,7 +162,8 @@ Report rival_report(const BenchResult& result, const std::vector<PaperTable>& ta
 
 Report reproduction_report(const Reproduction& all, const Options& options)
 {
-    const PaperTables shown = {all.tables, all.figures, all.missing_scenes, all.missing_devices, trust_of(all)};
+    const PaperTables shown = {all.tables,          all.figures,   all.missing_scenes,
+                               all.missing_devices, trust_of(all), is_interrupted()};
     Report report{tables_sheet(shown), tidy_table(all.tables, all.figures), reproduction_json(all, options),
                   tables_markdown(shown)};
     if (options.out) report.sheet.labelled("Result", options.out->string());

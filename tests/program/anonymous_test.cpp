@@ -102,8 +102,10 @@ TEST_F(AnonymousProgram, results_hold_neither_the_hosts_name_nor_a_folder)
 TEST_F(AnonymousProgram, google_benchmark_names_the_host_unless_told_otherwise)
 {
     if (!can_name_a_host()) GTEST_SKIP() << "this system lets nobody name a host: 'unshare -u' is not permitted";
-    ASSERT_EQ(run_on_host("secrethost", std::string("bench --samples 3 --sample-time 0 --benchmark_out=named.json ") + tiny).code,
-              0);
+    ASSERT_EQ(
+        run_on_host("secrethost", std::string("bench --samples 3 --sample-time 0 --benchmark_out=named.json ") + tiny)
+            .code,
+        0);
     EXPECT_TRUE(contains(file("named.json"), "secrethost")) << "so the other test can fail";
 }
 

@@ -2,6 +2,7 @@
 
 #include "tests/support/program_fixture.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,8 +17,8 @@ namespace tetrace::test {
 class ReproduceTest : public testing::Test {
 protected:
     /// Starts it; its process. A sample is a pass unless a time is given. killed_at: the line of its journal after
-    /// which it is killed; 0: none.
-    [[nodiscard]] pid_t start(const std::string& arguments, std::size_t killed_at = 0) const
+    /// which it is killed, or sent another signal; 0: none.
+    [[nodiscard]] pid_t start(const std::string& arguments, std::size_t killed_at = 0, int signal = SIGKILL) const
     {
         const bool names_backends = arguments.find("--backend") != std::string::npos;
         const bool names_time = arguments.find("--sample-time") != std::string::npos;
@@ -36,6 +37,7 @@ protected:
         if (killed_at > 0) {
             ::setenv("LD_PRELOAD", TETRACE_KILLING_SYNC, 1);
             ::setenv("TETRACE_KILLED_AT_SYNC", std::to_string(killed_at).c_str(), 1);
+            ::setenv("TETRACE_SYNC_SIGNAL", std::to_string(signal).c_str(), 1);
         }
         if (::chdir(folder_.path().c_str()) != 0) ::_exit(126);
         ::dup2(::open("stdout", O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);

@@ -33,7 +33,7 @@ protected:
             ::usleep(1000);
         ::kill(child, SIGINT);
         const Ended ended = end(child);
-        EXPECT_EQ(ended.code, -1) << "the signal ends it";
+        EXPECT_EQ(ended.code, journal == nullptr ? -1 : 130) << "the signal ends it, if it has nothing to keep";
         return ended.errors;
     }
 };
@@ -91,6 +91,26 @@ TEST_F(Resume, ctrl_c_says_how_to_go_on_or_to_begin_again)
     const std::string resumed = interrupted("table4 --size 96 --views 0-1281 --out r.json", "r.json.journal");
     EXPECT_TRUE(contains(resumed, "what is finished is in 'r.json.journal'; to go on: tetrace reproduce")) << resumed;
     EXPECT_TRUE(contains(resumed, " --threads 1 --resume")) << resumed;
+}
+
+TEST_F(Resume, a_run_that_is_interrupted_keeps_the_views_that_it_has_and_goes_on_to_the_whole_result)
+{
+    const std::string command = "table4 --method maria --layout tet80 --size 16 --views 0-1281:100 ";
+    ASSERT_EQ(run(command + "--out whole.json").code, 0);
+    const Ended ended = end(start(command + "--out r.json", 6, SIGTERM));
+    EXPECT_EQ(ended.code, 130) << ended.errors;
+    EXPECT_TRUE(contains(ended.out, "Stopped   by a signal")) << ended.out;
+    EXPECT_TRUE(contains(ended.errors, "--resume")) << ended.errors;
+    const json part = result("r.json"), whole = result("whole.json");
+    EXPECT_EQ(part.at("interrupted"), true);
+    const std::size_t views = part.at("scenes").at(0).at("views").size();
+    EXPECT_GT(views, 0u);
+    EXPECT_LT(views, 13u);
+    EXPECT_EQ(part.at("rows").at(0).at("counts").at("rays"), views * 16 * 16);
+    EXPECT_EQ(part.at("rows").at(0).at("status"), "ok");
+    ASSERT_EQ(run(command + "--out r.json --resume").code, 0);
+    EXPECT_FALSE(result("r.json").contains("interrupted"));
+    EXPECT_EQ(result("r.json").at("rows").at(0).at("hit_hash"), whole.at("rows").at(0).at("hit_hash"));
 }
 
 TEST_F(Resume, a_damaged_yardstick_in_the_journal_is_refused)

@@ -1,6 +1,8 @@
 #include "bench/measuring/figures.h"
 #include "bench/measuring/measure.h"
+
 #include "bench/measuring/verify.h"
+#include "bench/terminal/interrupts.h"
 #include "tests/rows/throttled_at.h"
 #include "tests/rows/timed_session.h"
 #include "tests/support/row_runs.h"
@@ -111,6 +113,26 @@ bool first_row_ends_before_the_second_starts(const std::vector<std::size_t>& lau
 }
 
 } // namespace
+
+TEST_F(Measure, an_interrupt_leaves_rows_the_samples_that_they_have)
+{
+    options_.runs = 2;
+    const Pulses::Work interrupts_at_the_third = [taken = 0]() mutable {
+        if (++taken == 3) interrupt();
+        return std::optional(0.01);
+    };
+    double now_s = 0; // the pulse is due before each sample
+    Budget hours(1e9, [&] { return now_s += 3; });
+    const Measurement measured =
+        measure_rows(rows_, options_, read_benchmark_flags({}), hours, interrupts_at_the_third);
+    forget_interrupt();
+    EXPECT_EQ(measured.samples, 30u) << "asked for";
+    const std::size_t taken = rows_[0].samples_s.size() + rows_[1].samples_s.size();
+    EXPECT_GT(taken, 0u);
+    EXPECT_LT(taken, 10u);
+    for (const RowRun& row : rows_)
+        EXPECT_EQ(status_of(row), Status::ok) << reason_of(row);
+}
 
 TEST_F(Measure, every_row_has_its_samples_each_of_all_views)
 {

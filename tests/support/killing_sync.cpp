@@ -1,4 +1,5 @@
-// For LD_PRELOAD: kills the process at the end of its fdatasync() of the number TETRACE_KILLED_AT_SYNC. The journal is
+// For LD_PRELOAD: kills the process at the end of its fdatasync() of the number TETRACE_KILLED_AT_SYNC, or sends it the
+// signal of the number TETRACE_SYNC_SIGNAL in place of SIGKILL. The journal is
 // all that tetrace writes so, an entry a call, so that a run is killed with that many lines, however busy the machine.
 #include <csignal>
 #include <cstdlib>
@@ -10,6 +11,7 @@ extern "C" int fdatasync(int file)
     static int left =
         std::getenv("TETRACE_KILLED_AT_SYNC") == nullptr ? 0 : std::atoi(std::getenv("TETRACE_KILLED_AT_SYNC"));
     const long result = ::syscall(SYS_fdatasync, file);
-    if (left > 0 && --left == 0) ::kill(::getpid(), SIGKILL);
+    const char* const number = std::getenv("TETRACE_SYNC_SIGNAL");
+    if (left > 0 && --left == 0) ::kill(::getpid(), number != nullptr ? std::atoi(number) : SIGKILL);
     return static_cast<int>(result);
 }

@@ -5,6 +5,7 @@
 #include "bench/output/check_differences.h"
 #include "bench/output/difference_pictures.h"
 #include "bench/rows/ray_store.h"
+#include "bench/terminal/interrupts.h"
 #include "tests/support/row_runs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wrapped_session.h"
@@ -98,6 +99,27 @@ TEST_F(Verify, right_answers_are_ok_and_counted)
     EXPECT_FALSE(traced(row)->compared);
     EXPECT_GT(traced(row)->totals.hits, 0u);
     EXPECT_GT(traced(row)->totals.misses, 0u);
+}
+
+TEST_F(Verify, an_interrupt_keeps_the_views_that_all_rows_have)
+{
+    for (const std::size_t completed : {std::size_t{1}, std::size_t{0}}) {
+        SceneWork scene{loaded_cubes(6), options_};
+        RowRun first = open_row({"cubes", "openmp", {}}, scene, options_),
+               second = open_row({"cubes", "openmp", {}}, scene, options_);
+        const auto interrupts = [&](const SeenImage& image) {
+            if (image.view == completed && &image.row == &first) interrupt();
+        };
+        verify_rows({&first, &second}, scene, options_, interrupts);
+        forget_interrupt();
+        EXPECT_EQ(scene.views().size(), completed == 0 ? 2u : completed);
+        for (const RowRun* row : {&first, &second}) {
+            EXPECT_EQ(status_of(*row), completed == 0 ? Status::skipped : Status::ok) << reason_of(*row);
+            const bool says_so = reason_of(*row).find("interrupted") != std::string::npos;
+            EXPECT_EQ(says_so, completed == 0) << reason_of(*row);
+            EXPECT_EQ(traced(*row) == nullptr ? 0 : traced(*row)->totals.rays, completed * 40 * 40);
+        }
+    }
 }
 
 TEST_F(Verify, another_backend_with_openmps_answers_is_ok)

@@ -1,5 +1,7 @@
 #include "bench/reproduce/tables/recorded_tables.h"
 
+#include "bench/output/report.h"
+
 #include "core/base/printable.h"
 
 #include <algorithm>
@@ -106,6 +108,7 @@ PaperFigure read_figure(const ResultValue& value)
 
 void add_closing_lines(Sheet& sheet, const PaperTables& all)
 {
+    if (all.interrupted) sheet.labelled("Stopped", interrupted_sentence);
     for (const auto& sentences : {all.missing_scenes, all.missing_devices})
         for (const std::string& sentence : sentences)
             sheet.labelled("Missing", sentence);
@@ -148,6 +151,7 @@ PaperTables read_tables(const ResultValue& section)
             all.figures.push_back(read_figure(figure));
     all.missing_scenes = read_texts(section, "missing_scenes");
     all.missing_devices = read_texts(section, "missing_devices");
+    all.interrupted = section.find("interrupted").has_value();
     return all;
 }
 

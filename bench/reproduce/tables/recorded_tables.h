@@ -11,6 +11,7 @@ struct PaperTables {
     std::vector<PaperFigure> figures;
     std::vector<std::string> missing_scenes, missing_devices; ///< a sentence each
     std::string trust = {}; ///< whether to trust the rates, which read_tables() does not know; empty without rates
+    bool interrupted = false;
 };
 
 /// What `reproduce` prints, and `show` prints again.

@@ -63,7 +63,7 @@ nlohmann::json searches_json(const SearchRun& run)
     json object = {{"tets", run.size.tets},
                    {"rays_a_tet", run.size.rays},
                    {"batch_tets", run.batch_tets},
-                   {"batches", run.shard.share(batch_count(run.size))},
+                   {"batches", run.batches_done.value_or(run.shard.share(batch_count(run.size)))},
                    {"rows", json::array()}};
     for (std::size_t i = 0; i < run.rows.size(); ++i)
         object["rows"].push_back(search_row_json(run, i));
