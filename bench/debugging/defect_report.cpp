@@ -21,7 +21,7 @@ struct ShownRun {
     std::string defect, what, known, backend;
     std::uint64_t index = 0, items = 0, wrong = 0;
     std::string device, type, driver, implementation, outcome;
-    std::string detail; ///< the first wrong word, or the reason; empty where all is well
+    std::string detail; ///< the first wrong word, or the reason; empty if all is well
 
     [[nodiscard]] std::string label() const { return label_of(backend, index); }
     [[nodiscard]] bool is_seen() const { return outcome == name_of(DefectSight::seen); }
@@ -131,12 +131,12 @@ std::string summary(const std::vector<ShownRun>& runs)
     const auto count = [&](DefectSight sight) {
         return std::ranges::count(runs, std::string(name_of(sight)), &ShownRun::outcome);
     };
-    return fmt::format("{} reduced kernels ran: {} of them show their defect; {} skipped, {} errors",
+    return fmt::format("{} reduced kernels ran: {} show their defect; {} skipped, {} errors",
                        count(DefectSight::seen) + count(DefectSight::not_seen), count(DefectSight::seen),
                        count(DefectSight::skipped), count(DefectSight::error));
 }
 
-/// The first wrong word, or the reason; empty where all is well.
+/// The first wrong word, or the reason; empty if all is well.
 std::string detail_of(const DefectRun& run)
 {
     if (run.sight != DefectSight::seen) return run.reason;
@@ -166,7 +166,7 @@ ShownDefects shown_defects(const ResultValue& section)
     shown.sheet.table(matrix(runs), 0);
     shown.sheet.gap();
     for (const ShownRun& defect : each_defect(runs))
-        shown.sheet.prose(fmt::format("{}: {}. Known of: {}.", defect.defect, defect.what, defect.known));
+        shown.sheet.prose(fmt::format("{}: {}. Known in: {}.", defect.defect, defect.what, defect.known));
     shown.sheet.gap();
     for (const ShownRun& run : runs)
         if (!run.detail.empty()) shown.sheet.line(fmt::format("{} on {}: {}", run.defect, run.label(), run.detail));

@@ -10,7 +10,7 @@
 
 namespace tetrace {
 
-/// What a driver showed of a defect. skipped: it was not asked, because there is no usable device.
+/// What a driver showed of a defect. skipped: it did not run, because no device is usable.
 enum class DefectSight { not_seen, seen, skipped, error };
 template <>
 inline constexpr auto enum_names<DefectSight> = names_up_to<DefectSight::error>("not seen", "seen", "skipped", "error");
@@ -34,7 +34,7 @@ struct DefectRun {
 [[nodiscard]] std::vector<DefectRun> run_defects(const Options& options,
                                                  const std::vector<Backend*>& backends = all_backends());
 
-/// 1 where a defect was seen; else the code of the first error, 3 where no device was asked, else 0.
+/// 1 if a defect was seen; else the code of the first error, 3 if no device ran one, else 0.
 [[nodiscard]] int exit_code(const std::vector<DefectRun>& runs);
 
 } // namespace tetrace

@@ -51,9 +51,9 @@ std::vector<KernelFile> dumped_files(const Options& options, const std::vector<B
     if (source != nullptr) files = source->kernel_files(kernel);
     if (files.empty())
         throw Error(ErrorKind::usage,
-                    fmt::format("dump: {} has no text or code of {}{}", backend.name(), name_of(kernel),
+                    fmt::format("dump: {} has neither source nor code of {}{}", backend.name(), name_of(kernel),
                                 source == nullptr || backend.name() == "cuda-host"
-                                    ? ": its kernels are parts of this program, where objdump -d shows them"
+                                    ? ": its kernels are parts of this program; objdump -d shows them"
                                     : ""));
     return files;
 }
@@ -73,10 +73,11 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
         try {
             const CompiledCode code = source->compiled(i, kernel, true);
             if (code.text.empty())
-                notes.push_back(fmt::format("{}: its driver tells figures of its code, but not the code", device.name));
+                notes.push_back(
+                    fmt::format("{}: its driver reports statistics of its code, but not the code", device.name));
             else
                 files.push_back({name_of_code(kernel, device, i, true),
-                                 fmt::format("what {} made of it, for primary rays from outside", code.compiler),
+                                 fmt::format("the code from {}, for primary rays from outside", code.compiler),
                                  {},
                                  code.text});
         } catch (const Error& error) {
@@ -85,8 +86,8 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
         }
     }
     if (source != nullptr && !has_device)
-        notes.push_back(fmt::format("what a driver makes of it: no device of {}{}", backend.name(),
-                                    options.devices.empty() ? " is usable" : "'s is one that --device names"));
+        notes.push_back(fmt::format("a driver's code: no device of {}{}", backend.name(),
+                                    options.devices.empty() ? " is usable" : " matches --device"));
     return files;
 }
 

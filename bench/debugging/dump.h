@@ -9,15 +9,15 @@
 namespace tetrace {
 
 /// The files of one_kernel() that the backend of --backend has, as its driver gets them.
-/// Throws Error{usage} where the backend has none, with the reason.
+/// Throws Error{usage} if the backend has none, with the reason.
 [[nodiscard]] std::vector<KernelFile> dumped_files(const Options& options, const std::vector<Backend*>& backends);
 
-/// What the drivers of the backend's devices make of the kernel, as far as they tell: their machine code. notes: gets a
-/// sentence for each device that tells nothing. Loads the drivers, in this process.
+/// The machine code of the kernel from the drivers of the backend's devices that report it. notes: gets a sentence for
+/// each device that reports none. Loads the drivers, in this process.
 [[nodiscard]] std::vector<KernelFile> driver_code(const Options& options, const std::vector<Backend*>& backends,
                                                   std::vector<std::string>& notes);
 
-/// The text of README.txt for these files, its sentences in lines of so many columns.
+/// The text of README.txt for these files, wrapped to `width` columns.
 [[nodiscard]] std::string readme_of(const std::vector<KernelFile>& files, const std::vector<std::string>& notes,
                                     const Options& options, std::size_t width = 110);
 

@@ -19,8 +19,8 @@ template <class T>
 void require_one(const Options& options, const char* option, const std::vector<T>& values)
 {
     if (values.size() > 1)
-        throw Error(ErrorKind::usage, fmt::format("{}: {} takes one value here, and {} are given",
-                                                  name_of(options.verb), option, values.size()));
+        throw Error(ErrorKind::usage, fmt::format("{}: {} accepts one value here; {} are given", name_of(options.verb),
+                                                  option, values.size()));
 }
 
 } // namespace

@@ -33,7 +33,7 @@ std::optional<std::uint32_t> face_towards(const Tet& tet, std::uint32_t next)
     return std::nullopt;
 }
 
-/// The face of the walk's last tet, as its hit tells. has_end: the ray may end inside the tet.
+/// The face of the walk's last tet, from its hit. has_end: the ray may end inside the tet.
 void end_with(RayStep& step, const Tet& tet, const Hit& hit, bool has_end, const Scene& scene)
 {
     if (hit.face_id == LOST) {
@@ -63,7 +63,7 @@ std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit&
     for (const std::uint32_t position : path) {
         RayStep& step = steps.emplace_back();
         step.tet = tet_of_mesh(packed, position);
-        if (!step.tet) step.beyond = fmt::format("{} is no tet of the scene", position);
+        if (!step.tet) step.beyond = fmt::format("{} is not a tet of the scene", position);
     }
     for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
         RayStep& step = steps[i];
@@ -79,7 +79,7 @@ std::vector<RayStep> steps_of(const std::vector<std::uint32_t>& path, const Hit&
     return steps;
 }
 
-/// The edges of the steps' faces, three a step that has a face.
+/// The edges of the steps' faces, three per step that has a face.
 std::vector<PassedEdge> edges_of(const std::vector<RayStep>& steps, const TetMesh& mesh)
 {
     std::vector<PassedEdge> edges;

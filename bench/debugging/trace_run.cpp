@@ -15,12 +15,12 @@ KernelId our_kernel(const Options& options)
     for (const auto& [option, count] :
          {std::pair("--order", options.orders.size()), std::pair("--rays", options.rays.size()),
           std::pair("--ray-order", options.ray_orders.size())})
-        if (count > 1) throw Error(ErrorKind::usage, fmt::format("trace: {} takes one value here", option));
+        if (count > 1) throw Error(ErrorKind::usage, fmt::format("trace: {} accepts one value here", option));
     const KernelId kernel = one_kernel(options);
     if (!is_portable(kernel))
         throw Error(ErrorKind::usage,
-                    fmt::format("trace: {} is no kernel of ours: its library or driver tells nothing but the answer; "
-                                "take a method of the cdt, or layout bvh2, bvh4 or cwbvh",
+                    fmt::format("trace: {} is not one of tetrace's kernels: it returns only the hit; use a method "
+                                "of the cdt, or layout bvh2, bvh4 or cwbvh",
                                 name_of(kernel)));
     return kernel;
 }

@@ -32,10 +32,10 @@ struct Trace {
     std::uint64_t view = 0, x = 0, y = 0, width = 0, height = 0;
     std::vector<float> origin, direction;
     std::optional<double> end;
-    std::string start; ///< where a given ray does, in words; empty: outside
+    std::string start; ///< of a given ray, in words; empty: outside
     std::vector<ShownRay> devices;
 
-    /// openmp's answer; null where it has none.
+    /// openmp's hit; null if it has none.
     [[nodiscard]] const ShownRay* reference() const { return devices.front().is_traced ? &devices.front() : nullptr; }
     [[nodiscard]] std::vector<const ShownRay*> rays() const
     {
@@ -69,10 +69,10 @@ auto read_as(const ResultValue& value, const char* what, const Read& read)
     }
 }
 
-/// JSON has no NaN and no infinity: both are null there.
+/// JSON has neither NaN nor infinity: both are null there.
 std::vector<float> vector_from(const ResultValue& value)
 {
-    return read_as(value, "is no vector", [](const nlohmann::json& list) {
+    return read_as(value, "is not a vector", [](const nlohmann::json& list) {
         std::vector<float> numbers;
         for (std::size_t axis = 0; axis < 3; ++axis)
             numbers.push_back(float_from(list.at(axis)));
@@ -82,14 +82,14 @@ std::vector<float> vector_from(const ResultValue& value)
 
 Hit read_hit(const ResultValue& value)
 {
-    return read_as(value, "is no answer of a ray", hit_from);
+    return read_as(value, "is not a hit", hit_from);
 }
 
 std::optional<std::uint32_t> small_number(const ResultValue& object, const char* key)
 {
     const auto value = object.find(key);
     if (!value) return std::nullopt;
-    return read_as(*value, "is no number of a tet or face", count_from<std::uint32_t>);
+    return read_as(*value, "is not the number of a tet or face", count_from<std::uint32_t>);
 }
 
 RayStep read_step(const ResultValue& value)
@@ -133,7 +133,7 @@ KernelId read_kernel(const ResultValue& trace)
         if (method == name_of(kernel.method) && layout == name_of(kernel.layout) && math == name_of(kernel.math) &&
             kernel.schedule == Schedule::tiles)
             return kernel;
-    trace.at("method").reject("and its layout and math are no kernel of this tetrace");
+    trace.at("method").reject("and its layout and math are not a kernel of this tetrace");
 }
 
 /// Results from before rays were given have none of the keys of those.
@@ -164,7 +164,7 @@ Trace read_trace(const ResultValue& section)
     read_rays(trace, value);
     trace.view = value.at("view").count();
     const auto pixel = value.at("pixel").items();
-    if (pixel.size() != 2) value.at("pixel").reject("is no pixel: [x, y] is");
+    if (pixel.size() != 2) value.at("pixel").reject("is not a pixel: write [x, y]");
     trace.x = pixel[0].count();
     trace.y = pixel[1].count();
     trace.origin = vector_from(value.at("origin"));
@@ -199,7 +199,7 @@ bool same_bits(const Hit& a, const Hit& b)
 Table answer_table(const Trace& trace)
 {
     Table table({{"device", "device"},
-                 {"answer", "answer"},
+                 {"answer", "hit"},
                  {"t", "t"},
                  {"u", "u"},
                  {"v", "v"},
@@ -212,7 +212,7 @@ Table answer_table(const Trace& trace)
         table.add({ray->place, answer_text(hit), number_text(hit.t), number_text(hit.u), number_text(hit.v),
                    hit.tet == NO_TET ? Cell() : Cell(std::uint64_t{hit.tet}),
                    trace.has_steps() ? Cell(std::uint64_t{hit.steps}) : Cell(),
-                   same_bits(hit, ray->alone) ? Cell("the same") : Cell("OTHER: " + answer_text(ray->alone)),
+                   same_bits(hit, ray->alone) ? Cell("the same") : Cell("DIFFERENT: " + answer_text(ray->alone)),
                    ray->name});
     }
     return table;
@@ -230,10 +230,10 @@ Cell product_cell(const RayStep& step, std::size_t edge)
 
 std::size_t max_steps(const Trace& trace)
 {
-    std::size_t most = 0;
+    std::size_t max = 0;
     for (const ShownRay& ray : trace.devices)
-        most = std::max(most, ray.steps.size());
-    return most;
+        max = std::max(max, ray.steps.size());
+    return max;
 }
 
 /// The first step at which any device differs from openmp's.
@@ -245,31 +245,31 @@ std::optional<std::size_t> first_of_all(const Trace& trace)
     return first;
 }
 
-/// A way in which some devices take a step.
-struct Way {
+/// A step that some devices agree on.
+struct SharedStep {
     const RayStep* step;
     std::vector<std::string> devices;
 };
 
-std::vector<Way> ways_of(const Trace& trace, std::size_t index)
+std::vector<SharedStep> shared_steps(const Trace& trace, std::size_t index)
 {
-    std::vector<Way> ways;
+    std::vector<SharedStep> shared;
     for (const ShownRay* ray : trace.rays()) {
         if (index >= ray->steps.size()) continue;
         const RayStep& step = ray->steps[index];
-        const auto known = std::ranges::find_if(ways, [&](const Way& way) { return *way.step == step; });
-        if (known != ways.end())
+        const auto known = std::ranges::find_if(shared, [&](const SharedStep& one) { return *one.step == step; });
+        if (known != shared.end())
             known->devices.push_back(ray->place);
         else
-            ways.push_back({&step, {ray->place}});
+            shared.push_back({&step, {ray->place}});
     }
-    return ways;
+    return shared;
 }
 
-std::string devices_text(const Way& way, std::size_t rays)
+std::string devices_text(const SharedStep& step, std::size_t rays)
 {
-    if (way.devices.size() == rays && rays > 1) return fmt::format("all {}", rays);
-    return fmt::format("{}", fmt::join(way.devices, ", "));
+    if (step.devices.size() == rays && rays > 1) return fmt::format("all {}", rays);
+    return fmt::format("{}", fmt::join(step.devices, ", "));
 }
 
 Table step_table(const Trace& trace)
@@ -285,12 +285,12 @@ Table step_table(const Trace& trace)
                  {.key = "mark", .title = " ", .rank = 0}});
     const auto first = first_of_all(trace);
     for (std::size_t i = 0; i < max_steps(trace); ++i) {
-        const auto ways = ways_of(trace, i);
-        for (const Way& way : ways) {
-            const bool is_first = first == i && &way == &ways.back();
-            table.add({std::uint64_t{i + 1}, number_cell(way.step->tet), number_cell(way.step->face),
-                       text_cell(way.step->beyond), product_cell(*way.step, 0), product_cell(*way.step, 1),
-                       product_cell(*way.step, 2), devices_text(way, trace.rays().size()),
+        const auto shared = shared_steps(trace, i);
+        for (const SharedStep& one : shared) {
+            const bool is_first = first == i && &one == &shared.back();
+            table.add({std::uint64_t{i + 1}, number_cell(one.step->tet), number_cell(one.step->face),
+                       text_cell(one.step->beyond), product_cell(*one.step, 0), product_cell(*one.step, 1),
+                       product_cell(*one.step, 2), devices_text(one, trace.rays().size()),
                        is_first ? Cell("<- first difference") : Cell()});
         }
     }
@@ -331,10 +331,10 @@ std::string verdict_text(const ShownRay& ray, const ShownRay& reference, bool ha
     if (ray.first_difference)
         return fmt::format("{}: differs first at step {}: {}; {}.", ray.place, *ray.first_difference + 1,
                            step_text(ray, *ray.first_difference), step_text(reference, *ray.first_difference));
-    return fmt::format("{}: {}its answer is {}.", ray.place, has_steps ? "takes openmp's steps, and " : "",
+    return fmt::format("{}: {}its hit is {}.", ray.place, has_steps ? "the steps are openmp's, and " : "",
                        same_bits(ray.hit, reference.hit) ? "the same, bit for bit"
                        : !ray.differs                    ? "the same within what its self-test allows"
-                                                         : "ANOTHER");
+                                                         : "DIFFERENT ");
 }
 
 void add_verdicts(Sheet& sheet, const Trace& trace)
@@ -343,26 +343,24 @@ void add_verdicts(Sheet& sheet, const Trace& trace)
     for (const ShownRay* ray : trace.rays()) {
         if (reference != nullptr && ray != reference) sheet.prose(verdict_text(*ray, *reference, trace.has_steps()));
         if (!same_bits(ray->hit, ray->alone))
-            sheet.prose(fmt::format("{}: on its own, without the other rays, the same ray gives {}{}: what the others "
-                                    "do matters here.",
-                                    ray->place, answer_text(ray->alone),
+            sheet.prose(fmt::format("{}: traced alone, the same ray gives {}{}: the other rays affect it.", ray->place,
+                                    answer_text(ray->alone),
                                     trace.has_steps() ? fmt::format(" after {} steps", ray->alone.steps) : ""));
         if (ray->is_cut)
-            sheet.prose(fmt::format("{}: the walk has {} steps, of which {} are followed.", ray->place, ray->hit.steps,
+            sheet.prose(fmt::format("{}: the walk has {} steps; {} were followed.", ray->place, ray->hit.steps,
                                     ray->steps.size()));
         if (ray->visits)
-            sheet.prose(fmt::format("{} visits {} nodes and {} triangles. The kernels of BVHs do not tell which, so "
-                                    "there are no steps to show.",
+            sheet.prose(fmt::format("{} visits {} nodes and {} triangles. The kernels of BVHs do not report which, "
+                                    "so no steps are shown.",
                                     ray->place, ray->visits->nodes, ray->visits->triangles));
     }
     for (const ShownRay& ray : trace.devices)
         if (!ray.reason.empty()) sheet.prose(fmt::format("{}: {}: {}", ray.place, ray.status, ray.reason));
     if (reference == nullptr)
-        sheet.prose(
-            fmt::format("{} has no answer, so that no device is compared with it.", trace.devices.front().place));
+        sheet.prose(fmt::format("{} has no hit to compare the devices with.", trace.devices.front().place));
 }
 
-/// "ray from (...) along (...)", and of a given ray where it starts and ends.
+/// "ray from (...) along (...)", and for a given ray its start and end.
 std::string ray_text(const Trace& trace)
 {
     std::string text = fmt::format("ray from {} along {}", vector_text(trace.origin), vector_text(trace.direction));

@@ -11,35 +11,35 @@
 
 namespace tetrace {
 
-/// Whether a program came out of its compiler.
+/// Whether a program was compiled.
 enum class InspectedStatus { ok, skipped, error };
 template <>
 inline constexpr auto enum_names<InspectedStatus> = names_up_to<InspectedStatus::error>("ok", "skipped", "error");
 
-/// Where fused operations are: nowhere; where they decide nothing (boxes of BVHs, docs/spec/bvhs.md, B7); where signs
-/// are decided, which exact mode forbids; or wherever the compiler likes, in math mode fast.
+/// Where the fused operations are: none; only in the box tests of BVHs, which decide nothing (docs/spec/bvhs.md, B7);
+/// where signs are decided, which exact mode forbids; or anywhere, in math mode fast.
 enum class FusedIn { nothing, boxes, decisions, anything };
 template <>
 inline constexpr auto enum_names<FusedIn> = names_up_to<FusedIn::anything>("nothing", "boxes", "decisions", "anything");
 
-/// A program: an entry point, compiled for a target. What its compiler does not tell is empty.
+/// A program: an entry point, compiled for a target. What its compiler does not report is empty.
 struct Inspected {
     Target target;
     EntryPoint point;
     InspectedStatus status = InspectedStatus::ok;
-    std::string reason;   ///< where it is not ok
+    std::string reason;   ///< if it is not ok
     std::string compiler; ///< with version
 
     using Count = std::optional<std::uint64_t>;
-    Count registers;         ///< of a lane
-    Count scalar_registers;  ///< of a subgroup, on AMD
+    Count registers;         ///< per thread
+    Count scalar_registers;  ///< per subgroup, on AMD
     Count spilled_registers; ///< AMD
-    Count spill_store_bytes; ///< NVIDIA, of a lane
-    Count spill_load_bytes;  ///< NVIDIA, of a lane
-    Count scratch_bytes;     ///< memory of a lane (NVIDIA) or subgroup (AMD) for what has no register
-    Count lanes;             ///< of a subgroup
-    Count subgroups;         ///< that a SIMD (AMD) or a multiprocessor (NVIDIA) holds at once
-    Count max_subgroups;     ///< that it holds of an empty kernel
+    Count spill_store_bytes; ///< NVIDIA, per thread
+    Count spill_load_bytes;  ///< NVIDIA, per thread
+    Count scratch_bytes;     ///< memory per thread (NVIDIA) or subgroup (AMD) for what is not in registers
+    Count lanes;             ///< threads per subgroup
+    Count subgroups;         ///< resident on a SIMD (AMD) or multiprocessor (NVIDIA)
+    Count max_subgroups;     ///< the same for an empty kernel
     Count code_bytes;
     Count instructions, branches, loads, loads_in_loops;
     std::optional<double> latency_cycles, cycles_a_subgroup; ///< ACO's estimates: latency, inverse throughput
@@ -71,7 +71,7 @@ struct Inspected {
 /// Called with the part of a target's programs that is done, in [0, 1].
 using PartDone = std::function<void(double)>;
 
-/// The rows of a target that was not asked.
+/// The rows of a target that was not compiled for.
 [[nodiscard]] inline std::vector<Inspected> unasked(const Target& target, const std::vector<EntryPoint>& points,
                                                     const std::string& reason)
 {

@@ -41,7 +41,7 @@ Table inspection_table(const Inspection& inspection)
                  {"loads", "loads"},
                  {"loads_in_loops", "in loops"},
                  {"latency_cycles", "latency", "cycles", 0},
-                 {"cycles_a_subgroup", "a subgroup", "cycles", 0},
+                 {"cycles_a_subgroup", "per subgroup", "cycles", 0},
                  {"fused", "fused"},
                  {"status", "status"},
                  {"reason", "reason"}});
@@ -74,7 +74,7 @@ Table inspection_table(const Inspection& inspection)
     return table;
 }
 
-/// What one line of the terminal holds; every form of the result has all columns.
+/// The columns that fit the terminal; every format of the result has all columns.
 Table short_table(const Inspection& inspection)
 {
     Table table({{"target", "target"},
@@ -156,7 +156,7 @@ std::string failures_text(const Inspection& inspection)
         const std::string name =
             fmt::format("{} {} {}", row.target.name, name_of(row.point.kernel), name_of(row.point));
         if (decides_fused(row))
-            text += fmt::format("{}: {} fused where signs are decided, the first is '{}'\n", name, *row.fused,
+            text += fmt::format("{}: {} fused operations decide signs; the first is '{}'\n", name, *row.fused,
                                 row.first_fused);
         if (row.status == InspectedStatus::error) text += fmt::format("{}: {}\n", name, row.reason);
     }

@@ -17,7 +17,7 @@ struct Line {
     std::string goes_to;
 };
 
-/// How the kind of an instruction is told in one language.
+/// How one language marks the kind of an instruction.
 struct Language {
     bool (*is_load)(const std::string& text);
     bool (*is_fused)(const std::string& text);

@@ -28,7 +28,7 @@ struct CodeFigures {
 [[nodiscard]] CodeFigures read_ptx(std::string_view text, const std::string& entry);
 
 /// One entry of what nvdisasm prints. Divisions and square roots are sequences with fused operations here, so `fused`
-/// alone proves nothing.
+/// by itself proves nothing.
 [[nodiscard]] CodeFigures read_sass(std::string_view text, const std::string& entry);
 
 } // namespace tetrace

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* no_radv = "no RADV here, Mesa's Vulkan driver for AMD's GPUs; install mesa-vulkan-drivers";
+constexpr const char* no_radv = "RADV, Mesa's Vulkan driver for AMD's GPUs, is missing; install mesa-vulkan-drivers";
 constexpr double max_child_s = 600; // of a child; all programs of a target take about a minute
 
 /// RADV's file among those that the Vulkan loader reads; empty where there is none.
@@ -87,7 +87,7 @@ struct NullDevice {
 
 NullDevice find_null_device()
 {
-    NullDevice found{nullptr, 0, "this build has no Vulkan"};
+    NullDevice found{nullptr, 0, "this build lacks Vulkan"};
     for (const Backend* backend : all_backends()) {
         const auto* const source = dynamic_cast<const CodeSource*>(backend);
         if (source == nullptr) continue;
@@ -191,12 +191,12 @@ Answer ask_family(const std::string& family, const fs::path& driver, const std::
             take_line(answer.rows[taken++], line);
     }
     const std::string words = last_line(outcome.errors);
-    if (!most) return {{}, words.empty() ? "the driver told nothing" : words};
+    if (!most) return {{}, words.empty() ? "the driver reported nothing" : words};
     for (Inspected& row : answer.rows) {
         row.max_subgroups = most;
         if (row.status == InspectedStatus::skipped) {
             row.status = InspectedStatus::error;
-            row.reason = "the driver ended before it came to this program" + (words.empty() ? "" : ": " + words);
+            row.reason = "the driver ended before this program" + (words.empty() ? "" : ": " + words);
         }
     }
     return answer;
@@ -219,7 +219,7 @@ std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector
 {
     const fs::path driver = driver_file();
     if (driver.empty()) return unasked(target, points, no_radv);
-    const auto unknown = unasked(target, points, "not asked");
+    const auto unknown = unasked(target, points, "not compiled");
     const auto numbers = numbers_of(points);
     std::string first_reason;
     for (const std::string& family : family_names(target.name)) {

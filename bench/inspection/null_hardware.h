@@ -7,8 +7,8 @@
 namespace tetrace {
 
 /// Asks RADV on null hardware for each program of an AMD target, in a child process: a driver reads its environment
-/// once, and one that does not know a family aborts. Rows that the child did not come to are errors, with its last
-/// words; all are skipped where there is no RADV here, or none that knows the family.
+/// once, and one that does not support a family aborts. Rows that the child did not reach are errors, with its last
+/// output; all are skipped if RADV is missing, or does not support the family.
 /// points: a part of all_entry_points(Maker::amd). code: folder for the programs' texts; empty: they are not kept.
 [[nodiscard]] std::vector<Inspected> ask_null_hardware(const Target& target, const std::vector<EntryPoint>& points,
                                                        const std::filesystem::path& code, const PartDone& tell);

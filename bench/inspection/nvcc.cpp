@@ -93,7 +93,7 @@ Compiled compile(const Nvcc& nvcc, const Target& target, const cuda::ProgramId& 
     const fs::path source = folder.path() / (program.name() + ".cu"),
                    binary = folder.path() / (program.name() + ".cubin");
     const EmbeddedKernel* const kernel = find_kernel(cuda::embedded_sources(), program.source);
-    if (kernel == nullptr) return {{}, {}, {}, "this build has no source of " + program.source};
+    if (kernel == nullptr) return {{}, {}, {}, "this build lacks the source of " + program.source};
     std::ofstream(source) << std::string(kernel->text());
     std::vector<std::string> arguments = {
         "--cubin", "-std=c++17", "--keep", "--keep-dir", folder.path().string(), "-arch=" + target.name,
@@ -119,7 +119,7 @@ void take(Inspected& row, const Compiled& compiled, const std::string& entry)
     const auto report = compiled.reports.find(entry);
     if (report == compiled.reports.end() || compiled.ptx.empty()) {
         row.status = InspectedStatus::error;
-        row.reason = compiled.reason.empty() ? "ptxas says nothing of " + entry : compiled.reason;
+        row.reason = compiled.reason.empty() ? "ptxas does not report " + entry : compiled.reason;
         return;
     }
     row.registers = report->second.registers;
@@ -135,7 +135,7 @@ void take(Inspected& row, const Compiled& compiled, const std::string& entry)
     if (const auto warps =
             resident_warps(capability, *row.registers, block, block * stack_bytes_of_item(row.point.kernel.layout))) {
         row.subgroups = warps->resident;
-        row.max_subgroups = warps->most;
+        row.max_subgroups = warps->max;
     }
     const CodeFigures ptx = read_ptx(compiled.ptx, entry);
     row.loads = ptx.loads;
@@ -165,7 +165,7 @@ Nvcc find_nvcc()
     Nvcc nvcc;
     nvcc.program = find_program("nvcc");
     if (nvcc.program.empty()) {
-        nvcc.reason = "no nvcc here, NVIDIA's compiler; its CUDA toolkit brings it (Debian: nvidia-cuda-toolkit)";
+        nvcc.reason = "NVIDIA's compiler, nvcc, is missing; install the CUDA toolkit (Debian: nvidia-cuda-toolkit)";
         return nvcc;
     }
     const ChildOutcome version = run(nvcc.program, {"--version"}), known = run(nvcc.program, {"--list-gpu-code"});
@@ -211,9 +211,8 @@ std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target, const st
 {
     if (!nvcc.reason.empty()) return unasked(target, points, nvcc.reason);
     if (std::ranges::find(nvcc.targets, target.name) == nvcc.targets.end())
-        return unasked(
-            target, points,
-            fmt::format("{} does not know {}, but {}", nvcc.version, target.name, fmt::join(nvcc.targets, ", ")));
+        return unasked(target, points,
+                       fmt::format("{} supports {}, not {}", nvcc.version, fmt::join(nvcc.targets, ", "), target.name));
     std::map<std::string, Compiled> kernels;
     std::vector<Inspected> rows;
     for (const EntryPoint& point : points) {

@@ -7,26 +7,26 @@
 
 namespace tetrace {
 
-/// NVIDIA's compiler, found but not run where the reason is not empty.
+/// NVIDIA's compiler; not usable if the reason is not empty.
 struct Nvcc {
     std::filesystem::path program;
-    std::filesystem::path disassembler; ///< nvdisasm; empty: there is none
+    std::filesystem::path disassembler; ///< nvdisasm; empty: not installed
     std::string version;                ///< "nvcc 13.0"
-    std::vector<std::string> targets;   ///< "sm_75", ... that it knows
-    std::string reason;                 ///< why it cannot be asked, with the package that brings it
+    std::vector<std::string> targets;   ///< "sm_75", ... that it supports
+    std::string reason;                 ///< why it cannot be used, with the package to install
 };
 
 /// Looks along PATH, in $CUDA_PATH and $CUDA_HOME, and in the toolkits' usual folders.
 [[nodiscard]] Nvcc find_nvcc();
 
 /// Compiles each kernel of the entry points once for an NVIDIA target, with the flags of the build. All rows are
-/// skipped where nvcc is missing or does not know the target; those of a kernel that does not compile are errors.
-/// code: as in ask_null_hardware(): PTX, and machine code where there is a disassembler.
+/// skipped if nvcc is missing or does not support the target; those of a kernel that does not compile are errors. code:
+/// as in ask_null_hardware(): PTX, and machine code if there is a disassembler.
 [[nodiscard]] std::vector<Inspected> ask_nvcc(const Nvcc& nvcc, const Target& target,
                                               const std::vector<EntryPoint>& points, const std::filesystem::path& code,
                                               const PartDone& tell);
 
-/// What `ptxas -v` says of an entry.
+/// What `ptxas -v` reports for an entry.
 struct PtxasReport {
     std::uint64_t registers = 0, stack_bytes = 0, spill_store_bytes = 0, spill_load_bytes = 0;
 };

@@ -36,7 +36,7 @@ Target parse_target(const std::string& option, const std::string& text)
 {
     if (text.starts_with("sm_") && consists_of(text.substr(3), "0123456789")) return {text, Maker::nvidia};
     if (consists_of(text, "abcdefghijklmnopqrstuvwxyz0123456789")) return {text, Maker::amd};
-    reject_value(option, text, "a family of AMD's GPUs as RADV names it (gfx1100, navi21, ...), or sm_ and a number");
+    reject_value(option, text, "an AMD family as RADV names it (gfx1100, navi21, ...), or sm_ and a number");
 }
 
 std::vector<Target> targets_of(const std::vector<std::string>& names)

@@ -18,7 +18,7 @@ template <class T>
         [=](Options& options, const std::string& text) { (options.*list).push_back(choose(option, text, accepted)); };
 }
 
-/// The same; "all" stands for every value.
+/// The same; "all" means every value.
 template <class T>
 [[nodiscard]] ApplyOption append_or_all(std::string option, std::vector<T> Options::*list, std::vector<T> accepted)
 {

@@ -72,9 +72,9 @@ BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments)
     BenchmarkFlags flags;
     std::vector<std::string> handed_on;
     for (const std::string& argument : arguments) {
-        if (printable_line(argument) != argument) // it would stand in the output as it is
+        if (printable_line(argument) != argument) // it would be printed unchanged
             throw Error(ErrorKind::usage,
-                        fmt::format("'{}' is not accepted: it has characters that cannot be shown", argument));
+                        fmt::format("'{}' is not accepted: it has characters that cannot be printed", argument));
         const auto equals = argument.find('=');
         const std::string name = argument.substr(0, equals);
         const std::string value = equals == std::string::npos ? "" : argument.substr(equals + 1);

@@ -36,7 +36,7 @@ public:
         OwnCameras set{name_of_set(whole), {}};
         const auto views = whole.find("views");
         if (views == whole.end() || !views->is_array() || views->empty())
-            reject("views: is not a list of one view or more");
+            reject("views: is not a list of at least one view");
         if (views->size() > max_views) reject("views: has more than 100,000 views");
         for (std::size_t i = 0; i < views->size(); ++i)
             set.views.push_back(aim_of(views->at(i), fmt::format("views[{}]", i)));
@@ -52,10 +52,10 @@ private:
     [[nodiscard]] json parsed() const
     {
         std::error_code ignored;
-        if (!std::filesystem::exists(path_, ignored)) reject("there is no such file", ErrorKind::missing);
-        if (!std::filesystem::is_regular_file(path_, ignored)) reject("it is no file");
+        if (!std::filesystem::exists(path_, ignored)) reject("the file does not exist", ErrorKind::missing);
+        if (!std::filesystem::is_regular_file(path_, ignored)) reject("it is not a file");
         const std::optional<std::string> bytes = file_bytes(path_, max_file + 1);
-        if (!bytes) reject(fmt::format("{}; check its rights and its disk", std::strerror(errno)));
+        if (!bytes) reject(fmt::format("{}; check its permissions and its disk", std::strerror(errno)));
         if (bytes->size() > max_file) reject("it is larger than 16 MiB");
         try {
             return json::parse(*bytes);
@@ -78,17 +78,17 @@ private:
         const auto name = whole.find("name");
         const std::string text = name != whole.end() && name->is_string() ? name->get<std::string>() : std::string();
         if (text.empty() || text.size() > longest_name || printable_line(text) != text)
-            reject("name: is not a text of one line, of 1 to 100 bytes");
+            reject("name: is not a line of 1 to 100 bytes");
         for (const CameraSet set : values_of<CameraSet>())
             if (text == tetrace::name_of(set))
-                reject(fmt::format("name: '{}' is the name of a set of tetrace's", text));
+                reject(fmt::format("name: '{}' is a camera set of tetrace's; choose another", text));
         return text;
     }
 
     [[nodiscard]] Aim aim_of(const json& view, const std::string& what) const
     {
         check_keys(view, what, {"origin", "target", "up"});
-        if (!view.contains("origin")) reject(what + ": has no 'origin'");
+        if (!view.contains("origin")) reject(what + ": 'origin' is missing");
         Aim aim;
         const std::array<std::pair<const char*, Double3*>, 3> members = {
             {{"origin", &aim.origin}, {"target", &aim.target}, {"up", &aim.up}}};

@@ -14,7 +14,7 @@ struct OwnCameras {
     std::vector<Aim> views;
     std::string file = {}; ///< as it was named
 
-    /// Of all numbers of all views, in their order; the name has no part in it.
+    /// Of all numbers of all views, in their order; not of the name.
     [[nodiscard]] std::uint64_t hash() const;
     [[nodiscard]] std::vector<Camera> cameras(const BoundingSphere& sphere) const;
 };

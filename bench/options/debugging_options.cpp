@@ -28,19 +28,19 @@ std::vector<OptionRow> inspect_options()
 {
     return {
         {"Compilers", "--target", "GPU",
-         "Compile for this GPU, which need not be here: one of AMD's as RADV names it (gfx1100, navi21, gfx906, ...), "
-         "or one of NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
+         "Compile for this GPU, which need not be here: AMD's as RADV names them (gfx1100, navi21, gfx906, ...), "
+         "NVIDIA's as nvcc does (sm_75, sm_90, ...). Default: gfx1100, navi21, gfx906, sm_75, sm_90.",
          bit(Verb::inspect), true, append_text(&Options::gpus)},
         {"Compilers", "--entry", "NAME",
-         "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or in "
-         "a tet; 'rays', given ones; 'search', exit searches of table5. Default: all.",
+         "Keep the entry points of this kind: 'outside' and 'inside', primary rays that start outside the domain or "
+         "in a tet; 'rays', given rays; 'search', exit searches of table5. Default: all.",
          bit(Verb::inspect), true, append("--entry", &Options::entries)},
         {"Compilers", "--require", "GPU",
-         "Fail with exit code 3 unless this target's compiler is here and every program came out of it.",
-         bit(Verb::inspect), true, append_text(&Options::required)},
+         "Fail with exit code 3 unless this target's compiler is here and compiles every program.", bit(Verb::inspect),
+         true, append_text(&Options::required)},
         {"Compilers", "--code", "FOLDER",
-         "Write the code of every program into this folder: assembly of AMD's; PTX of NVIDIA's, and machine code where "
-         "nvdisasm is. Default: none.",
+         "Write the code of every program into this folder: AMD's assembly; NVIDIA's PTX, and machine code if "
+         "nvdisasm is installed. Default: none.",
          bit(Verb::inspect), false, set_path("--code", &Options::code_folder)},
     };
 }
@@ -50,7 +50,7 @@ std::vector<OptionRow> trace_options()
     return {
         {"Ray", "--view", "N", "The view of the camera set, numbered from 0. Default: 0.", bit(Verb::trace), false,
          [](Options& o, const std::string& v) { o.views = fmt::format("{}", parse_count("--view", v, 0, 1u << 30)); }},
-        {"Ray", "--pixel", "X,Y", "The pixel whose ray is traced; 0,0 is the image's upper left. It has no default.",
+        {"Ray", "--pixel", "X,Y", "The pixel whose ray is traced; 0,0 is the image's upper left. Required.",
          bit(Verb::trace), false, [](Options& o, const std::string& v) { o.pixel = parse_pixel("--pixel", v); }},
     };
 }
@@ -58,7 +58,7 @@ std::vector<OptionRow> trace_options()
 std::vector<OptionRow> dump_options()
 {
     return {
-        {"Output", "--out", "FOLDER", "Write the files into FOLDER, which is made. It has no default.", bit(Verb::dump),
+        {"Output", "--out", "FOLDER", "Write the files into FOLDER, which is created. Required.", bit(Verb::dump),
          false, set_path("--out", &Options::out)},
     };
 }

@@ -17,82 +17,76 @@ namespace {
 
 const VerbHelp verb_help[] = {
     {Verb::devices, "list the devices of every backend",
-     "Lists the devices of every backend of this build, grouped by hardware (everything that computes on the processor "
-     "is one group), with the limits that matter here and the outcome of a self-test of their arithmetic in exact "
-     "mode. Then it lists what cannot be used, with the reason, and the optional parts of this build, with what would "
-     "bring a missing one.",
+     "Lists the devices of every backend of this build, grouped by hardware (everything that computes on the CPU is "
+     "one group), with their limits and the result of a self-test of their arithmetic in exact mode. Then it lists "
+     "what cannot be used, with the reason, and the optional parts of this build, with what to install for a missing "
+     "one.",
      "  tetrace devices\n"
      "  tetrace devices --require openmp,vulkan   exit with 3 unless both are usable\n"},
     {Verb::scenes, "list the catalogue and the cache of built scenes",
-     "Lists the catalogue: where each scene comes from, and whether its mesh is available here. Then it lists the "
-     "cache of built scenes, with sizes. The cache is in $XDG_CACHE_HOME/tetrace, or else in ~/.cache/tetrace.",
+     "Lists the catalogue: the source of each scene, and whether its mesh is available here. Then it lists the cache "
+     "of built scenes, with sizes. The cache is in $XDG_CACHE_HOME/tetrace, or else in ~/.cache/tetrace.",
      "  tetrace scenes\n"
      "  tetrace scenes --clear                    empty the cache\n"},
-    {Verb::build, "build scenes and report what came out",
-     "Builds the tetrahedralization of each scene (or finds it in the cache) and counts tets, faces and the steps of "
-     "the rays of a camera set. --tets, --domain, --divisions and --switches take lists: every combination is "
-     "built. A combination that fails is a row without numbers, and standard error has the reason. The others are "
-     "still built; the exit code is that of the first failure, as in 'bench': 2 if the mesh cannot be used. Ctrl-C "
-     "while the optimiser works keeps what it has reached, in a file of its own; a second one ends the program.",
+    {Verb::build, "build scenes and report their size and steps per ray",
+     "Builds the tetrahedralization of each scene, or finds it in the cache, and counts its tets, its faces, and the "
+     "steps of the rays of a camera set. --tets, --domain, --divisions and --switches accept lists: every combination "
+     "is built. A combination that fails is a row without numbers; standard error has the reason, and the others are "
+     "still built. The exit code is that of the first failure: 2 if the mesh cannot be used. Ctrl-C during "
+     "optimisation keeps the tets reached so far, in a separate file; a second Ctrl-C ends the program.",
      "  tetrace build --scene bunny\n"
      "  tetrace build --scene bunny --tets cdt,rays\n"
      "  tetrace build --scene dragon.ply --switches pq,pqY,pq5Y --domain tight,wide\n"
      "  tetrace build --scene bunny --divisions 4,8,16 --format markdown --out bunny.md\n"},
     {Verb::bench, "verify rows, then measure them",
-     "Loads the scenes, traces every selected view once with every row, and judges each ray. Then it warms up every "
-     "row and takes samples with Google Benchmark, with the rows interleaved at random. A sample traces all views in "
-     "flight together, which gives the throughput, and some passes launch each view alone, which gives the latency. "
-     "Last, it measures each device's copy bandwidth and launch latency. Each row is compared with the same kernel "
-     "under other APIs and with the fastest BVH of its hardware, which is named; 95 % intervals are computed from the "
-     "samples. For each kind of rays the shares that enter the domain and that hit are given. GPU APIs that are "
-     "emulated on the processor are "
-     "marked, and never ranked with GPUs. A row is a combination of scene, structure, method, layout, kind of rays, "
-     "math mode, backend and device. Defaults: maria on "
-     "tet80 and tet96, project on half32 and tet64 and our three BVHs on every usable device of every backend, "
-     "project's "
-     "packets on openmp, and Embree with single rays, packets of 8 and of 16, and streams, on its trees. "
-     "--method all adds the other exit-face searches.\n\n"
-     "A row's status is 'ok'; 'flawed', some rays of the method itself are wrong, or lost: the walk found no exit "
-     "face, or reached its cap of steps (the row has their numbers and keeps its rate; lost rays of maria and project, "
-     "which claim to have none, give exit code 1); 'wrong', the row differs from openmp's answers (no rate, exit code "
-     "1); 'unsupported', the host or the device cannot run this kernel; 'skipped', there is no usable device here, or "
-     "--budget has no time for the row; or 'error'. The last three have a reason. 'noisy' stands in place "
-     "of 'ok' if the interquartile range exceeds 5 % of the median, if the machine's pulse (a fixed piece of work, "
-     "repeated through the run) was slower by a quarter beside half of the samples, or if others used more than a "
-     "tenth of the processors.\n\n"
+     "Verifies every ray of every row, then measures the rows. A row is a combination of scene, structure, method, "
+     "layout, kind of rays, math mode, backend and device.\n\n"
+     "First, each row traces every selected view once, and every hit is verified. Then each row warms up and is "
+     "sampled with Google Benchmark; the rows are interleaved at random. A sample traces all views in flight "
+     "together, which gives the throughput; some passes launch each view alone, which gives the latency. Last, it "
+     "measures the copy bandwidth and the launch latency of each device. Each row is compared with the same kernel "
+     "under other APIs and with the fastest BVH on its hardware, with 95 % intervals computed from the samples. GPU "
+     "APIs that are emulated on the CPU are marked, and never ranked with GPUs. For each kind of rays, the table "
+     "shows what share of them enters the domain and what share hits.\n\n"
+     "Default rows: maria on tet80 and tet96, project on half32 and tet64, and our three BVHs, on every usable device "
+     "of every backend; project's packets on openmp; and Embree with single rays, packets of 8 and of 16, and "
+     "streams, each on its own trees. --method all adds the other exit-face searches.\n\n"
+     "Statuses: 'ok'; 'flawed', the method itself returns some wrong hits, or loses rays, because the walk found no "
+     "exit face or reached its cap of steps (their number is printed, and the row keeps its rate; lost rays of maria "
+     "and project, which claim to have none, give exit code 1); 'wrong', the row's hits differ from openmp's (no "
+     "rate, exit code 1); 'unsupported', the host or the device cannot run this kernel; 'skipped', no usable device "
+     "is here, or --budget has no time for the row; 'error'. The last three have a reason. 'noisy' replaces 'ok' if "
+     "the interquartile range exceeds 5 % of the median, if other processes used more than a tenth of the CPUs, or if "
+     "calibration (a fixed piece of work, repeated throughout the run) was a quarter slower during half of the "
+     "samples.\n\n"
      "Google Benchmark's own flags (--benchmark_filter=REGEX, --benchmark_repetitions=N, --benchmark_out=FILE, "
-     "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning; a repetition is a "
-     "sample, and if their number is given, there is no budget.",
+     "--benchmark_format=console|json|csv, --benchmark_list_tests and so on) keep their meaning. A repetition is a "
+     "sample; if their number is given, --budget does not apply.",
      "  tetrace bench\n"
      "  tetrace bench --scene bunny --camera-set orbit --views 0-1281:64 --out bunny.json\n"
      "  tetrace bench --scene bunny --method all\n"
      "  tetrace bench --scene cubes --method maria --math exact,fast --format csv\n"
      "  tetrace bench --filter 'tet96|embree' --list\n"
      "  tetrace bench --scene bunny --threads 1 --benchmark_repetitions=30\n"},
-    {Verb::check, "judge every ray on every device, without timing",
-     "Traces every selected view with every row on every device, and asks two questions of each ray.\n\n"
-     "Does the device conform? In exact mode all bits of all hits are compared with openmp's for the same method and "
-     "layout. A cell of the matrix is 'bit-exact'; 'within N ulp', if t, u and v differ by no more than the device's "
-     "self-test allows (nothing, if its division is correctly rounded); 'not exact', if the hits are openmp's but the "
-     "self-test shows that the device contracts or rounds differently; 'wrong', with the number of rays, also if rays "
-     "were never written, words outside the hits were written, or a second run gave other hits; or 'unsupported', "
-     "'skipped' or 'error', with the reason. Equal hits have equal hashes.\n\n"
-     "Is the method right? Each ray is judged by exact arithmetic on the original triangles. An answer agrees if the "
-     "exact ray gives it, and is settled for us if it does so although an edge lies within rounding of the ray. "
-     "Another "
-     "answer is a tie if a curve within rounding of the ray gives it, which is checked exactly. Otherwise the ray is "
-     "wrong.\n\n"
-     "The first differing and the first wrong ray of a row are printed in full, with the 'tetrace trace' command that "
-     "follows it. --defects runs the reduced kernels of known compiler defects instead. Exits with 1 if a device is "
-     "wrong or "
-     "not exact, or if maria or project, which claim to be robust, have wrong or lost rays (--allow-flawed accepts "
-     "maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06 and Embree, and of math mode fast, which "
-     "is "
-     "held to no proof, are counted, and fail nothing. "
-     "By default the rows of maria, of project on half32 and tet64 and of our three BVHs are judged. Other exit-face "
-     "searches are "
-     "judged if --method names them, and Embree if --structure, --method, --layout, --backend, --filter or --require "
-     "does.",
+    {Verb::check, "verify every ray on every device, without timing",
+     "Traces every selected view with every row on every device, and answers two questions about each ray.\n\n"
+     "Does the device conform? In exact mode, all bits of all hits are compared with openmp's for the same method "
+     "and layout. Each cell of the matrix is 'bit-exact'; 'within N ulp', t, u and v differ by no more than the "
+     "device's self-test allows (0 if its division is correctly rounded); 'not exact', the hits are openmp's, but "
+     "the self-test shows that the device contracts or rounds differently; 'wrong', with the number of rays, also "
+     "if rays were never written, words outside the hits were written, or a second run returned other hits; or "
+     "'unsupported', 'skipped' or 'error', with the reason. Equal hits have equal hashes.\n\n"
+     "Is the method right? Each ray is verified with exact arithmetic on the original triangles. A hit agrees if "
+     "the exact ray has the same one; it is counted as settled if an edge is within rounding error of the ray. "
+     "Another hit is a tie if some curve within rounding error of the ray has it, which is checked exactly. Any "
+     "other hit is wrong.\n\n"
+     "The first differing ray and the first wrong ray of a row are printed in full, with the 'tetrace trace' "
+     "command that follows it. --defects runs the reduced kernels of known compiler defects instead.\n\n"
+     "Exits with 1 if a device is wrong or not exact, or if maria or project, which claim to be robust, have wrong "
+     "or lost rays (--allow-flawed accepts maria's wrong ones). Wrong and lost rays of plane, plucker, stp, ms06, "
+     "Embree, and math mode fast are counted, but are not failures.\n\n"
+     "Default rows: maria, project on half32 and tet64, and our three BVHs. Other exit-face searches are added if "
+     "--method names them, and Embree if --structure, --method, --layout, --backend, --filter or --require does.",
      "  tetrace check --scene cubes --require opencl,vulkan --junit check.xml\n"
      "  tetrace check --scene bunny --backend vulkan --picture differences\n"
      "  tetrace check --scene bunny --method all\n"
@@ -100,177 +94,158 @@ const VerbHelp verb_help[] = {
      "  tetrace check --scene bunny --camera-set flight --views 0-1281:40 --out check.json\n"},
     {Verb::render, "write pictures",
      "Traces the selected views and writes a picture of each: the surface shaded by its normals, or the steps of each "
-     "ray in false colour with a scale bar, side by side for several kinds of tets. The pictures are made by the first "
-     "selected row of each scene.",
+     "ray in false colour with a scale bar, side by side for several kinds of tets. The pictures are made by the "
+     "first selected row of each scene.",
      "  tetrace render --scene bunny --views 0 --out bunny.png\n"
      "  tetrace render --scene armadillo --picture normals,steps --size 512\n"
      "  tetrace render --scene bunny --tets cdt,rays --picture steps --views 0 --out steps.png\n"},
     {Verb::reproduce, "regenerate the paper's tables and figures",
      "Regenerates the evaluation of Maria, Horna, Aveneau, \"Efficient Ray Traversal of Constrained Delaunay "
-     "Tetrahedralization\" (GRAPP 2017), on every device at hand. The paper's numbers stand next to ours, and each "
-     "claim gets a verdict that is computed from intervals, of views: 'holds', 'does not hold' or 'not testable "
-     "here'.\n\n"
-     "Scenes are traced in up to three builds (--builds): a CDT as the options say; banana, bunny and armadillo as "
-     "close to the paper's counts as known; and tets for rays, without a number of the paper's beside them. Where the "
-     "mesh is another than the paper's, its numbers are shown without a ratio, with the reason.\n\n"
+     "Tetrahedralization\" (GRAPP 2017), on every device that is here. The paper's numbers are printed next to ours, "
+     "and each claim gets a verdict based on confidence intervals over the views: 'holds', 'does not hold' or 'not "
+     "testable here'.\n\n"
+     "Scenes are traced in up to three builds (--builds): a CDT with the usual options; banana, bunny and armadillo "
+     "as close to the paper's counts as known; and tets for rays, to which no number of the paper is compared. If the "
+     "mesh is not the paper's, the paper's numbers are shown without a ratio, with the reason.\n\n"
      "table3: tets, faces, memory and rates of each scene.\n\n"
-     "table4: rays with a wrong result per image, by method, scene and device, as the exact oracle of 'check' judges "
-     "them, and where they are. project, which is ours, is compared with the paper's methods.\n\n"
-     "table5: the exit search alone, without the walk around it: random tets, random rays that enter each by a known "
-     "face, on one thread of the CPU and on every device. Every face that is found is compared with exact arithmetic. "
-     "No scene is needed; --searches sets the number. A row needs about 80 MB for its rays. Beside it stands what a "
-     "search costs in operations and side products, which the kernels count themselves.\n\n"
-     "table6: tets against BVHs: maria is compared with bvh2, which is the paper's kind of BVH, and with bvh4 and "
-     "cwbvh on every device, and with Embree on the host; through tets for rays, so is project on half32 and tet64. It "
-     "has "
-     "frames a second, "
-     "build time and memory; the ratio of their times, paired view by view; and the number of rays after which a "
-     "slower build pays off. In --method and --layout, the values of BVHs select among the BVHs only, and those of "
-     "the CDT among its rows only.\n\n"
-     "rivals: what this repository says about the speed of tets and BVHs, measured again by rules that the authors of "
-     "the BVHs would accept (docs/rivals.md): a ratio is to the fastest BVH of the device, on the same rays, over "
-     "scenes that suit tets and scenes that do not. It is a run of its own, as 'bench' does it: all views together, "
-     "with --samples, --sample-time and --budget as there. Default scenes: bunny, armadillo, atrium, city, terrain, "
-     "spheres and grass, as far as they are available. 'tetrace show FILE.json --out page.md' writes the page "
-     "again.\n\n"
-     "figure6: time over tets traversed, one point a view, their correlation, and pictures of the two extreme "
+     "table4: rays with a wrong result per image, by method, scene and device, verified as in 'check', and where they "
+     "are. project, which is ours, is compared with the paper's methods.\n\n"
+     "table5: the exit search by itself, without the walk: random tets, random rays that enter each by a known face, "
+     "on one thread of the CPU and on every device. Every face found is compared with exact arithmetic. It needs no "
+     "scene; --searches sets the number. A row needs about 80 MB for its rays. The table also has the operations and "
+     "side products per search, which the kernels count themselves.\n\n"
+     "table6: tets against BVHs. maria is compared with bvh2, which is the paper's kind of BVH, with bvh4 and cwbvh "
+     "on every device, and with Embree on the host; through tets for rays, so is project on half32 and tet64. The "
+     "table has frames/s, build time and memory; the ratio of their times, paired by view; and the number of rays "
+     "after which a slower build pays off. In --method and --layout, names that belong to BVHs select only among the "
+     "BVHs, and the others only among the tets.\n\n"
+     "rivals: what this repository claims about the speed of tets and BVHs, measured again by rules that the authors "
+     "of the BVHs would accept (docs/rivals.md): each ratio is to the fastest BVH of the device, on the same rays, "
+     "over scenes that suit tets and scenes that do not. It is run by itself and measures as 'bench' does: all views "
+     "together, with --samples, --sample-time and --budget as there. Default scenes: bunny, armadillo, atrium, city, "
+     "terrain, spheres and grass, if available. 'tetrace show FILE.json --out page.md' writes the page again.\n\n"
+     "figure6: time over tets traversed, one point per view, their correlation, and pictures of the two extreme "
      "views.\n\n"
-     "Each view, and each batch of searches, is timed in a launch of its own, as the paper's frames per second are, "
-     "and "
-     "else as by 'bench': GPUs' rows interleaved with each other, then the "
-     "processor's, in samples of several passes where one is short (--sample-time); a sample in which a GPU was "
-     "throttled is taken again. The machine's pulse and load are taken all the while and over --resume; a claim that "
-     "rests on a noisy row is not testable.\n\n"
-     "The views are those of the camera set 'flight'; --views selects a sample of them, and numbers then have 95 % "
-     "intervals. Default scenes: banana, bunny and armadillo, as far as they are available. With --out FILE, each "
-     "finished view or batch of searches is kept in FILE.journal, so that --resume can continue a run that was "
-     "stopped; pictures are written next to FILE. CSV has a row for each number, text, verdict and point of a figure; "
-     "Markdown leaves out the points. Exits with 1 if a row differs from openmp's, and with 3 if no row "
-     "could run here.",
+     "Timing: each view, and each batch of searches, has a launch of its own, as in the paper's frames per second. "
+     "Otherwise it is timed as in 'bench': GPU rows are interleaved, then CPU rows; a sample has several passes if "
+     "one is short (--sample-time); and a sample during which a GPU was throttled is repeated. Calibration and load "
+     "are recorded throughout, also across --resume; a claim that depends on a noisy row is not testable.\n\n"
+     "Views: those of the camera set 'flight'. --views selects a sample of them, and the numbers then have 95 % "
+     "intervals. Default scenes: banana, bunny and armadillo, if available.\n\n"
+     "Output: with --out FILE, each finished view or batch of searches is also kept in FILE.journal, so that --resume "
+     "can continue a run that was stopped; pictures are written next to FILE. CSV has a row for each number, text, "
+     "verdict and point of a figure; Markdown leaves out the points. Exits with 1 if a row differs from openmp's, and "
+     "with 3 if no row could run here.",
      "  tetrace reproduce table4 --scene bunny --views 0-1281:20 --out table4.json\n"
      "  tetrace reproduce table6 --scene bunny --views 0-1281:20 --backend openmp,embree\n"
      "  tetrace reproduce table5 --searches 1000x16384 --backend openmp,cuda\n"
      "  tetrace reproduce rivals --out rivals.json    15 minutes on two cores; with --scene bunny, 3\n"
      "  tetrace reproduce --backend openmp --layout tet80 --out all.json --resume\n"},
     {Verb::inspect, "show what real GPU compilers make of the kernels",
-     "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the compilers "
-     "say: registers, spills, scratch memory, the subgroups that a processor of the GPU holds at once, instructions, "
-     "branches, loads, and AMD's own estimate of cycles. Nothing is run. AMD's targets are asked through Mesa's RADV "
-     "on "
-     "null hardware (package mesa-vulkan-drivers), NVIDIA's through nvcc and ptxas. A target without its compiler is "
-     "'skipped', with the package that brings it.\n\n"
-     "In exact mode no sign may be decided by a fused operation. The code of each program is searched for one: AMD's "
-     "machine code, NVIDIA's PTX. 'none' means that there is none; 'boxes' counts those in the box tests of BVHs, "
-     "which "
-     "decide nothing; 'DECISIONS' counts the forbidden ones, and the first is printed. Exits with 1 where there is "
-     "one. docs/inspect.md says what each column is, and what it cannot say.",
+     "Compiles every entry point of the selected kernels for GPUs that need not be here, and prints what the "
+     "compilers report: registers, spills, scratch memory, subgroups per multiprocessor, instructions, branches, "
+     "loads, and AMD's own estimate of cycles. Nothing is run. AMD's targets are compiled by Mesa's RADV on null "
+     "hardware (package mesa-vulkan-drivers), NVIDIA's by nvcc and ptxas. A target without its compiler is 'skipped', "
+     "with the package to install.\n\n"
+     "In exact mode no fused operation may decide a sign. The code of each program is searched for one: AMD's machine "
+     "code, NVIDIA's PTX. 'none' means that none was found; 'boxes' counts those in the box tests of BVHs, which "
+     "decide nothing; 'DECISIONS' counts the forbidden ones, and prints the first. Exits with 1 if there is one. "
+     "docs/inspect.md explains each column and its limits.",
      "  tetrace inspect\n"
      "  tetrace inspect --target gfx1100 --method all --out inspect.json\n"
      "  tetrace inspect --target sm_90 --method project --layout half32 --code code --require sm_90\n"},
     {Verb::trace, "follow one ray, step by step, on every device",
      "Follows the ray of one pixel through the tets on every selected device, next to openmp: each step with its tet, "
-     "the face by which the ray leaves it, what is beyond, and three side products. The first step at which a device "
-     "differs from openmp is marked. 'check' prints the command for the first differing ray of a row.\n\n"
-     "The steps come from the device's own kernel, the one that rows time: the whole image is traced again and again, "
-     "each time with a cap of one step more, and the kernel reports the tet in which the ray was cut off. So a "
-     "compiler's defect that needs the ray's neighbours shows here too; 'traced alone' is the same ray as an image of "
-     "its own. The products are the sides of the ray at the edges of the face by which it leaves (of one sign where "
-     "the "
-     "face is right), each sum and product computed by the device, with the program of its self-test. The kernel does "
-     "not report its own.\n\n"
-     "One kernel is followed: by default maria on tet80; --method project alone means half32. --rays follows the ray "
-     "of "
-     "that kind that was made for the pixel, from the face on which it starts. Our BVHs (--layout bvh2, bvh4, cwbvh) "
-     "have no "
-     "steps, since their kernels do not tell which nodes they visit: of them the answers are shown, and how many nodes "
-     "and triangles openmp visits. Embree's kernels and a driver's (rt) tell nothing but the answer, and are refused. "
-     "Exits with 1 if a device differs from openmp, with 2 for a ray that there is not, and with 3 if no device that "
-     "was asked for could trace it.",
+     "its exit face, the neighbour, and three side products. The first step at which a device differs from openmp is "
+     "marked. 'check' prints this command for the first differing ray of a row.\n\n"
+     "The steps come from the device's own kernel, the one that is measured: the whole image is traced repeatedly, "
+     "with a cap that is one step higher each time, and the kernel returns the tet at which the ray was cut off. So a "
+     "compiler defect that needs the neighbouring rays shows up here too; 'traced alone' is the same ray as an image "
+     "of its own. The side products are the sides of the ray at the edges of the exit face (all of one sign if the "
+     "face is right). The device computes each sum and product with the program of its self-test, because the kernel "
+     "does not return its own.\n\n"
+     "One kernel is followed: maria on tet80 by default; --method project without --layout means half32. --rays "
+     "follows the ray of that kind that was made for the pixel, from the face on which it starts. Our BVHs (--layout "
+     "bvh2, bvh4, cwbvh) have no steps, because their kernels do not report the nodes they visit; the hits are shown, "
+     "and how many nodes and triangles openmp visits. Embree's kernels and a driver's (rt) return only the hit, and "
+     "are refused. Exits with 1 if a device differs from openmp, with 2 if there is no such ray, and with 3 if none "
+     "of the selected devices could trace it.",
      "  tetrace trace --scene cubes --pixel 128,100\n"
      "  tetrace trace --scene bunny --view 2 --pixel 300,17 --size 512 --method project --backend vulkan\n"
      "  tetrace trace --scene cubes --pixel 128,100 --format json --out ray.json\n"},
     {Verb::dump, "write a kernel's source and code for a bug report",
-     "Writes the files of one kernel as a backend's driver gets them: of opencl its source with all includes resolved; "
-     "of vulkan GLSL, the SPIR-V of each program, and the machine code of the drivers that tell it; of cuda its "
-     "source, "
-     "PTX if NVRTC is here, and machine code if the build has it. README.txt, which is printed too, says what each "
-     "file is and how to compile it without tetrace. A driver is loaded for its machine code alone, in this process, "
+     "Writes the files of one kernel as a backend's driver gets them. opencl: its source with all includes resolved. "
+     "vulkan: GLSL, the SPIR-V of each program, and the machine code from drivers that return it. cuda: its source, "
+     "PTX if NVRTC is here, and machine code if the build has it. README.txt, which is also printed, says what each "
+     "file is and how to compile it without tetrace. A driver is loaded only for its machine code, in this process, "
      "after everything else is written. Exits with 2 for a backend without such files: kernels of openmp, cuda-host "
-     "and "
-     "embree are parts of programs and libraries.",
+     "and embree are parts of programs and libraries.",
      "  tetrace dump --backend vulkan --method project --layout half32 --out report\n"
      "  tetrace dump --backend opencl --method maria --layout tet80 --math fast --out report\n"},
     {Verb::compare, "compare results of bench, row by row",
-     "Compares the rows of B.json with those of the same name in A.json, both made by 'tetrace bench --out' or by "
-     "'tetrace reproduce --out', whose exit searches of table5 are rows too: another "
-     "commit, driver, compiler or machine. The head of the output says what differs. For each row it prints the ratio "
-     "of the rates (of the medians; above 1, B is faster) with its interval, of samples, and a verdict: 'SAME', the "
-     "interval lies "
-     "within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', it contains 1 and reaches "
-     "beyond the tolerance, or there are fewer than 5 samples, which give no interval: more would decide; 'NOISY', the "
-     "machine itself was slower by a quarter in one of the two, as its pulse shows ('tetrace help bench'), so that the "
-     "row decides nothing. Rows that both timed are 'DIFFERENT', and not compared, if scenes, views, launches on a GPU "
-     "or hit hashes "
-     "differ: Embree's hits, and those of "
-     "math mode fast, depend on the processor. Rows that only one of them timed are 'FAILED' (wrong or in error in B), "
-     "'MISSING' (not in B, or skipped or unsupported there) or 'NEW'. Neither these nor DIFFERENT rows have a part in "
-     "the geometric mean.\n\n"
-     "The intervals come from ranks, and assume of the noise only that samples are independent. If nothing changed, "
-     "the chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, from 10 samples a row "
-     "on; with fewer, down to 5, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples "
-     "do not show: that is what the tolerance is for.\n\n"
-     "Three results and more stand side by side, a column each, with the ratios to the first: of the rows that did the "
-     "same work, while the others are listed with the reason. They are shown, not judged, and the exit code is 0.\n\n"
-     "Of two results, exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see "
+     "Compares the rows of B.json with those of the same name in A.json: another commit, driver, compiler or machine. "
+     "Both were made by 'tetrace bench --out' or 'tetrace reproduce --out' (the exit searches of table5 are rows "
+     "too). The head of the output says what differs between them. For each row it prints the ratio of the rates (of "
+     "the medians; above 1, B is faster) with its interval from the samples, and a verdict:\n\n"
+     "'SAME', the interval is within --tolerance; 'FASTER' or 'SLOWER', the interval does not contain 1; 'UNSURE', "
+     "the interval contains 1 and exceeds the tolerance, or there are fewer than 5 samples, which give no interval: "
+     "more samples would decide; 'NOISY', calibration was a quarter slower in one of the two ('tetrace help bench'), "
+     "so the row decides nothing. 'DIFFERENT', both timed the row, but scenes, views, launches on a GPU or hit hashes "
+     "differ, so it is not compared (Embree's hits, and those of math mode fast, depend on the CPU). Rows that only "
+     "one of them timed are 'FAILED' (wrong or in error in B), 'MISSING' (not in B, or skipped or unsupported there) "
+     "or 'NEW'. The geometric mean excludes these and DIFFERENT rows.\n\n"
+     "The intervals are based on ranks; the only assumption is that samples are independent. If nothing changed, the "
+     "chance that any row of the comparison is called FASTER or SLOWER is at most 1 in 100, with 10 or more samples "
+     "per row; with 5 to 9, it is at most 1 in 100 for each row. Two runs also differ in ways that their samples do "
+     "not show: the tolerance is for that.\n\n"
+     "Three or more results are printed side by side, a column each, with ratios to the first, for the rows that did "
+     "the same work; the others are listed with the reason. There are no verdicts, and the exit code is 0.\n\n"
+     "With two results, exits with 1 if a row is SLOWER by more than the tolerance, FAILED or MISSING (see "
      "--allow-missing). Exits with 2, and names the rows, if all are DIFFERENT.",
      "  tetrace compare before.json after.json\n"
      "  tetrace compare driver-1.json driver-2.json --filter api:vulkan --tolerance 1\n"
      "  tetrace compare main.json branch.json --allow-missing --format markdown\n"
      "  tetrace compare zen3.json zen5.json xeon.json\n"},
     {Verb::show, "print a result again",
-     "Prints what the run that wrote RESULT.json printed: the same tables and sentences, made by the same code from "
-     "the JSON, for results of bench, check (with --defects too), reproduce and trace. A line 'Not here' at the end "
-     "names what the JSON does not have: "
-     "of a check, the tets that a differing ray walks through, which its 'path' lists, and the command that follows "
-     "it; of older results, what they did "
-     "not record. --format markdown is for posting it.",
+     "Prints what the run that wrote RESULT.json printed, from the JSON, with the same code: for results of bench, "
+     "check (with --defects too), reproduce and trace. A line 'Not here' at the end names what the JSON does not "
+     "have. For a check, that is the tets that a differing ray walks through (its 'path' lists them) and the command "
+     "that follows the ray; for older results, what they did not record. --format markdown is for posting it.",
      "  tetrace show bench.json\n"
      "  tetrace show bench.json --columns mrays_per_s,spread,status\n"
      "  tetrace show check.json --format markdown\n"},
     {Verb::report, "write one HTML page from results",
      "Writes one self-contained page from any number of result files: machines and devices, rates with their spread, "
-     "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, what compilers "
-     "told inspect, and pictures. The "
-     "page loads nothing and runs no script. It follows the reader's choice of light or dark, and prints. Rows of "
-     "several results share a chart if they traced the same rays through the same scene. Emulated devices and GPUs "
-     "never share one.\n\n"
-     "Of a FOLDER, it writes the page of a campaign, from all results in it and below it (files that end in .json): an "
-     "index of machines and results; machines beside each other, with the newest rate of each, only where they did the "
-     "same work; and each machine's rates over its dates, with a verdict for the last step. A file that is no result "
-     "is "
-     "left out, and listed with the reason. Hosts are told apart by --label of their runs, or else by their "
-     "processors, or by the folders of results that do not tell these.",
+     "APIs compared with intervals, each device's roofline with its rows on it, the matrix of check, what inspect "
+     "found, and pictures. The page loads nothing and runs no script. It follows the reader's choice of light or "
+     "dark, and can be printed. Rows of several results share a chart if they traced the same rays through the same "
+     "scene. Emulated devices and GPUs never share one.\n\n"
+     "For a FOLDER, it writes the page of a campaign, from all results (.json) in the folder and its subfolders: an "
+     "index of machines and results; machines compared with each other, by the newest rate of each, if they did the "
+     "same work; and each machine's rates by date, with a verdict for the last change. A file that is not a result is "
+     "left out, and listed with the reason. Machines are distinguished by the --label of their runs, or else by their "
+     "CPUs; results that record neither are grouped by folder.",
      "  tetrace report bench.json check.json --out report.html\n"
      "  tetrace report results/ --out campaign.html\n"
      "  tetrace report gpu.json cpu.json --picture bunny-0-normals.png,bunny-0-steps.png\n"},
-    {Verb::merge, "make one result of the shards of a run",
+    {Verb::merge, "make one result from the shards of a run",
      "Reads the results that 'bench', 'check' or 'reproduce' wrote with --shard, each with its journal (FILE.journal) "
      "next to it, and makes the result of the whole run: the same counts, verdicts and hashes as without shards, and "
-     "the same exit code. A missing or doubled shard, and shards of other commits, scenes, rows or options, are "
-     "refused by name, with exit code 2.\n\n"
-     "Times stay with the machine that took them: the result lists each machine with its shards and the rates of its "
-     "rows. A row's times are put together only where all its shards ran on machines of one kind, with one device and "
-     "driver; else the row has counts, and no rate. Of 'reproduce' the scenes are loaded again, from the cache or "
-     "their meshes; no device is needed. docs/cluster.md has the rest: Slurm, MPI, and how it scales.",
+     "the same exit code. If a shard is missing or given twice, or if shards differ in commit, scenes, rows or "
+     "options, it names them and exits with 2.\n\n"
+     "Times are kept per machine: the result lists each machine with its shards and the rates of its rows. A row's "
+     "times are combined only if all its shards ran on machines of one kind, with one device and driver; otherwise "
+     "the row has counts, and no rate. For 'reproduce', the scenes are loaded again, from the cache or their meshes; "
+     "no device is needed. docs/cluster.md has the rest: Slurm, MPI, and how it scales.",
      "  tetrace bench --scene bunny --shard 1/2 --out 1.json     on one machine\n"
      "  tetrace bench --scene bunny --shard 2/2 --out 2.json     on another\n"
      "  tetrace merge 1.json 2.json --out both.json\n"
      "  srun -n 4 tetrace reproduce table4 --scene bunny --out all.json   shards and merges by itself\n"},
     {Verb::help, "describe the program or a verb",
      "Describes the program, or a verb. 'tetrace help options' prints a Markdown table of all options, 'tetrace help "
-     "man' a manual page for man, and 'tetrace help bash' or 'zsh' what completes a command line in that shell.",
+     "man' a manual page for man, and 'tetrace help bash' or 'zsh' a completion script for that shell.",
      "  tetrace help bench\n"
-     "  source <(tetrace help bash)               complete verbs and options with the tabulator key\n"},
+     "  source <(tetrace help bash)               complete verbs and options with the tab key\n"},
 };
 
 std::string exit_codes()
@@ -281,12 +256,12 @@ std::string exit_codes()
     return text;
 }
 
-/// As wide as the terminal, where there is one; longer lines are harder to read.
+/// The terminal's width, if there is one, within limits: long lines are hard to read.
 std::size_t page_width()
 {
-    constexpr std::size_t widest = 100, least = 40;
+    constexpr std::size_t max_columns = 100, min_columns = 40;
     const std::size_t columns = terminal_columns(STDOUT_FILENO);
-    return columns == 0 ? widest : std::clamp(columns, least, widest);
+    return columns == 0 ? max_columns : std::clamp(columns, min_columns, max_columns);
 }
 
 std::string option_entry(const OptionRow& row)
@@ -313,7 +288,7 @@ std::string verb_text(const VerbHelp& entry)
     const FileArguments files = file_arguments(entry.verb);
     std::string text =
         fmt::format("tetrace {}: {}\n\nUsage: tetrace {} {}{}{}\n\n{}\n", name, entry.summary, name, files.names,
-                    files.most > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
+                    files.max > 0 ? " " : "", entry.verb == Verb::help ? "[VERB | options]" : "[OPTION]...",
                     wrapped_without_orphans(entry.description, page_width(), 0));
     if (const std::string entries = option_entries(entry.verb); !entries.empty()) text += entries + "\n";
     text += fmt::format("Examples\n{}\n", entry.examples);
@@ -329,14 +304,14 @@ std::string program_text()
     for (const VerbHelp& entry : verb_help)
         text += fmt::format("  {:<10}{}\n", name_of(entry.verb), entry.summary);
     text += "\n" + wrapped("'tetrace help VERB' or 'tetrace VERB --help' describes a verb with all its options. "
-                           "Results go to standard output, or to --out FILE. A file appears whole, or not at all with "
-                           "exit code 2. Messages and progress go to standard error: progress is a line that is "
-                           "redrawn, or without a terminal a line each 30 seconds. Terminals get colours unless "
-                           "NO_COLOR is set, and tables and sentences that fit them.",
+                           "Results go to standard output, or to --out FILE: either the complete file is written, or "
+                           "none, with exit code 2. Messages and progress go to standard error: a line that is "
+                           "redrawn, or a line every 30 seconds if there is no terminal. On a terminal, output has "
+                           "colours unless NO_COLOR is set, and tables and sentences fit the width.",
                            page_width(), 0);
     text += "\nExamples\n"
-            "  tetrace bench                             the main job: bunny, armadillo, atrium, and Embree\n"
-            "  tetrace check --scene cubes               is everything right on this machine?\n"
+            "  tetrace bench                             measure bunny, armadillo and atrium; Embree as a rival\n"
+            "  tetrace check --scene cubes               is every device right on this machine?\n"
             "  tetrace build --scene dragon.ply          your own mesh\n\n";
     return text + exit_codes();
 }

@@ -9,7 +9,7 @@
 
 namespace tetrace {
 
-/// What help says of a verb, besides its options.
+/// The help of a verb, without its options.
 struct VerbHelp {
     Verb verb;
     const char* summary;
@@ -17,7 +17,7 @@ struct VerbHelp {
     const char* examples;    ///< lines
 };
 
-/// Of every verb, in the order in which help lists them.
+/// One entry per verb, in the order in which help lists them.
 [[nodiscard]] std::span<const VerbHelp> verb_helps();
 
 /// What the program's exit codes mean.
@@ -28,7 +28,7 @@ inline constexpr std::pair<int, const char*> exit_code_meanings[] = {
     {3, "something required is missing or not supported here"},
     {4, "an internal error"}};
 
-/// Other topics of help than verbs.
+/// Topics of help that are not verbs.
 inline constexpr std::string_view other_topics[] = {"options", "man", "bash", "zsh"};
 
 /// What `tetrace help TOPIC` prints: the program (empty topic), a verb, "options", the Markdown table of all options,

@@ -18,7 +18,7 @@ struct BuildIdentity {
 /// The machine that it runs on.
 struct HostIdentity {
     std::string cpu;
-    std::optional<unsigned> family, model, stepping; ///< of the processor, where the system tells: names may say no
+    std::optional<unsigned> family, model, stepping; ///< of the CPU, if the system reports them: names may say no
                                                      ///< more than "AMD EPYC"
     std::string system;                              ///< the distribution's name and the kernel's release
     unsigned threads = 1;                            ///< that this process may use

@@ -88,7 +88,7 @@ std::string man_page()
                                    troff(build_identity().version));
     for (const VerbHelp& verb : verb_helps()) {
         const FileArguments files = file_arguments(verb.verb);
-        text += fmt::format(".SS tetrace {}{}{}\n{}.PP\n.nf\n{}.fi\n", name_of(verb.verb), files.most > 0 ? " " : "",
+        text += fmt::format(".SS tetrace {}{}{}\n{}.PP\n.nf\n{}.fi\n", name_of(verb.verb), files.max > 0 ? " " : "",
                             files.names, paragraphs(verb.description), troff(verb.examples));
     }
     text += ".SH OPTIONS\n";

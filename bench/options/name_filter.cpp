@@ -14,7 +14,7 @@ NameFilter::NameFilter(const std::string& option, const std::string& expression)
     quiet.set_log_errors(false);
     expression_ = std::make_shared<const re2::RE2>(expression, quiet);
     if (!expression_->ok())
-        throw Error(ErrorKind::usage, fmt::format("{}: '{:.200}' is not a regular expression (of RE2's kind): {:.200}",
+        throw Error(ErrorKind::usage, fmt::format("{}: '{:.200}' is not a regular expression (RE2 syntax): {:.200}",
                                                   option, expression, expression_->error()));
 }
 

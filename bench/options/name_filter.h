@@ -14,8 +14,8 @@ namespace tetrace {
 /// exhausts the stack. Many names may be asked about at once.
 class NameFilter {
 public:
-    /// option: where the expression is from, for the message. expression: empty keeps all.
-    /// Throws Error{usage} where it is no regular expression, or one that takes too much memory.
+    /// option: the option that the expression is from, for the message. expression: empty keeps all.
+    /// Throws Error{usage} if it is not a regular expression, or one that takes too much memory.
     NameFilter(const std::string& option, const std::string& expression);
     [[nodiscard]] bool keeps(const std::string& name) const;
 

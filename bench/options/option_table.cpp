@@ -10,7 +10,7 @@ namespace tetrace {
 
 namespace {
 
-/// The distinct values that all kernels have in one part of their id: the accepted values of an option.
+/// The distinct values of one part of all kernels' ids: the accepted values of an option.
 template <class T>
 std::vector<T> kernels_have(T KernelId::*member)
 {
@@ -37,17 +37,17 @@ std::vector<OptionRow> reproduce_options()
     return {
         {"Tables", "TABLE", "LIST",
          "The tables and figures to regenerate: " + join_names(values_of<PaperTarget>()) +
-             ". Default: all except rivals, which is not in the paper and a run of its own.",
+             ". Default: all except rivals, which is not in the paper and is run by itself.",
          bit(Verb::reproduce), true, append("reproduce", &Options::targets)},
         {"Tables", "--builds", "LIST",
-         "Which builds of the scenes: 'ours', a CDT as the options of scenes say; 'paper', of banana, bunny and "
-         "armadillo, a CDT near the paper's counts, in a domain that holds the cameras; 'rays', tets that are changed "
-         "until rays cross few faces, which decide no claim of the paper. Cubes, lattices and "
-         ".tet files have ours alone. Default: all.",
+         "Which builds of the scenes: 'ours', a CDT built with the scene options; 'paper', for banana, bunny and "
+         "armadillo, a CDT near the paper's counts, in a domain that contains the cameras; 'rays', tets optimised "
+         "so that rays cross few faces, which decide no claim of the paper. Cubes, lattices and .tet files have "
+         "only ours. Default: all.",
          bit(Verb::reproduce), true, append("--builds", &Options::paper_builds)},
         {"Tables", "--searches", "TETSxRAYS",
-         "Exit searches of table5: the number of random tets, and of rays through each, a multiple of 8. Default: "
-         "10000x16384, as in the paper.",
+         "Exit searches of table5: the number of random tets, and the number of rays through each, a multiple of 8. "
+         "Default: 10000x16384, as in the paper.",
          bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.searches = parse_searches(v); }},
     };
 }
@@ -56,40 +56,39 @@ std::vector<OptionRow> scene_options()
 {
     return {
         {"Scenes", "--scene", "SCENE",
-         "A name of the catalogue ('tetrace scenes' lists it; atrium@N is atrium with about N triangles, and so are "
-         "banana, city, terrain, spheres and grass; lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N "
-         "= 138), a mesh file (PLY, OBJ, OFF, STL, glTF), or "
-         "a .tet file. May be repeated, or a list with commas. 'all' is every scene of the catalogue that is available "
-         "except lattice. Default: bunny, armadillo and atrium; cubes, banana and atrium if the first two are missing.",
+         "A name from the catalogue ('tetrace scenes' lists it), a mesh file (PLY, OBJ, OFF, STL, glTF), or a .tet "
+         "file. May be repeated, or a list with commas. 'all' is every available scene of the catalogue except "
+         "lattice. atrium@N is atrium with about N triangles; banana, city, terrain, spheres and grass accept @N "
+         "too. lattice:N has 6 N^3 tets, for example 2 GB in layout half32 with N = 138. Default: bunny, armadillo "
+         "and atrium; cubes, banana and atrium if the first two are missing.",
          building, true, append_scenes},
         {"Scenes", "--repair", "",
-         "Cut triangles of a mesh that cross, overlap or touch along their exact intersections. Without it such a mesh "
-         "is refused. face_id in results still names the file's triangles.",
+         "If triangles of a mesh cross, overlap or touch, cut them along their exact intersections. Without it, "
+         "such a mesh is refused. face_id in results still names the file's triangles.",
          building, false, set(&Options::repair)},
         {"Scenes", "--domain", "KIND",
-         "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a cube "
-         "of half-size 3 bounding-sphere radii. 'build' takes a list. Default: tight.",
+         "The box that the tetrahedralization fills: 'tight', the mesh's bounding box grown by 2 %, or 'wide', a "
+         "cube of half-size 3 bounding-sphere radii. 'build' accepts a list. Default: tight.",
          building, true, append("--domain", &Options::domains)},
         {"Scenes", "--tets", "KIND",
-         "How the domain is filled: 'rays', tets that are changed until rays cross few faces, or 'cdt', the "
-         "constrained Delaunay tetrahedralization that they begin with, as TetGen makes it. 'cubes', 'lattice' "
-         "and .tet files have tets of their own. 'build' takes a list, and so does 'render', whose steps are then side "
-         "by side; "
+         "How the domain is filled: 'rays', tets optimised so that rays cross few faces, or 'cdt', the constrained "
+         "Delaunay tetrahedralization before that, as TetGen makes it. 'cubes', 'lattice' and .tet files have tets "
+         "of their own. 'build' accepts a list, and so does 'render', which then shows the steps side by side; "
          "'reproduce' has --builds. Default: rays.",
          building & ~bit(Verb::reproduce), true, append("--tets", &Options::tets)},
         {"Scenes", "--effort", "N",
-         "Effort for --tets rays: 0 (TetGen's tets as they are, by the switches of this kind, so other ones than those "
-         "of --tets cdt), 1 (quick), 2, or 3 (vertices are inserted too; the optimiser takes ten times as long, for "
-         "1 % fewer steps at most). Default: " +
+         "Effort for --tets rays: 0 (TetGen's tets, unchanged, but with the --switches of this kind, so not those "
+         "of --tets cdt), 1 (quick), 2, or 3 (vertices are inserted too; the optimiser needs ten times as long, for "
+         "at most 1 % fewer steps). Default: " +
              std::to_string(usual_effort) + ".",
          building, false,
          [](Options& o, const std::string& v) { o.effort = static_cast<int>(parse_count("--effort", v, 0, 3)); }},
         {"Scenes", "--divisions", "N",
-         "Cut each side of the domain into N x N squares, 1 to 64. 'build' takes a list. Default: " +
+         "Cut each side of the domain into N x N squares, 1 to 64. 'build' accepts a list. Default: " +
              std::to_string(BuildOptions{}.divisions) + ".",
          building, true, append_count("--divisions", &Options::divisions, 1, 64)},
         {"Scenes", "--switches", "SWITCHES",
-         "TetGen's switches, as in its manual. 'build' takes a list. Default: " +
+         "TetGen's switches, as in its manual. 'build' accepts a list. Default: " +
              default_build(TetsKind::rays).switches + " for --tets rays, " + default_build(TetsKind::cdt).switches +
              " for --tets cdt.",
          building, true, append_text(&Options::switches)},
@@ -101,10 +100,9 @@ std::vector<OptionRow> scene_options()
          "End the scene builder after this time: seconds, or a number followed by s, m or h. Default: 10m.", building,
          false, set_seconds("--time-limit", &Options::time_limit_s)},
         {"Scenes", "--optimise-time", "TIME",
-         "Stop the optimiser of --tets rays after this time, as above, with the tets that it has reached. They depend "
-         "on "
-         "the machine: the result says 'out of time', and the scene is kept in a file of its own, which --scene takes. "
-         "Default: half of --time-limit.",
+         "Stop the optimiser of --tets rays after this time, as above, and use the tets reached so far. They depend "
+         "on the machine: the result says 'out of time', and the scene is kept in a separate file, which --scene "
+         "accepts. Default: half of --time-limit.",
          building, false, set_seconds("--optimise-time", &Options::optimise_s)},
         {"Scenes", "--memory-limit", "SIZE",
          "Memory that the scene builder may use: bytes, or a number followed by K, M, G or T. Default: 8G.", building,
@@ -117,71 +115,67 @@ std::vector<OptionRow> row_options()
 {
     return {
         {"Rows", "--structure", "NAME",
-         "Keep the rows of this structure: cdt (tets, of either kind) or bvh. Default: both. 'check' leaves out the "
-         "rows of Embree's and a "
-         "driver's own BVHs unless --structure, --method, --layout, --backend, --filter, '--schedule pipeline' or "
-         "'--require embree' is given.",
+         "Keep the rows of this structure: cdt (tets of either kind) or bvh. Default: both. 'check' leaves out "
+         "Embree's and a driver's own BVHs unless --structure, --method, --layout, --backend, --filter, '--schedule "
+         "pipeline' or '--require embree' is given.",
          selecting & ~bit(Verb::trace), true, append("--structure", &Options::structures)},
         {"Rows", "--method", "NAME",
          "Keep the rows of this method: " + names_of(Structure::cdt, &KernelId::method) +
              " (exit-face searches of the cdt), " + names_of(Structure::bvh, &KernelId::method) +
              " (how many rays Embree's BVHs get at once: one, a packet, or a stream of packets, which only Embree 3 "
-             "has; other BVHs have single alone), or 'all'. Default: maria, project on half32 and "
-             "tet64, and the methods of the BVHs if these are kept. Default of 'reproduce': all; table6 compares maria "
-             "with BVHs, and "
-             "through tets for rays project on half32 and tet64.",
+             "has; other BVHs have only single), or 'all'. Default: maria, project on half32 and tet64, and the "
+             "methods of the BVHs if these are kept. Default for 'reproduce': all; table6 compares maria with BVHs, "
+             "and through tets for rays also project on half32 and tet64.",
          reproducing | selecting | bit(Verb::dump), true,
          append_or_all("--method", &Options::methods, kernels_have(&KernelId::method))},
         {"Rows", "--layout", "NAME",
-         "Keep the rows of this packed form: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with project), "
-         "bvh2, bvh4 or "
-         "cwbvh (our BVHs), embree, embree_medium or embree_robust (built by Embree itself, with quality high or "
-         "medium, "
-         "or with flag robust), or rt (built by Vulkan's driver for its own rays). "
-         "Default: all of the structures kept, rt only on GPUs that have it; on emulated devices it is slow, and a row "
-         "where rt is named here, in a filter, or by '--schedule pipeline'.",
+         "Keep the rows of this memory layout: tet80 or tet96 (cdt), half32, tet64, tet20 or tet16 (cdt with "
+         "project), bvh2, bvh4 or cwbvh (our BVHs), embree, embree_medium or embree_robust (built by Embree itself, "
+         "with quality high or medium, or with flag robust), or rt (built by Vulkan's driver for its own ray "
+         "tracing). Default: all of the structures kept, and rt on GPUs that have it. On emulated devices rt is "
+         "slow: it is a row there only if it is named here, in a filter, or by '--schedule pipeline'.",
          reproducing | selecting | bit(Verb::dump), true,
          append("--layout", &Options::layouts, kernels_have(&KernelId::layout))},
         {"Rows", "--backend", "NAME",
          "Keep the rows of this backend ('tetrace devices' lists them). A backend without a usable device has rows "
-         "only if it is named here or by --require; they are skipped, with the reason. Default: all that have a usable "
+         "only if it is named here or by --require; they are skipped, with the reason. Default: all with a usable "
          "device and a kernel of the structures kept.",
          reproducing | bit(Verb::dump), true, append_backend("--backend", &Options::backends)},
         {"Rows", "--device", "TEXT",
          "Keep the rows of the devices whose name, driver, type, id or number contains TEXT, ignoring case, for "
-         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT means no usable "
-         "device. Default: all.",
+         "example 'gpu', 'llvmpipe' or 'vulkan:1' (the second device of vulkan). Exit code 3 if a TEXT matches "
+         "none. Default: all.",
          reproducing | bit(Verb::dump), true, append_text(&Options::devices)},
         {"Rows", "--rays", "KIND",
-         "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the host, "
-         "from the primary hits: 'shadow', towards a light, and 'ao', short rays round the normal (for both, any hit "
-         "is an answer); 'diffuse', one bounce; 'random', lines through the domain. Default: primary.",
+         "Trace rays of this kind: 'primary', the image's own, made by the kernels. The others are made on the "
+         "host, from the primary hits: 'shadow', towards a light, and 'ao', short rays in directions around the "
+         "normal (for both, any hit will do); 'diffuse', one bounce; 'random', lines through the domain. Default: "
+         "primary.",
          measuring | bit(Verb::trace), true, append("--rays", &Options::rays)},
         {"Rows", "--ray-order", "ORDER",
-         "Order of the rays of all kinds but primary: 'tiles', as their pixels lie; 'morton', sorted by origin and "
-         "direction; 'shuffled'. Each is a row of its own. Default: tiles.",
+         "Order of the rays of all kinds except primary: 'tiles', in the order of their pixels; 'morton', sorted by "
+         "origin and direction; 'shuffled'. Each is a separate row. Default: tiles.",
          measuring | bit(Verb::trace), true, append("--ray-order", &Options::ray_orders)},
         {"Rows", "--math", "MODE",
-         "'exact': no contraction, the same bits everywhere; 'fast': the compiler is free. Embree has one build, and "
-         "its rows appear in both modes. Default: exact.",
+         "'exact': no contraction to FMAs, the same bits everywhere; 'fast': the compiler may contract. Embree has "
+         "one build, whose rows appear in both modes. Default: exact.",
          selecting | bit(Verb::dump), true, append("--math", &Options::math)},
         {"Rows", "--order", "ORDER",
-         "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but the tets that "
-         "no ray from outside reaches come last; 'chains', the same again, but each tet is followed by its neighbour "
-         "behind its largest free face; 'input', as TetGen wrote them. For rows of structure cdt only. Default: "
+         "Order of the tets in memory: 'hilbert', along a space-filling curve; 'reached', the same, but tets that "
+         "no ray from outside reaches are last; 'chains', as 'reached', but each tet is followed by its neighbour "
+         "across its largest free face; 'input', as TetGen wrote them. Only for rows of structure cdt. Default: "
          "chains.",
          tracing, true, append("--order", &Options::orders)},
         {"Rows", "--schedule", "NAME",
-         "How work items get their rays: 'tiles', one ray each; 'persistent', items that stay and fetch rays until "
-         "none is left, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for "
-         "project on half32; 'native', one ray each by code for AVX2 (x86-64-v3) on openmp, for maria on tet80, "
-         "project on half32 and tet64, and BVHs; 'pipeline', of rt alone, through Vulkan's ray-tracing pipelines "
-         "instead of ray "
-         "queries. Embree has a schedule of its own. Default: tiles and packets; for rt, pipeline where a driver "
-         "has no ray queries.",
+         "How work items get their rays: 'tiles', one ray each; 'persistent', work items fetch rays until all are "
+         "traced, on the backends with such kernels; 'packets', 4, 8 or 16 rays in lockstep on openmp, for project "
+         "on half32; 'native', one ray each with code for AVX2 (x86-64-v3) on openmp, for maria on tet80, project "
+         "on half32 and tet64, and BVHs; 'pipeline', only for rt, Vulkan's ray-tracing pipelines instead of ray "
+         "queries. Embree has a schedule of its own. Default: tiles and packets; for rt, pipeline if the driver "
+         "lacks ray queries.",
          selecting, true, append("--schedule", &Options::schedules)},
         {"Rows", "--filter", "REGEX",
-         "Keep the rows whose names contain a match of a regular expression (RE2's): 'tet96.*openmp'. Default: all.",
+         "Keep the rows whose names match this regular expression (RE2) anywhere: 'tet96.*openmp'. Default: all.",
          measuring | bit(Verb::compare), false, [](Options& o, const std::string& v) { o.filter = parse_filter(v); }},
         {"Rows", "--list", "", "Print the names of the selected rows and stop.", measuring, false, set(&Options::list)},
     };
@@ -192,36 +186,34 @@ std::vector<OptionRow> ray_options()
     const unsigned with_rays = reproducing | bit(Verb::build);
     return {
         {"Rays", "--camera-set", "SET",
-         "'frame', 4 views that the scene fills: cameras of its own for atrium, city, terrain, spheres and grass, and "
-         "close views for any other mesh; 'smoke', 4 views at 2 radii, of which a closed object fills a sixth; "
-         "'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or "
-         "a file that ends in .json, with cameras of your own (docs/cameras.md). Default: frame.",
+         "'frame', 4 views that the scene fills: special cameras for atrium, city, terrain, spheres and grass, and "
+         "close views of any other mesh; 'smoke', 4 views at 2 radii, in which a closed object fills a sixth of the "
+         "image; 'orbit', 1,282 views on a sphere of 2 radii; 'flight', 1,282 views from 1.2 to 2.9 radii; or a "
+         ".json file with your own cameras (docs/cameras.md). Default: frame.",
          tracing | bit(Verb::build), false, set_cameras},
         {"Rays", "--views", "LIST",
-         "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or 0-1281:64. "
-         "Default: all; of 'bench' without --scene and with frame, 0 and 1.",
+         "Views of the camera set, numbered from 0: numbers, ranges and strides, for example 0,3,10-20 or "
+         "0-1281:64. Default: all; for 'bench' without --scene and with frame, 0 and 1.",
          with_rays & ~bit(Verb::trace), true,
          [](Options& o, const std::string& v) { o.views += (o.views.empty() ? "" : ",") + v; }},
         {"Rays", "--size", "WxH",
-         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; of 'check' and 'trace' 256x256, of "
+         "Image size in pixels, one ray each; N means NxN. Default: 1024x1024; for 'check' and 'trace' 256x256, for "
          "'reproduce rivals' 512x512.",
          with_rays, false,
          [](Options& o, const std::string& v) { std::tie(o.width, o.height) = parse_size("--size", v); }},
         {"Rays", "--threads", "N",
-         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all that the process may use, as scenes are "
-         "always "
-         "built. Default: 0.",
+         "Host threads; 0 means OMP_NUM_THREADS if it is set, or else all CPUs that the process may use. Scenes are "
+         "always built with 0. Default: 0.",
          with_rays, false, set_count("--threads", &Options::threads, 0, 4096)},
-        {"Rays", "--tile", "WxH",
-         "Pixels that a group of work items traces: 8x4 or 8x8. Default: by the type of the device.", reproducing,
-         false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
+        {"Rays", "--tile", "WxH", "Pixels per work-group: 8x4 or 8x8. Default: depends on the type of the device.",
+         reproducing, false, [](Options& o, const std::string& v) { o.tile_height = parse_tile_height(v); }},
         {"Rays", "--packet-lanes", "N",
-         "Rays of a packet, for rows of schedule 'packets': 4, 8 or 16. If the processor or the build lacks that "
-         "width, those rows are unsupported. Default: the widest available.",
+         "Rays per packet, for rows of schedule 'packets': 4, 8 or 16. If the CPU or the build does not support "
+         "that width, those rows are unsupported. Default: the widest available.",
          tracing, false, [](Options& o, const std::string& v) { o.packet_lanes = parse_packet_lanes(v); }},
         {"Rays", "--buffer-limit", "SIZE",
-         "Limit the buffers of every device to this size: bytes, or a number followed by K, M, G or T. The array of "
-         "tets is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
+         "Maximum size of a buffer on every device: bytes, or a number followed by K, M, G or T. The array of tets "
+         "is bound in parts that fit; if that is not enough, the row is unsupported. Default: the limit that each "
          "device reports.",
          reproducing, false, set_bytes("--buffer-limit", &Options::buffer_limit)},
     };
@@ -232,15 +224,14 @@ std::vector<OptionRow> driver_options()
     const unsigned with_drivers = reproducing | bit(Verb::devices);
     return {
         {"Drivers", "--isolate", "KIND",
-         "Where the drivers of opencl, vulkan and cuda run: 'device', a process of its own for each device, so that a "
-         "driver that crashes or hangs ends only its row; 'none', in tetrace's process, for debuggers. Default: "
-         "device.",
+         "Where the drivers of opencl, vulkan and cuda run: 'device', a separate process for each device, so that a "
+         "driver that crashes or hangs ends only its row; 'none', tetrace's process, for debuggers. Default: device.",
          with_drivers, false,
          [](Options& o, const std::string& v) { o.isolation = choose<Isolation>("--isolate", v); }},
         {"Drivers", "--driver-limit", "TIME",
-         "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, m "
-         "or h. Needs --isolate device. Default: 5 minutes, and a millisecond a ray or a second for each megabyte of "
-         "data.",
+         "End a driver's process if it does not answer a call within this time: seconds, or a number followed by s, "
+         "m or h. Needs --isolate device. Default: 5 minutes, plus a millisecond per ray or a second per megabyte "
+         "of data.",
          with_drivers, false, set_seconds("--driver-limit", &Options::driver_limit_s)},
     };
 }
@@ -249,60 +240,58 @@ std::vector<OptionRow> judging_options()
 {
     return {
         {"Measuring", "--samples", "N",
-         "Samples per row, 3 to 10000; a sample traces all selected views together, again and again for --sample-time. "
-         "Fewer than "
-         "5 give no interval, neither here nor in 'compare'. Default: 10.",
+         "Samples per row, 3 to 10000; a sample traces all selected views together, repeatedly for --sample-time. "
+         "Fewer than 5 give no interval, here and in 'compare'. Default: 10.",
          bit(Verb::bench), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--runs", "N",
-         "Measures N times, 1 to 100: each run opens every row's session again, warms it up and takes --samples. Times "
-         "differ more between runs than within one (memory, driver, machine), so that intervals of ratios then span "
-         "the "
-         "runs: their range, or from 5 runs on a 95 % interval by resampling runs and samples. Default: 1, whose "
-         "intervals are of its samples alone. Of 'reproduce' for rivals.",
+         "Measure N times, 1 to 100: each run opens every row's session again, warms it up and takes --samples. "
+         "Times differ more between runs than within one (memory, driver, machine), so intervals of ratios then "
+         "span the runs: their range, or with 5 or more runs a 95 % interval from resampling runs and samples. "
+         "Default: 1, with intervals based only on its samples. For 'reproduce', only rivals.",
          bit(Verb::bench) | bit(Verb::reproduce), false, set_count("--runs", &Options::runs, 1, 100)},
         {"Measuring", "--sample-time", "TIME",
-         "A sample lasts at least this long on its device (seconds, or a number followed by s; a minute at most), or "
-         "4096 "
-         "passes: a GPU traces all views in less than a millisecond, before its clocks have settled. Passes follow "
-         "each other without the host, and a rate is that of a pass. 0: a sample is one pass. Default: 0.1.",
+         "Minimum duration of a sample on its device, or 4096 passes, if that is less: seconds, or a number "
+         "followed by s, up to a minute. A GPU traces all views in less than a millisecond, too short for its "
+         "clocks to settle. Passes follow each other without the host, and rates are per pass. 0: a sample is one "
+         "pass. Default: 0.1.",
          bit(Verb::bench), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--samples", "N",
-         "Samples a row and view, or batch of searches, 3 to 10000. Default: 5. For rivals as for 'bench': a row's, "
-         "10.",
+         "Samples for each row and view, or batch of searches, 3 to 10000. Default: 5. For rivals as for 'bench': "
+         "per row, 10.",
          bit(Verb::reproduce), false, set_count("--samples", &Options::samples, 3, 10000)},
         {"Measuring", "--sample-time", "TIME",
-         "A sample of a view, or batch of searches, lasts at least this long on its device (seconds, or a number "
-         "followed by s; a minute at most), or 4096 passes, whose rate is that of a pass. Less than for 'bench', since "
-         "each of up to 1,282 views has samples of its own. 0: a sample is one pass. Default: 0.005; for rivals, whose "
-         "samples are of all views, 0.1.",
+         "Minimum duration of a sample of a view, or batch of searches, on its device, or 4096 passes, if that is "
+         "less: seconds, or a number followed by s, up to a minute. 0: a sample is one pass. Default: 0.005, less "
+         "than for 'bench', since each of up to 1,282 views has its own samples; for rivals, whose samples have all "
+         "views, 0.1.",
          bit(Verb::reproduce), false, [](Options& o, const std::string& v) { o.sample_s = parse_sample_time(v); }},
         {"Measuring", "--budget", "TIME",
-         "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least 5 "
-         "(if as many are asked for), since fewer give no interval. If 5 do not fit, the slowest rows are "
-         "skipped, or whole scenes, the last one first, and the result names the budget that they need. One row "
-         "is measured in any case, unless it takes four budgets. Else a run takes at most a quarter longer. "
-         "Loading scenes and opening devices does not count, and --benchmark_repetitions lifts the limit. Default: 4m.",
+         "Wall-clock time for verifying and timing all rows. If not all samples fit, fewer are taken, but at least "
+         "5 (or --samples, if less), since fewer give no interval. If 5 do not fit, the slowest rows are skipped, "
+         "or whole scenes, the last one first, and the result states the budget that they need. One row is always "
+         "measured, unless it needs four budgets; otherwise a run exceeds the budget by at most a quarter. Loading "
+         "scenes and opening devices does not count. With --benchmark_repetitions there is no limit. Default: 4m.",
          bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
         {"Measuring", "--budget", "TIME",
          "For rivals: wall-clock time for verifying and timing all rows, as for 'bench'. Building scenes, loading them "
          "and opening devices does not count. Default: 10m.",
          bit(Verb::reproduce), false, set_seconds("--budget", &Options::budget_s)},
         {"Judging", "--require", "BACKEND",
-         "Fail with exit code 3 unless this backend has a usable device, a row of it is selected (of 'check'), and "
-         "none is skipped or unsupported.",
+         "Fail with exit code 3 unless this backend has a usable device and, for 'check', has selected rows of "
+         "which none is skipped or unsupported.",
          bit(Verb::check) | bit(Verb::devices), true, append_backend("--require", &Options::required)},
         {"Judging", "--allow-flawed", "",
          "Exit with 0 even if maria itself has wrong rays. Lost rays, and rows that differ from openmp, still fail. "
-         "Wrong and lost rays of plane, plucker, stp and ms06 never fail, since these methods do not claim to have "
-         "none.",
+         "Wrong and lost rays of plane, plucker, stp and ms06 never fail, since these methods are not claimed to be "
+         "robust.",
          bit(Verb::check), false, set(&Options::allow_flawed)},
         {"Judging", "--defects", "",
-         "Run the reduced kernels of known compiler defects in place of rows; no scene is needed. Exits with 1 if a "
+         "Run the reduced kernels of known compiler defects instead of rows; no scene is needed. Exits with 1 if a "
          "driver shows one (docs/debugging.md).",
          bit(Verb::check), false, set(&Options::defects)},
         {"Judging", "--tolerance", "PERCENT",
          "The difference in time that does not matter, in percent, 0 to 100. A row that is SLOWER by more is a "
-         "regression; a row whose whole interval lies within it is the SAME. Default: 3.",
+         "regression; a row whose whole interval is within it is the SAME. Default: 3.",
          bit(Verb::compare), false,
          [](Options& o, const std::string& v) { o.tolerance = parse_percent("--tolerance", v) / 100; }},
         {"Judging", "--allow-missing", "",
@@ -323,8 +312,8 @@ std::vector<OptionRow> report_options()
 {
     return {
         {"Pictures", "--picture", "FILE",
-         "Put this picture into the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a list "
-         "with commas. Default: only those that a figure of a result names.",
+         "Add this picture to the page: a PNG or PPM file, as 'tetrace render' writes it. May be repeated, or a "
+         "list with commas. Default: only the pictures named by figures in the results.",
          bit(Verb::report), true, [](Options& o, const std::string& v) { o.report_pictures.emplace_back(v); }},
     };
 }

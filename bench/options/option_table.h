@@ -27,7 +27,7 @@ struct OptionRow {
 /// The files that a verb reads, given without an option: how help writes them, and how many are allowed.
 struct FileArguments {
     std::string_view names = "";
-    std::size_t least = 0, most = 0;
+    std::size_t min = 0, max = 0;
 };
 [[nodiscard]] FileArguments file_arguments(Verb verb);
 

@@ -81,7 +81,7 @@ std::string did_you_mean(const std::string& text, const std::vector<std::string>
     std::string found;
     for (const std::string& name : names) {
         const auto [shorter, longer] = std::minmax({text.size(), name.size()});
-        if (longer - shorter >= nearest) continue; // at least so many slips; a text may be as long as a command line
+        if (longer - shorter >= nearest) continue; // at least this many slips; a text may be as long as a command line
         if (const std::size_t slips = slips_between(text, name); slips < nearest) {
             nearest = slips;
             found = name;
@@ -121,7 +121,7 @@ std::uint64_t parse_count(const std::string& option, const std::string& text, st
 
 namespace {
 
-/// Empty where the text is no time of 0 or more.
+/// Empty if the text is not a time of 0 or more.
 std::optional<double> read_seconds(const std::string& text)
 {
     std::string_view digits = text;
@@ -260,7 +260,8 @@ std::vector<std::uint32_t> parse_views(const std::string& text, std::size_t view
         if (!read_range(part, range))
             reject_value("--views", part, "numbers (3), ranges (10-20) and strides (0-1281:64), commas between");
         if (range.last >= view_count)
-            throw Error(ErrorKind::usage, fmt::format("--views: there is no view {}; this camera set has views 0 to {}",
+            throw Error(ErrorKind::usage, fmt::format("--views: view {} does not exist; this camera set has views 0 "
+                                                      "to {}",
                                                       range.last, view_count - 1));
         for (std::uint64_t number = range.first; number <= range.last; number += range.stride)
             numbers.insert(static_cast<std::uint32_t>(number));

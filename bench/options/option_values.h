@@ -69,7 +69,7 @@ template <class T>
 /// One of packet_widths. Throws Error{usage}.
 [[nodiscard]] unsigned parse_packet_lanes(const std::string& text);
 
-/// The expression as it is. Throws Error{usage} where it is no regular expression (name_filter.h).
+/// The expression, unchanged. Throws Error{usage} if it is not a regular expression (name_filter.h).
 [[nodiscard]] std::string parse_filter(const std::string& text);
 
 /// The label as it is: one line. Throws Error{usage}.

@@ -93,7 +93,7 @@ void apply_values(Options& options, const OptionRow& row, const std::vector<std:
 {
     if (occurrences.size() > 1 && !row.list)
         throw Error(ErrorKind::usage,
-                    fmt::format("{} is given {} times; it takes one value", row.name, occurrences.size()));
+                    fmt::format("{} is given {} times; it accepts one value", row.name, occurrences.size()));
     for (const std::string& text : occurrences)
         for (const std::string& value : row.list ? split_list(row.name, text) : std::vector{text})
             row.apply(options, value);
@@ -121,7 +121,7 @@ void apply_row(Options& options, const OptionRow& row, CLI::App& app)
 void set_files(Options& options, const std::vector<std::string>& given)
 {
     const FileArguments files = file_arguments(options.verb);
-    if (given.size() < files.least || given.size() > files.most)
+    if (given.size() < files.min || given.size() > files.max)
         throw Error(ErrorKind::usage, fmt::format("{0}: {1} given; usage: tetrace {0} {2} [OPTION]...",
                                                   name_of(options.verb), counted_files(given.size()), files.names));
     options.files.assign(given.begin(), given.end());
@@ -130,7 +130,7 @@ void set_files(Options& options, const std::vector<std::string>& given)
 void check_single(const Options& options, const char* name, std::size_t count)
 {
     if (options.verb != Verb::build && count > 1)
-        throw Error(ErrorKind::usage, fmt::format("{} takes one value for '{}'; lists are for 'tetrace build'", name,
+        throw Error(ErrorKind::usage, fmt::format("{} accepts one value for '{}'; lists are for 'tetrace build'", name,
                                                   name_of(options.verb)));
 }
 
@@ -139,18 +139,18 @@ void check_ray(const Options& options)
 {
     if (options.scenes.size() != 1)
         throw Error(ErrorKind::usage,
-                    fmt::format("trace: --scene takes one scene; {} are given", options.scenes.size()));
+                    fmt::format("trace: --scene accepts one scene; {} are given", options.scenes.size()));
     if (!options.pixel) throw Error(ErrorKind::usage, "trace: --pixel X,Y is missing: which ray?");
     if (options.pixel->x >= options.width || options.pixel->y >= options.height)
         throw Error(ErrorKind::usage,
-                    fmt::format("--pixel: {},{} is outside the image, whose pixels go from 0,0 to "
-                                "{},{}; --size says how large it is",
+                    fmt::format("--pixel: {},{} is outside the image, whose pixels go from 0,0 to {},{}; --size "
+                                "sets its size",
                                 options.pixel->x, options.pixel->y, options.width - 1, options.height - 1));
 }
 
 void check_dump(const Options& options)
 {
-    if (options.backends.size() != 1) throw Error(ErrorKind::usage, "dump: --backend takes one backend: whose files?");
+    if (options.backends.size() != 1) throw Error(ErrorKind::usage, "dump: --backend needs one backend: whose files?");
     if (!options.out) throw Error(ErrorKind::usage, "dump: --out FOLDER is missing: where to?");
 }
 
@@ -162,7 +162,7 @@ void check_together(const Options& options)
     check_single(options, "--switches", options.switches.size());
     require_views(options);
     if (options.defects && !shard_of(options).is_whole())
-        throw Error(ErrorKind::usage, "--defects has no shards: it takes seconds; leave out --shard");
+        throw Error(ErrorKind::usage, "--defects takes only seconds and cannot be sharded; leave out --shard");
     if (options.verb == Verb::trace) check_ray(options);
     if (options.verb == Verb::dump) check_dump(options);
 }
@@ -175,7 +175,7 @@ void check_rivals(const Options& options, const CLI::App& app)
 {
     const bool is_rivals = std::ranges::find(options.targets, PaperTarget::rivals) != options.targets.end();
     if (is_rivals && options.targets.size() > 1)
-        throw Error(ErrorKind::usage, "reproduce: rivals is a run of its own; name it alone");
+        throw Error(ErrorKind::usage, "reproduce: rivals cannot be combined with other tables; run it by itself");
     const auto reject = [&](std::string_view name, const char* what) {
         if (app.get_option(std::string(name))->count() > 0)
             throw Error(ErrorKind::usage, fmt::format("{} {}", name, what));
@@ -240,7 +240,7 @@ Options parse_verb(Verb verb, const std::vector<std::string>& arguments)
     for (const OptionRow& row : option_table())
         if (takes(verb, row)) add_row(app, row);
     std::vector<std::string> files;
-    if (file_arguments(verb).most > 0) app.add_option("FILE", files);
+    if (file_arguments(verb).max > 0) app.add_option("FILE", files);
     auto ours = without_benchmark_flags(arguments, options);
     std::ranges::reverse(ours); // CLI11 takes the arguments from the back
     try {
@@ -300,10 +300,8 @@ void require_views(const Options& options)
     if (!selected_views(options).empty() || options.verb == Verb::reproduce) return;
     Options whole = options;
     whole.shard = Shard();
-    throw Error(ErrorKind::usage,
-                fmt::format("--shard {}: no view is left for it: {} selected, and a view is the least "
-                            "that a shard can have",
-                            text_of(shard_of(options)), selected_views(whole).size()));
+    throw Error(ErrorKind::usage, fmt::format("--shard {}: this shard would be empty; views selected: {}",
+                                              text_of(shard_of(options)), selected_views(whole).size()));
 }
 
 Options parse_options(const std::vector<std::string>& arguments)

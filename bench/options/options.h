@@ -71,7 +71,7 @@ enum class Entry { outside, inside, rays, search };
 template <>
 inline constexpr auto enum_names<Entry> = names_up_to<Entry::search>("outside", "inside", "rays", "search");
 
-/// The number of exit searches behind Table 5. Default: the paper's.
+/// The number of exit searches for Table 5. Default: the paper's.
 struct SearchSize {
     std::uint32_t tets = 10'000;
     std::uint32_t rays = 16'384; ///< for each tet; a multiple of TILE_WIDTH
@@ -141,14 +141,14 @@ struct Options {
     double sample_s = 0.1; ///< that a sample lasts at least, on its device; 0: a pass
     double budget_s = 240; ///< for verifying and timing all rows
 
-    std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; rivals comes alone
+    std::vector<PaperTarget> targets;     ///< of `reproduce`; empty: those of the paper; rivals only by itself
     std::vector<PaperBuild> paper_builds; ///< of `reproduce`; empty: all
     SearchSize searches;                  ///< of `reproduce`
     bool resume = false;                  ///< of `reproduce`: continue from the journal
 
     std::vector<std::string> gpus;                    ///< of `inspect`: targets; empty: those of targets_of()
     std::vector<Entry> entries;                       ///< of `inspect`; empty: all
-    std::optional<std::filesystem::path> code_folder; ///< of `inspect`: where the code goes
+    std::optional<std::filesystem::path> code_folder; ///< of `inspect`: the folder for the code
     Isolation isolation = Isolation::device;
     double driver_limit_s = 0; ///< for each call of a driver; 0: by the size of its work
 
@@ -192,7 +192,7 @@ struct Options {
 [[nodiscard]] std::vector<std::string> without_options(const std::vector<std::string>& words,
                                                        std::span<const std::string_view> names);
 
-/// Throws Error{usage} where the shard has no view. (`reproduce` has other parts, and does not need one of each scene.)
+/// Throws Error{usage} if the shard has no view. (`reproduce` has other parts, and does not need one of each scene.)
 void require_views(const Options& options);
 
 /// The view numbers asked for, ascending, of which the shard has its share. Throws Error{usage} as parse_views() does.

@@ -12,7 +12,7 @@ struct Shard {
     unsigned number = 1, of = 1; ///< number: from 1
 
     [[nodiscard]] bool is_whole() const { return of == 1; }
-    /// The number of its parts, of so many in all.
+    /// The number of parts of this shard, for a total number of parts.
     [[nodiscard]] std::size_t share(std::size_t parts) const { return (parts + of - number) / of; }
     /// The number, among all parts, of its part at an index.
     [[nodiscard]] std::size_t part(std::size_t index) const { return number - 1 + index * of; }

@@ -10,11 +10,11 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_programs =
-    "Each entry point of a kernel, compiled for a GPU that need not be there; nothing was run. Occupancy: the "
-    "subgroups that a processor of the GPU holds at once, compared with an empty kernel (AMD) or with the most "
-    "(NVIDIA). Latency and cycles a subgroup: AMD's compiler's own estimates of one pass through all instructions, and "
-    "of how often one can begin. Fused: floating-point operations that multiply and add with one rounding, with the "
-    "first of them. In exact mode none may decide a sign; those in box tests of BVHs decide nothing.";
+    "Each entry point of a kernel, compiled for a GPU that need not be here; nothing was run. Occupancy: the "
+    "subgroups resident on a multiprocessor of the GPU, relative to an empty kernel (AMD) or to the maximum "
+    "(NVIDIA). Latency and cycles per subgroup: estimates by AMD's compiler of one pass through all instructions, "
+    "and of how often one can begin. Fused: floating-point operations that multiply and add with one rounding, with "
+    "the first of them. In exact mode none may decide a sign; those in box tests of BVHs decide nothing.";
 
 std::string count_text(const ResultValue& program, const char* key)
 {
@@ -31,9 +31,9 @@ std::string cycles_text(const ResultValue& program, const char* key)
 
 std::string occupancy_of(const ResultValue& program)
 {
-    const auto held = program.find("subgroups"), most = program.find("most_subgroups");
-    if (!held || !most || most->count() == 0) return {};
-    return fmt::format("{:.0f}", 100.0 * static_cast<double>(held->count()) / static_cast<double>(most->count()));
+    const auto held = program.find("subgroups"), max = program.find("most_subgroups");
+    if (!held || !max || max->count() == 0) return {};
+    return fmt::format("{:.0f}", 100.0 * static_cast<double>(held->count()) / static_cast<double>(max->count()));
 }
 
 /// Registers on AMD; bytes stored and loaded on NVIDIA.
@@ -85,7 +85,7 @@ Html programs_of(const ResultValue& programs, const std::vector<std::string>& sk
                      {"branches", {}, true},
                      {"loads in loops", {}, true},
                      {"latency", "cycles", true},
-                     {"a subgroup", "cycles", true},
+                     {"per subgroup", "cycles", true},
                      {"fused"},
                      {"status"}});
     for (const ResultValue& program : programs.items()) {
@@ -148,8 +148,8 @@ Section compiler_section(const ReportInput& input)
                       programs_of(*programs, skipped);
         }
     section.is_empty = tables.empty();
-    section.content = tables.empty() ? paragraph("None of these results is of 'tetrace inspect --out FILE.json', which "
-                                                 "asks GPUs' compilers about every kernel.")
+    section.content = tables.empty() ? paragraph("None of these results is from 'tetrace inspect --out FILE.json', "
+                                                 "which compiles every kernel for GPUs.")
                                      : note(how_to_read_programs) + tables;
     return section;
 }

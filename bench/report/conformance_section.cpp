@@ -9,10 +9,9 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_matrices =
-    "Exact mode: all bits of all hits, compared with openmp's for the same method and layout. Within N ulp: only t, u "
-    "and v "
-    "differ, by no more than the device's own self-test allows. Not exact: the hits are openmp's, but the device "
-    "contracts or rounds otherwise.";
+    "Exact mode: all bits of all hits, compared with openmp's for the same method and layout. Within N ulp: only t, "
+    "u and v differ, by no more than the device's self-test allows. Not exact: the hits are openmp's, but the "
+    "device contracts or rounds differently.";
 
 /// Devices in order of appearance; those with the reference come first.
 std::vector<std::string> devices_of(const ResultValue& scene)
@@ -38,7 +37,7 @@ const ReportRow* find_row(const ReportInput& input, std::size_t file, const std:
     return found == input.rows.end() ? nullptr : &*found;
 }
 
-/// What is not as it should be leads to its row and the reason.
+/// What is wrong leads to its row and the reason.
 Html matrix_of(const ReportInput& input, std::size_t file, const std::string& scene_name, const ResultValue& scene)
 {
     const auto devices = devices_of(scene);
@@ -65,7 +64,7 @@ Html reasons_of(const ReportInput& input)
     std::vector<const ReportRow*> rows;
     for (const ReportRow& row : input.rows)
         if (input.files.at(row.file).head.verb == "check" && !row.row->reason.empty()) rows.push_back(&row);
-    return rows.empty() ? Html() : heading("What is not as it should be") + reason_table(rows, input.files.size());
+    return rows.empty() ? Html() : heading("What is wrong") + reason_table(rows, input.files.size());
 }
 
 } // namespace
@@ -82,8 +81,8 @@ Section conformance_section(const ReportInput& input)
     }
     section.content =
         matrices.empty()
-            ? paragraph("None of these results is of 'tetrace check --out FILE.json', which compares every "
-                        "device with openmp bit for bit.")
+            ? paragraph("None of these results is from 'tetrace check --out FILE.json', which compares every device "
+                        "with openmp bit for bit.")
             : note(how_to_read_matrices) + matrices;
     const Html reasons = reasons_of(input);
     section.is_empty = matrices.empty() && reasons.empty();

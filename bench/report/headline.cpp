@@ -130,9 +130,9 @@ Html rates_answer(const ReportInput& input)
     for (std::size_t i = 0; i < shown; ++i)
         charts += chart_of(contests[i]);
     return side_by_side(charts) + other_answers(std::span(contests).subspan(shown)) +
-           note(
-               "The fastest row of each structure, and the pair that the paper measured, its search (maria) and bvh2. "
-               "The paper's claim, of a GeForce GTX 680: the CDT is faster on banana and bunny, and not on armadillo.");
+           note("The fastest row of each structure, and the pair that the paper measured: its search (maria) and "
+                "bvh2. The paper's claim, for a GeForce GTX 680: the CDT is faster on banana and bunny, and not on "
+                "armadillo.");
 }
 
 /// How many rows of `check` have each conformity, with a link to the first that is wrong.
@@ -147,7 +147,7 @@ Html check_answer(const ReportInput& input)
         if (row.row->status == "wrong") wrong.push_back(&row);
     }
     if (rows == 0) return {};
-    Html told = text(fmt::format("{} of {} rows of check have right answers. ", right, rows));
+    Html told = text(fmt::format("{} of {} rows of check are right. ", right, rows));
     if (!wrong.empty())
         told +=
             row_link(*wrong.front(), text(fmt::format("{} {} wrong", wrong.size(), wrong.size() == 1 ? "is" : "are"))) +

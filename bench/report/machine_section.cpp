@@ -41,8 +41,8 @@ Html pulses_of(const ResultValue& section)
 }
 
 const char* const about_the_machine =
-    "others: processors' worth of other work while rows were timed. pulse: a fixed piece of work, repeated all the "
-    "while, of the host and then of each GPU: the slowest over the fastest. 1.00 is a machine that nothing disturbed.";
+    "others: CPUs used by other processes while rows were timed. calibration: a fixed piece of work, repeated "
+    "throughout, on the host and then on each GPU: slowest over fastest. 1.00 is an undisturbed machine.";
 
 Html results_table(const ReportInput& input)
 {
@@ -53,9 +53,9 @@ Html results_table(const ReportInput& input)
                      {"processor"},
                      {"system"},
                      {"threads", {}, true},
-                     {"samples", "a row", true},
+                     {"samples", "per row", true},
                      {"others", "processors", true},
-                     {"pulse", "slowest", true},
+                     {"calibration", "slowest", true},
                      {"commit"},
                      {"compiler"}});
     for (std::size_t i = 0; i < input.files.size(); ++i) {
@@ -131,7 +131,7 @@ std::vector<ToldDevice> devices_of(const ResultFile& file)
     std::vector<ToldDevice> told;
     const ResultValue section = file.section();
     if (const auto devices = section.find("devices")) {
-        if (file.head.verb == "devices") return told; // has them in another form, and has no rows
+        if (file.head.verb == "devices") return told; // has them in another form, and lacks rows
         for (const ResultValue& device : devices->items())
             told.push_back(device_of_bench(device));
     } else if (const auto rows = section.find("rows"); rows && !file.rows.empty()) {
@@ -196,9 +196,9 @@ Html device_table(const ReportInput& input)
                    text(device.problem)});
     if (table.empty()) return paragraph("These results name no device.");
     return table.html() +
-           note("copy: memory of the device copied to its own memory, bytes read and written; launch: an "
-                "empty kernel, from launching to the end of waiting. Emulated devices are APIs of GPUs "
-                "that run on the processor.");
+           note("copy: memory of the device copied to its own memory, bytes read and written; launch: an empty "
+                "kernel, from launching to the end of waiting. Emulated devices are APIs of GPUs that run on the "
+                "CPU.");
 }
 
 std::string text_of_rays(const ResultScene& scene)
@@ -227,7 +227,7 @@ Html scene_table(const ReportInput& input)
                      {"domain"},
                      {"switches"},
                      {"rays"},
-                     {"steps", "a ray", true},
+                     {"steps", "per ray", true},
                      {"hash"}});
     std::set<std::string> seen;
     for (const ResultFile& file : input.files)

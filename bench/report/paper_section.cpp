@@ -52,7 +52,7 @@ Decimals decimals_of(const ResultValue& column)
 {
     const auto decimals = column.find("decimals");
     if (!decimals) return std::nullopt;
-    if (decimals->count() > 15) decimals->reject("is no number of decimals: 0 to 15 are");
+    if (decimals->count() > 15) decimals->reject("is not a number of decimals from 0 to 15");
     return static_cast<int>(decimals->count());
 }
 
@@ -84,7 +84,7 @@ Html table_of(const ResultValue& part)
         }
         table.add(std::move(cells));
     }
-    return table.empty() ? paragraph("This table has no rows.") : table.html();
+    return table.empty() ? paragraph("This table is empty.") : table.html();
 }
 
 Html claims_of(const ResultValue& part)
@@ -118,14 +118,14 @@ bool is_logarithmic(const ResultValue& axis)
 {
     const auto scale = axis.find("scale");
     if (!scale || scale->text() == "linear") return false;
-    if (scale->text() != "logarithmic") scale->reject("is no scale: linear and logarithmic are");
+    if (scale->text() != "logarithmic") scale->reject("is not a scale: use linear or logarithmic");
     return true;
 }
 
 double coordinate(const ResultValue& value, bool logarithmic)
 {
     if (logarithmic && !(value.number() >= 1e-18)) value.reject("is below 1e-18 on a logarithmic axis");
-    if (value.number() < -1e18 || value.number() > 1e18) value.reject("is beyond 1e18");
+    if (value.number() < -1e18 || value.number() > 1e18) value.reject("is outside ±1e18");
     return value.number();
 }
 
@@ -134,7 +134,7 @@ Series series_of(const ResultValue& value, const LineChart& chart)
     Series series{value.at("name").text(), {}};
     for (const ResultValue& point : value.at("points").items()) {
         const auto pair = point.items();
-        if (pair.size() != 2) point.reject("is not a point: it has not two numbers");
+        if (pair.size() != 2) point.reject("is not a point of two numbers");
         series.points.emplace_back(coordinate(pair[0], chart.x_logarithmic), coordinate(pair[1], chart.y_logarithmic));
     }
     return series;
@@ -149,7 +149,7 @@ Html chart_of(const ResultValue& part)
         chart.series.push_back(series_of(series, chart));
         points += chart.series.back().points.size();
     }
-    return points == 0 ? paragraph("This figure has no points.") : figure("", draw(chart), "");
+    return points == 0 ? paragraph("This figure is empty.") : figure("", draw(chart), "");
 }
 
 Html pictures_of(const ResultValue& part, const std::filesystem::path& result)
@@ -187,7 +187,7 @@ Section paper_section(const ReportInput& input)
         section.content += parts_of(file);
     section.is_empty = section.content.empty();
     if (section.is_empty)
-        section.content = paragraph("None of these results is of 'tetrace reproduce', which measures them again.");
+        section.content = paragraph("None of these results is from 'tetrace reproduce', which measures them again.");
     return section;
 }
 

@@ -51,18 +51,18 @@ Png converted(const std::string& ppm)
     head >> kind >> width >> height >> levels;
     if (!head || kind != "P6" || levels != 255 || std::isspace(head.peek()) == 0)
         throw not_valid("it is neither PNG nor PPM; 'tetrace render --out PICTURE.png' writes one");
-    if (!is_size(width, height)) throw not_valid(fmt::format("it says to be {} x {} pixels", width, height));
+    if (!is_size(width, height)) throw not_valid(fmt::format("its header says {} x {} pixels", width, height));
     const std::string_view pixels = std::string_view(ppm).substr(static_cast<std::size_t>(head.tellg()) + 1);
     if (pixels.size() != std::size_t{3} * width * height)
-        throw not_valid(fmt::format("it has not the bytes of {} x {} pixels", width, height));
+        throw not_valid(fmt::format("its data does not match its header's {} x {} pixels", width, height));
     return {png_bytes(width, height, pixels), width, height};
 }
 
 std::string picture_bytes(const std::filesystem::path& path)
 {
     std::error_code problem;
-    if (!std::filesystem::exists(path, problem)) throw Problem{ErrorKind::missing, "there is no such file"};
-    if (!std::filesystem::is_regular_file(path, problem)) throw not_valid("it is no file");
+    if (!std::filesystem::exists(path, problem)) throw Problem{ErrorKind::missing, "the file does not exist"};
+    if (!std::filesystem::is_regular_file(path, problem)) throw not_valid("it is not a file");
     if (std::filesystem::file_size(path, problem) > max_file) throw not_valid("it is larger than 64 MiB");
     auto bytes = file_bytes(path);
     if (!bytes) throw not_valid(std::strerror(errno));
@@ -78,7 +78,7 @@ Png picture_of(const std::filesystem::path& path)
     png.width = word_at(png.bytes, signature.size());
     png.height = word_at(png.bytes, signature.size() + 4);
     if (!is_size(png.width, png.height))
-        throw not_valid(fmt::format("it says to be {} x {} pixels", png.width, png.height));
+        throw not_valid(fmt::format("its header says {} x {} pixels", png.width, png.height));
     return png;
 }
 

@@ -16,10 +16,10 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_rates =
-    "Millions of rays a second, of the median sample, kernel time alone. The whisker spans the middle half of the "
-    "samples, a tick is a sample; a row is noisy where that exceeds 5 % of its median, or where the machine was "
-    "disturbed. Only what stands in one "
-    "chart may be ranked: emulated devices are APIs of GPUs that run on the processor, and say nothing of a GPU.";
+    "Millions of rays per second, from the median sample, kernel time only. The whisker spans the middle half of "
+    "the samples, and a tick is a sample; a row is noisy if the whisker exceeds 5 % of its median, or if the "
+    "machine was disturbed. Rank only rows of one chart: emulated devices are APIs of GPUs that run on the CPU, and "
+    "say nothing about a GPU.";
 
 std::string scene_title(const RowGroup& group)
 {
@@ -72,7 +72,7 @@ BarChart chart_of(const RowGroup& group, std::size_t files)
 
 std::string group_title(const RowGroup& group, std::size_t files)
 {
-    if (group.kind == DeviceKind::emulated) return "Emulated by the processor";
+    if (group.kind == DeviceKind::emulated) return "Emulated on the CPU";
     const auto devices = devices_in(group, files);
     const std::string kind = group.kind == DeviceKind::gpu ? "GPU" : "Processor";
     return devices.size() == 1 ? fmt::format("{}: {}", kind, *devices.begin()) : kind + "s";

@@ -10,9 +10,8 @@ namespace {
 
 const char* const how_to_read_ratios =
     "The rate of a row over that of the same kernel with another API on the same hardware: medians of the samples, "
-    "with the 95 % interval of the ratio, of samples. A hollow dot's interval holds 1: no difference can be told. Rows "
-    "with fewer "
-    "than 5 samples have no interval, and are not shown.";
+    "with the 95 % interval of the ratio from the samples. A hollow dot's interval contains 1: the difference is "
+    "not significant. Rows with fewer than 5 samples have no interval, and are not shown.";
 
 /// Identifies one chart.
 struct RatioKey {
@@ -35,7 +34,7 @@ const ReportRow& row_named(const ReportInput& input, std::size_t file, const Res
     const std::string wanted = name.line();
     const auto found = std::ranges::find_if(
         input.rows, [&](const ReportRow& row) { return row.file == file && row.name() == wanted; });
-    if (found == input.rows.end()) name.reject(fmt::format("is '{}', and there is no row of that name", wanted));
+    if (found == input.rows.end()) name.reject(fmt::format("is '{}', but no row has that name", wanted));
     return *found;
 }
 
@@ -101,8 +100,8 @@ Html tets_over_bvhs(const ReportInput& input)
     if (table.empty()) return {};
     return heading("Tets over the fastest BVH") +
            note("The rate of each walk through tets over that of the fastest BVH on the same rays and device: on a "
-                "processor ours and Embree's, all of its entry points; on a GPU those of all its APIs, its driver's "
-                "included; an emulated device's own. With the 95 % interval of the ratio, of samples.") +
+                "CPU ours and Embree's, with all of its entry points; on a GPU those of all its APIs, including the "
+                "driver's; on an emulated device its own. With the 95 % interval of the ratio from the samples.") +
            table.html();
 }
 
@@ -115,12 +114,12 @@ Section ratio_section(const ReportInput& input)
         if (const auto ratios = input.files[file].section().find("ratios"))
             for (const ResultValue& ratio : ratios->items())
                 if (ratio.find("low")) add_ratio(groups, input, file, ratio);
-    Section section{"ratios", "APIs beside each other", {}};
+    Section section{"ratios", "APIs compared", {}};
     const Html over_bvhs = tets_over_bvhs(input);
     section.is_empty = groups.empty() && over_bvhs.empty();
     if (groups.empty()) {
         section.content =
-            over_bvhs + paragraph("These results compare no APIs: 'tetrace bench' does where a kernel ran under two on "
+            over_bvhs + paragraph("These results compare no APIs: 'tetrace bench' does if a kernel ran under two on "
                                   "one piece of hardware.");
         return section;
     }

@@ -11,11 +11,11 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_roofs =
-    "Msteps/s against the ceiling that memory sets: the copy bandwidth that the device reached in the same run (bytes "
-    "read and written), over the bytes that a step loads of its tet's record. A row's ceiling is that of the level of "
-    "memory that holds its scene: of the copies whose buffers were as large or larger, the fastest. Both are "
-    "estimates, not limits: memory moves whole lines, which lowers what can be reached, and nearer caches keep some of "
-    "them, which lifts a row above its line. Percentages are shares of the ceiling.";
+    "Msteps/s against the ceiling set by memory: the device's copy bandwidth in the same run (bytes read and "
+    "written), over the bytes that a step loads of its tet's record. A row's ceiling is that of the memory level "
+    "that holds its scene: the fastest copy whose buffers were at least as large. Both are estimates, not limits: "
+    "memory moves whole cache lines, which lowers the rate, and nearer caches keep some of them, which can lift a "
+    "row above its line. Percentages are shares of the ceiling.";
 
 /// A device of a result under its roof.
 struct DeviceRoof {
@@ -108,7 +108,7 @@ Section roofline_section(const ReportInput& input)
     else
         section.content = note(how_to_read_roofs) + charts_of(roofs, DeviceKind::cpu, "Processors") +
                           charts_of(roofs, DeviceKind::gpu, "GPUs") +
-                          charts_of(roofs, DeviceKind::emulated, "Emulated by the processor");
+                          charts_of(roofs, DeviceKind::emulated, "Emulated on the CPU");
     return section;
 }
 

@@ -14,13 +14,13 @@ struct ReportInput {
     std::vector<std::filesystem::path> pictures;
 };
 
-/// The row's device, with its result's letter where there are several results.
+/// The row's device, with its result's letter if there are several results.
 [[nodiscard]] std::string device_text(const ReportRow& row, std::size_t files);
 
 /// The series style (see svg.h) of a backend, the same in all charts; all unknown backends share the last one.
 [[nodiscard]] std::size_t api_series(const std::string& backend);
 
-/// What is to be known of a row's rate: why it is flawed, and whether it is noisy; empty where neither is so.
+/// Remarks on a row's rate: why it is flawed, and whether it is noisy; empty if neither.
 [[nodiscard]] std::string remark_of(const ReportRow& row);
 
 /// Leads to the row in a reason_table().
@@ -29,21 +29,22 @@ struct ReportInput {
 /// Rows with their status and reason; rows with the same reason are grouped.
 [[nodiscard]] Html reason_table(const std::vector<const ReportRow*>& rows, std::size_t files);
 
-/// The answer, for the page's first screen: CDT and BVH beside each other, on GPUs first, and whether `check` found
-/// wrong rows. Empty where the results tell neither.
+/// The answer, for the page's first screen: CDT and BVH compared, on GPUs first, and whether `check` found wrong rows.
+/// Empty if the results have neither.
 [[nodiscard]] Html headline(const ReportInput& input);
 
-// The page's sections, in order. Where the results hold nothing for a section, it says so in a sentence, and how to get
+// The page's sections, in order. If the results have nothing for a section, it says so in a sentence, and how to get
 // the data. All throw Error{invalid_input} naming file and key where a result is not as results/README.md describes.
 
 [[nodiscard]] Section machine_section(const ReportInput& input);     ///< results, devices, scenes
 [[nodiscard]] Section conformance_section(const ReportInput& input); ///< the matrix of `check`
-[[nodiscard]] Section compiler_section(const ReportInput& input);    ///< what `inspect` was told of each kernel
-[[nodiscard]] Section rate_section(const ReportInput& input);        ///< bars per scene, and rows without a rate
-[[nodiscard]] Section ratio_section(const ReportInput& input);       ///< APIs compared with each other
-[[nodiscard]] Section roofline_section(const ReportInput& input);    ///< every device with its rows
-[[nodiscard]] Section time_section(const ReportInput& input);        ///< where each row's time goes
-[[nodiscard]] Section paper_section(const ReportInput& input);       ///< tables and figures of `reproduce`
+[[nodiscard]] Section
+compiler_section(const ReportInput& input);                    ///< what compilers reported to `inspect` for each kernel
+[[nodiscard]] Section rate_section(const ReportInput& input);  ///< bars per scene, and rows without a rate
+[[nodiscard]] Section ratio_section(const ReportInput& input); ///< APIs compared with each other
+[[nodiscard]] Section roofline_section(const ReportInput& input); ///< every device with its rows
+[[nodiscard]] Section time_section(const ReportInput& input);     ///< where each row's time goes
+[[nodiscard]] Section paper_section(const ReportInput& input);    ///< tables and figures of `reproduce`
 /// Also throws Error{missing} where a picture's file is missing.
 [[nodiscard]] Section picture_section(const ReportInput& input);
 

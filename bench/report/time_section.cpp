@@ -6,12 +6,11 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_times =
-    "Milliseconds for all views. Compiling and uploading are paid once; first: the first pass, in which devices "
-    "compile what they left until then; kernel: device time; launch: launching and waiting, what wall holds beyond the "
-    "kernel; "
-    "download: the hits to the host. Medians of the samples, the one-time figures and the download apart.";
+    "Milliseconds for all views. Compiling and uploading happen once. first: the first pass, in which devices "
+    "compile what is left; kernel: device time; launch: launching and waiting, which is the rest of the wall time; "
+    "download: the hits to the host. Medians of the samples, except for the one-time figures and the download.";
 
-/// Empty where the row has no such value.
+/// Empty if the row has no such value.
 Cell cell_of_field(const RowField& field, const ResultValue& row)
 {
     const auto group = *field.group == '\0' ? row : row.find(field.group);

@@ -122,14 +122,14 @@ void add_left_out(JudgedClaim& judged, LeftOut left_out)
 {
     const RivalClaim& claim = *judged.claim;
     if (left_out.kernels) {
-        judged.obstacles.emplace_back("options left out kernels, of which one could be the fastest");
+        judged.obstacles.emplace_back("options left out kernels; one of them could be the fastest");
         const bool has_several_walks =
             claim.walk == Walk::single || claim.walk == Walk::any || claim.walk == Walk::maria;
         if (has_several_walks || wants_slow_walks(claim)) judged.may_refute = false;
     }
     if (left_out.apis && claim.place == DeviceKind::gpu) {
         judged.obstacles.emplace_back(
-            "--backend or --device left out an API of the GPU, of whose rows one could be the fastest");
+            "--backend or --device left out an API of the GPU; one of its rows could be the fastest");
         judged.may_refute = false;
     }
 }
@@ -157,9 +157,9 @@ ClaimVerdict verdict_of(const JudgedClaim& judged, bool of_noisy_rows_too)
 std::string place_text(const RivalClaim& claim)
 {
     switch (claim.place) {
-    case DeviceKind::cpu: return "on the processor";
+    case DeviceKind::cpu: return "on the CPU";
     case DeviceKind::gpu: return "on each GPU";
-    case DeviceKind::emulated: return fmt::format("on {} if that is emulated by the processor", claim.backend);
+    case DeviceKind::emulated: return fmt::format("on {} if that is emulated on the CPU", claim.backend);
     }
     return {};
 }
@@ -208,7 +208,7 @@ std::string rule_of(const RivalClaim& claim)
         claim.measure == Measure::rate
             ? fmt::format("the rate of {} over that of {} is {} {:.4g}", name_of(claim.walk), name_of(claim.rival),
                           side, claim.boundary)
-            : fmt::format("the seconds of tracing by {} until the tets have paid, against {}, are {} {:.4g}",
+            : fmt::format("the seconds of tracing by {} until the tets' build has paid off, against {}, are {} {:.4g}",
                           name_of(claim.walk), name_of(claim.rival), side, claim.boundary);
     return fmt::format("{} {}, for {} rays of {}", what, place_text(claim), names_of(claim.rays),
                        claim.scenes.empty() ? std::string("every scene")

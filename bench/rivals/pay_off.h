@@ -7,8 +7,8 @@
 
 namespace tetrace {
 
-/// Seconds of tracing with a structure that takes so much longer to build than another, and has `ratio` times its rate,
-/// after which it has made up for the build; infinite: never.
+/// Seconds of tracing with a structure that takes this much longer to build than another, and has `ratio` times its
+/// rate, after which it has made up for the build; infinite: never.
 [[nodiscard]] double seconds_until_paid(double more_s, double ratio);
 
 /// The same of a walk and another row, builds and packing counted, with an interval from that of the ratio of their

@@ -6,13 +6,13 @@ namespace {
 
 using enum RayKind;
 
-constexpr OldRun on_xeon = {"Xeon", "4 views of smoke at 1024x1024, of which 55 % of the rays miss the domain, on two "
-                                    "cores of a Xeon with AVX-512; bvh2 was scalar code, and Embree had single rays "
-                                    "and packets of 16 (results/intel-xeon-amx-2-cores/2026-11-26-aaacd62.json)"};
+constexpr OldRun on_xeon = {"Xeon", "4 views of smoke at 1024x1024, in which 55 % of the rays miss the domain, on "
+                                    "two cores of a Xeon with AVX-512; bvh2 was scalar code, and Embree had single "
+                                    "rays and packets of 16 (results/intel-xeon-amx-2-cores/2026-11-26-aaacd62.json)"};
 constexpr OldRun given_on_xeon = {"Xeon, other rays", "the same Xeon and rivals, 4 views of smoke at 512x512 "
                                                       "(results/intel-xeon-amx-2-cores/2026-11-26-bfa0c14-rays.json)"};
-constexpr OldRun by_a_referee = {"Zen 3", "one thread's processor time, ratios of pairs, two cores of an AMD EPYC "
-                                          "(Zen 3, AVX2), commit 260c903 (docs/rows.md)"};
+constexpr OldRun by_a_referee = {"Zen 3", "one thread's CPU time, ratios of pairs, two cores of an AMD EPYC (Zen 3, "
+                                          "AVX2), commit 260c903 (docs/rows.md)"};
 constexpr OldRun computed = {"computed", "from builds of 4.4 s (bunny) and 3.4 s (armadillo), and the ratios of rates "
                                          "of Zen 3 (docs/tets-for-rays.md)"};
 constexpr OldRun of_table6 = {"Table 6, Zen 4", "65 views of flight at 256x256, against only the scalar bvh2 and cwbvh "
@@ -27,7 +27,7 @@ constexpr OldRun in_the_limit = {"H100, limit",
                                  "the cost per million rays, by a line through launches of 1024x1024 and "
                                  "2048x2048 (results/nvidia-h100.md)"};
 constexpr OldRun in_flight_on_h100 = {"H100, views in flight",
-                                      "4 views of frame at 1024x1024 in flight together, CUDA alone "
+                                      "4 views of frame at 1024x1024 in flight together, only CUDA "
                                       "(results/nvidia-h100-80gb/2026-11-27-8858bfc-bunny.json)"};
 constexpr OldRun of_table6_on_h100 = {"Table 6, H100", "33 views of flight at 1024x1024, one launch for each "
                                                        "(results/nvidia-h100-80gb/2026-11-23-40a3608-table6.json)"};
@@ -124,9 +124,9 @@ std::vector<RivalClaim> make_claims()
         packets_are(true, "packets-win-on-terrain", "packets are faster than Embree on a terrain",
                     "1.64 at 845,000 triangles, over packets of 16", {"terrain"}),
         // What building costs.
-        pays_within("tets-pay-against-our-bvhs", "tets have paid after about 5 s of tracing against our BVHs",
+        pays_within("tets-pay-against-our-bvhs", "tets pay off after about 5 s of tracing against our BVHs",
                     "5 s, bunny, 4.4 s to build, packets 6.9 times as fast as bvh2", ours, 6),
-        pays_within("tets-pay-against-embree", "tets have paid after 15 to 28 s of tracing against Embree's best",
+        pays_within("tets-pay-against-embree", "tets pay off after 15 to 28 s of tracing against Embree's best",
                     "15 s bunny, 28 s armadillo; 37 s with the bunny's build and the armadillo's ratio", any, 30),
         // Other rays: packets.
         on_cpu("packets-shadow", "shadow rays: packets are 2.1 times as fast as Embree's packets of 16", on_a_cpu,
@@ -156,7 +156,7 @@ std::vector<RivalClaim> make_claims()
                given_on_xeon, tet64, ours, random, 0.8),
         // Which structure is faster at all.
         {"table6-on-a-cpu",
-         "a walk of one ray at a time through tets for rays is faster than each of our BVHs on a processor (Table 6)",
+         "a walk of one ray at a time through tets for rays is faster than each of our BVHs on a CPU (Table 6)",
          "docs/paper.md, docs/spec/rays-tets.md",
          "1.37 banana, 1.26 bunny, 1.16 armadillo",
          &of_table6,
@@ -168,9 +168,9 @@ std::vector<RivalClaim> make_claims()
          {primary},
          1},
         {"a-walk-is-the-fastest-row",
-         "the fastest row of a processor is a walk through tets",
+         "the fastest row of a CPU is a walk through tets",
          "README.md, docs/bench-table.md",
-         "bunny and armadillo, primary rays; said without naming scenes on which it is not so",
+         "bunny and armadillo, primary rays; stated without naming scenes on which it does not hold",
          &on_xeon,
          Walk::any,
          any,

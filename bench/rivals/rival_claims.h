@@ -10,7 +10,7 @@
 
 namespace tetrace {
 
-/// The rows of a walk through tets that a claim is about; the fastest of them stands for all.
+/// The rows of a walk through tets that a claim is about; the fastest of them represents all.
 enum class Walk {
     half32,  ///< project on half32, one ray at a time
     tet64,   ///< project on tet64, one ray at a time
@@ -24,7 +24,7 @@ inline constexpr auto enum_names<Walk> = names_up_to<Walk::any>("half32", "tet64
                                                                 "the fastest walk of one ray at a time",
                                                                 "the fastest walk");
 
-/// The rows that it is compared with; the fastest of them stands for all.
+/// The rows that it is compared with; the fastest of them represents all.
 enum class Rival {
     our_single,    ///< our BVHs, which trace one ray at a time, in every form
     embree_single, ///< Embree's single rays

@@ -106,7 +106,7 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
 {
     PaperTable table{
         "rivals-scenes",
-        "where tets win and where they lose",
+        "scenes on which tets win and lose",
         page,
         {{"scene", "scene"},
          {"rays", "rays"},
@@ -120,14 +120,11 @@ PaperTable scenes_table(const std::vector<Contest>& contests)
          {"bvh", "fastest BVH"},
          {"tets_build_s", "tets built in", "s", 2},
          {"bvh_build_s", "BVH built in", "s", 2},
-         {"paid_after", "tets have paid after", "G rays", 3},
+         {"paid_after", "tets paid off after", "G rays", 3},
          {"paid_after_s", "or", "s of tracing", 1}},
-        {"A ratio is of rates: above 1 the walk through tets is faster. Its interval is of the samples of one run, "
-         "or over the runs of --runs; runs differ by more than samples. Builds include packing; tets that come from "
-         "the "
-         "cache keep the time that they took. "
-         "'Paid' is for the fastest walk against "
-         "the fastest BVH."}};
+        {"A ratio is of rates: above 1 the walk through tets is faster. Its interval is over the samples of one "
+         "run, or over the runs of --runs; runs differ by more than samples. Builds include packing; tets from the "
+         "cache keep their original build time. 'Paid off' compares the fastest walk with the fastest BVH."}};
     if (const std::string note = embree_note(contests); !note.empty()) table.notes.push_back(note);
     for (const Contest& contest : contests) {
         const RowRecord *const walk = fastest(rows_of(contest, Walk::any)), *const bvh =
@@ -191,7 +188,7 @@ PaperTable claims_table(const std::vector<Contest>& contests, LeftOut left_out, 
     std::map<DeviceKind, std::vector<Claim>> by_place;
     PaperTable table{
         "rivals",
-        "what this repository says about tets and BVHs, measured again",
+        "what this repository claims about tets and BVHs, measured again",
         page,
         {{"device", "claims about"}, {"holds", "hold"}, {"fails", "do not hold"}, {"untested", "not testable here"}},
         {}};

@@ -58,12 +58,13 @@ bool is_colour_refused()
 std::size_t terminal_columns(int file)
 {
     if (::isatty(file) != 1) return 0;
-    constexpr long least = 20, most = 10'000; // else it is no width
+    constexpr long min_columns = 20, max_columns = 10'000; // any other number is a mistake
     const char* const columns = std::getenv("COLUMNS");
-    if (const long asked = columns != nullptr ? std::strtol(columns, nullptr, 10) : 0; asked > least && asked < most)
+    if (const long asked = columns != nullptr ? std::strtol(columns, nullptr, 10) : 0;
+        asked > min_columns && asked < max_columns)
         return static_cast<std::size_t>(asked);
     winsize size{};
-    return ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > least ? size.ws_col : 80u;
+    return ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > min_columns ? size.ws_col : 80u;
 }
 
 bool has_colour(int file)

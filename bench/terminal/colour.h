@@ -20,7 +20,7 @@ namespace tetrace {
 /// and NO_COLOR does not ask otherwise.
 [[nodiscard]] bool has_colour(int file);
 
-/// How many columns the terminal behind a file has: $COLUMNS, else what the terminal says, else 80. 0 where there is no
+/// How many columns the terminal of a file has: $COLUMNS, else what the terminal reports, else 80. 0 if there is no
 /// terminal.
 [[nodiscard]] std::size_t terminal_columns(int file);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t prose_width = 110, min_width = 40, label_width = 10;
 
-/// Each line as it is, or wrapped behind its own indent where the terminal is narrower.
+/// Each line unchanged, or wrapped after its own indent if the terminal is narrower.
 std::string fitted(const std::string& lines, std::size_t width)
 {
     std::istringstream input(lines);

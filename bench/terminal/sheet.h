@@ -22,7 +22,7 @@ class Sheet {
 public:
     /// A line that names what follows.
     void heading(const std::string& text) { parts_.push_back(Words{Kind::heading, text}); }
-    /// A line that is wrapped only where the terminal is narrower. Empty text adds nothing, here and below.
+    /// A line that is wrapped only if the terminal is narrower. Empty text adds nothing, here and below.
     void line(const std::string& text) { add(Kind::line, text); }
     /// Lines that keep their form: code in Markdown.
     void verbatim(const std::string& lines) { add(Kind::verbatim, lines); }

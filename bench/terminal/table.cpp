@@ -36,7 +36,7 @@ std::string without_trailing_blanks(std::string line)
 
 std::string quoted(const std::string& text)
 {
-    // Spreadsheets would compute a cell that begins so, if it is no mere number; after an apostrophe they show it.
+    // Spreadsheets would evaluate a cell that begins so and is not a number; after an apostrophe they show it.
     const bool begins_formula = text.find_first_of("=+-@\t\r") == 0;
     if (begins_formula && text.find_first_not_of("+-.0123456789 %") != std::string::npos) return quoted("'" + text);
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;

@@ -161,7 +161,7 @@ TEST(RayTracers, have_kernels_in_every_build_and_a_device_without_them_refuses_w
     other.task = Task::trace;
     other.schedule = Schedule::persistent;
     EXPECT_FALSE(backend.has_kernel(other));
-    EXPECT_FALSE(backend.has_kernel({.schedule = Schedule::pipeline})) << "no kernel of ours";
+    EXPECT_FALSE(backend.has_kernel({.schedule = Schedule::pipeline})) << "not one of tetrace's kernels";
 }
 
 TEST_P(VulkanRt, primary_hits_are_the_oracles_from_outside_and_inside)

@@ -179,7 +179,7 @@ TEST_F(RaySteps, end_where_a_device_names_a_tet_that_there_is_not)
     ASSERT_FALSE(ray.steps.empty());
     for (const RayStep& step : ray.steps) {
         EXPECT_FALSE(step.tet || step.face);
-        EXPECT_EQ(step.beyond, "123456789 is no tet of the scene");
+        EXPECT_EQ(step.beyond, "123456789 is not a tet of the scene");
     }
 }
 
@@ -264,7 +264,7 @@ TEST_F(RaySteps, of_a_run_without_openmp_are_compared_with_nothing)
     const std::string text = report.sheet.text();
     EXPECT_TRUE(contains(text, "openmp: error: it is not well")) << text;
     EXPECT_TRUE(contains(text, "openmp has no answer, so that no device is compared with it.")) << text;
-    EXPECT_FALSE(contains(text, "takes openmp's steps")) << text;
+    EXPECT_FALSE(contains(text, "the steps are openmp's")) << text;
     EXPECT_FALSE(report.json["tetrace"]["trace"]["devices"][1].contains("differs"));
 }
 

@@ -96,7 +96,7 @@ TEST_F(Trace, shows_of_a_bvh_the_answers_and_what_openmp_visits)
     }
     const std::string text = run(cubes_ + "--pixel 12,11 --layout bvh2 --backend openmp,cuda-host").out;
     EXPECT_TRUE(contains(text, "cuda-host: its answer is the same, bit for bit.")) << text;
-    EXPECT_TRUE(contains(text, "so there are no steps to show")) << text;
+    EXPECT_TRUE(contains(text, "so no steps are shown")) << text;
 }
 
 TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
@@ -109,14 +109,14 @@ TEST_F(Trace, of_a_ray_that_there_is_not_is_refused)
     expect_refused(scene + "--pixel=-1,4", "--pixel");
     expect_refused(scene, "--pixel X,Y is missing");
     expect_refused(scene + "--pixel 1,1 --view 4", "4");
-    expect_refused(scene + "--pixel 1,1 --layout embree", "is no kernel of ours");
-    expect_refused(scene + "--pixel 1,1 --method maria,project", "takes one value");
+    expect_refused(scene + "--pixel 1,1 --layout embree", "is not one of tetrace's kernels");
+    expect_refused(scene + "--pixel 1,1 --method maria,project", "accepts one value");
     expect_refused(scene + "--pixel 1,1 --method maria --layout half32",
                    "no kernel has method maria and layout half32");
     expect_refused(scene + "--pixel 0,0 --rays shadow", "--pixel: 0,0 makes no shadow ray");
-    expect_refused(scene + "--pixel 1,1 --rays shadow,ao", "--rays takes one value");
-    expect_refused("--pixel 1,1", "--scene takes one scene");
-    expect_refused("--scene cubes,banana --pixel 1,1", "--scene takes one scene");
+    expect_refused(scene + "--pixel 1,1 --rays shadow,ao", "--rays accepts one value");
+    expect_refused("--pixel 1,1", "--scene accepts one scene");
+    expect_refused("--scene cubes,banana --pixel 1,1", "--scene accepts one scene");
 }
 
 TEST_F(Trace, without_the_device_that_was_asked_for_is_no_success)

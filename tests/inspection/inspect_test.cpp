@@ -242,7 +242,7 @@ TEST_F(InspectedByStub, a_fused_operation_that_decides_is_reported_with_the_firs
     const Ended walk = run("inspect --target sm_90 --method maria --layout tet80 --entry outside --schedule tiles");
     EXPECT_EQ(walk.code, 1) << walk.errors;
     EXPECT_NE(walk.out.find("DECISIONS: 1"), std::string::npos) << walk.out;
-    EXPECT_NE(walk.out.find("1 fused where signs are decided, the first is 'fma.rn.f32 %f1, %f2, %f3, %f4;'"),
+    EXPECT_NE(walk.out.find("1 fused operations decide signs; the first is 'fma.rn.f32 %f1, %f2, %f3, %f4;'"),
               std::string::npos)
         << walk.out;
     const json programs = inspected("--target sm_90 --method maria --layout tet80 --entry outside --schedule tiles", 1);

@@ -117,7 +117,7 @@ TEST_F(CampaignPage, says_how_much_work_has_no_counterpart)
     json more = result_of("two", 1);
     more["tetrace"]["rows"].push_back(more["tetrace"]["rows"][0]);
     more["tetrace"]["rows"].back()["name"] = "row/openmp/more";
-    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1), more}), "beside"), "1 work is not here"));
+    EXPECT_TRUE(contains(section_of(page_of({result_of("one", 1), more}), "beside"), "1 work is not shown"));
 }
 
 TEST_F(CampaignPage, keeps_one_gpu_in_two_hosts_apart)
@@ -218,7 +218,7 @@ TEST_F(CampaignPage, compares_exit_searches_too)
         return result;
     };
     const std::string beside = section_of(page_of({searched("one", 50), searched("two", 60)}), "beside");
-    EXPECT_TRUE(contains(beside, "exit searches alone, 100 x 80 (Table 5)")) << beside;
+    EXPECT_TRUE(contains(beside, "exit searches only, 100 x 80 (Table 5)")) << beside;
     EXPECT_TRUE(contains(beside, "maria tet80 api:openmp"));
     EXPECT_TRUE(contains(beside, "60.0<small>× 1.20</small>"));
 }
@@ -236,7 +236,7 @@ TEST_F(CampaignPage, leaves_out_what_is_no_result_with_the_reason)
     const TemporaryFolder nothing;
     write_file(nothing / "a.json", "{}");
     EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_campaign(files_below({nothing.path()}))); }),
-                         "no file of 1 is a result"));
+                         "none of the 1 files is a result"));
     EXPECT_TRUE(contains(error_of([&] { static_cast<void>(files_below({folder_ / "none"})); }), "no such file"));
 }
 

@@ -80,7 +80,7 @@ TEST_F(ReportPage, names_the_fastest_bvh_beside_every_ratio_of_tets_to_it)
     EXPECT_TRUE(contains(ratios, "1.33 [1.25, 1.50]")) << ratios;
     EXPECT_TRUE(contains(ratios, "bvh rt vulkan")) << ratios;
     rows[1]["rates"]["best_bvh"] = "row/none";
-    EXPECT_TRUE(contains(error_of_page(result), "there is no row of that name"));
+    EXPECT_TRUE(contains(error_of_page(result), "but no row has that name"));
 }
 
 TEST_F(ReportPage, says_how_many_rays_enter_and_hit)
@@ -140,8 +140,7 @@ TEST_F(ReportPage, what_is_wrong_leads_to_its_row_and_the_reason)
     EXPECT_TRUE(contains(section, link + "<span class=\"badge")) << section;
     EXPECT_TRUE(contains(section, "id=\"row-0-0\""));
     EXPECT_TRUE(contains(section, "12 rays differ"));
-    EXPECT_TRUE(
-        contains(section_of(page, "answer"), "0 of 1 rows of check have right answers. " + link + "1 is wrong"));
+    EXPECT_TRUE(contains(section_of(page, "answer"), "0 of 1 rows of check are right. " + link + "1 is wrong"));
 }
 
 TEST_F(ReportPage, wide_tables_scroll_by_themselves_and_say_so)
@@ -190,7 +189,7 @@ TEST_F(ReportPage, a_result_tells_what_other_work_the_machine_had)
     EXPECT_TRUE(contains(told, ">1.25</td>"));
     EXPECT_TRUE(contains(told, ">6.00</td>"));
     const std::string silent = section_of(page_of({bench_json()}), "machines");
-    for (const char* const title : {">others ", ">pulse "})
+    for (const char* const title : {">others ", ">calibration "})
         EXPECT_FALSE(contains(silent, title)) << title;
 }
 
@@ -292,7 +291,7 @@ TEST_F(ReportPage, numbers_have_the_decimals_of_their_column)
     const std::string paper = section_of(page_of({result}), "paper");
     EXPECT_TRUE(contains(paper, ">9<small class=\"paper\">paper 1,282, × 0.00702</small>")) << paper;
     table["columns"][1]["decimals"] = 16;
-    EXPECT_TRUE(contains(error_of_page(result), "columns[1].decimals: is no number of decimals"));
+    EXPECT_TRUE(contains(error_of_page(result), "columns[1].decimals: is not a number of decimals"));
 }
 
 TEST_F(ReportPage, what_is_not_in_the_results_is_a_sentence)
@@ -322,12 +321,12 @@ TEST_F(ReportPage, values_that_cannot_be_drawn_are_named_with_their_key)
     EXPECT_TRUE(contains(error_of_page(nowhere), "rows[1]: has a rate and no device"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/devices/0/copy_bytes_per_s", -1), "devices[0].copy_bytes_per_s"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/ratios/0/low", 0), "ratios[0].low"));
-    EXPECT_TRUE(contains(error_with(bench_json(), "/ratios/0/row", "none"), "no row of that name"));
+    EXPECT_TRUE(contains(error_with(bench_json(), "/ratios/0/row", "none"), "no row has that name"));
     EXPECT_TRUE(contains(error_with(bench_json(), "/rows/0/scene", "none"), "not among its scenes"));
     EXPECT_TRUE(
         contains(error_with(reproduce_json(), "/figures/0/series/0/points/1", {1}), "points[1]: is not a point"));
     EXPECT_TRUE(contains(error_with(reproduce_json(), "/figures/0/series/0/points/1/0", 1e300), "points[1][0]"));
-    EXPECT_TRUE(contains(error_with(reproduce_json(), "/figures/0/x/scale", "cubic"), "is no scale"));
+    EXPECT_TRUE(contains(error_with(reproduce_json(), "/figures/0/x/scale", "cubic"), "is not a scale"));
     json logarithmic = reproduce_json();
     logarithmic["tetrace"]["figures"][0]["x"]["scale"] = "logarithmic";
     EXPECT_TRUE(contains(error_with(logarithmic, "/figures/0/series/0/points/1/0", 0), "on a logarithmic axis"));

@@ -56,13 +56,14 @@ TEST_F(ReportPicture, what_is_no_picture_is_named_with_the_reason)
 {
     EXPECT_TRUE(contains(error_of_reading("P3 1 1 255 0 0 0 and more bytes than a head has"), "neither PNG nor PPM"));
     EXPECT_TRUE(contains(error_of_reading("\x89PNG\r\n\x1a\n"), "neither PNG nor PPM"));
-    EXPECT_TRUE(contains(error_of_reading(ppm + "x"), "it has not the bytes of 2 x 1 pixels"));
-    EXPECT_TRUE(contains(error_of_reading(ppm.substr(0, ppm.size() - 1)), "it has not the bytes of 2 x 1 pixels"));
+    EXPECT_TRUE(contains(error_of_reading(ppm + "x"), "its data does not match its header's 2 x 1 pixels"));
+    EXPECT_TRUE(contains(error_of_reading(ppm.substr(0, ppm.size() - 1)), "its data does not match its header's 2 x "
+                                                                          "1 pixels"));
     for (const char* const bad : {"", "P6", "P6 1 1 255", "P6 0 1 255 ", "P6 -1 1 255 abc", "P6 1 1 65535 abcabc",
                                   "P6 1 1 255xabc", "P6 70000 1 255 abc", "P6 4294967297 1 255 abc"})
         EXPECT_TRUE(contains(error_of_reading(bad), "invalid_input: reading the picture")) << bad;
     EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_picture(folder_ / "none.png")); }), "missing: reading"));
-    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_picture(folder_.path())); }), "it is no file"));
+    EXPECT_TRUE(contains(error_of([&] { static_cast<void>(read_picture(folder_.path())); }), "it is not a file"));
 }
 
 TEST_F(ReportPicture, a_named_one_is_shown_or_a_sentence)
@@ -71,7 +72,7 @@ TEST_F(ReportPicture, a_named_one_is_shown_or_a_sentence)
     EXPECT_TRUE(contains(named_picture(folder_.path(), "a.ppm").str(), base64(read_picture(folder_ / "a.ppm").bytes)));
     write_file(folder_ / "cut.ppm", ppm.substr(0, 14));
     const std::string cut = named_picture(folder_.path(), "cut.ppm").str();
-    EXPECT_TRUE(contains(cut, "&apos;cut.ppm&apos;, which the result names, is not shown: it has not the bytes"));
+    EXPECT_TRUE(contains(cut, "&apos;cut.ppm&apos;, which the result names, is not shown: its data does not match"));
     EXPECT_FALSE(contains(cut, folder_.path().string()));
     EXPECT_FALSE(contains(cut, "<img"));
 }

@@ -46,7 +46,7 @@ TEST(Options, slips_of_the_hand_get_a_guess)
 TEST(Options, all_scenes_are_those_of_the_catalogue)
 {
     EXPECT_EQ(parse_options({"bench", "--scene", "all"}).scenes, all_scenes());
-    EXPECT_TRUE(contains(rejection({"trace", "--scene", "all", "--pixel", "1,1"}), "trace: --scene takes one scene"));
+    EXPECT_TRUE(contains(rejection({"trace", "--scene", "all", "--pixel", "1,1"}), "trace: --scene accepts one scene"));
 }
 
 TEST(Options, defaults_are_those_of_the_main_job)
@@ -223,7 +223,8 @@ TEST(OptionValues, views_take_numbers_ranges_and_strides)
 
 TEST(OptionValues, a_view_beyond_the_set_is_named)
 {
-    EXPECT_TRUE(contains(rejection({"bench", "--views", "4"}), "no view 4; this camera set has views 0 to 3"));
+    EXPECT_TRUE(contains(rejection({"bench", "--views", "4"}), "view 4 does not exist; this camera set has views 0 "
+                                                               "to 3"));
     EXPECT_EQ(selected_views(parse_options({"bench", "--views", "4", "--camera-set", "orbit"})),
               std::vector<std::uint32_t>{4});
 }
@@ -306,8 +307,8 @@ TEST(Options, rivals_are_measured_as_bench_measures)
     EXPECT_EQ(options.sample_s, bench.sample_s);
     EXPECT_TRUE(options.structures.empty()) << "BVHs too";
     EXPECT_EQ(parse_options({"reproduce", "rivals", "--budget", "30s"}).budget_s, 30);
-    EXPECT_TRUE(contains(rejection({"reproduce", "rivals,table4"}), "name it alone"));
-    for (const char* const option : {"--resume", "--shard=1/2", "--sizes=4", "--searches=10x32", "--builds=ours"})
+    EXPECT_TRUE(contains(rejection({"reproduce", "rivals,table4"}), "run it by itself"));
+    for (const char* const option : {"--resume", "--shard=1/2", "--searches=10x32", "--builds=ours"})
         EXPECT_TRUE(contains(rejection({"reproduce", "rivals", option}), "is not for 'reproduce rivals'")) << option;
     EXPECT_TRUE(contains(rejection({"reproduce", "table6", "--budget", "30s"}), "--budget is for 'reproduce rivals'"));
 }

@@ -204,7 +204,7 @@ TEST(PairClaims, a_mean_rate_is_of_all_three_scenes_or_of_none)
     be_like(armadillo, "armadillo", LikenessKind::other_mesh);
     const Claim without = mean_rate_claim(all, paper::Place::cpu);
     EXPECT_EQ(without.verdict, ClaimVerdict::not_testable);
-    EXPECT_TRUE(contains(without.evidence, "No mean of three: armadillo is another mesh."));
+    EXPECT_TRUE(contains(without.evidence, "Not all three scenes: armadillo is another mesh."));
     EXPECT_TRUE(contains(without.evidence, "armadillo 2 Mrays/s, the paper's 6.75"));
     EXPECT_EQ(mean_rate_claim(all, paper::Place::gpu).verdict, ClaimVerdict::not_testable) << "no GPU";
 }

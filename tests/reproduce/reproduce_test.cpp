@@ -317,12 +317,12 @@ TEST_F(Reproduce, as_csv_and_markdown)
         csv.out.rfind(
             "table,scene,build,method,layout,device,quantity,unit,value,low,high,paper,ratio,x,verdict,text\n", 0),
         0u);
-    EXPECT_TRUE(contains(csv.out, "table4,cubes,ours,maria,tet80,openmp,flawed,rays an image,0,0,"));
+    EXPECT_TRUE(contains(csv.out, "table4,cubes,ours,maria,tet80,openmp,flawed,rays per image,0,0,"));
     EXPECT_TRUE(contains(csv.out, "table4,cubes,ours,maria,tet80,openmp,status,,,,,,,,,ok\n"));
     EXPECT_TRUE(contains(csv.out, "table4,,,,,,maria-has-no-wrong-result,,,,,,,,not testable here,"));
     const Ended searches = run("table5 --searches 20x8 --method maria --layout tet96 --format csv");
     EXPECT_TRUE(contains(searches.out, "table5,,,maria,tet96,\"openmp, 1 thread\",searches,,160,"));
-    EXPECT_TRUE(contains(searches.out, "table5,,,maria,tet96,\"openmp, 1 thread\",wrong,a million,0,"));
+    EXPECT_TRUE(contains(searches.out, "table5,,,maria,tet96,\"openmp, 1 thread\",wrong,per million,0,"));
     const Ended markdown = run(arguments + "markdown");
     EXPECT_TRUE(contains(markdown.out, "## table4: Rays with"));
     EXPECT_TRUE(contains(markdown.out, "| maria has no wrong result | not testable here |"));

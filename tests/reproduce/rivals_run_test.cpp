@@ -56,7 +56,7 @@ TEST_F(RivalsRun, wrong_command_lines_are_refused)
         EXPECT_NE(ended.errors.find(text), std::string::npos) << ended.errors;
     };
     refused("rivals --scene nothere", "nothere");
-    refused("rivals,table6", "name it alone");
+    refused("rivals,table6", "run it by itself");
     refused("rivals --resume --out a.json", "--resume");
     refused("rivals --shard 1/2 --out a.json", "--shard");
     refused("rivals --searches 10x32", "--searches");

@@ -185,7 +185,7 @@ TEST(SearchRun, a_device_with_one_other_face_a_batch_is_wrong_and_has_no_rate)
     EXPECT_TRUE(number_cell(table, 0, "msearches_per_s").has_value());
     EXPECT_TRUE(contains(claim_of(table, "table5-maria-exact").evidence, "by 1 row:"))
         << "the wrong row says nothing of the method";
-    EXPECT_TRUE(contains(table.notes.back(), "api:other differs first on ray 17 of tet 0: face "));
+    EXPECT_TRUE(contains(table.notes.back(), "api:other first differs on ray 17 of tet 0: face "));
 }
 
 TEST(SearchRun, the_record_of_a_wrong_row_names_its_first_search_and_has_no_rate)
@@ -250,7 +250,7 @@ TEST(SearchRun, wrong_and_lost_faces_are_the_methods_own_where_openmp_has_them)
     EXPECT_DOUBLE_EQ(number_cell(table, 0, "lost").value_or(0), 1e6 * 2 * 23 / (45 * 64));
     EXPECT_TRUE(number_cell(table, 0, "msearches_per_s").has_value()) << "flawed rows keep their rate";
     EXPECT_EQ(claim_of(table, "table5-maria-exact").verdict, ClaimVerdict::does_not_hold);
-    EXPECT_TRUE(contains(table.notes.back(), "errs first on ray 3 of tet 0: no face, where the exact one is face "));
+    EXPECT_TRUE(contains(table.notes.back(), "is first wrong on ray 3 of tet 0: no face, but the exact face is "));
     EXPECT_TRUE(fails(run.rows[0], true)) << "maria loses none";
 }
 

@@ -13,13 +13,12 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_beside =
-    "Millions of rays a second (of searches, millions of those), of the median sample of each machine's newest result. "
-    "Below each: its ratio to the rate of the first machine of the table. A line is the same work on all its machines: "
-    "the same kernel, scene, views and size, and the same answers, bit for bit. Work that one machine alone has done "
-    "is "
-    "not here. NOISY, as 'tetrace compare' says it: the machine's pulse beside the row's samples took 1.25 times its "
-    "fastest, so that the ratio may be the machine's; such a row has no part in the means. Emulated devices are APIs "
-    "of GPUs that run on the processor, and say nothing of a GPU.";
+    "Millions of rays (or of searches) per second, from the median sample of each machine's newest result. Below "
+    "each: its ratio to the rate of the first machine of the table. A line is the same work on all its machines: "
+    "the same kernel, scene, views and size, and the same hits, bit for bit. Work that only one machine has done is "
+    "not shown. NOISY, as in 'tetrace compare': calibration during the row's samples took 1.25 times its fastest, "
+    "so the ratio may be the machine's; the means exclude such a row. Emulated devices are APIs of GPUs that run on "
+    "the CPU, and say nothing about a GPU.";
 
 std::size_t machines_with(const CampaignWork& work, const std::vector<std::size_t>& machines)
 {
@@ -130,8 +129,8 @@ Html group_html(const Campaign& campaign, const CampaignGroup& group)
     html += mean_chart(campaign, group, works, sharing) + rate_table(campaign, works, sharing);
     const std::size_t alone = group.works.size() - works.size();
     if (alone > 0)
-        html += note(
-            fmt::format("{} {} not here: no other machine did the same.", alone, alone == 1 ? "work is" : "works are"));
+        html += note(fmt::format("{} {} not shown: no other machine did the same.", alone,
+                                 alone == 1 ? "work is" : "works are"));
     return html;
 }
 
@@ -148,13 +147,13 @@ std::vector<std::size_t> machines_in(const CampaignGroup& group)
 
 Section beside_section(const Campaign& campaign)
 {
-    Section section{"beside", "Machines beside each other", {}};
+    Section section{"beside", "Machines compared", {}};
     for (const CampaignGroup& group : campaign.groups)
         section.content += group_html(campaign, group);
     if (section.content.empty())
         section.content =
-            paragraph("No two machines of these results did the same work: measure the same scenes, views "
-                      "and size on each.");
+            paragraph("No two machines of these results did the same work. Measure the same scenes, views and size "
+                      "on each.");
     else
         section.content = note(how_to_read_beside) + section.content;
     return section;

@@ -26,8 +26,8 @@ struct ReadResult {
     std::vector<ReadRate> rates;
 };
 
-/// The host's name. Where neither a label nor the processor's family tells hosts apart, its folder does: results lie in
-/// one of their machine's (results/README.md).
+/// The host's name. If neither a label nor the CPU's family distinguishes hosts, its folder does: results are in one of
+/// their machine's (results/README.md).
 std::string host_name(const ResultFile& file)
 {
     const ResultValue section = file.section();
@@ -47,7 +47,7 @@ std::string machine_name(const ResultFile& file, const ResultRow& row)
 
 std::string title_of(const ResultFile& file, const ResultRow& row, const std::string& rays)
 {
-    if (row.scene.empty()) return fmt::format("exit searches alone, {} (Table 5)", file.search_size);
+    if (row.scene.empty()) return fmt::format("exit searches only, {} (Table 5)", file.search_size);
     const ResultScene& scene = scene_of(file, row);
     return fmt::format("{}: {} {} of {} at {} × {}, {} rays", scene.name, scene.views.size(),
                        scene.views.size() == 1 ? "view" : "views", scene.camera_set, scene.width, scene.height, rays);
@@ -177,7 +177,7 @@ Campaign read_campaign(const std::vector<std::filesystem::path>& files)
     }
     if (read.empty())
         throw Error(ErrorKind::invalid_input,
-                    fmt::format("no file of {} is a result; the first: {}", files.size(),
+                    fmt::format("none of the {} files is a result; the first: {}", files.size(),
                                 left_out.empty() ? "none was given" : left_out.front().second));
     std::ranges::stable_sort(read, [](const ReadResult& a, const ReadResult& b) {
         return a.result.day.value_or(0) < b.result.day.value_or(0);

@@ -22,7 +22,7 @@ struct CampaignResult {
     std::vector<std::size_t> machines;           ///< of its rates, each once
 };
 
-/// What is compared with its like: the processor of a host with so many threads, its emulated devices, or a GPU in it.
+/// A machine that others are compared with: the CPU of a host with a number of threads, its emulated devices, or a GPU.
 struct CampaignMachine {
     DeviceKind kind = DeviceKind::cpu;
     std::string name; ///< unique among those of its kind
@@ -53,21 +53,22 @@ struct CampaignGroup {
     std::vector<CampaignWork> works; ///< in order of appearance
 };
 
-/// Results of any number of machines and dates, read one after the other, so that memory holds the rates alone.
+/// Results of any number of machines and dates, read one after the other, so that memory holds only the rates.
 struct Campaign {
     std::vector<CampaignResult> results; ///< by date, then in the order given
     std::vector<CampaignMachine> machines;
     std::vector<CampaignGroup> groups;
-    std::vector<std::pair<std::filesystem::path, std::string>> left_out; ///< files that are no results, with the reason
+    std::vector<std::pair<std::filesystem::path, std::string>>
+        left_out; ///< files that are not results, with the reason
 
     /// "A" for the first machine.
     [[nodiscard]] std::string letter(std::size_t machine) const { return file_letter(machine, machines.size() + 1); }
 };
 
-/// Days since 1970-01-01 of "2026-11-21T17:34:21Z"; empty for what is no such date.
+/// Days since 1970-01-01 of "2026-11-21T17:34:21Z"; empty for anything else.
 [[nodiscard]] std::optional<double> day_of(const std::string& date);
 
-/// Reads the files. One that is no result, or not as results/README.md describes, is left out.
+/// Reads the files. One that is not a result, or not as results/README.md describes, is left out.
 /// Throws Error{missing} for a missing file, Error{invalid_input} where none is a result.
 [[nodiscard]] Campaign read_campaign(const std::vector<std::filesystem::path>& files);
 

@@ -10,7 +10,7 @@ namespace tetrace {
 // The sections of a campaign's page, in order.
 
 [[nodiscard]] Section index_section(const Campaign& campaign);  ///< machines and results; what was left out
-[[nodiscard]] Section beside_section(const Campaign& campaign); ///< machines beside each other, same work only
+[[nodiscard]] Section beside_section(const Campaign& campaign); ///< machines compared, same work only
 [[nodiscard]] Section trend_section(const Campaign& campaign);  ///< each machine's rates over its dates
 
 /// The machines that have a rate in a group, ascending.

@@ -9,10 +9,9 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_machines =
-    "A machine is a processor with a number of threads, what its drivers emulate, or a GPU. Hosts are told apart by "
-    "--label of the run, or else by their processor's name, family, model and stepping, or where a result does not "
-    "have "
-    "these, by its folder: give equal hosts labels of their own.";
+    "A machine is a CPU with a number of threads, the devices emulated on it, or a GPU. Hosts are distinguished by "
+    "--label of the run, or else by their CPU's name, family, model and stepping, or by folder if a result does not "
+    "have these: give equal hosts different labels.";
 
 std::vector<const CampaignResult*> results_of(const Campaign& campaign, std::size_t machine)
 {

@@ -12,13 +12,11 @@ namespace tetrace {
 namespace {
 
 const char* const how_to_read_trends =
-    "Each machine's rates over its dates, of the same work only; a chart shows them as parts of the first. 'Last step' "
-    "compares the samples of the last date with those of the one before, 'in all' with those of the first: the ratio "
-    "of "
-    "medians with its interval, above 1 the row has become faster. SAME, FASTER, SLOWER, UNSURE and NOISY are those of "
-    "'tetrace compare' with a tolerance of 3 %; NOISY: the machine itself changed, by its pulse. What changed between "
-    "two dates, commit, driver or system, the index "
-    "says.";
+    "Each machine's rates by date, of the same work only; a chart shows them relative to the first. 'Last step' "
+    "compares the samples of the last date with those of the one before, 'in all' with those of the first: the "
+    "ratio of medians with its interval; above 1 the row has become faster. SAME, FASTER, SLOWER, UNSURE and NOISY "
+    "are those of 'tetrace compare' with a tolerance of 3 %; NOISY: the machine's own speed changed, as calibration "
+    "shows. The index lists what changed between two dates: commit, driver or system.";
 
 constexpr double tolerance = 0.03;
 
@@ -110,7 +108,7 @@ Html trend_chart(const Campaign& campaign, std::vector<Trend> trends, const std:
     std::ranges::stable_sort(trends, [](const Trend& a, const Trend& b) { return a.change() > b.change(); });
     const std::size_t all = trends.size();
     if (all > max_lines) trends.resize(max_lines);
-    LineChart chart{"Over dates: " + title, "date, UTC", "rate, as a part of the first", {}};
+    LineChart chart{"Over dates: " + title, "date, UTC", "rate, relative to the first", {}};
     chart.x_dates = true;
     for (const Trend& trend : trends) {
         Series series{trend.work->label, {}};

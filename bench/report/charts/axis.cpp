@@ -18,13 +18,13 @@ namespace {
 void check_range(double low, double high)
 {
     if (!std::isfinite(low) || !std::isfinite(high) || !std::isfinite(high - low) || low > high)
-        throw Error(ErrorKind::internal, fmt::format("Axis: [{}, {}] is no range", low, high));
+        throw Error(ErrorKind::internal, fmt::format("Axis: [{}, {}] is not a range", low, high));
 }
 
 void check_logarithm(double low)
 {
     if (low < std::numeric_limits<double>::min())
-        throw Error(ErrorKind::internal, fmt::format("Axis: {} has no place on a logarithmic one", low));
+        throw Error(ErrorKind::internal, fmt::format("Axis: {} cannot be on a logarithmic one", low));
 }
 
 /// The least 1, 2 or 5 times a power of ten that is at least `value`, up to rounding.
@@ -151,7 +151,7 @@ Axis Axis::logarithmic(double low, double high)
 
 double Axis::place(double value, double begin, double end) const
 {
-    if (!std::isfinite(value)) throw Error(ErrorKind::internal, "Axis: a value that is not finite has no place");
+    if (!std::isfinite(value)) throw Error(ErrorKind::internal, "Axis: a value is not finite");
     const double inside = std::clamp(value, low(), high());
     const double share = logarithmic_ ? (std::log(inside) - std::log(low())) / (std::log(high()) - std::log(low()))
                                       : (inside - low()) / (high() - low());

@@ -33,7 +33,7 @@ public:
     [[nodiscard]] double high() const { return high_; }
     [[nodiscard]] const std::vector<double>& ticks() const { return ticks_; }
 
-    /// Position of a value when the axis runs from position `begin` to position `end`. Values beyond the axis are
+    /// Position of a value when the axis runs from position `begin` to position `end`. Values outside the axis are
     /// placed at its ends. Throws Error{internal} where the value is not finite.
     [[nodiscard]] double place(double value, double begin, double end) const;
 

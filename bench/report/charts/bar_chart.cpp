@@ -14,7 +14,7 @@ namespace {
 
 constexpr double top = 6, bar_height = 13, gap = 10, axis_room = 38, max_labels = 230, max_values = 160;
 
-/// Labels on the left, one below the other; then the plot; then room for the text right of each bar.
+/// Labels on the left, one below the other; then the plot; then space for the text right of each bar.
 struct RowFrame {
     double left = 0, right = 0; ///< of the plot
     double pitch = 22;          ///< from row to row
@@ -24,8 +24,8 @@ struct RowFrame {
     [[nodiscard]] double middle(std::size_t row) const { return top + pitch * static_cast<double>(row) + pitch / 2; }
 };
 
-/// The label in as many lines as its room asks for: a row's name is shown whole, and only a word that is too long for a
-/// line of its own is cut.
+/// The label in as many lines as it needs: a row's name is shown whole, and only a word that is too long for a line of
+/// its own is cut.
 std::vector<std::string> lines_of(const std::string& label, double size, double width)
 {
     if (label.empty()) return {};

@@ -10,7 +10,7 @@ namespace tetrace {
 /// A bar of a bar chart: a measured value with its spread.
 struct Bar {
     std::string id;       ///< name of the mark (see svg_mark())
-    std::string label;    ///< stands left of the bar
+    std::string label;    ///< left of the bar
     std::string sublabel; ///< in small letters under it; may be empty
     std::size_t series = 0;
     double value = 0;                 ///< not negative, finite

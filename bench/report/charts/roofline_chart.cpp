@@ -64,7 +64,7 @@ Html grid(const RooflineFrame& frame)
 {
     return horizontal_ticks(frame.bytes, left, frame.right, top, frame.bottom) +
            vertical_ticks(frame.rate, left, frame.right, top, frame.bottom) + svg_text(0, 11, "small", "Msteps/s") +
-           svg_text((left + frame.right) / 2, frame.bottom + 32, "small middle", "bytes that a step loads");
+           svg_text((left + frame.right) / 2, frame.bottom + 32, "small middle", "bytes per step");
 }
 
 /// The line spans the whole axis of bytes.
@@ -80,9 +80,9 @@ Html point_mark(const Roofline& roofline, const RooflinePoint& point, const Roof
 {
     const double x = frame.x(point.bytes_per_step), y = frame.y(point.msteps_per_s);
     const std::string label = point_text(roofline, point);
-    const std::string tooltip =
-        fmt::format("{} of the ceiling: {} of {} Msteps/s at {} bytes a step", label, short_number(point.msteps_per_s),
-                    short_number(roofline.ceiling(point)), short_number(point.bytes_per_step));
+    const std::string tooltip = fmt::format("{} of the ceiling: {} of {} Msteps/s at {} bytes per step", label,
+                                            short_number(point.msteps_per_s), short_number(roofline.ceiling(point)),
+                                            short_number(point.bytes_per_step));
     return svg_mark(series_class(point.series), point.id, tooltip,
                     side_label(x, y, frame.right, label_y, label) + svg_shape(x, y, point.series, "solid"));
 }

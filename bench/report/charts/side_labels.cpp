@@ -8,7 +8,7 @@
 namespace tetrace {
 
 namespace {
-constexpr double leader = 22; ///< length of the slanted part of the line, and room around it
+constexpr double leader = 22; ///< length of the slanted part of the line, and space around it
 } // namespace
 
 double side_labels_left(double max_label)

@@ -6,7 +6,7 @@
 namespace tetrace {
 
 /// Grid lines with their labels: below the plot for a horizontal axis, left of it for a vertical one. A label is left
-/// out where its neighbour leaves no room for it.
+/// out if its neighbour leaves no space for it.
 [[nodiscard]] Html horizontal_ticks(const Axis& axis, double left, double right, double top, double bottom);
 [[nodiscard]] Html vertical_ticks(const Axis& axis, double left, double right, double top, double bottom);
 

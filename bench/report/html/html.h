@@ -40,7 +40,7 @@ private:
 /// A plain text, escaped (see xml_text()).
 [[nodiscard]] Html text(std::string_view plain);
 
-/// <name attributes>content</name>; meta and img, which have no content, are not closed.
+/// <name attributes>content</name>; meta and img, which never have content, are not closed.
 [[nodiscard]] Html element(std::string_view name, const Attributes& attributes, const Html& content = {});
 
 /// An element of a class that contains only text; no class attribute where the class is empty.

@@ -21,7 +21,7 @@ public:
     /// Throws Error{internal} where the number of cells differs from the number of columns.
     void add(std::vector<Html> cells);
     [[nodiscard]] bool empty() const { return rows_.empty(); }
-    /// Empty where there are no rows. The table scrolls sideways on its own where the page is too narrow for it.
+    /// Empty if there are no rows. The table scrolls sideways by itself if the page is too narrow for it.
     [[nodiscard]] Html html() const;
 
 private:
@@ -39,7 +39,7 @@ private:
 struct Section {
     std::string id, title;
     Html content;
-    bool is_empty = false; ///< its content only says that there is none
+    bool is_empty = false; ///< its content only says that there are none
 };
 
 [[nodiscard]] Html paragraph(std::string_view plain);
@@ -48,7 +48,7 @@ struct Section {
 [[nodiscard]] Html heading(std::string_view plain);
 /// A picture or drawing with its caption under a title; both may be empty.
 [[nodiscard]] Html figure(std::string_view title, const Html& content, std::string_view caption);
-/// Elements side by side where there is room.
+/// Elements side by side if the page is wide enough.
 [[nodiscard]] Html side_by_side(const Html& content);
 
 /// A status, verdict or conformity with a sign before it, so that colour is not the only cue.

@@ -12,7 +12,7 @@ std::string pixels(double value)
     return fmt::format("{:.1f}", value);
 }
 
-/// Widths in DejaVu Sans, in 1/1000 of the font size; characters beyond ASCII count as wide as digits.
+/// Widths in DejaVu Sans, in 1/1000 of the font size; characters that are not ASCII count as wide as digits.
 double character_width(char c)
 {
     static constexpr std::string_view narrow = "iljI.,:;'|!", slim = "frt()[]{}/\\-\" ", wide = "mwMW%@";
@@ -28,7 +28,7 @@ std::size_t shape_of(std::size_t series)
     return (series + series / series_styles) % series_styles;
 }
 
-/// What a shape draws where the path stands.
+/// What a shape draws at the path's current point.
 const char* shape_path(std::size_t series)
 {
     // circle, square, triangle, diamond, inverted triangle, plus, cross

@@ -14,7 +14,7 @@ inline constexpr double label_size = 13;
 inline constexpr double small_size = 11.5;
 
 /// Number of series colours, and of shapes: CSS classes s0 to s6, with the colours of Okabe and Ito, "Color Universal
-/// Design" (2008). Of the first series each colour has its own shape, so that colour is never the only cue.
+/// Design" (2008). In the first series, each colour has its own shape, so that colour is never the only cue.
 inline constexpr std::size_t series_styles = 7;
 /// Number of series before their marks repeat: after each 7 series every colour gets the next shape and dash, and after
 /// 49 the shapes are open.

@@ -70,7 +70,7 @@ std::vector<PaperCell> figure6_cells(const SceneRun& run, std::size_t i)
     return cells;
 }
 
-/// The runs that decide the claims: those of the CDT, and where a scene has the paper's build, that one alone.
+/// The runs that decide the claims: those of the CDT; if a scene has the paper's build, only that one.
 RecordedRuns judged_runs(const SceneRuns& runs)
 {
     const SceneRuns candidates = runs_of_cdt(runs);
@@ -143,20 +143,20 @@ PaperFigure::Series series_of(const SceneRun& run, std::size_t i, const std::str
     return series;
 }
 
-/// The scene's rows on the devices of one kind; none where there is no kind. Emulated GPUs share no figure with GPUs,
-/// and neither shares one with a CPU.
+/// The scene's rows on the devices of one kind; none without a kind. Emulated GPUs share no figure with GPUs, and
+/// neither shares one with a CPU.
 PaperFigure figure_of(const SceneRun& run, std::optional<DeviceKind> kind)
 {
     const std::string kind_text(kind ? name_of(*kind) : "");
     PaperFigure figure{
         fmt::format("figure6-{}{}{}", run.build.label, kind ? "-" : "", kind_text),
-        fmt::format("Time and tets traversed, a point a view: {}, {} build{}{}", run.build.scene, run.build.build,
+        fmt::format("Time over tets traversed, one point per view: {}, {} build{}{}", run.build.scene, run.build.build,
                     kind ? ", " : "", kind_text),
         figure6_source(),
-        {"tets traversed", "a ray"},
+        {"tets traversed", "per ray"},
         {"time of an image of 1024 x 1024", "ms"},
-        {"Times are medians of a view's samples, device seconds of the kernel alone, for as many rays as the paper's "
-         "images have; a view's rows are interleaved."}};
+        {"Times are medians of a view's samples, in device seconds of the kernel only, scaled to the paper's number "
+         "of rays per image; a view's rows are interleaved."}};
     const auto rows = kind ? rated_rows(run, *kind) : std::vector<std::size_t>();
     const auto names = distinct_names(run, rows);
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -172,7 +172,7 @@ void add_pictures(PaperFigure& figure, const SceneRun& run)
 {
     figure.pictures = run.extreme_pictures;
     if (!figure.pictures.empty())
-        figure.notes.emplace_back("Pictures: the views with the fewest and the most tets a ray, surface and steps.");
+        figure.notes.emplace_back("Pictures: the views with the fewest and the most tets per ray, surface and steps.");
     figure.notes.insert(figure.notes.end(), run.picture_problems.begin(), run.picture_problems.end());
 }
 
@@ -195,27 +195,26 @@ PaperTable figure6_table(const SceneRuns& runs)
 {
     PaperTable table{
         "figure6",
-        "Time and tets traversed over the views",
+        "Time and tets traversed, over the views",
         figure6_source(),
         with_labels({{"views", "views", "", 0},
-                     {"fewest_tets", "fewest tets", "a ray", 1},
-                     {"most_tets", "most tets", "a ray", 1},
-                     {"fewest_mtets", "fewest", "Mtets an image"},
-                     {"most_mtets", "most", "Mtets an image"},
-                     {"shortest_ms", "shortest", "ms an image"},
-                     {"longest_ms", "longest", "ms an image"},
+                     {"fewest_tets", "min tets", "per ray", 1},
+                     {"most_tets", "max tets", "per ray", 1},
+                     {"fewest_mtets", "min", "Mtets per image"},
+                     {"most_mtets", "max", "Mtets per image"},
+                     {"shortest_ms", "shortest", "ms per image"},
+                     {"longest_ms", "longest", "ms per image"},
                      {"msteps_per_s", "Msteps/s", "", 1},
                      {"correlation", "r", "", 3},
-                     {"slope_ns", "slope", "ns a tet and ray"},
-                     {"intercept_ms", "intercept", "ms an image"},
+                     {"slope_ns", "slope", "ns per tet and ray"},
+                     {"intercept_ms", "intercept", "ms per image"},
                      {"likeness", "like the paper's"}}),
-        {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the "
-         "views. Claims are decided by maria, the paper's method, in the paper's builds where these were traced; "
-         "emulations of GPUs, and tets for rays, are in none.",
-         fmt::format("An image has 1024 x 1024 rays; counts and times of smaller ones are scaled to that. "
-                     "The paper has one scene, {}, from 1,282 views of cameras that it does not give, on "
-                     "its {}: {} ms and {} million tets in its view A, {} ms and {} million in B, {:.0f} "
-                     "and {:.0f} Msteps/s.",
+        {"Intervals of r are by Fisher's z, those of ratios of times by percentile bootstrap over the views. Claims "
+         "are decided by maria, the paper's method, in the paper's builds if these were traced; emulated GPUs and "
+         "tets for rays decide none.",
+         fmt::format("An image has 1024 x 1024 rays; counts and times of smaller ones are scaled to that. The paper "
+                     "has one scene, {}, in 1,282 views whose cameras it does not give, on its {}: {} ms and {} "
+                     "million tets in its view A, {} ms and {} million in B, {:.0f} and {:.0f} Msteps/s.",
                      paper::figure6_scene, paper::cpu_name, paper::view_a.ms, paper::view_a.mtets, paper::view_b.ms,
                      paper::view_b.mtets, paper::view_a.msteps_per_s(), paper::view_b.msteps_per_s())}};
     table.claims = claims_of(judged_runs(runs));

@@ -81,10 +81,9 @@ Claim start_claim(const MethodCost& maria)
 Claim saving_claim(const MethodCost& maria, const MethodCost& ms06)
 {
     const double saved = 1 - maria.mean / ms06.least;
-    return {"maria-saves-40-percent",
-            "maria saves about 40 % of the operations of two side products that share nothing",
+    return {"maria-saves-40-percent", "maria saves about 40 % of the operations of two independent side products",
             judge_equal(100 * saved, 40, 0.05),
-            fmt::format("{:.1f} %: {} operations in place of {}, the paper's {}. Within 5 % of its share is taken for "
+            fmt::format("{:.1f} %: {} operations instead of {}, the paper's {}. Within 5 % of its share counts as "
                         "equal.",
                         100 * saved, maria.mean, ms06.least, paper::naive_operations)};
 }
@@ -97,15 +96,15 @@ Claim ms06_claim(const MethodCost& ms06)
             judge_within({Estimate{mean.value - paper::ms06_products, *mean.low - paper::ms06_products,
                                    *mean.high - paper::ms06_products, false}},
                          reach),
-            fmt::format("{}. Within 1 % is taken for equal.", estimate_text(mean))};
+            fmt::format("{}. Within 1 % counts as equal.", estimate_text(mean))};
 }
 
 Claim bytes_claim()
 {
     const double cpu = tet_bytes(Layout::tet80), gpu = tet_bytes(Layout::tet96);
-    return {"a-tet-takes-80-and-96-bytes", "a tet takes 80 bytes on the CPU and 96 on the GPU",
+    return {"a-tet-takes-80-and-96-bytes", "a tet has 80 bytes on the CPU and 96 on the GPU",
             verdict_of(cpu == paper::cpu_tet_bytes && gpu == paper::gpu_tet_bytes),
-            fmt::format("tet80 has {}, tet96 {}. A link is 30 bits of a tet and 2 of its face.", cpu, gpu)};
+            fmt::format("tet80 has {}, tet96 {}. A half-face is 30 bits for the tet and 2 for its face.", cpu, gpu)};
 }
 
 } // namespace
@@ -114,22 +113,22 @@ PaperTable operations_table()
 {
     const std::vector<MethodCost> costs = count_operations();
     PaperTable table{"operations",
-                     "What an exit search costs",
+                     "Cost of an exit search",
                      fmt::format("{}, sections 3.1 and 3.4", paper::citation),
                      {{"method", "method"},
-                      {"least_operations", "operations, least", "", 0},
+                      {"least_operations", "operations, min", "", 0},
                       {"operations", "mean", "", 2},
-                      {"most_operations", "most", "", 0},
+                      {"most_operations", "max", "", 0},
                       {"products", "side products", "", 3},
-                      {"most_products", "most", "", 0},
+                      {"most_products", "max", "", 0},
                       {"start_operations", "operations of a start", "", 1},
                       {"start_products", "side products of a start", "", 2}},
                      {fmt::format("Counted by the kernels themselves, compiled with numbers that count additions, "
-                                  "subtractions and multiplications, over {} random tets of table5 and {} rays through "
-                                  "each: layout tet96, the same on every machine. Intervals are of the mean over "
-                                  "random searches. docs/spec/methods.md, M2, says how a search is made up.",
+                                  "subtractions and multiplications, over {} random tets of table5 and {} rays "
+                                  "through each: layout tet96, the same on every machine. Intervals are of the mean "
+                                  "over random searches. docs/spec/methods.md, M2, describes the parts of a search.",
                                   counted_tets, counted_rays),
-                      "plane has no side products; project takes signs, of which a start needs six."}};
+                      "plane has no side products; project uses signs, and a start needs six."}};
     for (const MethodCost& cost : costs)
         table.rows.push_back(cells_of(cost));
     const MethodCost &maria = cost_of(costs, Method::maria), &ms06 = cost_of(costs, Method::ms06);

@@ -170,12 +170,12 @@ Claim amplitude_claim(const SceneRuns& runs, DeviceKind kind)
             }
             ratios.push_back(ratio);
             noisy = noisy || is_noisy(pair);
-            claim.evidence += fmt::format("{}{} {}: the most over the least {:.3g} of the CDT, {:.3g} of bvh2",
+            claim.evidence += fmt::format("{}{} {}: max over min {:.3g} for the CDT, {:.3g} for bvh2",
                                           claim.evidence.empty() ? "" : "; ", run->build.scene, device_of(pair),
                                           cdt.whole, bvh.whole);
         }
     if (ratios.empty()) {
-        claim.evidence = no_pair_text(kind) + " on a scene that is like the paper's.";
+        claim.evidence = no_pair_text(kind) + " on a scene similar to the paper's.";
         return claim;
     }
     claim.verdict = judge_above(ratios, 1);
@@ -220,7 +220,7 @@ Claim size_claim(const SceneRuns& runs, DeviceKind kind)
                                 small.run->build.scene, estimate_text(after), large.run->build.scene);
             }
     if (ratios.empty()) {
-        claim.evidence = no_pair_text(kind) + " on two scenes that are like the paper's.";
+        claim.evidence = no_pair_text(kind) + " on two scenes similar to the paper's.";
         return claim;
     }
     claim.verdict = judge_above(ratios, 1);

@@ -72,8 +72,8 @@ json axis_json(const PaperFigure::Axis& axis)
     return object;
 }
 
-/// A coordinate with seven digits: points are drawn, and rows have the numbers behind them. All digits took a seventh
-/// of a result of all tables and figures.
+/// A coordinate with seven digits: points are drawn, and rows have the exact numbers. All digits took a seventh of a
+/// result of all tables and figures.
 double drawn(double coordinate)
 {
     return std::strtod(fmt::format("{:.7g}", coordinate).c_str(), nullptr);
@@ -107,7 +107,7 @@ bool has_interval(const PaperCell& cell)
     return number != nullptr && number->ours.low && number->ours.high;
 }
 
-/// "1.25 [1.10, 1.40]"; the value alone where there is no interval.
+/// "1.25 [1.10, 1.40]"; only the value if there is no interval.
 Cell interval_cell(const PaperCell& cell, const Column& column)
 {
     if (!has_interval(cell)) return value_cell(cell, column);

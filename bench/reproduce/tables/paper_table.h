@@ -66,7 +66,7 @@ struct PaperFigure {
 [[nodiscard]] nlohmann::json table_json(const PaperTable& table);
 [[nodiscard]] nlohmann::json figure_json(const PaperFigure& figure);
 
-/// The rows. Numbers have their 95 % intervals, where there are any; the paper's numbers and the ratios have columns of
+/// The rows. Numbers have their 95 % intervals, if there are any; the paper's numbers and the ratios have columns of
 /// their own.
 [[nodiscard]] Table with_paper_columns(const PaperTable& table);
 

@@ -26,7 +26,7 @@ public:
     void draw(SceneRun& run, bool flawed, bool extremes) const;
 
 private:
-    /// Does nothing where the row has no such ray in any view.
+    /// Does nothing if the row has no such ray in any view.
     void draw_worst(SceneRun& run, std::size_t row) const;
     void draw_view(SceneRun& run, std::size_t row, std::size_t view) const;
     [[nodiscard]] std::string write(const SceneRun& run, std::size_t view, const std::string& kind,

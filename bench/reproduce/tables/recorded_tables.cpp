@@ -58,7 +58,7 @@ std::vector<Claim> read_claims(const ResultValue& part)
         const ResultValue verdict = value.at("verdict");
         const auto verdicts = values_of<ClaimVerdict>();
         const auto found = std::ranges::find(verdicts, verdict.line(), [](ClaimVerdict v) { return name_of(v); });
-        if (found == verdicts.end()) verdict.reject("is no verdict");
+        if (found == verdicts.end()) verdict.reject("is not a verdict");
         claim.verdict = *found;
         claims.push_back(std::move(claim));
     }

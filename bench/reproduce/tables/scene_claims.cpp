@@ -92,7 +92,7 @@ Claim mean_rate_claim(const SceneRuns& runs, paper::Place place)
     }
     if (!claim.evidence.empty()) claim.evidence += ". ";
     if (!missing.empty()) {
-        claim.evidence += fmt::format("No mean of three: {}{}", missing, missing.back() == '.' ? "" : ".");
+        claim.evidence += fmt::format("Not all three scenes: {}{}", missing, missing.back() == '.' ? "" : ".");
         return claim;
     }
     claim.verdict = judge_above({Estimate{mean.value / papers, *mean.low / papers, *mean.high / papers, false}}, 1);

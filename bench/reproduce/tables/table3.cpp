@@ -70,8 +70,8 @@ Claim counts_claim(const SceneRun& run)
     claim.evidence = capitalised(run.likeness.reason);
     if (!is_within(static_cast<double>(triangles), static_cast<double>(papers), equal_counts_tolerance)) {
         if (run.likeness.kind != LikenessKind::other_mesh)
-            claim.evidence += fmt::format(" This is another mesh of the same thing, of {} triangles: the paper's "
-                                          "counts come from {}.",
+            claim.evidence += fmt::format(" This is another mesh of the same object, with {} triangles: the "
+                                          "paper's counts are from {}.",
                                           with_commas(triangles), with_commas(papers));
         return claim;
     }
@@ -88,9 +88,9 @@ std::string likeness_note(const SceneRun& run)
 
 std::string walk_note(const SceneRun& run, const StartWalk& walk)
 {
-    return fmt::format("{}, {} build: the camera's start tets were found by walking from view to view in {}, {} walks "
-                       "of {:.1f} steps on average, {} views located exactly; exact location of all takes {}, and "
-                       "names the same tets.",
+    return fmt::format("{}, {} build: the cameras' start tets were found in {}, by {} walks of {:.1f} steps on "
+                       "average from view to view and {} exact locations; locating all exactly takes {}, and finds "
+                       "the same tets.",
                        run.build.scene, run.build.build, milliseconds(run.scene->locate_s()),
                        with_commas(walk.counts.walked),
                        static_cast<double>(walk.counts.steps) / std::max(walk.counts.walked, 1u), walk.counts.located,
@@ -148,24 +148,24 @@ PaperTable table3(const SceneRuns& runs)
          {"tet80_mib", "tet80", "MiB", 1},
          {"tet96_mib", "tet96", "MiB", 1},
          {"build_s", "built in", "s", 1}},
-        {"Build: paper's, of the paper's scenes alone, a domain of 3 radii that holds the cameras, uncut, "
-         "and the switches that come nearest to the paper's counts; ours, as asked for by --domain, "
-         "--divisions and --switches; rays, the same with tets that are changed until rays cross few faces, no longer "
-         "Delaunay. A face counts once, the domain's boundary as neither.",
-         "Rays reach: tets that a chain of free faces joins to the domain's boundary. Rays from outside "
-         "load no byte of the others, which are inside closed objects.",
-         "The paper's memory, printed as MB, is 96 bytes a tet in MiB."}};
+        {"Build: paper's, only for the paper's scenes, a domain of 3 radii that contains the cameras, with "
+         "undivided sides, and the switches that give counts nearest to the paper's; ours, as set by --domain, "
+         "--divisions and --switches; rays, the same with tets optimised so that rays cross few faces, no longer "
+         "Delaunay. A face counts once; the domain's boundary counts as neither.",
+         "Rays reach: tets connected to the domain's boundary by free faces. Rays from outside load no byte of the "
+         "others, which are inside closed objects.",
+         "The paper's memory, printed as MB, is 96 bytes per tet in MiB."}};
     for (const SceneRun* run : runs) {
         if (run->scene != nullptr)
             table.rows.push_back(scene_cells(*run));
         else
-            table.notes.push_back(fmt::format("{}, {} build, could not be had: {}", run->build.scene, run->build.build,
+            table.notes.push_back(fmt::format("{}, {} build, failed: {}", run->build.scene, run->build.build,
                                               run->rows.empty() ? "" : reason_of(run->rows.front())));
         if (!run->likeness.reason.empty()) table.notes.push_back(likeness_note(*run));
         if (run->scene != nullptr)
             if (const std::string& why = run->scene->loaded().scene.build.optimised.reason; !why.empty())
-                table.notes.push_back(
-                    fmt::format("{}, {} build: the tets are TetGen's: {}", run->build.scene, run->build.build, why));
+                table.notes.push_back(fmt::format("{}, {} build: the tets are TetGen's, not optimised: {}",
+                                                  run->build.scene, run->build.build, why));
         if (run->scene != nullptr && run->scene->start_walk())
             table.notes.push_back(walk_note(*run, *run->scene->start_walk()));
         if (run->build.build == papers_build) table.claims.push_back(counts_claim(*run));
@@ -179,20 +179,19 @@ PaperTable table3_rates(const SceneRuns& runs)
         "table3-rates",
         "Rates on these tetrahedralizations",
         table3_source(),
-        with_labels({{"tets_a_ray", "tets", "a ray", 1},
+        with_labels({{"tets_a_ray", "tets", "per ray", 1},
                      {"mrays_per_s", "Mrays/s"},
                      {"msteps_per_s", "Msteps/s", "", 1},
                      {"spread_percent", "spread", "%", 1},
                      {"likeness", "like the paper's"},
                      {"status", "status"}}),
-        {fmt::format("A sample is all views traced once, each in a launch of its own as the paper's frames "
-                     "are, device seconds of the kernel alone; rates are of "
-                     "the median sample, spread is its interquartile range over the median. The paper's "
-                     "rates are of its method on its CPU ({}) and its GPU ({}), of cameras that it does "
-                     "not give; no emulation of a GPU is compared with them.",
+        {fmt::format("A sample is all views traced once, each in its own launch, like the paper's frames, in device "
+                     "seconds of the kernel only; rates are of the median sample, and spread is the interquartile "
+                     "range over the median. The paper's rates are of its method on its CPU ({}) and its GPU ({}), "
+                     "with cameras that it does not give; emulated GPUs are not compared with them.",
                      paper::cpu_name, paper::gpu_name),
-         "like the paper's: whether mesh and tets are; without a ratio where the mesh is another. Table 3 "
-         "has the reasons."}};
+         "like the paper's: whether mesh and tets are; there is no ratio if the mesh is another. Table 3 has the "
+         "reasons."}};
     const SceneRuns judged = runs_of_cdt(runs);
     table.claims = speed_claims({judged.begin(), judged.end()});
     for (const paper::Place place : {paper::Place::cpu, paper::Place::gpu})

@@ -64,14 +64,14 @@ const std::vector<Column>& columns()
                                              {"layout", "layout"},
                                              {"device", "device"},
                                              {"views", "views", "", 0},
-                                             {"flawed", "wrong or lost", "rays an image", 4},
-                                             {"wrong_face", "wrong face", "rays an image", 3},
-                                             {"lost", "lost", "rays an image", 3},
-                                             {"lost_at_cap", "in a cycle", "rays an image", 3},
-                                             {"ties", "ties", "rays an image", 3},
+                                             {"flawed", "wrong or lost", "rays per image", 4},
+                                             {"wrong_face", "wrong face", "rays per image", 3},
+                                             {"lost", "lost", "rays per image", 3},
+                                             {"lost_at_cap", "in a cycle", "rays per image", 3},
+                                             {"ties", "ties", "rays per image", 3},
                                              {"flawed_through_flat", "past flat tets", "% of these rays", 1},
                                              {"any_through_flat", "past flat tets", "% of all rays", 1},
-                                             {"hits", "hits beside openmp's"},
+                                             {"hits", "hits against openmp's"},
                                              {"likeness", "like the paper's"},
                                              {"status", "status"}};
     return list;
@@ -152,7 +152,7 @@ Claim count_claim(const std::vector<MethodRow>& rows, Method method, std::size_t
     claim.verdict = some ? judge_some(mean) : judge_none(mean);
     claim.evidence = counts_evidence(counts, mean);
     if (claim.verdict == ClaimVerdict::not_testable)
-        claim.evidence += " None in a sample does not show that there is none: that takes all rays of all views.";
+        claim.evidence += " None in a sample does not prove that there are none: only all rays of all views do.";
     return claim;
 }
 
@@ -172,7 +172,7 @@ Claim min_claim(const std::vector<MethodRow>& rows, std::size_t population)
     for (const Method method : older_methods())
         if (const auto mean = mean_of(method)) others.push_back(*mean);
     if (maria) claim.verdict = judge_less(*maria, others);
-    if (!claim.evidence.empty()) claim.evidence += " rays an image.";
+    if (!claim.evidence.empty()) claim.evidence += " rays per image.";
     if (!maria) claim.evidence += " No row of maria was verified.";
     if (others.empty()) claim.evidence += " No row of an older method was verified.";
     return claim;
@@ -181,7 +181,7 @@ Claim min_claim(const std::vector<MethodRow>& rows, std::size_t population)
 /// "ms06 comes next": fewer than each other older method.
 Claim next_claim(const std::vector<MethodRow>& rows, std::size_t population)
 {
-    Claim claim{"ms06-comes-next", "of the older methods ms06 has the fewest wrong results"};
+    Claim claim{"ms06-comes-next", "ms06 has the fewest wrong results of the older methods"};
     std::optional<Estimate> next;
     std::vector<Estimate> others;
     for (const Method method : older_methods()) {
@@ -195,7 +195,7 @@ Claim next_claim(const std::vector<MethodRow>& rows, std::size_t population)
         else
             others.push_back(mean);
     }
-    claim.evidence += claim.evidence.empty() ? "No row of an older method was verified." : " rays an image.";
+    claim.evidence += claim.evidence.empty() ? "No row of an older method was verified." : " rays per image.";
     if (next) claim.verdict = judge_less(*next, others);
     return claim;
 }
@@ -207,12 +207,12 @@ std::string sampling_note(Sampling sampling, std::size_t population)
     case Sampling::whole: return fmt::format("All rays of all {} views: the means are exact.", with_commas(population));
     case Sampling::even:
         return fmt::format("An interval is that of the mean over all rays of the camera set's {} views: percentile "
-                           "bootstrap over the views traced, {} at least. Where none of these rays was seen there is "
-                           "none: such rays come in crowds, and a view left out may have one.",
+                           "bootstrap over the views traced, at least {}. If no such ray was seen there is no "
+                           "interval: such rays are clustered, and a view left out may have some.",
                            with_commas(population), min_views);
     case Sampling::chosen:
-        return fmt::format("The views traced are not spread evenly over the camera set's {}: they say nothing of the "
-                           "others, and the means have no interval.",
+        return fmt::format("The views traced are not spread evenly over the camera set's {}: they say nothing about "
+                           "the others, so the means have no interval.",
                            with_commas(population));
     }
     return {};
@@ -221,22 +221,21 @@ std::string sampling_note(Sampling sampling, std::size_t population)
 std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
 {
     std::vector<std::string> notes = {
-        "Every ray is judged by exact arithmetic on the original triangles. Wrong face: another triangle, or none, "
-        "than the exact ray and all curves within rounding of it meet first, or t, u and v that are not those of the "
-        "point. "
-        "Ties are what such a curve gives, and are not counted as wrong. "
-        "Lost: no exit face was found, or, in a cycle, the walk took as many steps as it may.",
-        "The oracle judges what openmp answers; each device's hits are compared with openmp's ray by ray, and images "
-        "of one hash are judged once.",
-        fmt::format("A tet is flat where its shortest altitude is below {} of its longest edge. Shares are of at most "
-                    "{} rays an image, spread over it, and of the first {} steps of each, traced by openmp.",
+        "Every ray is verified with exact arithmetic on the original triangles. Wrong face: not the triangle that "
+        "the exact ray, or some curve within rounding error of it, meets first, or t, u and v that do not fit the "
+        "point. Ties are hits of such a curve, and do not count as wrong. Lost: no exit face was found; in a cycle: "
+        "the walk reached its cap of steps.",
+        "The oracle verifies openmp's hits; each device's hits are compared with openmp's ray by ray, and images "
+        "with equal hashes are verified once.",
+        fmt::format("A tet is flat if its shortest altitude is below {} of its longest edge. Shares are of at most "
+                    "{} rays per image, spread over it, and of the first {} steps of each, traced by openmp.",
                     flat_below, FlatTets::rays_looked_at, FlatTets::steps_looked_at),
-        fmt::format("The paper's counts are of its GPU ({}), averaged over about 1,300 views of cameras that it does "
-                    "not give. They stand beside every device, since exact arithmetic gives all of them the same "
-                    "answers; without a ratio where the mesh is another.",
+        fmt::format("The paper's counts are of its GPU ({}), averaged over about 1,300 views whose cameras it does "
+                    "not give. They are compared with every device, because exact mode gives all of them the same "
+                    "hits; there is no ratio if the mesh is another.",
                     paper::gpu_name),
-        "project is not the paper's: that it has no such ray is this program's own claim, proved in "
-        "docs/spec/project.md, P6."};
+        "project is not one of the paper's methods: that it never has such a ray is this program's own claim, "
+        "proved in docs/spec/project.md, P6."};
     for (std::string& note : likeness_notes(runs))
         notes.push_back(std::move(note));
     const auto loaded = std::ranges::find_if(runs, [](const auto* run) { return run->scene != nullptr; });
@@ -245,7 +244,7 @@ std::vector<std::string> notes_of(const SceneRuns& runs, std::size_t population)
     for (const SceneRun* run : runs) {
         if (run->scene == nullptr || run->flat == nullptr) continue;
         notes.push_back(fmt::format(
-            "{}: {} of {} tets are flat; {} rays an image{}.", run->build.label, with_commas(run->flat->count()),
+            "{}: {} of {} tets are flat; {} rays per image{}.", run->build.label, with_commas(run->flat->count()),
             with_commas(run->scene->counts().tets), with_commas(run->scene->rays_per_view()),
             run->scene->rays_per_view() == paper::image_pixels ? "" : ", counts scaled to 1024x1024"));
     }
@@ -301,7 +300,7 @@ PaperFigure table4_views(const SceneRuns& runs)
                        "Wrong and lost rays, view by view",
                        fmt::format("to {}, Table 4", paper::citation),
                        {"view", "number in the camera set"},
-                       {"wrong or lost", "rays an image"},
+                       {"wrong or lost", "rays per image"},
                        {"Pictures show the view with the most of them, the surface darkened, such rays marked."}};
     for (const MethodRow& row : method_rows(runs)) {
         const RowRecord& run = row.run->rows[row.row];

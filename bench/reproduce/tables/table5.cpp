@@ -21,14 +21,14 @@ const std::vector<Column>& search_columns()
                                              {"threads", "host threads", "", 0},
                                              {"searches", "searches", "", 0},
                                              {"msearches_per_s", "Msearches/s", "", 1},
-                                             {"ns_a_search", "time", "ns a search"},
+                                             {"ns_a_search", "time", "ns per search"},
                                              {"all_ms", "all of the paper's", "ms", 0},
                                              {"spread_percent", "spread", "%", 1},
                                              {"copy_percent", "of copy", "%", 1},
-                                             {"wrong", "wrong", "a million", 3},
-                                             {"lost", "lost", "a million", 3},
-                                             {"ties", "ties", "a million", 3},
-                                             {"faces", "faces beside openmp's"},
+                                             {"wrong", "wrong", "per million", 3},
+                                             {"lost", "lost", "per million", 3},
+                                             {"ties", "ties", "per million", 3},
+                                             {"faces", "faces against openmp's"},
                                              {"status", "status"}};
     return list;
 }
@@ -97,7 +97,7 @@ std::vector<PaperCell> cells_of(const SearchRun& run, const RowRecord& row, cons
 Claim exact_claim(const SearchRun& run)
 {
     Claim claim{
-        "table5-maria-exact", "maria has no wrong result but ties", {}, "No row of maria came through all searches."};
+        "table5-maria-exact", "maria has no wrong results except ties", {}, "No row of maria completed all searches."};
     std::uint64_t rows = 0, searches = 0, wrong = 0, lost = 0, ties = 0;
     for (const RowRecord& row : run.rows) {
         if (row.key.kernel.method != Method::maria || !is_whole(row) || traced(row)->different > 0) continue;
@@ -110,8 +110,8 @@ Claim exact_claim(const SearchRun& run)
     claim.evidence = fmt::format("{} searches by {} {}: {} wrong, {} lost, {} ties.", with_commas(searches), rows,
                                  rows == 1 ? "row" : "rows", with_commas(wrong), with_commas(lost), with_commas(ties));
     if (claim.verdict == ClaimVerdict::not_testable)
-        claim.evidence +=
-            fmt::format(" Fewer than the paper's {} of a row decide nothing.", with_commas(SearchSize{}.count()));
+        claim.evidence += fmt::format(" Fewer searches per row than the paper's {} decide nothing.",
+                                      with_commas(SearchSize{}.count()));
     return claim;
 }
 
@@ -130,12 +130,12 @@ std::vector<Claim> claims_of(const SearchRun& run)
     const RecordedRuns runs = {&run};
     std::vector<Claim> claims = {
         fastest_claim({"table5-maria-fastest-cpu",
-                       "maria is the fastest of the five methods on a CPU, one thread, exit search alone"},
+                       "maria is the fastest of the five methods on a CPU, one thread, exit search only"},
                       runs, on_one_thread),
         fastest_claim(
-            {"table5-maria-fastest-gpu", "maria is the fastest of the five methods on a GPU, exit search alone"}, runs,
+            {"table5-maria-fastest-gpu", "maria is the fastest of the five methods on a GPU, exit search only"}, runs,
             on_gpu),
-        overtaking_claim({"table5-plucker-overtakes-stp-gpu", "on a GPU plucker is faster than stp, exit search alone"},
+        overtaking_claim({"table5-plucker-overtakes-stp-gpu", "on a GPU plucker is faster than stp, exit search only"},
                          runs)};
     for (const auto& [place, is_meant, where, id] :
          {std::tuple{paper::Place::cpu, IsMeant(on_one_thread), "a CPU, one thread", "cpu"},
@@ -143,11 +143,11 @@ std::vector<Claim> claims_of(const SearchRun& run)
         const auto [method, slower] = paper::fastest_older(place);
         claims.push_back(fastest_older_claim(
             {fmt::format("table5-{}-is-the-fastest-older-{}", name_of(method), id),
-             fmt::format("on {}, {} is the fastest of the older methods, exit search alone", where, name_of(method))},
+             fmt::format("on {}, {} is the fastest of the older methods, exit search only", where, name_of(method))},
             runs, method, is_meant));
         claims.push_back(
             slower_claim({fmt::format("table5-{}-is-{:.0f}-percent-slower-{}", name_of(method), 100 * slower, id),
-                          fmt::format("on {}, {} is {:.0f} % slower than maria, exit search alone", where,
+                          fmt::format("on {}, {} is {:.0f} % slower than maria, exit search only", where,
                                       name_of(method), 100 * slower)},
                          runs, method, slower, is_meant));
     }
@@ -160,41 +160,41 @@ std::string face_text(std::uint32_t face)
     return face == NO_EXIT ? "no face" : fmt::format("face {}", face);
 }
 
-/// Which search to look at where a row's faces are not the exact ones, or not openmp's; empty where all are.
+/// Which search to look at if a row's faces are not the exact ones, or not openmp's; empty if all are.
 std::string first_flaw(const RowRecord& row)
 {
     const Traced* result = traced(row);
     if (result == nullptr) return {};
     const std::string name = row_name(row.key);
     if (const auto& ray = result->first_different)
-        return fmt::format("{} differs first on ray {} of tet {}: {}, where openmp finds {}.", name, ray->x, ray->view,
+        return fmt::format("{} first differs on ray {} of tet {}: {}, but openmp finds {}.", name, ray->x, ray->view,
                            face_text(ray->ours.face_id), face_text(ray->openmp.face_id));
     if (const auto& ray = result->verdicts.first_wrong; ray && is_reference(row.key))
-        return fmt::format("{} errs first on ray {} of tet {}: {}, where the exact one is {}.", name, ray->x, ray->view,
-                           face_text(ray->ours.face_id), face_text(ray->reference_face));
+        return fmt::format("{} is first wrong on ray {} of tet {}: {}, but the exact face is {}.", name, ray->x,
+                           ray->view, face_text(ray->ours.face_id), face_text(ray->reference_face));
     return {};
 }
 
 std::vector<std::string> notes_of(const SearchRun& run)
 {
     std::vector<std::string> notes = {
-        fmt::format("{} random tets, {} random rays through each, entering by a known face: the same on every device, "
-                    "from a counter-based generator, on a grid of 2^-16, so that integers decide exactly by which face "
-                    "a ray leaves. Every face that was found is compared with that, and with openmp's, outside the "
+        fmt::format("{} random tets, {} random rays through each, entering by a known face: the same on every "
+                    "device, from a counter-based generator, on a grid of 2^-16, so that integers decide the exit "
+                    "face exactly. Every face found is compared with the exact one and with openmp's, outside the "
                     "timing. Tie: another face, and the ray passes all edges that exclude it within the rounding "
                     "bound; wrong: another face; lost: none.",
                     with_commas(run.size.tets), with_commas(run.size.rays)),
-        fmt::format("A sample is all searches once, {} tets a launch, device seconds of the kernel alone; rates are of "
-                    "the median sample, spread is its interquartile range over the median. Intervals of ratios are by "
-                    "percentile bootstrap over these batches.",
+        fmt::format("A sample is all searches once, {} tets per launch, in device seconds of the kernel only; rates "
+                    "are of the median sample, and spread is the interquartile range over the median. Intervals of "
+                    "ratios are by percentile bootstrap over these batches.",
                     with_commas(run.batch_tets)),
-        fmt::format("A search moves {} bytes, its ray and its face (its tet stays in the caches): of copy is the share "
-                    "of the device's copy bandwidth that this comes to. Fast devices measure their memory here.",
+        fmt::format("A search moves {} bytes, its ray and its face (its tet stays in the caches). 'of copy' is this "
+                    "traffic as a share of the device's copy bandwidth. On fast devices the table measures memory.",
                     bytes_per_search),
         fmt::format(
-            "All of the paper's: the time of its {} searches, scaled from those done. It has them on one thread "
-            "of its CPU ({}) and on its GPU ({}); its tets and rays are random too, of distributions that it "
-            "does not give.",
+            "All of the paper's: the time of its {} searches, scaled from those done. The paper has them on one "
+            "thread of its CPU ({}) and on its GPU ({}); its tets and rays are random too, from distributions that "
+            "it does not give.",
             with_commas(static_cast<std::uint64_t>(paper::searches)), paper::cpu_name, paper::gpu_name)};
     for (const RowRecord& row : run.rows)
         if (const std::string flaw = first_flaw(row); !flaw.empty()) notes.push_back(flaw);
@@ -205,8 +205,8 @@ std::vector<std::string> notes_of(const SearchRun& run)
 
 PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices)
 {
-    PaperTable table{"table5", "Exit search alone, on random tets and rays",
-                     fmt::format("{}, Table 5", paper::citation), search_columns(), notes_of(run)};
+    PaperTable table{"table5", "Exit search only, on random tets and rays", fmt::format("{}, Table 5", paper::citation),
+                     search_columns(), notes_of(run)};
     table.claims = claims_of(run);
     for (const RowRecord& row : run.rows)
         table.rows.push_back(cells_of(run, row, devices));

@@ -19,7 +19,7 @@ std::string table6_source()
     return fmt::format("{}, Table 6", paper::citation);
 }
 
-/// The paper's method; through tets for rays, of which the paper has no number, the suite's own too.
+/// The paper's method; through tets for rays, for which the paper has no numbers, also the suite's own.
 bool is_compared(const SceneRun& run, const RowRecord& row)
 {
     const KernelId& kernel = row.key.kernel;
@@ -27,7 +27,7 @@ bool is_compared(const SceneRun& run, const RowRecord& row)
     return is_for_rays(run) && kernel.method == Method::project && kernel.schedule != Schedule::packets;
 }
 
-/// On one device in one math mode; a driver's own BVH has no mode to choose.
+/// On one device in one math mode; a driver's own BVH has only one.
 bool run_alike(const RowRecord& a, const RowRecord& b)
 {
     const bool has_mode = is_portable(a.key.kernel) && is_portable(b.key.kernel);
@@ -97,8 +97,8 @@ const std::vector<Column>& frame_columns()
 {
     static const std::vector<Column> list = with_labels({{"views", "views", "", 0},
                                                          {"frames_per_s", "median", "frames/s"},
-                                                         {"least_frames_per_s", "least", "frames/s"},
-                                                         {"most_frames_per_s", "most", "frames/s"},
+                                                         {"least_frames_per_s", "min", "frames/s"},
+                                                         {"most_frames_per_s", "max", "frames/s"},
                                                          {"papers_frames_per_s", "the paper's", "frames/s"},
                                                          {"mrays_per_s", "Mrays/s"},
                                                          {"build_s", "built in", "s"},
@@ -151,8 +151,8 @@ const std::vector<Column>& pair_columns()
                                              {"device", "device"},
                                              {"type", "type"},
                                              {"ratio", "time BVH / tets"},
-                                             {"least_ratio", "least"},
-                                             {"most_ratio", "most"},
+                                             {"least_ratio", "min"},
+                                             {"most_ratio", "max"},
                                              {"won_percent", "tets faster in", "% of views", 1},
                                              {"break_even_mrays", "builds paid after", "Mrays", 1},
                                              {"ahead", "ahead"}};
@@ -163,7 +163,7 @@ const std::vector<Column>& pair_columns()
 std::string ahead_text(const RowPair& pair)
 {
     const auto even = break_even(pair);
-    if (!even) return "not to be told";
+    if (!even) return "undecided";
     const bool noisy = is_noisy(pair.run->rows[pair.cdt]) || is_noisy(pair.run->rows[pair.bvh]);
     const std::string who = even->ahead == BreakEven::Ahead::first    ? "the " + tets_name(*pair.run)
                             : even->ahead == BreakEven::Ahead::second ? "the BVH"
@@ -230,14 +230,13 @@ PaperFigure ratio_figure(const SceneRun& run, DeviceKind kind, const std::vector
 {
     PaperFigure figure{
         fmt::format("table6-{}-{}", run.build.label, name_of(kind)),
-        fmt::format("Time of a BVH over that of the {}, view by view: {}, {} build, {}", tets_name(run),
-                    run.build.scene, run.build.build, name_of(kind)),
+        fmt::format("Time of a BVH over that of the {}, by view: {}, {} build, {}", tets_name(run), run.build.scene,
+                    run.build.build, name_of(kind)),
         table6_source(),
-        {"views that have at most this ratio", "%"},
+        {"views with at most this ratio", "%"},
         {"time of the BVH over that of the tets", "", true},
-        {"Above 1 the tets are faster. A curve has all views of a pair, ascending: where it crosses 1 is "
-         "the share of the "
-         "views in which the BVH is faster. The tets have their device's fastest row."}};
+        {"Above 1 the tets are faster. A curve has all views of a pair, ascending: it crosses 1 at the share of the "
+         "views in which the BVH is faster. The tets are the fastest row of their device."}};
     const RowKey& first = run.rows[pairs.front().cdt].key;
     const bool one_device =
         std::ranges::all_of(pairs, [&](const RowPair& pair) { return same_place(run.rows[pair.cdt].key, first); });
@@ -321,18 +320,17 @@ PaperTable table6(const SceneRuns& runs)
 {
     PaperTable table{
         "table6",
-        "Tets and BVHs: frames a second, build time and memory",
+        "Tets and BVHs: frames per second, build time and memory",
         table6_source(),
         frame_columns(),
-        {"Frames of 1024x1024 per second, each in a launch of its own, of the median of a view's samples, device "
-         "seconds of the kernel "
-         "alone: the median over the views with its interval (order statistics), the least and the most.",
-         "Built in: TetGen for the CDT, and our optimiser for rays, the builder of the BVH, which is Embree's, for "
-         "bvh2, bvh4 and cwbvh, "
-         "Embree itself for its own rows; TetGen uses one thread, the others all. Memory: all that a "
-         "session holds of the scene.",
-         fmt::format("The paper's frames are of its GPU ({}) and its own cameras; they have a ratio beside "
-                     "GPUs alone, and none where the mesh is another.",
+        {"Frames of 1024x1024 per second, each in its own launch, from the median of a view's samples, in device "
+         "seconds of the kernel only: the median over the views with its interval (order statistics), the minimum "
+         "and the maximum.",
+         "Built in: the time of TetGen for the CDT, plus our optimiser for rays; of the BVH builder, which is "
+         "Embree's, for bvh2, bvh4 and cwbvh; of Embree itself for its own rows. TetGen uses one thread, the others "
+         "all. Memory: everything that a session holds of the scene.",
+         fmt::format("The paper's frames are of its GPU ({}) and its own cameras; there is a ratio only for GPUs, "
+                     "and none if the mesh is another.",
                      paper::gpu_name)}};
     for (std::string& note : likeness_notes(runs))
         table.notes.push_back(std::move(note));
@@ -346,19 +344,18 @@ PaperTable table6_pairs(const SceneRuns& runs)
 {
     PaperTable table{
         "table6-pairs",
-        "Tets against BVHs, paired view by view",
+        "Tets against BVHs, paired by view",
         table6_source(),
         pair_columns(),
-        {"A ratio is of the same view on the same device, above 1 the tets are faster; the interval is that "
-         "of the median over the views (order statistics). Embree's rows pair with openmp's.",
-         "Ahead: who takes less time, builds and rays together. Builds paid after: the rays, of these "
-         "views, after which the one with the faster rays has made "
-         "up for a slower build (built and packed as table6 has it); never: there is nothing to make up "
-         "for. Not to be told: the interval of the ratio of all views' times holds 1.",
-         "The paper's claims are of bvh2, its kind of BVH, and of the fastest layout of the CDT on each "
-         "device. Tets for rays have claims of their own, of maria or project, whichever is faster on the device, "
-         "against the fastest BVH there: on a processor of ours and Embree's rows, on a GPU of those of all its APIs. "
-         "Emulations of GPUs are in none."}};
+        {"A ratio is of the same view on the same device; above 1 the tets are faster. The interval is that of the "
+         "median over the views (order statistics). Embree's rows are paired with openmp's.",
+         "Ahead: which one needs less time, build and rays together. Builds paid after: the number of rays, of "
+         "these views, after which the one with the faster rays has made up for a slower build (built and packed as "
+         "in table6); never: there is nothing to make up for. Undecided: the interval of the ratio of all views' "
+         "times contains 1.",
+         "The paper's claims are of bvh2, its kind of BVH, and of the fastest layout of the CDT on each device. "
+         "Tets for rays have separate claims, of maria or project, whichever is faster on the device, against the "
+         "fastest BVH there: of ours and Embree's on a CPU, of all APIs' on a GPU. Emulated GPUs decide no claim."}};
     table.claims = pair_claims(runs);
     for (const SceneRun* run : runs)
         for (const RowPair& pair : row_pairs(*run))

@@ -56,15 +56,15 @@ struct MethodRow {
 /// Wrong and lost rays of an image.
 [[nodiscard]] std::uint64_t flawed_rays(const ImageRecord& image);
 
-/// Table 5: the exit search alone, by method, layout and device: rates, and the number of faces that are not the exact
-/// ones.
+/// Table 5: the exit search by itself, by method, layout and device: rates, and the number of faces that are not the
+/// exact ones.
 /// devices: those that the rows ran on, measured.
 [[nodiscard]] PaperTable table5(const SearchRun& run, const std::vector<RowDevice>& devices);
 
 /// Sections 3.1 and 3.4: operations and side products of a search, counted, with the paper's.
 [[nodiscard]] PaperTable operations_table();
 
-/// Bytes that a search moves besides its tet, which stays in the caches for all of its rays: 32 of the ray's 48,
+/// Bytes that a search moves in addition to its tet, which stays in the caches for all of its rays: 32 of the ray's 48,
 /// because no method needs both its origin and its moment, and the face that it writes.
 inline constexpr double bytes_per_search = 32 + 4;
 
@@ -126,7 +126,7 @@ struct RowPair {
 /// The views (indices) in which a row's rays leave the fewest and the most tets.
 [[nodiscard]] std::pair<std::size_t, std::size_t> extreme_views(const SceneRun& run, std::size_t row);
 
-/// The searches and their rows as results record them (results/README.md): all data behind table5.
+/// The searches and their rows as results record them (results/README.md): all data of table5.
 /// Precondition: the sessions of rows without a failure are open.
 [[nodiscard]] nlohmann::json searches_json(const SearchRun& run);
 
