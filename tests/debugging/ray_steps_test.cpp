@@ -263,7 +263,7 @@ TEST_F(RaySteps, of_a_run_without_openmp_are_compared_with_nothing)
     const Report report = trace_report(run, options_);
     const std::string text = report.sheet.text();
     EXPECT_TRUE(contains(text, "openmp: error: it is not well")) << text;
-    EXPECT_TRUE(contains(text, "openmp has no answer, so that no device is compared with it.")) << text;
+    EXPECT_TRUE(contains(text, "openmp has no hit to compare the devices with.")) << text;
     EXPECT_FALSE(contains(text, "the steps are openmp's")) << text;
     EXPECT_FALSE(report.json["tetrace"]["trace"]["devices"][1].contains("differs"));
 }

@@ -55,7 +55,7 @@ TEST_F(Trace, has_openmp_first_whatever_is_asked_for)
     EXPECT_EQ(trace["devices"][1]["backend"], "cuda-host");
     EXPECT_EQ(trace["view"], 2);
     const Ended shown = run(cubes_ + "--pixel 12,11 --backend cuda-host");
-    EXPECT_TRUE(contains(shown.out, "cuda-host: takes openmp's steps, and its answer is the same, bit for bit."))
+    EXPECT_TRUE(contains(shown.out, "cuda-host: the steps are openmp's, and its hit is the same, bit for bit."))
         << shown.out;
 }
 
@@ -95,7 +95,7 @@ TEST_F(Trace, shows_of_a_bvh_the_answers_and_what_openmp_visits)
         }
     }
     const std::string text = run(cubes_ + "--pixel 12,11 --layout bvh2 --backend openmp,cuda-host").out;
-    EXPECT_TRUE(contains(text, "cuda-host: its answer is the same, bit for bit.")) << text;
+    EXPECT_TRUE(contains(text, "cuda-host: its hit is the same, bit for bit.")) << text;
     EXPECT_TRUE(contains(text, "so no steps are shown")) << text;
 }
 
