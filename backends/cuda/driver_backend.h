@@ -2,7 +2,6 @@
 
 #include "backends/cuda/program.h"
 #include "core/debugging/defects.h"
-#include "core/debugging/kernel_files.h"
 #include "core/device/backend.h"
 
 #include <functional>
@@ -19,7 +18,7 @@ struct Platform {
 };
 
 /// A backend on any driver table: everything except where CUDA's functions and kernels come from.
-class DriverBackend : public Backend, public DefectRunner, public KernelFileSource {
+class DriverBackend : public Backend {
 public:
     explicit DriverBackend(Platform platform) : platform_(std::move(platform)) {}
 
@@ -33,6 +32,7 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
+    [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
     [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel) const override;
 

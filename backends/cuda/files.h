@@ -1,7 +1,6 @@
 #pragma once
 
 #include "backends/cuda/program.h"
-#include "core/debugging/kernel_files.h"
 
 namespace tetrace::cuda {
 

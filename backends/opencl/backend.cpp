@@ -15,7 +15,7 @@
 namespace tetrace {
 namespace {
 
-class OpenclBackend : public Backend, public DefectRunner, public KernelFileSource {
+class OpenclBackend : public Backend {
 public:
     [[nodiscard]] std::string name() const override { return "opencl"; }
     [[nodiscard]] std::string clock() const override { return "OpenCL profiling events"; }
@@ -52,6 +52,7 @@ public:
         return opencl::measure_device(*context(device, options.threads), max_buffer(devices().at(device), options));
     }
 
+    [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
     {
         return opencl::run_defect(*context(device, 0), name);

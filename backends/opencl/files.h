@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/debugging/kernel_files.h"
-
 namespace tetrace::opencl {
 
 /// A kernel's source with its includes resolved; empty where there is none.

@@ -24,7 +24,7 @@ Device openmp_device()
     return device;
 }
 
-class OpenmpBackend : public Backend, public DefectRunner {
+class OpenmpBackend : public Backend {
 public:
     [[nodiscard]] std::string name() const override { return "openmp"; }
     [[nodiscard]] std::string clock() const override { return "host steady clock"; }
@@ -69,6 +69,7 @@ public:
         return openmp::measure_host(threads_of(options));
     }
 
+    [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name) override
     {
         return openmp::run_defect(name);

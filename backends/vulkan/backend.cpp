@@ -16,7 +16,7 @@
 namespace tetrace {
 namespace {
 
-class VulkanBackend : public Backend, public CodeSource, public DefectRunner, public KernelFileSource {
+class VulkanBackend : public Backend {
 public:
     [[nodiscard]] std::string name() const override { return "vulkan"; }
     [[nodiscard]] std::string clock() const override { return "Vulkan timestamps"; }
@@ -60,6 +60,7 @@ public:
                                       max_buffer(devices().at(device), options));
     }
 
+    [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
     {
         return vulkan::run_defect(vulkan::Context(found().devices.at(device)), name);
@@ -69,6 +70,8 @@ public:
     {
         return vulkan::kernel_files(kernel);
     }
+
+    [[nodiscard]] bool shows_code() const override { return true; }
 
     [[nodiscard]] CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
                                         bool starts_outside) const override

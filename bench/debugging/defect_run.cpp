@@ -20,7 +20,7 @@ void judge(DefectRun& run, const std::vector<std::uint32_t>& words)
     if (run.wrong.front() < words.size()) run.first_word = words[run.wrong.front()];
 }
 
-void run_on(DefectRun& run, DefectRunner& runner)
+void run_on(DefectRun& run, Backend& runner)
 {
     const Stopwatch watch;
     try {
@@ -57,8 +57,7 @@ std::vector<DefectRun> run_defects(const Options& options, const std::vector<Bac
     std::vector<DefectRun> runs;
     for (const RowKey& place : places(options, backends)) {
         Backend& backend = **std::ranges::find(backends, place.backend, &Backend::name);
-        auto* const runner = dynamic_cast<DefectRunner*>(&backend);
-        if (runner == nullptr || !runner->runs_defects()) continue; // Embree compiles nothing
+        if (!backend.runs_defects()) continue; // Embree compiles nothing
         for (const Defect& defect : all_defects()) {
             DefectRun& run = runs.emplace_back();
             run.backend = place.backend;
@@ -67,7 +66,7 @@ std::vector<DefectRun> run_defects(const Options& options, const std::vector<Bac
             run.defect = &defect;
             if (run.device.usable) {
                 progress_line().show("running reduced kernels", -1, -1, run.device.name);
-                run_on(run, *runner);
+                run_on(run, backend);
                 continue;
             }
             run.sight = run.device.broken ? DefectSight::error : DefectSight::skipped;

@@ -6,7 +6,6 @@
 #include "bench/terminal/text.h"
 #include "core/base/error.h"
 #include "core/base/printable.h"
-#include "core/device/code_source.h"
 
 #include <algorithm>
 #include <cctype>
@@ -46,13 +45,11 @@ std::vector<KernelFile> dumped_files(const Options& options, const std::vector<B
 {
     const KernelId kernel = one_kernel(options);
     const Backend& backend = chosen(options, backends);
-    const auto* const source = dynamic_cast<const KernelFileSource*>(&backend);
-    std::vector<KernelFile> files;
-    if (source != nullptr) files = source->kernel_files(kernel);
+    std::vector<KernelFile> files = backend.kernel_files(kernel);
     if (files.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("dump: {} has neither source nor code of {}{}", backend.name(), name_of(kernel),
-                                source == nullptr || backend.name() == "cuda-host"
+                                backend.devices().front().kind == DeviceKind::cpu || backend.name() == "cuda-host"
                                     ? ": its kernels are parts of this program; objdump -d shows them"
                                     : ""));
     return files;
@@ -63,15 +60,14 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
 {
     const KernelId kernel = one_kernel(options);
     const Backend& backend = chosen(options, backends);
-    const auto* const source = dynamic_cast<const CodeSource*>(&backend);
     std::vector<KernelFile> files;
     bool has_device = false;
-    for (std::size_t i = 0; source != nullptr && i < backend.devices().size(); ++i) {
+    for (std::size_t i = 0; backend.shows_code() && i < backend.devices().size(); ++i) {
         if (!is_kept(options, backend, i)) continue;
         has_device = true;
         const Device& device = backend.devices()[i];
         try {
-            const CompiledCode code = source->compiled(i, kernel, true);
+            const CompiledCode code = backend.compiled(i, kernel, true);
             if (code.text.empty())
                 notes.push_back(
                     fmt::format("{}: its driver reports statistics of its code, but not the code", device.name));
@@ -85,7 +81,7 @@ std::vector<KernelFile> driver_code(const Options& options, const std::vector<Ba
             notes.push_back(printable_line(error.what()));
         }
     }
-    if (source != nullptr && !has_device)
+    if (backend.shows_code() && !has_device)
         notes.push_back(fmt::format("a driver's code: no device of {}{}", backend.name(),
                                     options.devices.empty() ? " is usable" : " matches --device"));
     return files;

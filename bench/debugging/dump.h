@@ -1,7 +1,6 @@
 #pragma once
 
 #include "bench/output/report.h"
-#include "core/debugging/kernel_files.h"
 #include "core/device/backend.h"
 
 #include <vector>

@@ -5,7 +5,6 @@
 #include "core/base/printable.h"
 #include "core/base/whole_file.h"
 #include "core/device/backend.h"
-#include "core/device/code_source.h"
 #include "scenes/child_process.h"
 
 #include <algorithm>
@@ -67,7 +66,7 @@ std::string code_name(const EntryPoint& point)
                        name_of(point.kernel.math), entry);
 }
 
-json compiled_json(const CodeSource& source, std::size_t device, const EntryPoint& point, const fs::path& code)
+json compiled_json(const Backend& source, std::size_t device, const EntryPoint& point, const fs::path& code)
 try {
     const CompiledCode compiled = source.compiled(device, point.kernel, point.entry == Entry::outside);
     if (!code.empty()) write_whole(code, compiled.text);
@@ -80,7 +79,7 @@ try {
 
 /// The device that the variable makes RADV offer.
 struct NullDevice {
-    const CodeSource* source = nullptr;
+    const Backend* source = nullptr;
     std::size_t index = 0;
     std::string reason; ///< why there is none
 };
@@ -89,12 +88,11 @@ NullDevice find_null_device()
 {
     NullDevice found{nullptr, 0, "this build lacks Vulkan"};
     for (const Backend* backend : all_backends()) {
-        const auto* const source = dynamic_cast<const CodeSource*>(backend);
-        if (source == nullptr) continue;
+        if (!backend->shows_code()) continue;
         const auto& devices = backend->devices();
         found.reason = devices.front().reason;
         for (std::size_t i = 0; i < devices.size(); ++i)
-            if (devices[i].compile_only) return {source, i, {}};
+            if (devices[i].compile_only) return {backend, i, {}};
     }
     return found;
 }

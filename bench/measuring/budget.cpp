@@ -99,20 +99,34 @@ Budget::Budget(double seconds, Clock clock) : seconds_(seconds), clock_(std::mov
 
 void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, unsigned runs)
 {
+    plan(rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s, .runs = static_cast<double>(runs)},
+         0, false);
+}
+
+void Budget::plan_views(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t first)
+{
+    plan(rows, Entry{.samples = static_cast<double>(samples), .sample_s = sample_s}, first, true);
+}
+
+/// samples: how many there are of each row, in how many runs, and how long each lasts.
+void Budget::plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t first_view, bool view_by_view)
+{
     start_s_ = now();
     if (std::isinf(seconds_)) return;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         RowRun& row = rows[i];
         progress_line().show("estimating", static_cast<double>(i) / static_cast<double>(rows.size()), -1,
                              row_label(row.key));
-        Entry entry{&row};
+        Entry entry = samples;
+        entry.row = &row;
         if (is_alive(row)) guarded(row, [&] { entry.view_s = estimated_view_s(row, clock_, left_s()); });
         if (!is_alive(row)) continue;
-        entry.views = static_cast<double>(row.scene->views().size());
-        entry.views_left = entry.views + 1 + entry.views * runs;
-        entry.runs = runs;
-        entry.samples = std::min(samples, min_samples);
-        entry.sample_s = sample_s;
+        entry.views = static_cast<double>(row.scene->views().size() - first_view);
+        entry.views_left =
+            entry.views + 1 + (samples.samples > 0 ? entry.views * entry.runs : 0); // verified, warmed up
+        // `reproduce` takes all that were asked for; `bench` may do with fewer.
+        if (!view_by_view) entry.samples = std::min(entry.samples, static_cast<double>(min_samples));
+        entry.views_per_sample = view_by_view ? 1 : entry.views;
         entries_.push_back(entry);
         views_to_judge_[row.scene] = entry.views;
     }
@@ -134,10 +148,11 @@ void Budget::plan(std::vector<RowRun>& rows, unsigned samples, double sample_s, 
 /// A sample of several passes has one more, which is launched alone, and up to one more than it needs.
 double Budget::Entry::need_s() const
 {
-    const double pass_s = view_s * views;
+    if (samples == 0 || views == 0) return views_left * view_s;
+    const double pass_s = view_s * views_per_sample, parts = views / views_per_sample;
     const double each_s = pass_s < sample_s ? std::min(sample_s + 2 * pass_s, (max_passes + 1) * pass_s) : pass_s;
     const unsigned latencies = latency_passes(static_cast<unsigned>(samples), passes_for(sample_s, pass_s));
-    return views_left * view_s + runs * (samples * each_s + (views > 1 ? latencies * pass_s : 0));
+    return views_left * view_s + runs * parts * (samples * each_s + (views_per_sample > 1 ? latencies * pass_s : 0));
 }
 
 void Budget::traced(const RowRun& row, std::size_t views, double seconds)
@@ -157,6 +172,13 @@ void Budget::judged(const SceneWork& scene, double seconds)
     judged_views_ += 1;
     if (const auto found = views_to_judge_.find(&scene); found != views_to_judge_.end())
         found->second = std::max(0.0, found->second - 1);
+}
+
+void Budget::view_done()
+{
+    for (Entry& entry : entries_)
+        entry.views = std::max(0.0, entry.views - 1);
+    review();
 }
 
 void Budget::review()

@@ -38,9 +38,13 @@ public:
 
     /// Restarts the clock, estimates the rows by tracing a part of their rays, and skips those that do not fit. Rows
     /// that cannot be traced end with their reason. rows: opened; they keep their addresses while the budget is used.
-    /// samples: the number asked for, in each of so many runs. sample_s: that each lasts at least. Throws Error{usage}
-    /// where the last row would take more than max_budgets budgets.
+    /// samples: the number asked for, in each of so many runs; 0: rows are only verified. sample_s: that each lasts at
+    /// least. Throws Error{usage} where the last row would take more than max_budgets budgets.
     void plan(std::vector<RowRun>& rows, unsigned samples, double sample_s = 0, unsigned runs = 1);
+    /// The same for rows that are verified and timed view by view, in samples of a view, from the view `first` on.
+    void plan_views(std::vector<RowRun>& rows, unsigned samples, double sample_s, std::size_t first);
+    /// Records that a view of plan_views() has been timed, and skips rows until the others fit.
+    void view_done();
 
     /// Records that some views of a row took this many seconds.
     void traced(const RowRun& row, std::size_t views, double seconds);
@@ -59,11 +63,13 @@ private:
         double view_s = 0;         ///< expected
         double views_left = 0;     ///< to verify and to warm up
         double views = 0, samples = 0, sample_s = 0, runs = 1;
+        double views_per_sample = 0;
         double seen_s = 0, seen_views = 0;
 
         [[nodiscard]] double need_s() const;
     };
 
+    void plan(std::vector<RowRun>& rows, const Entry& samples, std::size_t first_view, bool view_by_view);
     /// Of the views that have not been judged, of scenes with a row that is still in the run.
     [[nodiscard]] double judging_s() const;
     [[nodiscard]] double needed_s(bool by_references_only = false) const;

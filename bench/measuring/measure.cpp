@@ -10,7 +10,6 @@
 #include "core/base/hash.h"
 #include "core/base/stopwatch.h"
 #include "core/base/whole_file.h"
-#include "core/isolation/isolated_backend.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -276,7 +275,7 @@ void reopen_rows(std::vector<RowRun>& rows, const Options& options)
     for (RowRun* const row : timed)
         row->session.reset();
     for (const RowRun* const row : timed)
-        if (auto* const isolated = dynamic_cast<IsolatedBackend*>(row->backend)) isolated->restart();
+        row->backend->restart();
     for (std::size_t i = 0; i < timed.size(); ++i) {
         progress_line().show("opening again", static_cast<double>(i) / static_cast<double>(timed.size()), -1,
                              row_label(timed[i]->key));

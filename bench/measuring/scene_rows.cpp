@@ -97,7 +97,8 @@ SceneRows open_and_verify(const std::vector<RowKey>& keys, const Options& option
         const auto scene_keys = rows_of(scene_label(request.name), keys);
         if (!scene_keys.empty()) open_rows(result, scene_keys, request, options);
     }
-    budget.plan(result.rows, options.samples, options.sample_s, options.runs);
+    const unsigned samples = options.verb == Verb::check ? 0 : options.samples;
+    budget.plan(result.rows, samples, options.sample_s, options.runs);
     for (const auto& scene : result.scenes)
         verify_scene(result.rows, *scene, options, image_seen, budget);
     return result;

@@ -273,9 +273,17 @@ std::vector<OptionRow> judging_options()
          "scenes and opening devices does not count. With --benchmark_repetitions there is no limit. Default: 4m.",
          bit(Verb::bench), false, set_seconds("--budget", &Options::budget_s)},
         {"Measuring", "--budget", "TIME",
-         "For rivals: wall-clock time for verifying and timing all rows, as for 'bench'. Building scenes, loading them "
-         "and opening devices does not count. Default: 10m.",
+         "Wall-clock time for verifying and timing the rows, shared evenly by the scenes that are left; exit searches "
+         "do "
+         "not count. The slowest rows are skipped until the others fit, and the result names the budget that they "
+         "need. "
+         "For rivals it is the same as for 'bench'. Default: no limit; of rivals 10m.",
          bit(Verb::reproduce), false, set_seconds("--budget", &Options::budget_s)},
+        {"Measuring", "--budget", "TIME",
+         "Wall-clock time for verifying all rows. The slowest rows are skipped until the others fit, and the result "
+         "names "
+         "the budget that they need. Default: no limit.",
+         bit(Verb::check), false, set_seconds("--budget", &Options::budget_s)},
         {"Judging", "--require", "BACKEND",
          "Fail with exit code 3 unless this backend has a usable device and, for 'check', has selected rows of "
          "which none is skipped or unsupported.",

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <limits>
 #include <string_view>
 
 namespace tetrace {
@@ -168,7 +169,7 @@ void check_together(const Options& options)
 }
 
 /// `reproduce rivals` is a run of `bench` over given rows; the other tables are of views one after the other.
-constexpr std::string_view only_of_rivals[] = {"--budget", "--runs"};
+constexpr std::string_view only_of_rivals[] = {"--runs"};
 constexpr std::string_view not_of_rivals[] = {"--builds", "--searches", "--resume", "--shard", "--wait"};
 
 void check_rivals(const Options& options, const CLI::App& app)
@@ -191,6 +192,7 @@ Options defaults_of(Verb verb)
 {
     Options options;
     options.verb = verb;
+    if (verb != Verb::bench) options.budget_s = std::numeric_limits<double>::infinity();
     if (verb == Verb::check || verb == Verb::trace)
         options.width = options.height = 256; // seconds for the scene cubes on all devices
     if (verb == Verb::trace) options.views = "0";

@@ -98,8 +98,9 @@ MachineWatch watch_of(Pulses::Work host, const Journal* journal, Clock clock)
 }
 
 void RowRecorder::run(std::size_t parts, const std::string& name, Journal* journal, RunProgress& progress,
-                      MachineWatch* watch)
+                      MachineWatch* watch, Budget& budget)
 {
+    budget_ = &budget;
     journal_ = journal;
     watch_ = samples_ > 0 && !is_merged() ? watch : nullptr;
     if (watch_ != nullptr) watch_rows(name);
@@ -107,6 +108,7 @@ void RowRecorder::run(std::size_t parts, const std::string& name, Journal* journ
     std::size_t part = journal == nullptr ? 0 : restore_parts();
     progress.done += part;
     if (is_merged() && part < parts) reject_journal(fmt::format("{}: {} parts of {}", stage, part, parts));
+    if (part < parts) budget.plan_views(run_->rows, samples_, sample_s_, part);
     for (; part < parts; ++part) {
         progress.show(stage);
         const auto entry = run_part(part, part + 1 == parts);
@@ -165,6 +167,7 @@ std::optional<json> RowRecorder::run_part(std::size_t part, bool is_last)
             begun_.push_back(i);
             guarded(run_->rows[i], [&] {
                 records_[i] = examine(i, part);
+                budget_->traced(run_->rows[i], 1, records_[i].verdict.wall_s);
                 // A row that turns out wrong is not timed.
                 std::get<Traced>(run_->rows[i].outcome).add(records_[i].verdict);
             });
@@ -176,11 +179,16 @@ std::optional<json> RowRecorder::run_part(std::size_t part, bool is_last)
     }
     json entry = head_of(part);
     entry["rows"] = json::object();
+    for (const RowRun& row : run_->rows) // those that the budget has skipped: a run that goes on skips them too
+        if (const auto* skipped = std::get_if<Skipped>(&row.outcome);
+            skipped != nullptr && skipped->status == Status::skipped && row.scene != nullptr)
+            entry["rows"][row_name(row.key)] = outcome_json(*skipped);
     for (const std::size_t i : begun_) {
         entry["rows"][row_name(run_->rows[i].key)] = outcome_json(outcome(i));
         if (traced(run_->rows[i]) != nullptr) run_->images[i].push_back(std::move(records_[i]));
     }
     entry["wall_s"] = watch.seconds();
+    budget_->view_done();
     if (watch_ != nullptr)
         if (json readings = watch_->new_readings(is_last); !readings.is_null())
             entry[MachineWatch::entry_key] = std::move(readings);

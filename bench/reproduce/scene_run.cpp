@@ -202,11 +202,12 @@ SceneRun open_scene_run(const SceneBuild& build, const Options& options)
     return run;
 }
 
-void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch)
+void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress, MachineWatch* watch,
+               Budget& budget)
 {
     if (run.scene == nullptr) return;
     ViewRecorder recorder(run, run.build.timing ? options.samples : 0, options.sample_s);
-    recorder.run(run.scene->views().size(), run.scene->label(), journal, progress, watch);
+    recorder.run(run.scene->views().size(), run.scene->label(), journal, progress, watch, budget);
 }
 
 } // namespace tetrace

@@ -75,7 +75,8 @@ using SceneRuns = std::vector<const SceneRun*>;
 /// Traces every view with every row, verifies each image, times it where asked for, and appends the view to the
 /// journal. Views that are in the journal are taken from there. journal, watch: may be null.
 /// Throws Error{usage} where the journal belongs to another scene or to other rows.
+/// budget: of this scene; may skip rows.
 void run_views(SceneRun& run, const Options& options, Journal* journal, RunProgress& progress,
-               MachineWatch* watch = nullptr);
+               MachineWatch* watch = nullptr, Budget& budget = no_budget());
 
 } // namespace tetrace

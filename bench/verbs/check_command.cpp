@@ -97,10 +97,14 @@ int check(const Options& options, Checked& checked)
     checked.missing = missing_devices(options);
     if (options.picture_folder) checked.pictures = std::make_unique<DifferencePictures>(*options.picture_folder);
     ViewJournal journal(options);
-    SceneRows run = open_and_verify(keys, options, [&](const SeenImage& image) {
-        journal.see(image);
-        if (checked.pictures != nullptr) checked.pictures->see(image);
-    });
+    Budget budget(options.budget_s);
+    SceneRows run = open_and_verify(
+        keys, options,
+        [&](const SeenImage& image) {
+            journal.see(image);
+            if (checked.pictures != nullptr) checked.pictures->see(image);
+        },
+        budget);
     journal.write();
     for (RowRun& row : run.rows)
         note_walks(row);

@@ -9,6 +9,7 @@
 #include "bench/verbs/reproduction.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace tetrace {
@@ -60,6 +61,7 @@ json journal_head(const Options& options, const std::vector<SceneBuild>& builds)
                  {"threads", resolved_threads(options)},
                  {"tile", options.tile_height},
                  {"buffer_limit", options.buffer_limit},
+                 {"budget_s", std::isinf(options.budget_s) ? json() : json(options.budget_s)},
                  {"samples", options.samples},
                  {"sample_s", options.sample_s},
                  {"shard", text_of(shard_of(options))},
@@ -141,11 +143,13 @@ struct Keeping {
     std::unique_ptr<ResultPictures> pictures;
 };
 
-void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping)
+/// budget_s: of this scene.
+void run_scene(Reproduction& all, const SceneBuild& build, const Options& options, Keeping& keeping, double budget_s)
 {
     SceneRun& run = all.runs.emplace_back(open_scene_run(build, options));
     if (build.rivals) keeping.costs.restore(run.rows);
-    run_views(run, options, keeping.journal.get(), all.progress, &keeping.watch);
+    Budget budget(budget_s);
+    run_views(run, options, keeping.journal.get(), all.progress, &keeping.watch, budget);
     if (keeping.pictures != nullptr)
         keeping.pictures->draw(run, build.robustness, wants(options, PaperTarget::figure6));
     run.close();
@@ -198,8 +202,13 @@ int reproduce_command(const Options& asked)
         say(sentence);
     all.progress.all = parts_of(builds, options);
     const StopWhenInterrupted stop;
-    for (const SceneBuild& build : builds)
-        if (!is_interrupted()) run_scene(all, build, options, keeping);
+    double left_s = options.budget_s;
+    for (std::size_t i = 0; i < builds.size(); ++i) {
+        if (is_interrupted()) break;
+        const Stopwatch watch;
+        run_scene(all, builds[i], options, keeping, left_s / static_cast<double>(builds.size() - i));
+        left_s = std::max(1.0, left_s - watch.seconds());
+    }
     if (searches && !is_interrupted()) run_all_searches(all, options, keeping);
     judge_steadiness(all, keeping.watch);
     make_tables(all, options);

@@ -27,14 +27,4 @@ inline constexpr std::uint32_t defect_items = 16;
 /// The items whose word is not the expected one; all of them where the number of words is not defect_items.
 [[nodiscard]] std::vector<std::uint32_t> wrong_items(const Defect& defect, std::span<const std::uint32_t> words);
 
-/// A backend that runs the reduced kernels.
-class DefectRunner {
-public:
-    virtual ~DefectRunner() = default;
-    /// Whether it runs them: a backend that forwards to another asks that.
-    [[nodiscard]] virtual bool runs_defects() const { return true; }
-    /// Compiles the kernel of that name and runs it; returns a word for each item. Throws Error as Backend::open does.
-    [[nodiscard]] virtual std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) = 0;
-};
-
 } // namespace tetrace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/device/compiled_code.h"
 #include "core/device/output_parts.h"
 #include "core/pack/kernel_id.h"
 #include "core/pack/packed_scene.h"
@@ -13,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tetrace {
@@ -192,6 +194,26 @@ public:
                                                            std::span<const Quad> operations) = 0;
     /// Measures the device, in about a second; empty where the API has no memory and no launches of its own.
     [[nodiscard]] virtual std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) = 0;
+
+    // For those who look into a driver or a compiler. A backend overrides what it can do.
+
+    /// The files of a kernel of that method and layout, in its math mode, for all tasks: texts, or code that a driver
+    /// gets. No driver is loaded for them. Empty if there is none.
+    [[nodiscard]] virtual std::vector<KernelFile> kernel_files(const KernelId&) const { return {}; }
+    /// Whether compiled() shows what the API's compilers make of our kernels.
+    [[nodiscard]] virtual bool shows_code() const { return false; }
+    /// The device need not be usable: compile_only is enough. kernel: without one, an empty kernel is compiled.
+    /// starts_outside: of task trace, no ray starts in a tet. Throws Error{unsupported} if the driver shows nothing of
+    /// its code, Error{internal} if it fails.
+    [[nodiscard]] virtual CompiledCode compiled(std::size_t device, const std::optional<KernelId>& kernel,
+                                                bool starts_outside) const;
+    /// Whether run_defect() runs the reduced kernels of core/debugging/defects.h.
+    [[nodiscard]] virtual bool runs_defects() const { return false; }
+    /// Compiles the reduced kernel of that name and runs it; returns a word for each item. Throws Error as open() does.
+    [[nodiscard]] virtual std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name);
+    /// Ends the processes of drivers, if they have some, so that the next sessions have drivers in a new state. No
+    /// session may be open.
+    virtual void restart() {}
 };
 
 /// Every backend of this build, in CMake's order; those that cannot run here say so in their devices.

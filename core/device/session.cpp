@@ -46,6 +46,16 @@ TraceJob column_of(std::size_t rays)
 
 } // namespace
 
+CompiledCode Backend::compiled(std::size_t, const std::optional<KernelId>&, bool) const
+{
+    throw Error(ErrorKind::unsupported, name() + " shows nothing of its code");
+}
+
+std::vector<std::uint32_t> Backend::run_defect(std::size_t, std::string_view)
+{
+    throw Error(ErrorKind::unsupported, name() + " runs no reduced kernels");
+}
+
 Backend* find_backend(std::string_view name, const std::vector<Backend*>& backends)
 {
     const auto found = std::ranges::find_if(backends, [&](const Backend* one) { return one->name() == name; });

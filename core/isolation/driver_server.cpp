@@ -1,6 +1,5 @@
 #include "core/isolation/driver_server.h"
 
-#include "core/debugging/defects.h"
 #include "core/isolation/channel.h"
 #include "core/isolation/messages.h"
 
@@ -62,7 +61,7 @@ private:
             const auto words = backend_->probe(device, math, request.get_all<Quad>());
             answer.put_all(std::span<const std::uint32_t>(words));
         } else if (what == Request::run_defect) {
-            const auto words = dynamic_cast<DefectRunner&>(*backend_).run_defect(device, request.get_text());
+            const auto words = backend_->run_defect(device, request.get_text());
             answer.put_all(std::span<const std::uint32_t>(words));
         } else {
             const auto yardstick = backend_->yardstick(device, get_options(request));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/debugging/defects.h"
 #include "core/isolation/driver_child.h"
 
 #include <mutex>
@@ -10,13 +9,12 @@ namespace tetrace {
 /// A backend whose drivers run in processes of their own, one for each device; this process never loads them. A driver
 /// that ends its process, or gives no answer, is an Error{driver} of the call; the next call for the device starts
 /// another process. A driver that does so while it lists its devices gives one that is broken, with the reason.
-class IsolatedBackend : public Backend, public DefectRunner {
+class IsolatedBackend : public Backend {
 public:
     /// inner: answers here what no driver is needed for; the process finds it by its name.
     IsolatedBackend(const Backend& inner, DriverProcesses processes);
 
-    /// Ends the processes, so that the next sessions have drivers in a new state. No session may be open.
-    void restart() { children_.assign(children_.size(), nullptr); }
+    void restart() override { children_.assign(children_.size(), nullptr); }
 
     [[nodiscard]] std::string name() const override { return inner_->name(); }
     [[nodiscard]] std::string clock() const override { return inner_->clock(); }
@@ -28,7 +26,7 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                    std::span<const Quad> operations) override;
     [[nodiscard]] std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) override;
-    [[nodiscard]] bool runs_defects() const override { return dynamic_cast<const DefectRunner*>(inner_) != nullptr; }
+    [[nodiscard]] bool runs_defects() const override { return inner_->runs_defects(); }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
 
     /// The device's process, started where there is none. Throws Error{missing} where the device cannot be used,

@@ -30,7 +30,7 @@ nlohmann::json expected_defects(const std::string& implementation)
 }
 
 /// Which kernels are right and which are wrong, as the expected file has it.
-nlohmann::json outcomes_of(DefectRunner& runner, std::size_t device)
+nlohmann::json outcomes_of(Backend& runner, std::size_t device)
 {
     nlohmann::json outcomes = nlohmann::json::object();
     for (const Defect& defect : all_defects())
@@ -45,14 +45,13 @@ TEST(Defects, are_those_that_each_implementation_is_known_for)
 {
     std::string skipped;
     for (Backend* backend : all_backends()) {
-        auto* const runner = dynamic_cast<DefectRunner*>(backend);
-        for (std::size_t i = 0; runner != nullptr && i < backend->devices().size(); ++i) {
+        for (std::size_t i = 0; backend->runs_defects() && i < backend->devices().size(); ++i) {
             const Device& device = backend->devices()[i];
             if (!device.usable) {
                 skipped += backend->name() + ": " + device.reason + "\n";
                 continue;
             }
-            const nlohmann::json expected = expected_defects(device.implementation), found = outcomes_of(*runner, i);
+            const nlohmann::json expected = expected_defects(device.implementation), found = outcomes_of(*backend, i);
             for (const auto& [name, outcome] : found.items()) {
                 if (!expected.contains(name)) {
                     skipped += "tests/expected/" + device.implementation + ".json does not say what " + name +

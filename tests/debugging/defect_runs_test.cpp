@@ -20,7 +20,7 @@ Device some_device()
 }
 
 /// A driver that runs every reduced kernel right, but for one item of one of them, or fails at it.
-class Driver : public FakeBackend, public DefectRunner {
+class Driver : public FakeBackend {
 public:
     explicit Driver(std::string name, Device device = some_device()) : FakeBackend(std::move(name), std::move(device))
     {
@@ -28,6 +28,7 @@ public:
 
     std::string wrong, fails;
 
+    [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t, std::string_view name) override
     {
         if (name == fails) throw Error(ErrorKind::driver, "SIGSEGV");

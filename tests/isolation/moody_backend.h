@@ -100,7 +100,7 @@ private:
 };
 
 /// Two devices whose facts are all different from the defaults.
-class MoodyBackend : public Backend, public DefectRunner {
+class MoodyBackend : public Backend {
 public:
     MoodyBackend()
     {
@@ -157,6 +157,7 @@ public:
         if (device == 1) return std::nullopt;
         return Yardstick{1e12 / 3, 1e-6 / 3 * options.threads};
     }
+    [[nodiscard]] bool runs_defects() const override { return true; }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override
     {
         misbehave(std::string(name), "run_defect");

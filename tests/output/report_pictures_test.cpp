@@ -22,7 +22,8 @@ TEST_F(ReportPage, a_named_picture_that_is_missing_is_a_sentence_and_one_asked_f
     json result = reproduce_json();
     result["tetrace"]["figures"][0]["pictures"] = {"none.png"};
     const std::string paper = section_of(page_of({result}), "paper");
-    EXPECT_TRUE(contains(paper, "The picture &apos;none.png&apos;, which the result names, is not shown: the file does not"));
+    EXPECT_TRUE(
+        contains(paper, "The picture &apos;none.png&apos;, which the result names, is not shown: the file does not"));
     EXPECT_TRUE(contains(error_of_page(bench_json(), {folder_ / "none.png"}), "missing: reading the picture"));
 }
 

@@ -78,8 +78,7 @@ TEST_F(OwnCameras, that_are_not_as_documented_are_refused_by_their_entry)
     EXPECT_TRUE(contains(refused("{"), "it is not JSON"));
     EXPECT_TRUE(contains(refused("[]"), "the file: is not an object"));
     EXPECT_TRUE(contains(refused(R"({"views": []})"), "name: is not a line"));
-    EXPECT_TRUE(
-        contains(refused(R"({"name": "orbit", "views": []})"), "name: 'orbit' is a camera set of tetrace's"));
+    EXPECT_TRUE(contains(refused(R"({"name": "orbit", "views": []})"), "name: 'orbit' is a camera set of tetrace's"));
     EXPECT_TRUE(contains(refused(R"({"name": "n", "views": []})"), "views: is not a list of at least one view"));
     EXPECT_TRUE(
         contains(refused(R"({"name": "n", "view": []})"), "the file: has a key 'view'; accepted: name or views"));

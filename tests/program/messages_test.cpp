@@ -105,7 +105,7 @@ TEST_F(Messages, a_reason_that_many_rows_share_is_one_line)
 
 TEST_F(Messages, compare_says_of_many_rows_at_once_what_holds_of_all)
 {
-    ASSERT_EQ(bench("--out few.json").code, 0);
+    ASSERT_EQ(bench("--backend openmp --out few.json").code, 0);
     ASSERT_EQ(bench("--layout tet80 --out one.json").code, 0);
     const Ended few = run("compare few.json few.json");
     EXPECT_EQ(times_in(few.out, "fewer than 5 samples, so no interval: 3 in A and 3 in B"), 1u) << few.out;

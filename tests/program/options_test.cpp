@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -310,7 +312,17 @@ TEST(Options, rivals_are_measured_as_bench_measures)
     EXPECT_TRUE(contains(rejection({"reproduce", "rivals,table4"}), "run it by itself"));
     for (const char* const option : {"--resume", "--shard=1/2", "--searches=10x32", "--builds=ours"})
         EXPECT_TRUE(contains(rejection({"reproduce", "rivals", option}), "is not for 'reproduce rivals'")) << option;
-    EXPECT_TRUE(contains(rejection({"reproduce", "table6", "--budget", "30s"}), "--budget is for 'reproduce rivals'"));
+    EXPECT_TRUE(contains(rejection({"reproduce", "table6", "--runs", "3"}), "--runs is for 'reproduce rivals'"));
+}
+
+TEST(Options, every_verb_that_measures_has_a_budget)
+{
+    EXPECT_EQ(parse_options({"bench"}).budget_s, 240);
+    EXPECT_EQ(parse_options({"reproduce", "rivals"}).budget_s, 600);
+    for (const char* const verb : {"check", "reproduce"}) {
+        EXPECT_TRUE(std::isinf(parse_options({verb}).budget_s)) << verb;
+        EXPECT_EQ(parse_options({verb, "--budget", "30s"}).budget_s, 30) << verb;
+    }
 }
 
 TEST(Options, all_builds_are_traced_unless_some_are_named)

@@ -139,6 +139,41 @@ TEST_F(BudgetOfRows, skips_a_slow_row_with_its_cost_and_measures_the_others)
     }
 }
 
+TEST_F(BudgetOfRows, of_rows_that_are_only_verified_counts_no_samples)
+{
+    rows_.reserve(2);
+    for (const double view_s : {1.0, 10.0})
+        add_row(view_s == 1 ? Layout::tet80 : Layout::tet96, view_s);
+    Budget enough = budget_of(11 * (2 + 1 + views_estimated)); // two views and one of them again
+    enough.plan(rows_, 0);
+    EXPECT_EQ(status_of(rows_[1]), Status::ok) << reason_of(rows_[1]);
+    Budget less = budget_of(11 * 2);
+    less.plan(rows_, 0);
+    EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
+    expect_skipped(1);
+}
+
+TEST_F(BudgetOfRows, of_views_one_by_one_counts_those_that_are_left)
+{
+    rows_.reserve(2);
+    for (const double view_s : {1.0, 10.0})
+        add_row(view_s == 1 ? Layout::tet80 : Layout::tet96, view_s);
+    // A view is verified, warmed up and sampled three times; the first is traced once more at the end.
+    Budget enough = budget_of(11 * (2 * 5 + 1 + views_estimated));
+    enough.plan_views(rows_, 3, 0, 0);
+    EXPECT_EQ(status_of(rows_[1]), Status::ok) << reason_of(rows_[1]);
+    Budget of_the_last = budget_of(11 * (5 + 1 + views_estimated));
+    of_the_last.plan_views(rows_, 3, 0, 1);
+    EXPECT_EQ(status_of(rows_[1]), Status::ok) << "the first view is in the journal: " << reason_of(rows_[1]);
+    now_s_ += 40; // the machine slows down
+    of_the_last.view_done();
+    EXPECT_EQ(status_of(rows_[1]), Status::ok) << "no view is left: " << reason_of(rows_[1]);
+    Budget of_both = budget_of(11 * (5 + 1 + views_estimated));
+    of_both.plan_views(rows_, 3, 0, 0);
+    EXPECT_EQ(status_of(rows_[0]), Status::ok) << reason_of(rows_[0]);
+    expect_skipped(1);
+}
+
 TEST_F(BudgetOfRows, that_all_rows_fit_gives_them_all_samples_asked_for)
 {
     const Measurement measured = run_two_rows(5);

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "backends/vulkan/device.h"
-#include "core/device/code_source.h"
 
 namespace tetrace::vulkan {
 
-/// As CodeSource::compiled() describes it, through VK_KHR_pipeline_executable_properties. Without a
+/// As Backend::compiled() describes it, through VK_KHR_pipeline_executable_properties. Without a
 /// context, whose fence null hardware does not have. Precondition: found has a handle.
 [[nodiscard]] CompiledCode compiled_code(const FoundDevice& found, const std::optional<KernelId>& kernel,
                                          bool starts_outside);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/debugging/kernel_files.h"
-
 namespace tetrace::vulkan {
 
 /// A kernel's GLSL with its includes resolved, and the SPIR-V of each of its programs; empty where there is none.
