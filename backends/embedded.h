@@ -25,7 +25,7 @@ struct PackedKernel {
 };
 
 /// Kernels unpacked, all at once: a list's first use takes some 50 ms.
-/// stream: in xz's format. Throws Error{internal} where it is not, or its total length is another.
+/// stream: in xz's format. Throws Error{internal} if it is not, or its total length is another.
 class UnpackedKernels {
 public:
     UnpackedKernels(std::span<const PackedKernel> packed, std::span<const unsigned char> stream);

@@ -143,7 +143,7 @@ file(GLOB_RECURSE TETRACE_KERNEL_HEADERS CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}
 list(APPEND TETRACE_KERNEL_HEADERS ${PROJECT_SOURCE_DIR}/kernels/defects/defect_list.inc)
 
 # tetrace_flatten(<output> <entry> [<kernel>]): a text in which every #include "..." of the entry file is replaced by
-# the named file (each time that it is included: no file but one has a guard), and every #include KERNEL_..._HEADER by
+# the named file (once, if that has a guard), and every #include KERNEL_..._HEADER by
 # the kernel's file.
 function(tetrace_flatten output entry)
   if(ARGC GREATER 2)

@@ -1,9 +1,11 @@
-// kernels/: the kernels, one source for every language; here what all structures share.
+// kernels/: the kernels, one source for every language; here what all structures share. This file: a ray's hit.
+#ifndef TETRACE_KERNELS_HIT_H
+#define TETRACE_KERNELS_HIT_H
 
-// A ray's answer, the same for all structures.
+#include "kernels/ray.h"
 
-// Whether a ray lies in a triangle's plane to within rounding: the determinant may be off by 7 * 2^-24 times the sum of
-// its products' magnitudes, and 16 times is asked for (docs/spec/numbers.md, N3).
+// Whether a ray is in a triangle's plane to within rounding error: the determinant may be off by 7 * 2^-24 times the
+// sum of its products' magnitudes; the limit is 16 * 2^-24 (docs/spec/numbers.md, N3).
 KERNEL_FN bool is_seen_edge_on(real determinant, Vec3 direction, Vec3 edge_1, Vec3 edge_2)
 {
     real size = dot3(magnitudes(edge_1), cross3_size(magnitudes(direction), magnitudes(edge_2)));
@@ -42,7 +44,7 @@ KERNEL_FN Hit make_hit(Ray ray, uint triangle, Vec3 v0, Vec3 edge_1, Vec3 edge_2
     return hit;
 }
 
-// Whether a ray ends before it meets a triangle's plane, by products alone; false for a ray that lies in the plane.
+// Whether a ray ends before it meets a triangle's plane, using only products; false for a ray in the plane.
 KERNEL_FN bool is_beyond(Ray ray, Vec3 v0, Vec3 edge_1, Vec3 edge_2, real end)
 {
     if (end >= real(NO_END)) return false;
@@ -63,3 +65,5 @@ KERNEL_FN Hit make_no_hit(uint face_id, uint tet, uint steps)
     hit.steps = steps;
     return hit;
 }
+
+#endif

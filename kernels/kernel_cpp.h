@@ -1,5 +1,7 @@
 // A whole kernel in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h). The including file defines
 // layout and method, see kernel.h.
+#include "kernels/language/undefine_cpp.h"
+
 #include "kernels/language/dialect_cpp.h"
 
 #include "kernels/language/vector.h"

@@ -1,6 +1,11 @@
 // How an image becomes work items: tiles of TILE_WIDTH x tile_height pixels, whose rays share most of their way. A tile
 // is a work group, and each of its items is a ray. A launch traces the tiles from first_tile on. core/device/launch.h
 // has the same struct for the host.
+#ifndef TETRACE_KERNELS_LAUNCH_H
+#define TETRACE_KERNELS_LAUNCH_H
+
+#include "kernels/ray.h"
+
 STRUCT(LaunchParams)
 {
     TraceParams trace;
@@ -56,3 +61,5 @@ KERNEL_FN uint ray_count(LaunchParams launch)
 {
     return launch.trace.height * TILE_WIDTH;
 }
+
+#endif

@@ -1,4 +1,7 @@
 // The parameters of a launch, a ray, and how a pixel becomes a ray.
+#ifndef TETRACE_KERNELS_RAY_H
+#define TETRACE_KERNELS_RAY_H
+
 STRUCT(TraceParams)
 {
     Vec3 origin;
@@ -9,15 +12,15 @@ STRUCT(TraceParams)
     uint height;
     uint start_tet; // tet that holds the origin, or NO_TET: rays enter the domain from outside
     uint max_steps;
-    uint any_hit;  // != 0: any hit will do, so the first one found is the answer
+    uint any_hit;  // != 0: any hit will do, so the first one found is returned
     uint start_v0; // vertices of start_tet, for tets that do not store their vertices (walk_compact.h)
     uint start_v1;
     uint start_v2;
     uint start_v3;
-    uint start_neighbour; // what is behind the face opposite the one with the highest number
+    uint start_neighbour; // what is across the face opposite the one with the highest number
 };
 
-// The number of steps after which a walk first asks whether it goes in circles.
+// The number of steps after which a walk first checks whether it is in a circle.
 KERNEL_FN uint first_pause(TraceParams params)
 {
     return params.max_steps < STEPS_BEFORE_DOUBT ? params.max_steps : STEPS_BEFORE_DOUBT;
@@ -72,3 +75,5 @@ KERNEL_FN Ray given_ray(uint4 direction, uint4 origin)
     return make_ray(VEC3(as_real(origin.x), as_real(origin.y), as_real(origin.z)),
                     VEC3(as_real(direction.x), as_real(direction.y), as_real(direction.z)));
 }
+
+#endif

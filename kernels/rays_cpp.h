@@ -1,4 +1,6 @@
 // Vectors and primary rays in host C++, for inclusion in an unnamed namespace (see dialect_cpp.h).
+#include "kernels/language/undefine_cpp.h"
+
 #include "kernels/language/dialect_cpp.h"
 
 #include "kernels/language/vector.h"

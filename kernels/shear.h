@@ -1,6 +1,9 @@
 // A vertex as a ray sees it: projected to a plane across the ray, with the ray as the plane's origin; and the sides of
 // the ray at edges in that plane. Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013;
 // here without a division.
+#ifndef TETRACE_KERNELS_SHEAR_H
+#define TETRACE_KERNELS_SHEAR_H
+
 STRUCT(Shear)
 {
     Vec3 across;  // a point's products with these are its x and y in the plane times 2^20: no product of two
@@ -95,3 +98,5 @@ KERNEL_FN real fine_side(Sheared a, Sheared b)
     PRECISE real side = (plus - minus) + (lost_by(a.x, b.y, plus) - lost_by(a.y, b.x, minus));
     return side;
 }
+
+#endif

@@ -1,11 +1,11 @@
-// A ray's stack of entries of two words, which are written together. Macros, because kernels have no pointers.
-// STACK_TOP, where a dialect or a device's compiler defines it: so many entries, the first, are in the work group's
-// memory, through GROUP_WORDS and GROUP_WORD of the dialect, and the others in the ray's own. Most rays need few, and
-// an array that is indexed takes a GPU's registers or its memory. Source: Ylitie, Karras, Laine, "Efficient Incoherent
-// Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, whose stacks begin in shared memory.
-// STACK_ENTRIES(most), where a program knows how many entries the rays of its scene touch; else the most of any scene.
+// A ray's stack of entries of two words, which are written together. Macros, because kernels lack pointers. If a
+// dialect or a device's compiler defines STACK_TOP, that many entries, the first, are in the work-group's memory,
+// through GROUP_WORDS and GROUP_WORD of the dialect, and the others in the ray's own. Most rays need few, and an
+// indexed array needs a GPU's registers or its memory. Source: Ylitie, Karras, Laine, "Efficient Incoherent Ray
+// Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, whose stacks begin in shared memory. STACK_ENTRIES(max),
+// if the program knows how many entries the rays of its scene touch; else the maximum of any scene.
 #ifndef STACK_ENTRIES
-#define STACK_ENTRIES(most) (most)
+#define STACK_ENTRIES(max) (max)
 #endif
 #ifdef STACK_TOP
 GROUP_WORDS(STACK_TOP* STACK_ENTRY_WORDS)

@@ -17,9 +17,8 @@ using Archive = std::unique_ptr<::archive, decltype(&archive_read_free)>;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& member, std::string_view reason)
 {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("unpacking {} from {}: {}; install the package that brings the archive again", member,
-                            path.string(), reason));
+    throw Error(ErrorKind::invalid_input, fmt::format("unpacking {} from {}: {}; reinstall the package of the archive",
+                                                      member, path.string(), reason));
 }
 
 std::string_view reason_of(::archive* archive)
@@ -57,7 +56,7 @@ std::vector<std::byte> read_archive_member(const std::filesystem::path& path, co
     int status = ARCHIVE_OK;
     while ((status = archive_read_next_header(archive.get(), &entry)) == ARCHIVE_OK || status == ARCHIVE_WARN)
         if (is_member(entry, member)) break;
-    if (status == ARCHIVE_EOF) fail(path, member, "the archive has no such member");
+    if (status == ARCHIVE_EOF) fail(path, member, "the archive lacks this member");
     if (status != ARCHIVE_OK && status != ARCHIVE_WARN) fail(path, member, reason_of(archive.get()));
     if (archive_entry_filetype(entry) != AE_IFREG) fail(path, member, "it is not a regular file");
     const la_int64_t size = archive_entry_size(entry);

@@ -165,7 +165,7 @@ Error failure(const std::string& doing, const Ending& ending, const Report& repo
     const char* given = std::getenv("TETRACE_BUILDER");
     const std::string looked = given != nullptr && *given != '\0'
                                    ? fmt::format("TETRACE_BUILDER names {}, which cannot be executed", given)
-                                   : fmt::format("no program {} beside this one or in PATH", builder_name);
+                                   : fmt::format("program {} is neither next to this one nor in PATH", builder_name);
     throw Error(ErrorKind::missing,
                 fmt::format("building scene {}: {}; install the packages libtet1.5-dev and libcgal-dev "
                             "and build tetrace again, or let TETRACE_BUILDER name the program",
@@ -205,7 +205,7 @@ struct Run {
         return outcome.end == ChildOutcome::End::exited &&
                (outcome.code == BUILDER_TETGEN_REFUSED || outcome.code == BUILDER_ABSURD_OUTPUT);
     }
-    /// Whether there may be a scene of the mesh alone: nothing was found wrong with the mesh.
+    /// Whether a scene of only the mesh is possible: nothing was found wrong with the mesh.
     [[nodiscard]] bool only_tets_failed() const
     {
         return tetgen_failed() || outcome.end == ChildOutcome::End::timed_out ||
@@ -226,7 +226,7 @@ Run run_builder(const fs::path& builder, const std::vector<std::string>& argumen
         builder, arguments, limits, [&](const std::string& line) { run.report.take(line); },
         [&](double elapsed_s) {
             if (!progress) return;
-            // TetGen does not tell how far it is.
+            // TetGen does not report its progress.
             const bool knows = run.report.fraction >= 0 || options.time_limit_s <= elapsed_s;
             const double max_minutes = std::ceil((options.time_limit_s - elapsed_s) / 60);
             progress(fmt::format("building {}: {}", label, run.report.stage), run.report.fraction,

@@ -11,26 +11,26 @@
 
 namespace tetrace {
 
-/// The program that makes CDTs: the one that TETRACE_BUILDER names, else `tetrace-builder` beside the running program,
-/// else in PATH; empty where none can be executed.
+/// The program that makes CDTs: the one that TETRACE_BUILDER names, else `tetrace-builder` next to the running program,
+/// else in PATH; empty if none can be executed.
 [[nodiscard]] std::filesystem::path find_builder();
 
-/// The switches that a build tries, in this order, where TetGen fails with the options' own; none where the user chose
-/// those. TetGen crashes on some meshes with pY and not with pq5Y, and refuses some with pq5Y and not with facets that
-/// stay apart (M) and a finer tolerance (T), or without Y and q.
+/// The switches that a build tries, in this order, if TetGen fails with the options' own; none if the user chose those.
+/// TetGen crashes on some meshes with pY and not with pq5Y, and refuses some with pq5Y and not with facets that stay
+/// apart (M) and a finer tolerance (T), or without Y and q.
 [[nodiscard]] std::vector<std::string> fallback_switches(const BuildOptions& options);
 
 /// A build that left a scene.
 struct BuildEnd {
     bool interrupted = false;     ///< Ctrl-C came; with keep_unfinished there may be a scene nevertheless
-    std::optional<Error> no_tets; ///< with mesh_will_do: why the scene has no tets
+    std::optional<Error> no_tets; ///< with mesh_will_do: why the scene is without tets
 };
 
-/// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. Where TetGen fails, runs it again
-/// with each of fallback_switches() in what is left of the time, or a tenth of it, until one of them will do.
+/// Runs tetrace-builder on a mesh file within the options' limits; it writes `out`. If TetGen fails, runs it again with
+/// each of fallback_switches() in what is left of the time, or a tenth of it, until one of them will do.
 /// If TetGen fails with all of them, crashes, or reaches the limit of time or memory, and the mesh will do, the builder
-/// is run once more for the mesh alone, within the same limits, but at least a minute. notes: the builder's remarks are
-/// appended. progress: called with the stage about ten times a second. Throws Error; its text says how the builder
+/// is run once more for only the mesh, within the same limits, but at least a minute. notes: the builder's remarks are
+/// appended. progress: called with the stage about ten times per second. Throws Error; its text says how the builder
 /// ended, its switches, its last stage and what to try. Kinds: missing (no builder, or a file that it needs),
 /// interrupted (Ctrl-C), internal (a fault of the builder), usage (switches or divisions that it does not accept), else
 /// invalid_input.

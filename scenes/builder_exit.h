@@ -4,8 +4,8 @@
 
 namespace tetrace {
 
-/// The exit codes of tetrace-builder. They tell its parent a bad mesh from a missing file and from TetGen's failures.
-/// The text of a failure is on stderr, in lines that begin with "error: ".
+/// The exit codes of tetrace-builder. With them its parent distinguishes a bad mesh, a missing file and TetGen's
+/// failures. The text of a failure is on stderr, in lines that begin with "error: ".
 enum BuilderExit : int {
     BUILDER_GOOD = 0,
     BUILDER_USAGE = 2,              ///< an option or its value is not accepted; the text lists what is

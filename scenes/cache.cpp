@@ -37,7 +37,7 @@ std::optional<pid_t> writer_of(std::string_view name)
 {
     if (!name.ends_with(".tmp")) return std::nullopt;
     name.remove_suffix(4);
-    const std::string_view suffix = name.substr(name.rfind('.') + 1); // the whole name where there is no dot
+    const std::string_view suffix = name.substr(name.rfind('.') + 1); // the whole name if it lacks a dot
     const std::size_t dash = suffix.find('-');
     if (dash == 0 || dash == std::string_view::npos || dash + 1 == suffix.size()) return std::nullopt;
     if (suffix.size() == name.size() || !all_in(suffix.substr(0, dash), digits) ||
@@ -46,7 +46,7 @@ std::optional<pid_t> writer_of(std::string_view name)
     return static_cast<pid_t>(std::strtol(suffix.data(), nullptr, 10));
 }
 
-/// Length of `<label>-<16 digits>.tet` at the beginning of a name; 0 where it does not begin so.
+/// Length of `<label>-<16 digits>.tet` at the beginning of a name; 0 if it does not begin so.
 std::size_t scene_name_length(std::string_view name)
 {
     for (std::size_t dot = name.find(".tet"); dot != std::string_view::npos; dot = name.find(".tet", dot + 1))

@@ -10,7 +10,7 @@
 namespace tetrace {
 
 /// $XDG_CACHE_HOME/tetrace (an absolute path, as the XDG specification demands), else $HOME/.cache/tetrace; made when
-/// first written to. Throws Error{missing} where neither variable names a folder.
+/// first written to. Throws Error{missing} if neither variable names a folder.
 [[nodiscard]] std::filesystem::path cache_directory();
 
 /// A part of the key of tets for rays: raised where the optimiser makes others of the same mesh.
@@ -32,11 +32,11 @@ struct CachedFile {
     std::filesystem::path path;
     std::uint64_t bytes = 0;
 };
-/// Scenes, meshes, compiled programs and what killed processes left behind; sorted by path within each.
+/// Scenes, meshes, compiled programs and leftovers of killed processes; sorted by path within each.
 [[nodiscard]] std::vector<CachedFile> list_cache();
 
-/// Removes what killed builds of a scene left behind. The caller holds the lock of the scene's file, so no other build
-/// of it is going on.
+/// Removes leftovers of killed builds of a scene. The caller holds the lock of the scene's file, so no other build of
+/// it is going on.
 void clear_leftovers(const std::filesystem::path& scene_file);
 
 /// Removes what tetrace put there, and nothing else; returns how many bytes that freed. Keeps what another process is

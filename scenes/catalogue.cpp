@@ -28,7 +28,7 @@ const std::vector<CatalogueEntry>& catalogue()
     static const std::vector<CatalogueEntry> rows = {
         {"cubes",
          SceneSource::cubes,
-         "jittered grid of cubes cut into tets round a blocky ball; needs no TetGen",
+         "jittered grid of cubes cut into tets around a blocky ball; does not need TetGen",
          "",
          {}},
         procedural_row("banana", "curved tube, closed, 25,000 triangles",
@@ -94,7 +94,7 @@ BuildOptions default_build(TetsKind tets)
 
 namespace {
 
-/// The number behind the head of a name; empty for a name without that head, and 0 for what is no number of 32 bits.
+/// The number after the head of a name; empty for a name without that head, and 0 for what is not a number of 32 bits.
 std::optional<std::uint32_t> number_behind(std::string_view head, const std::string& name)
 {
     if (!name.starts_with(head)) return std::nullopt;
@@ -123,8 +123,8 @@ std::optional<std::uint32_t> lattice_resolution(const std::string& name)
     const auto resolution = number_behind("lattice:", name);
     if (resolution && (*resolution < min_lattice || *resolution > max_lattice))
         throw Error(ErrorKind::usage,
-                    fmt::format("scene {}: behind the colon stands the number of its cubes along an axis, {} to {}",
-                                name, min_lattice, max_lattice));
+                    fmt::format("scene {}: after the colon comes the number of its cubes along an axis, {} to {}", name,
+                                min_lattice, max_lattice));
     return resolution;
 }
 

@@ -22,7 +22,7 @@ enum class SceneSource {
 struct ProceduralMesh {
     std::uint32_t least, most;                     ///< triangles that a name can ask for
     TriangleMesh (*usual)();                       ///< without a number
-    TriangleMesh (*make)(std::uint32_t triangles); ///< with about so many triangles
+    TriangleMesh (*make)(std::uint32_t triangles); ///< with about this many triangles
 };
 
 /// One row of the catalogue: adding a scene is adding a row.
@@ -30,7 +30,7 @@ struct CatalogueEntry {
     std::string name;
     SceneSource source;
     std::string description;
-    std::string archive_member;          ///< path inside the package's data archive; empty where the scene is made here
+    std::string archive_member;          ///< path inside the package's data archive; empty if the scene is made here
     std::vector<std::string> file_names; ///< what the mesh may be called in a folder that the user names
     std::optional<ProceduralMesh> procedural = {}; ///< if that is the source
     std::vector<Aim> views = {};                   ///< its own, of camera set `frame`: own_view_count of them, or none
@@ -46,7 +46,7 @@ struct ProceduralScene {
 /// a number in the row's range.
 [[nodiscard]] std::optional<ProceduralScene> find_procedural(const std::string& name);
 
-/// Cubes along an axis that `lattice` can have; of these more than 563 have more tets than links can name.
+/// Cubes along an axis that `lattice` can have; of these more than 563 have more tets than half-faces can name.
 inline constexpr std::uint32_t min_lattice = 4, max_lattice = 563;
 /// What `lattice` has where no number is given: 200 MB in layout half32.
 inline constexpr std::uint32_t usual_lattice = 64;
@@ -54,7 +54,7 @@ inline constexpr std::uint32_t usual_lattice = 64;
 {
     return 6 * resolution * resolution * resolution;
 }
-/// N of a name "lattice:N"; usual_lattice of "lattice"; empty for another name. Throws Error{usage} where N is not a
+/// N of a name "lattice:N"; usual_lattice of "lattice"; empty for another name. Throws Error{usage} if N is not a
 /// number in that range.
 [[nodiscard]] std::optional<std::uint32_t> lattice_resolution(const std::string& name);
 /// Whether its tets are made in place, with nothing built and nothing cached: `cubes` and `lattice`.
@@ -97,7 +97,7 @@ struct SceneRequest {
 /// Short name for rows: the catalogue's name, or the file's stem.
 [[nodiscard]] std::string scene_label(const std::string& name);
 
-/// Empty where the scene's mesh is available here, else the reason and what would bring it.
+/// Empty if the scene's mesh is available here, else the reason and how to get it.
 [[nodiscard]] std::string why_not_available(const std::string& name);
 
 /// The scenes of `make bench`: bunny and armadillo if their meshes are installed, else `cubes` and `banana`; and

@@ -238,7 +238,7 @@ public:
     {
     }
 
-    /// Waits up to timeout_ms for output, and takes all that is there; false where both streams have ended.
+    /// Waits up to timeout_ms for output, and takes all that is there; false if both streams have ended.
     bool take(Child& child, int timeout_ms)
     {
         // poll() skips negative descriptors, which is what closed ones are.

@@ -29,7 +29,7 @@ struct ChildOutcome {
 /// too (End::interrupted); with finish_s the first of them is passed on as SIGINT, and the second ends the child. The
 /// child dies with its parent, however the parent ends. It has an empty standard input, pipes for its output, and no
 /// other open file; no program that it starts gains privileges, and it leaves no core. on_error_line: each whole line
-/// of the child's standard error as it comes; on_tick: about ten times a second. Throws Error{missing} where the
+/// of the child's standard error as it comes; on_tick: about ten times per second. Throws Error{missing} if the
 /// program cannot be started.
 [[nodiscard]] ChildOutcome run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                      const ChildLimits& limits,

@@ -109,7 +109,7 @@ std::uint64_t MeshSceneLoader::hash_mesh() const
     return hasher.hash();
 }
 
-/// Empty where the scene is the one that was asked for, else what differs.
+/// Empty if the scene is the one that was asked for, else what differs.
 std::string MeshSceneLoader::mismatch(const Scene& scene) const
 {
     const BuildOptions& asked = request_.build;
@@ -187,7 +187,7 @@ void MeshSceneLoader::build_alone()
     if (!read_cached()) build(); // another process may have built it while we waited
 }
 
-/// What the optimiser reached depends on the moment that it was stopped in, so it is not what the key stands for.
+/// What the optimiser reached depends on the moment that it was stopped in, so the key does not identify it.
 void MeshSceneLoader::set_apart()
 {
     const OptimiserEnd end = loaded_.scene.build.optimised.end;
@@ -351,7 +351,7 @@ LoadedScene load_scene(const SceneRequest& request, const Progress& progress)
         return load_mesh_scene(request, mesh_file(*entry), progress);
     }
     const fs::path path = request.name;
-    std::error_code ignored; // what cannot be looked at is no file for us
+    std::error_code ignored; // what cannot be looked at is not a file for us
     if (!fs::exists(path, ignored)) refuse_name(request.name);
     if (path.extension() == ".tet") return load_scene_file(request, progress);
     return load_mesh_scene(request, path, progress);

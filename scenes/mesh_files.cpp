@@ -64,7 +64,7 @@ fs::path unpacked(const CatalogueEntry& entry, const fs::path& archive)
     return target;
 }
 
-/// 9 significant digits bring each float back bit for bit.
+/// 9 significant digits restore each float bit for bit.
 std::string off_text(const TriangleMesh& mesh)
 {
     std::string text = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
@@ -89,9 +89,9 @@ MeshLocation locate_mesh(const CatalogueEntry& entry)
     const char* given = std::getenv("TETRACE_MESHES");
     std::string looked = "TETRACE_MESHES is not set";
     if (given != nullptr && *given != '\0') {
-        std::error_code ignored; // what cannot be looked at is no folder for us
+        std::error_code ignored; // what cannot be looked at is not a folder for us
         if (!fs::is_directory(given, ignored)) {
-            found.reason = how_to_get(entry, fmt::format("TETRACE_MESHES is {}, which is no folder", given));
+            found.reason = how_to_get(entry, fmt::format("TETRACE_MESHES is {}, which is not a folder", given));
             return found;
         }
         if (locate_in(given, entry, found)) return found;

@@ -6,9 +6,9 @@ namespace tetrace {
 
 /// The mesh file of a catalogue row whose source is `file`, or why there is none.
 struct MeshLocation {
-    std::filesystem::path file;    ///< as a plain file; empty where it has to be unpacked, or is missing
+    std::filesystem::path file;    ///< as a plain file; empty if it has to be unpacked, or is missing
     std::filesystem::path archive; ///< holds the row's archive_member
-    std::string reason;            ///< why both are missing, and what would bring them
+    std::string reason;            ///< why both are missing, and how to get them
 };
 
 /// Looks in the folder that TETRACE_MESHES names, then where Debian's libcgal-demo puts its data.

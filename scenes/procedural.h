@@ -15,8 +15,8 @@ namespace tetrace {
 /// A scene of any size: the same grid of resolution^3 cubes, of which some are solid, scattered so that a line through
 /// the grid meets one after half its length on average. 6 resolution^3 tets, so that packed forms exceed any cache;
 /// made in linear time and memory, reproducible bit for bit. resolution: min_lattice to max_lattice
-/// (scenes/catalogue.h), else throws Error{usage}. Throws Error{unsupported} with both numbers where the tets alone
-/// exceed the machine's memory.
+/// (scenes/catalogue.h), else throws Error{usage}. Throws Error{unsupported} with both numbers if the tets by
+/// themselves exceed the machine's memory.
 [[nodiscard]] Scene make_lattice(std::uint32_t resolution);
 
 /// A curved, tapering, capped tube in mesh units: 25,000 triangles, closed, the same bits everywhere. Its CDT with the

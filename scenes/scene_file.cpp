@@ -32,7 +32,7 @@ static_assert(sizeof(float) == 4 && sizeof(Float3) == 12 && sizeof(Tet) == 48, "
 
 namespace {
 
-// As in PNG: the first byte is no text, the line ends catch transfers in text mode.
+// As in PNG: the first byte is not a text, the line ends catch transfers in text mode.
 constexpr std::array<char, 8> magic = {'\x89', 'T', 'E', 'T', '\r', '\n', '\x1a', '\n'};
 
 struct FileHeader {
@@ -114,12 +114,12 @@ SceneReader::SceneReader(const std::filesystem::path& path, SceneFileKind kind) 
     // Without O_NONBLOCK a named pipe would hang here until somebody writes to it.
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file_ < 0 && (errno == ENOENT || errno == ENOTDIR))
-        throw Error(ErrorKind::missing, fmt::format("reading scene {}: there is no such file", path.string()));
+        throw Error(ErrorKind::missing, fmt::format("reading scene {}: the file does not exist", path.string()));
     if (file_ < 0) refuse("file", std::strerror(errno));
     struct stat status {};
     const bool regular = ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
     if (!regular) {
-        ::close(file_); // a constructor that throws has no destructor run
+        ::close(file_); // the destructor is not run if a constructor throws
         refuse("file", "it is not a regular file");
     }
     file_bytes_ = static_cast<std::uint64_t>(status.st_size);
@@ -169,7 +169,7 @@ void SceneReader::check_table() const
         kinds[i].name.copy(name.data(), name.size());
         if (entry.name != name) refuse(kinds[i].name, "the table names another section in its place");
         // end <= file_bytes_ holds from section to section, so nothing here can overflow.
-        if (entry.offset != end || entry.bytes > file_bytes_ - end) refuse(kinds[i].name, "it lies outside the file");
+        if (entry.offset != end || entry.bytes > file_bytes_ - end) refuse(kinds[i].name, "it is outside the file");
         if (entry.bytes % kinds[i].element_bytes != 0 || entry.bytes / kinds[i].element_bytes != entry.elements)
             refuse(kinds[i].name, "its bytes and its number of elements do not agree");
         const bool is_of_tets = i == tet_vertices || i == tets;
@@ -219,8 +219,9 @@ void SceneReader::check_coordinates(SectionId id, const std::vector<Float3>& poi
         // Also what keeps NaN and infinity from the exact tests that follow.
         for (const float value : {point.x, point.y, point.z})
             if (!(std::abs(value) <= 64.0f) || snap_to_grid(value) != value)
-                refuse(kinds[id].name,
-                       fmt::format("vertex {} has the coordinate {}, beyond 64 or off the grid of 2^-40", i, value));
+                refuse(
+                    kinds[id].name,
+                    fmt::format("vertex {} has the coordinate {}, larger than 64 or off the grid of 2^-40", i, value));
     }
 }
 

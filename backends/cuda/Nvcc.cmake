@@ -30,7 +30,7 @@ list(SORT wanted COMPARE NATURAL)
 
 # An nvcc that does not know the host's compiler fails on any file.
 if(TETRACE_NVCC AND NOT "${TETRACE_NVCC} for ${wanted}" STREQUAL "${TETRACE_NVCC_TRIED}")
-  set(TETRACE_NVCC_TRIED "${TETRACE_NVCC} for ${wanted}" CACHE INTERNAL "what the entries beside this one are of")
+  set(TETRACE_NVCC_TRIED "${TETRACE_NVCC} for ${wanted}" CACHE INTERNAL "what the other entries are of")
   file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/try.cu "__global__ void nothing() {}\n")
   execute_process(COMMAND ${TETRACE_NVCC} --ptx -std=c++17 -o ${CMAKE_CURRENT_BINARY_DIR}/try.ptx ${CMAKE_CURRENT_BINARY_DIR}/try.cu
     RESULT_VARIABLE failed ERROR_VARIABLE errors OUTPUT_QUIET)

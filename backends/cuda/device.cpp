@@ -33,7 +33,7 @@ std::string pci_of(const Driver& driver, Ordinal ordinal)
     return text.size() > usual ? text.substr(text.size() - usual) : text; // some drivers give the domain 8 digits
 }
 
-/// "580.65.06", from the driver's kernel module; empty where it does not say.
+/// "580.65.06", from the driver's kernel module; empty if it does not say.
 std::string kernel_module_version()
 {
     std::ifstream file("/proc/driver/nvidia/version");

@@ -6,7 +6,7 @@
 namespace tetrace::cuda {
 
 /// The devices that the driver lists, usable or not; one unusable device if there is no driver or no device.
-/// Throws Error{internal} where the driver fails.
+/// Throws Error{internal} if the driver fails.
 [[nodiscard]] std::vector<Device> list_devices(const LoadedDriver& driver, const Programs& programs);
 
 /// The driver's handle of a device, by its index in list_devices(). Throws Error{internal}.
@@ -15,7 +15,7 @@ namespace tetrace::cuda {
 /// 10 * major + minor of a device's compute capability.
 [[nodiscard]] int capability_of(const Driver& driver, Ordinal device);
 
-/// A device's attribute by its number in the API; 0 where the driver does not know it.
+/// A device's attribute by its number in the API; 0 if the driver does not know it.
 [[nodiscard]] int attribute_of(const Driver& driver, Ordinal device, int attribute);
 
 /// A device opened for work: its context and a stream in it.

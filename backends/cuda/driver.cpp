@@ -6,7 +6,7 @@ namespace tetrace::cuda {
 
 namespace {
 
-constexpr const char* remedy = "; NVIDIA's driver brings it (Debian: package nvidia-driver, or libcuda1 alone)";
+constexpr const char* remedy = "; install NVIDIA's driver (Debian: package nvidia-driver, or only libcuda1)";
 
 /// Adds the names of functions that the library lacks to `missing`.
 Driver functions_of(void* library, std::string& missing)

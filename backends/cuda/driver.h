@@ -33,8 +33,8 @@ constexpr int attribute_multiprocessors = 16;
 constexpr int attribute_capability_major = 75;
 constexpr int attribute_capability_minor = 76;
 
-/// The driver as a table of functions: NVIDIA's library, or host functions that stand in for it (backends/cuda_host).
-/// The rest of this backend uses CUDA only through such a table.
+/// The driver as a table of functions: NVIDIA's library, or host functions that replace it (backends/cuda_host). The
+/// rest of this backend uses CUDA only through such a table.
 struct Driver {
 #define DRIVER_FUNCTION(member, symbol, parameters, arguments) Result(*member) parameters = nullptr;
 #include "backends/cuda/driver_functions.inc"

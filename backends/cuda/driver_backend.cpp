@@ -65,7 +65,7 @@ bool DriverBackend::has_kernel(const KernelId& kernel) const
 
 std::string DriverBackend::why_not(std::size_t device, const KernelId& kernel) const
 {
-    if (!has_kernel(kernel)) return name() + " has no kernel " + name_of(kernel);
+    if (!has_kernel(kernel)) return name() + " lacks kernel " + name_of(kernel);
     const Device& wanted = devices().at(device);
     return wanted.usable ? "" : wanted.reason;
 }

@@ -16,7 +16,7 @@ std::string joined(const std::vector<std::string>& words)
     return text;
 }
 
-/// Throws Error{missing} where NVRTC is not here, and as Nvrtc::compile().
+/// Throws Error{missing} if NVRTC is not here, and as Nvrtc::compile().
 std::string ptx_of(const Programs& programs, const EmbeddedKernel& source, const ProgramId& id)
 {
     if (!programs.has_nvrtc())
@@ -45,7 +45,7 @@ std::vector<KernelFile> kernel_files(const Programs& programs, const KernelId& k
         files.push_back({ptx, "PTX, by NVRTC", "ptxas -v -arch=sm_75 -o " + id.name() + ".cubin " + ptx,
                          ptx_of(programs, *source, id)});
     } catch (const Error& error) {
-        files.front().what += "; there is no PTX, because " + std::string(error.what());
+        files.front().what += "; without PTX, because " + std::string(error.what());
     }
     if (const EmbeddedKernel* const code = find_kernel(programs.code, id.name()))
         files.push_back({id.name() + ".fatbin", "machine code, by " + programs.compiler + ", as the driver gets it",

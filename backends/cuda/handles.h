@@ -112,9 +112,9 @@ private:
 /// A loaded module.
 class Module {
 public:
-    /// Throws Error{unsupported} where the driver cannot use the image: it names the driver's error and its log.
+    /// Throws Error{unsupported} if the driver cannot use the image: it names the driver's error and its log.
     Module(Context& context, std::span<const std::byte> image, const std::string& name);
-    /// Throws Error{internal} where the module has no such entry.
+    /// Throws Error{internal} if the module has no such entry.
     [[nodiscard]] FunctionHandle function(const std::string& name) const;
 
 private:

@@ -45,8 +45,8 @@ void Nvrtc::load()
 {
     void* library = open_library();
     if (library == nullptr) {
-        reason_ = "NVRTC, which compiles kernels at run time, was not found as libnvrtc.so.13, .12 or .11.2; NVIDIA's "
-                  "CUDA toolkit brings it (Debian: package nvidia-cuda-toolkit)";
+        reason_ = "NVRTC, which compiles kernels at run time, was not found as libnvrtc.so.13, .12 or .11.2; "
+                  "NVIDIA's install the CUDA toolkit (Debian: package nvidia-cuda-toolkit)";
         return;
     }
     const auto find = [&](auto& function, const char* symbol) {

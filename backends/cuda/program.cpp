@@ -44,7 +44,7 @@ std::pair<Module, bool> compiled_module(Context& context, int capability, const 
 {
     const EmbeddedKernel* source = find_kernel(programs.sources, id.source);
     if (source == nullptr || !programs.has_nvrtc())
-        throw Error(ErrorKind::unsupported, "CUDA: this build has no code of kernel " + id.name() +
+        throw Error(ErrorKind::unsupported, "CUDA: this build lacks the code of kernel " + id.name() +
                                                 ", and nothing here compiles it: " +
                                                 (programs.nvrtc != nullptr ? programs.nvrtc().reason() : "no NVRTC"));
     const Nvrtc& nvrtc = programs.nvrtc();

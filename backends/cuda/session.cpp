@@ -175,7 +175,8 @@ void CudaSession::launch_persistent(const LaunchPiece& piece, Address counter, S
                    stack_bytes_ * persistent_block_threads, stream);
 }
 
-/// Each piece of each pass has a counter of its own: they are cleared together, which is no part of the passes' time.
+/// Each piece of each pass has a counter of its own: they are cleared together, which is not a part of the passes'
+/// time.
 void CudaSession::clear_counters(std::size_t count)
 {
     const std::size_t bytes = count * sizeof(std::uint32_t);

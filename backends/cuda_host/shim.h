@@ -79,8 +79,7 @@ inline std::uint32_t __float_as_uint(float value)
 
 inline float __fmaf_rn(float a, float b, float c)
 {
-    return a * b +
-           c; // rounded twice: a call, where the processor has no such instruction, would cost more than it gains
+    return a * b + c; // rounded twice: on CPUs without the instruction, a call would cost more than it gains
 }
 
 inline float __uint2float_rn(std::uint32_t value)

@@ -16,7 +16,7 @@ void check(RTCDevice device, const char* doing)
         throw Error(ErrorKind::internal, std::string("Embree, ") + doing + ": error " + std::to_string(error));
 }
 
-/// Lets Embree use whatever the processor has. Left alone, it keeps some Xeons to narrower trees, for the sake of
+/// Lets Embree use whatever the processor has. By default, it uses narrower trees on some Xeons, for the sake of
 /// programs that use no wide instructions themselves (docs/embree.md).
 #if defined(__x86_64__)
 constexpr const char* frequency_level = "frequency_level=simd512";
@@ -126,7 +126,7 @@ Abilities abilities()
 std::string why_not_traced(const Abilities& abilities, Method method)
 {
     if (method == Method::stream && abilities.version >= 4) return no_streams;
-    if (method == Method::stream && !abilities.has_streams) return "this build of Embree has no ray streams";
+    if (method == Method::stream && !abilities.has_streams) return "this build of Embree lacks ray streams";
     const unsigned width = packet_width(method), native = abilities.native_width;
     if (width <= native || (abilities.version < 4 && native > 1)) return {};
     return "Embree " + std::to_string(abilities.version) + " would trace packets of " + std::to_string(width) +

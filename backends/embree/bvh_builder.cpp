@@ -70,7 +70,7 @@ void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float po
 
 std::vector<RTCBuildPrimitive> build_primitives(const TriangleMesh& mesh)
 {
-    std::vector<RTCBuildPrimitive> primitives(2 * mesh.triangles.size() + 1); // room for spatial splits
+    std::vector<RTCBuildPrimitive> primitives(2 * mesh.triangles.size() + 1); // space for spatial splits
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const Box box = triangle_box(mesh, i);
         primitives[i] = {box.low.x, box.low.y, box.low.z, 0, box.high.x, box.high.y, box.high.z, i};
@@ -126,7 +126,7 @@ RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& pr
 {
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
-    arguments.maxDepth = max_depth + embrees_last_levels; // a tree that is not too deep is the heuristic's alone
+    arguments.maxDepth = max_depth + embrees_last_levels; // a tree that is not too deep comes only from the heuristic
     arguments.maxLeafSize = max_in_leaf;
     arguments.bvh = bvh;
     arguments.primitives = primitives.data();
@@ -166,7 +166,7 @@ void check_bvh_input(const TriangleMesh& mesh)
     const auto refuse = [](const std::string& reason) {
         throw Error(ErrorKind::invalid_input, "building a BVH: " + reason);
     };
-    if (mesh.triangles.empty()) refuse("the mesh has no triangle; give it one at least");
+    if (mesh.triangles.empty()) refuse("the mesh is empty; it needs at least one triangle");
     if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max() / 4)
         refuse(std::to_string(mesh.triangles.size()) + " triangles, at most 2^30 can be numbered");
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -174,7 +174,7 @@ void check_bvh_input(const TriangleMesh& mesh)
             if (v >= mesh.vertices.size()) refuse("triangle " + std::to_string(i) + " has a missing corner");
             for (int axis = 0; axis < 3; ++axis)
                 if (!(std::abs(mesh.vertices[v][axis]) <= max_bvh_coordinate))
-                    refuse("triangle " + std::to_string(i) + " has a corner that is not finite or beyond " +
+                    refuse("triangle " + std::to_string(i) + " has a corner that is not finite or exceeds " +
                            std::to_string(static_cast<int>(max_bvh_coordinate)) +
                            " domain units; place the mesh in the domain");
         }
@@ -198,7 +198,7 @@ BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads, std::uint32_t max
     built.bvh = fits ? std::move(*bvh) : build_balanced_bvh(mesh);
     if (!fits)
         built.fall_back = "triangles are halved by number: by the surface area heuristic more than " +
-                          std::to_string(max_depth) + " nodes would stand above a leaf";
+                          std::to_string(max_depth) + " nodes would be above a leaf";
     built.spatial_splits = built.bvh.references.size() - mesh.triangles.size();
     built.build_s = watch.seconds();
     return built;

@@ -16,16 +16,16 @@ inline constexpr float max_bvh_coordinate = 64;
 struct BuiltBvh {
     Bvh bvh;
     double build_s = 0;
-    std::uint64_t spatial_splits = 0; ///< references beyond one a triangle
-    std::string fall_back; ///< why it is not the heuristic's tree, but triangles halved by number; empty where it is
+    std::uint64_t spatial_splits = 0; ///< references in addition to one per triangle
+    std::string fall_back; ///< why it is not the heuristic's tree, but triangles halved by number; empty if it is
 };
 
 /// Builds a binary BVH by the surface area heuristic with spatial splits, with Embree; leaves have 1 to 4 triangles,
-/// and at most BVH2_STACK inner nodes stand above a leaf: where the heuristic would have more, triangles are halved by
+/// and at most BVH2_STACK inner nodes are above a leaf: if the heuristic would have more, triangles are halved by
 /// number (build_balanced_bvh()), and fall_back says so. The tree does not depend on the number of threads.
 /// mesh: in domain units. threads: of Embree; 0: all. max_depth: in place of BVH2_STACK.
-/// Throws Error{invalid_input} for a mesh without triangles, or with a corner that is missing, not finite or beyond
-/// max_bvh_coordinate; Error{unsupported} where Embree runs out of memory.
+/// Throws Error{invalid_input} for a mesh without triangles, or with a corner that is missing, not finite or larger
+/// than max_bvh_coordinate; Error{unsupported} where Embree runs out of memory.
 /// Source: Stich, Friedrich, Dietrich 2009, Spatial Splits in Bounding Volume Hierarchies; Embree's rtcBuildBVH.
 [[nodiscard]] BuiltBvh build_bvh(const TriangleMesh& mesh, unsigned threads = 0, std::uint32_t max_depth = BVH2_STACK);
 

@@ -29,7 +29,7 @@ enum class Coherence { coherent, incoherent };
     return query;
 }
 
-inline constexpr const char* no_streams = "Embree 4 has no ray streams (rtcIntersectNM), Embree 3 has";
+inline constexpr const char* no_streams = "Embree 4 lacks ray streams (rtcIntersectNM); Embree 3 has them";
 
 // A query's options, and the order in which the two major versions take options and rays.
 #if TETRACE_EMBREE_MAJOR >= 4

@@ -30,7 +30,7 @@ public:
 
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
     {
-        if (!has_kernel(kernel)) return "opencl has no kernel " + name_of(kernel);
+        if (!has_kernel(kernel)) return "opencl lacks kernel " + name_of(kernel);
         return devices().at(device).reason;
     }
 

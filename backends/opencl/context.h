@@ -16,7 +16,7 @@ namespace tetrace::opencl {
 class Context {
 public:
     /// threads: the number to use of an emulated device that can be divided; 0 or more than it has: all.
-    /// Throws Error where the driver fails.
+    /// Throws Error if the driver fails.
     Context(const FoundDevice& found, unsigned threads);
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }

@@ -8,7 +8,7 @@
 
 namespace tetrace::opencl {
 
-/// Compiles and runs a reduced kernel (core/debugging/defects.h). Throws Error where the device fails.
+/// Compiles and runs a reduced kernel (core/debugging/defects.h). Throws Error if the device fails.
 [[nodiscard]] std::vector<std::uint32_t> run_defect(Context& context, std::string_view name);
 
 } // namespace tetrace::opencl

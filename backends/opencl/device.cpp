@@ -79,7 +79,7 @@ DeviceKind kind_of(const cl::Device& device)
 std::string reason_against(const cl::Device& device, std::size_t group_items)
 {
     if (!device.getInfo<CL_DEVICE_AVAILABLE>()) return "its driver says that it is not available";
-    if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "its driver has no compiler for OpenCL C";
+    if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>()) return "its driver lacks a compiler for OpenCL C";
     if (!device.getInfo<CL_DEVICE_ENDIAN_LITTLE>()) return "it is big-endian, packed scenes are not";
     if (group_items < max_group)
         return "its work groups have " + std::to_string(group_items) + " items, a tile needs " +

@@ -8,7 +8,7 @@
 
 namespace tetrace::opencl {
 
-/// "CL_OUT_OF_RESOURCES"; "OpenCL error -9999" where OpenCL 1.2 and its loader have no name for it.
+/// "CL_OUT_OF_RESOURCES"; "OpenCL error -9999" if OpenCL 1.2 and its loader do not name it.
 [[nodiscard]] std::string error_name(cl_int code);
 
 /// Whether the code means that memory or a limit on buffers is too small.

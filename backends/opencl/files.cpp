@@ -14,7 +14,7 @@ std::vector<KernelFile> kernel_files(const KernelId& kernel)
     std::string what =
         "OpenCL C with its includes resolved, as the driver's compiler gets it; the kernel is run_image. "
         "clBuildProgram gets '" +
-        options + "', and besides: ";
+        options + "', and also: ";
     if (kernel.structure == Structure::cdt) what += "-DSTARTS_OUTSIDE for rays from outside; ";
     what += "-DRAYS for given rays; -DSEARCH for single exit searches; -DPERSISTENT for that schedule; "
             "-cl-denorms-are-zero on processors; -cl-fp32-correctly-rounded-divide-sqrt where the device offers it";

@@ -1,7 +1,7 @@
 // A kernel as an OpenCL program (CMakeLists.txt): a thin entry around the shared text. Build options (session.cpp):
 // GROUP_ITEMS, the items of a work group, which traces one tile at a time; PERSISTENT for that schedule; RAYS and
-// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP, where
-// stacks begin in local memory.
+// SEARCH for those tasks; STARTS_OUTSIDE if no ray of an image begins in a tet; MATH_FAST; TETS_IN_PARTS; STACK_TOP,
+// where stacks begin in local memory.
 #include "kernels/language/dialect_opencl.h"
 
 #include "kernels/language/vector.h"
@@ -69,8 +69,8 @@ __kernel __attribute__((reqd_work_group_size(GROUP_ITEMS, 1, 1))) void run_image
 
 #ifdef PERSISTENT
     // A group stays, and its first item fetches the group's next tile, until none is left (Aila, Laine, Karras 2012).
-    // Two words in turn: while some items still read one of them, the next tile goes to the other. One barrier is enough:
-    // the first item writes a word again only after a barrier that all items reach when they have read it.
+    // Two words in turn: while some items still read one of them, the next tile goes to the other. One barrier is
+    // enough: the first item writes a word again only after a barrier that all items reach when they have read it.
     __local uint fetched[2];
     for (uint turn = 0u;; turn ^= 1u) {
         if (get_local_id(0) == 0u) fetched[turn] = atomic_inc(counter);

@@ -56,7 +56,7 @@ Program::Program(Context& context, const ProgramId& id, const ProgramCache& cach
     : cache_(cache), options_(options_for(context.found(), id))
 {
     const EmbeddedKernel* source = find_kernel(embedded_kernels(), id.source);
-    if (source == nullptr) throw Error(ErrorKind::internal, "opencl has no program '" + id.source + "'");
+    if (source == nullptr) throw Error(ErrorKind::internal, "opencl lacks program '" + id.source + "'");
     key_ = key_of(context.found(), options_, source->text());
     is_cached_ = load(context);
     if (!is_cached_) compile(context, id, source->text());

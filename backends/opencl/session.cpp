@@ -23,7 +23,7 @@ enum Argument : cl_uint {
 /// More kernels are not in flight together.
 constexpr std::size_t max_queues = 8;
 
-constexpr std::size_t min_buffer_bytes = 16; // OpenCL has no empty buffers
+constexpr std::size_t min_buffer_bytes = 16; // OpenCL does not allow empty buffers
 
 /// The most items that any device holds in a compute unit at once (NVIDIA's number). Groups that do not fit start when
 /// all work is done. A processor's unit is one thread, which works on one group at a time.
@@ -166,7 +166,7 @@ std::size_t OpenclSession::groups_for(std::uint32_t tiles) const
     return std::min<std::size_t>(tiles, resident);
 }
 
-/// Persistent groups count tiles: their counters are filled before each pass, which is no part of its time.
+/// Persistent groups count tiles: their counters are filled before each pass, which is not a part of its time.
 void OpenclSession::enqueue(std::span<const LaunchPiece> pieces, std::uint32_t passes)
 {
     const bool is_persistent = kernel_id_.schedule == Schedule::persistent;

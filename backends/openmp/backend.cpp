@@ -39,7 +39,7 @@ public:
 
     [[nodiscard]] std::string why_not(std::size_t, const KernelId& kernel) const override
     {
-        if (!has_kernel(kernel)) return "openmp has no kernel " + name_of(kernel);
+        if (!has_kernel(kernel)) return "openmp lacks kernel " + name_of(kernel);
         if (kernel.math == MathMode::fast && !host_has_fused_multiply())
             return "math mode fast is compiled for x86-64-v3, which this processor is not; use --math exact";
         if (kernel.schedule == Schedule::native && !host_has_fused_multiply())
@@ -76,7 +76,7 @@ public:
     }
 
 private:
-    /// Null where there is none.
+    /// Null if there is none.
     [[nodiscard]] static openmp::RunFunction* function_of(const KernelId& kernel)
     {
         if (kernel.schedule == Schedule::native) return openmp::find_function(openmp::native_kernels(), kernel);

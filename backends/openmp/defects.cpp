@@ -32,7 +32,7 @@ std::vector<std::uint32_t> run_defect(std::string_view name)
         return results;                                                                                                \
     }
 #include "kernels/defects/defect_list.inc"
-    throw Error(ErrorKind::internal, "openmp has no reduced kernel '" + std::string(name) + "'");
+    throw Error(ErrorKind::internal, "openmp lacks the reduced kernel '" + std::string(name) + "'");
 }
 
 } // namespace tetrace::openmp

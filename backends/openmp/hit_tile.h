@@ -24,7 +24,7 @@ public:
     /// packet_block_size rows of as many hits.
     [[nodiscard]] std::span<Hit> hits() { return hits_; }
 
-    /// Stores them with the first at (x, y) of the image. What lies outside the image is left out.
+    /// Stores them with the first at (x, y) of the image. Hits outside the image are left out.
     void store(std::uint32_t x, std::uint32_t y) const;
 
 private:

@@ -121,7 +121,7 @@ PacketJob packet_job(const PackedScene& scene, const std::uint32_t* records, con
     result.triangles = reinterpret_cast<const std::uint32_t*>(scene.triangles.data());
     result.lines = reinterpret_cast<const float*>(scene.lines.data());
     result.entry_ranges = scene.entry_ranges.data();
-    result.entry_links = scene.entry_links.data();
+    result.entry_half_faces = scene.entry_half_faces.data();
     result.divisions = scene.divisions;
     copy3(job.view.origin, result.origin);
     copy3(job.view.corner, result.corner);
@@ -185,7 +185,7 @@ PacketKernel packet_kernel(unsigned lanes)
         if (lanes == kernel.lanes || lanes == 0) return kernel;
         widths += (widths.empty() ? "" : ", ") + std::to_string(kernel.lanes);
     }
-    throw Error(ErrorKind::unsupported, "there are no packets of " + std::to_string(lanes) +
+    throw Error(ErrorKind::unsupported, "this build lacks packets of " + std::to_string(lanes) +
                                             " lanes: " + why_no_packets(lanes) + "; there are some of " + widths);
 }
 
@@ -208,7 +208,7 @@ void PacketSession::set_rays(std::span<const Quad> quads)
 {
     rays_.assign(quads.begin(), quads.end());
     const auto directions = quads.first(quads.size() / GIVEN_RAY_QUADS), origins = quads.subspan(directions.size());
-    rays_start_outside_ = std::ranges::any_of(directions, [](const Quad& quad) { return quad.w == NO_LINK; });
+    rays_start_outside_ = std::ranges::any_of(directions, [](const Quad& quad) { return quad.w == NO_HALF_FACE; });
     rays_end_ = std::ranges::any_of(origins, [](const Quad& quad) { return std::bit_cast<float>(quad.w) < NO_END; });
 }
 

@@ -11,12 +11,12 @@ struct PacketJob {
     const std::uint32_t* triangles; ///< and the other arrays of that scene
     const float* lines;
     const std::uint32_t* entry_ranges;
-    const std::uint32_t* entry_links;
+    const std::uint32_t* entry_half_faces;
     std::uint32_t divisions;
     float origin[3], corner[3], step_x[3], step_y[3]; ///< of the view
     std::uint32_t width, height, start_tet, max_steps;
     std::uint32_t block_x, block_y;  ///< the first pixel of the block to trace, unless rays are given
-    const std::uint32_t* directions; ///< quads of given rays, null if there are none: {direction, link}
+    const std::uint32_t* directions; ///< quads of given rays, null if there are none: {direction, half-face}
     const std::uint32_t* origins;    ///< {origin, end}
     bool has_ends;                   ///< whether any of them ends
     bool starts_outside;             ///< whether any of them starts outside the domain
@@ -28,7 +28,7 @@ struct PacketJob {
     const void* context;
 };
 
-/// Pixels along the side of a block, which one call traces. What it writes for pixels outside the image has no meaning.
+/// Pixels along the side of a block, which one call traces. What it writes for pixels outside the image is not used.
 inline constexpr std::uint32_t packet_block_size = 32;
 
 /// Traces in packets of that many lanes: 16 need AVX-512 (F, BW, DQ, VL), 8 need AVX2, and 4 need no more than the

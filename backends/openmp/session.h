@@ -5,7 +5,7 @@
 
 namespace tetrace::openmp {
 
-/// Runs one compiled kernel on the packed scene where it lies: nothing is compiled, and only given rays are copied.
+/// Runs one compiled kernel on the packed scene in place: nothing is compiled, and only given rays are copied.
 class OpenmpSession : public HostSession {
 public:
     OpenmpSession(RunFunction* function, Task task, const PackedScene& scene, unsigned threads, unsigned tile_height)

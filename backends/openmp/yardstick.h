@@ -10,9 +10,9 @@ namespace tetrace::openmp {
 [[nodiscard]] Yardstick measure_host(unsigned threads);
 
 /// Seconds of a fixed short piece of work by that many threads at once, some milliseconds: each follows a chain of
-/// reads through a table that lies in the far caches, and multiplies as it goes. The work is the same in every build
-/// and every run, so only the machine can change how long it takes. The median of three times, so that one interrupt
-/// does not count. What one thread loses, all lose, as in a row.
+/// reads through a table in the far caches, and multiplies as it goes. The work is the same in every build and every
+/// run, so only the machine can change how long it takes. The median of three times, so that one interrupt does not
+/// count. What one thread loses, all lose, as in a row.
 [[nodiscard]] double pulse_s(unsigned threads);
 
 } // namespace tetrace::openmp

@@ -31,7 +31,7 @@ public:
 
     [[nodiscard]] std::string why_not(std::size_t device, const KernelId& kernel) const override
     {
-        if (!has_kernel(kernel)) return "vulkan has no kernel " + name_of(kernel);
+        if (!has_kernel(kernel)) return "vulkan lacks kernel " + name_of(kernel);
         const std::string& reason = devices().at(device).reason;
         if (!reason.empty() || kernel.layout != Layout::rt) return reason;
         return found().devices[device].ray_tracing.why_not(vulkan::tracer_of(kernel));

@@ -8,7 +8,7 @@
 namespace tetrace::vulkan {
 
 /// Where a buffer is, and its purpose.
-enum class Place {
+enum class BufferUse {
     device,    ///< the device's own memory: kernels and transfers use it
     upload,    ///< the host writes, transfers read
     read_back, ///< transfers write, the host reads through its caches
@@ -24,7 +24,7 @@ public:
     Buffer() = default;
     /// bytes: 0 makes the smallest possible buffer. Throws vk::SystemError (Context::run() translates it), and
     /// Error{unsupported} with both numbers where an allocation may not be that large.
-    Buffer(const Context& context, std::uint64_t bytes, Place place);
+    Buffer(const Context& context, std::uint64_t bytes, BufferUse use);
 
     [[nodiscard]] vk::Buffer handle() const { return *handle_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
@@ -33,7 +33,7 @@ public:
     {
         return context.device().getBufferAddressKHR(vk::BufferDeviceAddressInfo{}.setBuffer(*handle_));
     }
-    /// The memory as the host sees it; empty where it does not.
+    /// The memory as the host sees it; empty if it does not.
     [[nodiscard]] std::span<std::byte> mapped() const
     {
         return mapped_ == nullptr ? std::span<std::byte>{} : std::span(mapped_, bytes_);
@@ -71,8 +71,8 @@ private:
 /// Copies bytes to the start of the buffer and waits: directly if the host sees its memory, else through staging.
 void upload(const Context& context, const Buffer& to, std::span<const std::byte> bytes);
 
-/// Copies the start of the buffer into bytes, through memory that the host caches, and waits. staging: Place::read_back
-/// and large enough, or empty if needs_staging() is false.
+/// Copies the start of the buffer into bytes, through memory that the host caches, and waits. staging:
+/// BufferUse::read_back and large enough, or empty if needs_staging() is false.
 void read_back(const Context& context, const Buffer& from, const Buffer& staging, std::span<std::byte> bytes);
 
 /// Whether the host cannot read the buffer directly through its caches.

@@ -10,8 +10,8 @@
 
 namespace tetrace::vulkan {
 
-/// What make() makes. Where the driver refuses to make one more, the newest that is still in use: NVIDIA's driver makes
-/// 63 devices a process, and rows may be more.
+/// What make() makes. If the driver refuses to make one more, the newest that is still in use: NVIDIA's driver makes 63
+/// devices a process, and rows may be more.
 template <class Handle, class Make>
 [[nodiscard]] std::shared_ptr<Handle> made_or_shared(std::weak_ptr<Handle>& newest, const Make& make)
 {
@@ -32,9 +32,9 @@ template <class Handle, class Make>
 /// see made_or_shared(). Contexts of one physical device are used by one thread at a time.
 class Context {
 public:
-    /// Throws Error where the driver fails. tracer: how rays are traced through a BVH of the driver's, if they are;
-    /// found.ray_tracing has no reason against it. Features beyond compute are enabled only for sessions that need
-    /// them.
+    /// Throws Error if the driver fails. tracer: how rays are traced through a BVH of the driver's, if they are;
+    /// found.ray_tracing gives no reason against it. Features other than compute are enabled only for sessions that
+    /// need them.
     explicit Context(const FoundDevice& found, std::optional<RayTracer> tracer = {});
 
     [[nodiscard]] const FoundDevice& found() const { return found_; }

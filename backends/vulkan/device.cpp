@@ -170,7 +170,7 @@ std::uint32_t max_steps_of(std::string_view implementation)
     constexpr std::string_view lavapipe = "lavapipe";
     constexpr unsigned first_without_limit = 25;
     if (!implementation.starts_with(lavapipe)) return 0;
-    unsigned version = 0; // stays 0 where the driver states none
+    unsigned version = 0; // stays 0 if the driver states none
     if (implementation.size() > lavapipe.size() + 1)
         std::from_chars(implementation.data() + lavapipe.size() + 1, implementation.data() + implementation.size(),
                         version);
@@ -179,7 +179,7 @@ std::uint32_t max_steps_of(std::string_view implementation)
 
 bool is_null_hardware(std::string_view implementation, std::string_view device_name)
 {
-    // Mesa 22.3 calls it "Null hardware (RADV GFX1100)". Other versions may not: where the variable is set, radv lists
+    // Mesa 22.3 calls it "Null hardware (RADV GFX1100)". Other versions may not: if the variable is set, radv lists
     // nothing else.
     const char* const family = std::getenv("RADV_FORCE_FAMILY");
     return implementation.starts_with("radv") &&

@@ -23,14 +23,14 @@ private:
 /// The Vulkan loader and an instance of API 1.1 without any window system.
 class Instance {
 public:
-    /// Validation layers, synchronization included, are on in debug builds and where the environment variable
+    /// Validation layers, synchronization included, are on in debug builds and if the environment variable
     /// TETRACE_VULKAN_VALIDATION is 1, if they are installed (package vulkan-validationlayers).
-    /// Throws Error{missing} naming the package where there is no loader, Error{internal} where it fails.
+    /// Throws Error{missing} naming the package if the loader is missing, Error{internal} if it fails.
     Instance();
 
     [[nodiscard]] const vk::raii::Instance& handle() const { return *handle_; }
     [[nodiscard]] bool validates() const { return validates_; }
-    /// Warnings and errors of the validation layers; always empty where they are off.
+    /// Warnings and errors of the validation layers; always empty if they are off.
     [[nodiscard]] ValidationLog& validation_log() const { return *log_; }
 
 private:

@@ -1,7 +1,7 @@
 #version 450
 // A kernel as a compute shader (CMakeLists.txt): a thin entry around the shared text. A work group is a tile. TRACE,
-// RAYS or SEARCH: the task. With TRACE, LEAVES_RAYS: rays at ties are left to the program with TRACES_LEFT, which
-// traces those alone.
+// RAYS or SEARCH: the task. With TRACE, DEFERS_RAYS: rays at ties are deferred to the program with TRACES_DEFERRED,
+// which traces only those.
 layout(constant_id = 2) const bool selects_minima = false; // true if the driver's own minimum is slower
 #define SELECTS_MINIMA selects_minima
 #ifndef SCENE_IN_TEXELS
@@ -11,8 +11,8 @@ layout(constant_id = 3) const uint stack_top = 0u;
 layout(constant_id = 4) const uint stack_entries = 0u;
 #define STACK_ENTRIES(most) (stack_entries == 0u ? (most) : stack_entries)
 #endif
-#ifdef LEAVES_RAYS
-#define LEAVES_TIES true
+#ifdef DEFERS_RAYS
+#define DEFERS_TIES true
 #endif
 #define GROUP_ITEMS (gl_WorkGroupSize.x * gl_WorkGroupSize.y)
 #include "kernels/language/dialect_glsl.h"
@@ -38,10 +38,10 @@ layout(std430, set = 0, binding = OUTPUT_BINDING) writeonly buffer Output
 {
     uint output_words[];
 };
-#if defined(LEAVES_RAYS) || defined(TRACES_LEFT)
-layout(std430, set = 0, binding = LEFT_BINDING) buffer Left
+#if defined(DEFERS_RAYS) || defined(TRACES_DEFERRED)
+layout(std430, set = 0, binding = DEFERRED_BINDING) buffer Left
 {
-    uint left_words[];
+    uint deferred_words[];
 };
 #endif
 
@@ -93,21 +93,21 @@ void write_hit(Hit hit, uint word)
 }
 #endif
 
-#ifdef LEAVES_RAYS
+#ifdef DEFERS_RAYS
 void leave(Pixel pixel)
 {
-    uint place = atomicAdd(left_words[LEFT_COUNT], 1u);
-    if (place % GROUP_ITEMS == 0u) atomicAdd(left_words[0], 1u);
-    left_words[LEFT_PIXELS + place] = pixel.y * launch.trace.width + pixel.x;
+    uint place = atomicAdd(deferred_words[DEFERRED_COUNT], 1u);
+    if (place % GROUP_ITEMS == 0u) atomicAdd(deferred_words[0], 1u);
+    deferred_words[DEFERRED_PIXELS + place] = pixel.y * launch.trace.width + pixel.x;
 }
 #endif
 
-#ifdef TRACES_LEFT
+#ifdef TRACES_DEFERRED
 void main()
 {
     uint place = gl_WorkGroupID.x * GROUP_ITEMS + gl_LocalInvocationIndex;
-    if (place >= left_words[LEFT_COUNT]) return;
-    uint number = left_words[LEFT_PIXELS + place];
+    if (place >= deferred_words[DEFERRED_COUNT]) return;
+    uint number = deferred_words[DEFERRED_PIXELS + place];
     Pixel pixel;
     pixel.x = number % launch.trace.width;
     pixel.y = number / launch.trace.width;
@@ -130,8 +130,8 @@ void main()
     Hit hit = trace_given(scene_view(), launch.trace, RAY_QUAD(ray), RAY_QUAD(ray_count(launch) + ray));
 #else
     Hit hit = trace_pixel(pixel);
-#ifdef LEAVES_RAYS
-    if (hit.face_id == LEFT) leave(pixel);
+#ifdef DEFERS_RAYS
+    if (hit.face_id == DEFERRED) leave(pixel);
 #endif
 #endif
     write_hit(hit, output_word(launch, pixel));

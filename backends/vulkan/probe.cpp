@@ -18,9 +18,10 @@ std::vector<std::uint32_t> run_probe(const Context& context, MathMode math, std:
     context.run("running the self-test", operations.size_bytes() + result_bytes.size(), [&] {
         const ProgramId id{.name = std::string("probe_").append(name_of(math)), .bindings = {0, 1}};
         const Program program(context, id, ProgramCache({}));
-        const Buffer quads(context, operations.size_bytes(), Place::device);
-        const Buffer words(context, result_bytes.size(), Place::device);
-        const Buffer staging = needs_staging(words) ? Buffer(context, result_bytes.size(), Place::read_back) : Buffer();
+        const Buffer quads(context, operations.size_bytes(), BufferUse::device);
+        const Buffer words(context, result_bytes.size(), BufferUse::device);
+        const Buffer staging =
+            needs_staging(words) ? Buffer(context, result_bytes.size(), BufferUse::read_back) : Buffer();
         upload(context, quads, std::as_bytes(operations));
         program.bind(context, 0, quads);
         program.bind(context, 1, words);

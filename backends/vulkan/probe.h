@@ -9,7 +9,7 @@
 
 namespace tetrace::vulkan {
 
-/// Runs kernels/probe.h, one item and one result per quad. Throws Error where the device fails.
+/// Runs kernels/probe.h, one item and one result per quad. Throws Error if the device fails.
 [[nodiscard]] std::vector<std::uint32_t> run_probe(const Context& context, MathMode math,
                                                    std::span<const Quad> operations);
 

@@ -13,7 +13,7 @@ using ShaderStage = vk::ShaderStageFlagBits;
 const EmbeddedKernel& module_of(const ProgramId& id, std::string_view name)
 {
     const EmbeddedKernel* const kernel = find_kernel(id.kernels, name);
-    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan has no program " + std::string(name));
+    if (kernel == nullptr) throw Error(ErrorKind::internal, "vulkan lacks program " + std::string(name));
     return *kernel;
 }
 

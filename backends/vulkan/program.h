@@ -38,7 +38,7 @@ struct ProgramId {
     bool starts_outside = false;                 ///< no ray starts in a tet
     bool selects_minima = false;                 ///< as FoundDevice has it
     std::uint32_t stack_top = 0;                 ///< as FoundDevice has it
-    std::uint32_t stack_entries = 0;             ///< of a ray's stack, where the scene is read as texels; 0: the most
+    std::uint32_t stack_entries = 0;             ///< of a ray's stack, if the scene is read as texels; 0: the maximum
     std::span<const EmbeddedKernel> kernels = embedded_kernels(); ///< where the name is looked up
 };
 
@@ -56,7 +56,7 @@ struct ProgramId {
 /// A pipeline with its buffers: of a compute shader, or of ray tracing.
 class Program {
 public:
-    /// Throws Error{internal} where the driver cannot compile it.
+    /// Throws Error{internal} if the driver cannot compile it.
     Program(const Context& context, const ProgramId& id, const ProgramCache& cache);
 
     /// Whether the driver did not need to compile; false if it does not say.
@@ -66,7 +66,7 @@ public:
     /// Binds a part of a buffer, in bytes, in one of the program's sets of buffers. Number 0 is the set that bind()
     /// and its like change; each other one is made as a copy of it.
     void bind_part(const Context& context, std::size_t set, std::uint32_t binding, const BufferPart& part);
-    /// Keeps set 0 alone.
+    /// Keeps only set 0.
     void forget_other_sets() { other_sets_.clear(); }
     /// The previously bound buffer must live until then.
     void bind_texels(const Context& context, const TexelBinding& texels, const Buffer& buffer);
@@ -77,7 +77,7 @@ public:
     void record(const vk::raii::CommandBuffer& commands, std::size_t set = 0) const;
     /// Records the parameters of what is dispatched next.
     void push(const vk::raii::CommandBuffer& commands, const LaunchParams& params) const;
-    /// Records so many work groups; of a ray-tracing pipeline, which has none, the invocations of so many.
+    /// Records this many work-groups; for a ray-tracing pipeline, which has none, the invocations of this many.
     void dispatch(const vk::raii::CommandBuffer& commands, std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
 
 private:

@@ -41,8 +41,8 @@ bool is_in_texels(const FoundDevice& found, const PackedScene& scene, const TetP
     return std::ranges::all_of(scene_buffers(scene), fits);
 }
 
-/// What the program's arrays hold, for rays that touch so many entries. In steps, so that few programs are compiled and
-/// cached.
+/// What the program's arrays hold, for rays that touch this many entries. In steps, so that few programs are compiled
+/// and cached.
 std::uint32_t array_entries(std::uint32_t stack_entries)
 {
     constexpr std::uint32_t step = 4;
@@ -117,7 +117,7 @@ VulkanSession::~VulkanSession()
 void VulkanSession::make_scene_buffers(const PackedScene& scene)
 {
     const auto make = [&](std::span<const std::byte> bytes) {
-        Buffer buffer(context_, bytes.size(), Place::device);
+        Buffer buffer(context_, bytes.size(), BufferUse::device);
         upload(context_, buffer, bytes);
         bytes_ += buffer.bytes();
         return buffer;
@@ -172,7 +172,7 @@ void VulkanSession::make_program()
     const auto add = [&] { programs_.emplace_back(context_, id, ProgramCache(program_cache_)); };
     const std::string leaves = shader_name(kernel_) + "_leaves_texels";
     if (in_texels_ && starts_outside_ && find_kernel(embedded_kernels(), leaves) != nullptr) {
-        id.bindings.push_back(LEFT_BINDING);
+        id.bindings.push_back(DEFERRED_BINDING);
         id.name = leaves;
         add();
         id.name = shader_name(kernel_) + "_left_texels";
@@ -190,8 +190,7 @@ void VulkanSession::bind_scene(Program& program)
         program.bind_texels(context_, texels, arrays_[texels.binding % FIRST_QUADS_BINDING]);
     for (std::uint32_t binding = 0; !in_texels_ && binding < arrays_.size(); ++binding)
         program.bind(context_, binding, arrays_[binding]);
-    for (unsigned part = 1; tet_parts_.count > 1 && part < MAX_TET_PARTS;
-         ++part) // those beyond the last are never read
+    for (unsigned part = 1; tet_parts_.count > 1 && part < MAX_TET_PARTS; ++part) // those after the last are never read
         program.bind(context_, SECOND_PART_BINDING - 1 + part,
                      part < tet_parts_.count ? more_parts_[part - 1] : arrays_[0]);
 }
@@ -205,7 +204,7 @@ void VulkanSession::set_rays(std::span<const Quad> quads)
                                                 std::to_string(context_.found().limits.texels));
     context_.run("uploading rays", quads.size_bytes(), [&] {
         take_times(); // for launches that still read the old ones
-        if (rays_.bytes() != quads.size_bytes()) bind_rays(Buffer(context_, quads.size_bytes(), Place::device));
+        if (rays_.bytes() != quads.size_bytes()) bind_rays(Buffer(context_, quads.size_bytes(), BufferUse::device));
         upload(context_, rays_, std::as_bytes(quads));
     });
 }
@@ -230,7 +229,7 @@ void VulkanSession::bind_output()
             program.bind_part(context_, job, OUTPUT_BINDING,
                               {output_, word * parts_.begin(job), word * parts_.size(job)});
             if (leaves_rays())
-                program.bind_part(context_, job, LEFT_BINDING,
+                program.bind_part(context_, job, DEFERRED_BINDING,
                                   {left_, word * left_parts_.begin(job), word * left_parts_.size(job)});
         }
     }
@@ -242,17 +241,17 @@ void VulkanSession::resize_output()
     if (parts == parts_) return;
     require_output_fits(parts.words(), max_buffer_bytes_);
     const std::uint64_t bytes = parts.words() * sizeof(std::uint32_t);
-    left_parts_ = leaves_rays() ? output_parts(1) : OutputParts(); // guard words leave room for LEFT_PIXELS
-    static_assert(LEFT_PIXELS <= 2 * GUARD_WORDS);
-    const std::uint64_t left_bytes = left_parts_.words() * sizeof(std::uint32_t);
+    left_parts_ = leaves_rays() ? output_parts(1) : OutputParts(); // DEFERRED_PIXELS fit in the guard words
+    static_assert(DEFERRED_PIXELS <= 2 * GUARD_WORDS);
+    const std::uint64_t deferred_bytes = left_parts_.words() * sizeof(std::uint32_t);
     output_ = Buffer(); // the old ones are freed first: both may not fit
     staging_ = Buffer();
     left_ = Buffer();
     parts_ = {};
-    context_.run("making the output", bytes_ + bytes + left_bytes, [&] {
-        if (left_bytes != 0) left_ = Buffer(context_, left_bytes, Place::device);
-        output_ = Buffer(context_, bytes, Place::device);
-        if (needs_staging(output_)) staging_ = Buffer(context_, bytes, Place::read_back);
+    context_.run("making the output", bytes_ + bytes + deferred_bytes, [&] {
+        if (deferred_bytes != 0) left_ = Buffer(context_, deferred_bytes, BufferUse::device);
+        output_ = Buffer(context_, bytes, BufferUse::device);
+        if (needs_staging(output_)) staging_ = Buffer(context_, bytes, BufferUse::read_back);
     });
     parts_ = parts;
     bind_output();
@@ -312,7 +311,7 @@ void VulkanSession::record_dispatches(const vk::raii::CommandBuffer& commands, L
 
 void VulkanSession::record_none_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const
 {
-    constexpr std::array<std::uint32_t, LEFT_PIXELS> none = {0, 1, 1, 0};
+    constexpr std::array<std::uint32_t, DEFERRED_PIXELS> none = {0, 1, 1, 0};
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (i == 0 || pieces[i - 1].job != pieces[i].job)
             commands.updateBuffer<std::uint32_t>(left_.handle(), left_parts_.begin(pieces[i].job) * sizeof(none[0]),

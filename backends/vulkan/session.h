@@ -34,7 +34,7 @@ private:
 
     void make_scene_buffers(const PackedScene& scene);
     void make_program();
-    /// Whether rays that meet ties are left to a program of their own (docs/spec/devices.md, W9).
+    /// Whether rays that meet ties are deferred to a program of their own (docs/spec/devices.md, W9).
     [[nodiscard]] bool leaves_rays() const { return programs_.size() > 1; }
     /// Adds to the times of the session's set-up.
     void compile();
@@ -54,9 +54,9 @@ private:
     /// Records the dispatches of that many tiles, such that each of the device's threads gets tiles from all over the
     /// image.
     void record_dispatches(const vk::raii::CommandBuffer& commands, LaunchParams params, std::uint32_t tiles) const;
-    /// Records that no ray of the pieces is left yet.
+    /// Records that no ray of the pieces is deferred yet.
     void record_none_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const;
-    /// Records the program that traces the rays of the pieces which programs_.front() has left.
+    /// Records the program that traces the rays of the pieces which programs_.front() has deferred.
     void record_left(const vk::raii::CommandBuffer& commands, std::span<const LaunchPiece> pieces) const;
     /// Waits for enqueued work, and counts its times.
     void take_times();
@@ -67,7 +67,7 @@ private:
     unsigned tile_height_;
     KernelId kernel_;
     std::filesystem::path program_cache_;
-    bool starts_outside_ = true;      ///< all rays so far start outside: the program has no other start
+    bool starts_outside_ = true;      ///< all rays so far start outside: the program cannot start otherwise
     bool in_texels_ = false;          ///< the scene's arrays are read as texels
     std::uint32_t stack_entries_ = 0; ///< as ProgramId has it
     PackedDomain domain_;
@@ -78,10 +78,10 @@ private:
     std::vector<Buffer> more_parts_; ///< of the tets, from the second on
     std::optional<Acceleration> acceleration_;
     Buffer rays_, output_, staging_;
-    OutputParts parts_;      ///< of output_
-    Buffer left_;            ///< of each job the rays that programs_.front() leaves: LEFT_PIXELS and so on of layout.h
-    OutputParts left_parts_; ///< of left_
-    std::vector<Program> programs_; ///< the kernel, and where it leaves ties the one that traces those rays
+    OutputParts parts_; ///< of output_
+    Buffer left_;       ///< of each job the rays that programs_.front() leaves: DEFERRED_PIXELS and so on of layout.h
+    OutputParts left_parts_;        ///< of left_
+    std::vector<Program> programs_; ///< the kernel, and if it defers ties the one that traces those rays
 
     struct Chunk {
         vk::raii::CommandBuffer commands{nullptr};

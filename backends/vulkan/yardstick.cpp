@@ -9,7 +9,7 @@ namespace {
 
 Yardstick measured_copies(const Context& context, std::uint64_t bytes)
 {
-    const Buffer from(context, bytes, Place::device), to(context, bytes, Place::device);
+    const Buffer from(context, bytes, BufferUse::device), to(context, bytes, BufferUse::device);
     const vk::raii::QueryPool times = context.make_timestamps();
     const vk::raii::CommandBuffer commands = context.make_commands();
     commands.begin({});

@@ -29,7 +29,7 @@ std::optional<std::uint32_t> tet_of_mesh(const PackedScene& packed, std::uint32_
 std::optional<std::uint32_t> face_towards(const Tet& tet, std::uint32_t next)
 {
     for (std::uint32_t face = 0; face < 4; ++face)
-        if (tet.links[face] != NO_LINK && link_tet(tet.links[face]) == next) return face;
+        if (tet.neighbours[face] != NO_HALF_FACE && half_face_tet(tet.neighbours[face]) == next) return face;
     return std::nullopt;
 }
 
@@ -44,7 +44,7 @@ void end_with(RayStep& step, const Tet& tet, const Hit& hit, bool has_end, const
     step.beyond = hits ? fmt::format("triangle {}", source_triangle(scene, hit.face_id)) : "outside";
     std::uint32_t count = 0;
     for (std::uint32_t face = 0; face < 4; ++face) {
-        const bool fits = hits ? tet.faces[face] == hit.face_id : tet.links[face] == NO_LINK;
+        const bool fits = hits ? tet.faces[face] == hit.face_id : tet.neighbours[face] == NO_HALF_FACE;
         if (!fits) continue;
         step.face = face;
         ++count;

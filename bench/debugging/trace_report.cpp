@@ -66,8 +66,8 @@ void add_given(nlohmann::json& trace, const RowKey& key, const PixelRay& ray, co
     const GivenRay& given = *ray.given;
     trace["rays"] = name_of(key.rays);
     if (given.end < NO_END) trace["end"] = given.end;
-    if (given.link == NO_LINK || key.kernel.structure != Structure::cdt) return; // a BVH starts at a point
-    trace["start"] = {{"tet", link_tet(given.link)}, {"face", link_face(given.link)}};
+    if (given.half_face == NO_HALF_FACE || key.kernel.structure != Structure::cdt) return; // a BVH starts at a point
+    trace["start"] = {{"tet", half_face_tet(given.half_face)}, {"face", half_face_index(given.half_face)}};
     if (given.triangle != FREE_FACE) trace["start"]["triangle"] = source_triangle(scene, given.triangle);
 }
 

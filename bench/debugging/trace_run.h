@@ -20,7 +20,7 @@ struct TraceRun {
 
 /// Loads the scene, opens the rows that the options select of one_kernel(), and openmp's, and follows the ray on
 /// each. A device that fails is an error of its row.
-/// Throws Error{usage} where the kernel is not ours, or the pixel makes no such ray; what one_kernel(), select_rows()
+/// Throws Error{usage} if the kernel is not ours, or the pixel makes no such ray; what one_kernel(), select_rows()
 /// and loading the scene throw.
 [[nodiscard]] TraceRun run_trace(const Options& options);
 

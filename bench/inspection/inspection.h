@@ -13,7 +13,7 @@ struct Inspection {
 
 /// Compiles every entry point that the options keep for every target that they name; runs nothing.
 /// tell: see core/base/progress.h.
-/// Throws Error{usage} where no kernel is kept.
+/// Throws Error{usage} if no kernel is kept.
 [[nodiscard]] Inspection inspect(const Options& options, const Progress& tell);
 
 /// Throws Error{missing} naming the first required target that could not be asked, with the reason, or Error{usage}

@@ -25,7 +25,7 @@ using nlohmann::json;
 constexpr const char* no_radv = "RADV, Mesa's Vulkan driver for AMD's GPUs, is missing; install mesa-vulkan-drivers";
 constexpr double max_child_s = 600; // of a child; all programs of a target take about a minute
 
-/// RADV's file among those that the Vulkan loader reads; empty where there is none.
+/// RADV's file among those that the Vulkan loader reads; empty if there is none.
 fs::path driver_file()
 {
     std::vector<fs::path> files;

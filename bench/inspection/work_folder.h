@@ -7,7 +7,7 @@ namespace tetrace {
 /// A new folder for what compilers read and write; gone with its contents when this is.
 class WorkFolder {
 public:
-    /// Throws Error{invalid_input} where the system's folder for temporary files cannot hold one.
+    /// Throws Error{invalid_input} if the system's folder for temporary files cannot hold one.
     WorkFolder();
     ~WorkFolder();
     WorkFolder(const WorkFolder&) = delete;

@@ -27,7 +27,7 @@ void shorten_home(std::string& text, const std::string& home)
     }
 }
 
-/// What remains of a path: its last part; nothing where that could be a person's folder, as in /home/name.
+/// What remains of a path: its last part; nothing if that could be a person's folder, as in /home/name.
 std::string last_part(std::string path)
 {
     path.erase(path.find_last_not_of('/') + 1);

@@ -24,7 +24,7 @@ struct BenchmarkFlags {
 [[nodiscard]] BenchmarkFlags read_benchmark_flags(const std::vector<std::string>& arguments);
 
 /// Whether Google Benchmark's --benchmark_filter would keep the name: a regular expression found anywhere, negated by a
-/// leading '-'; "all" and "" keep everything. Throws Error{usage} where it is not a regular expression.
+/// leading '-'; "all" and "" keep everything. Throws Error{usage} if it is not a regular expression.
 [[nodiscard]] bool benchmark_filter_keeps(const std::string& filter, const std::string& name);
 
 } // namespace tetrace

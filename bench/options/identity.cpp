@@ -28,7 +28,7 @@ std::string value_in(const char* file, const std::string& key, char separator)
     return "unknown";
 }
 
-/// A number of /proc/cpuinfo; empty where there is none, as on ARM. The key ends in a tab there.
+/// A number of /proc/cpuinfo; empty if there is none, as on ARM. The key ends in a tab there.
 std::optional<unsigned> processor_number(const std::string& key)
 {
     const std::string text = value_in("/proc/cpuinfo", key + "\t", ':');

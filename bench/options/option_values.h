@@ -14,7 +14,7 @@ namespace tetrace {
 /// "a, b or c".
 [[nodiscard]] std::string join_alternatives(const std::vector<std::string>& names);
 
-/// "; did you mean --samples?": the name that one or two slips of the hand turn into the text. Empty where none is so
+/// "; did you mean --samples?": the name that one or two slips of the hand turn into the text. Empty if none is so
 /// near.
 [[nodiscard]] std::string did_you_mean(const std::string& text, const std::vector<std::string>& names);
 

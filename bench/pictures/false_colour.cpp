@@ -26,7 +26,7 @@ constexpr std::uint32_t margin = 10; ///< of title and scale bar, at lettering s
 constexpr std::uint32_t footer_height = 58;
 constexpr std::uint32_t gap_between = 4; // between pictures side by side
 
-/// Where the scale bar of a picture lies, and what it means.
+/// The position of a picture's scale bar, and its meaning.
 struct ScaleBar {
     std::uint32_t scale; ///< of the lettering
     std::uint32_t left, top, width, height;

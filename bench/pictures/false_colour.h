@@ -27,7 +27,7 @@ struct StepSummary {
 [[nodiscard]] StepSummary summarize_steps(std::span<const Hit> hits);
 
 /// The picture of a view in false colour, a pixel per ray, with a title and a scale bar below it. Rays without a step
-/// are black, lost rays magenta; rays beyond the end of the scale have its colour.
+/// are black, lost rays magenta; rays past the end of the scale have the colour of its end.
 /// subject: the scene and view, for the title. hits: width * height, row after row. The picture is `width` wide, or
 /// wider where the title needs it.
 [[nodiscard]] Pixmap draw_steps(std::span<const Hit> hits, std::uint32_t width, std::uint32_t height,

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-// The one function of the images module, with C linkage. The module is a shared object of its own: OpenImageIO brings
+// The one function of the images module, with C linkage. The module is a separate shared object: OpenImageIO depends on
 // some 260 libraries, which must not be in the process that measures.
 extern "C" {
 /// Makes an image file of width * height * 3 floats of linear light: ending `.png`, 8 bits of sRGB, or `.exr`, linear

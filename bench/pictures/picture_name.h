@@ -24,7 +24,7 @@ struct PictureKey {
 /// The ending of all pictures of a run: that of the file `out`; else .png, or .ppm where nothing can write PNG.
 [[nodiscard]] std::string picture_ending(const std::optional<std::filesystem::path>& out, bool can_write_png);
 
-/// Throws Error{usage} where `out` is neither a folder nor has an accepted ending.
+/// Throws Error{usage} if `out` is neither a folder nor has an accepted ending.
 void check_picture_ending(const std::optional<std::filesystem::path>& out);
 
 } // namespace tetrace

@@ -10,7 +10,7 @@ namespace tetrace {
 class PictureWriter {
 public:
     /// ending: .ppm, which needs nothing; .png or .exr, which load the images module.
-    /// Throws Error{missing} where the module is needed and missing.
+    /// Throws Error{missing} if the module is needed and missing.
     explicit PictureWriter(const std::string& ending);
 
     /// Throws Error{invalid_input} naming the file and the reason.

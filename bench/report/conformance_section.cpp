@@ -25,7 +25,7 @@ std::vector<std::string> devices_of(const ResultValue& scene)
     return devices;
 }
 
-/// The row of a result that a cell of its matrix is about; null where none has a reason.
+/// The row of a result that a cell of its matrix is about; null if none has a reason.
 const ReportRow* find_row(const ReportInput& input, std::size_t file, const std::array<std::string, 3>& cell)
 {
     std::string kernel = cell[1];

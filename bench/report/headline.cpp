@@ -19,7 +19,7 @@ struct Contest {
     std::string device;
     std::vector<const ReportRow*> rows; ///< fastest first
 
-    /// The fastest whose kernel's name begins so; null where there is none.
+    /// The fastest whose kernel's name begins so; null if there is none.
     [[nodiscard]] const ReportRow* fastest(std::string_view beginning) const
     {
         const auto found =

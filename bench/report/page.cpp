@@ -52,7 +52,7 @@ StatusCounts statuses_of(const Campaign& campaign)
     return counts;
 }
 
-/// Claims by verdict over all tables and figures; empty where there are none.
+/// Claims by verdict over all tables and figures; empty if there are none.
 std::string claim_summary(const ReportInput& input)
 {
     std::vector<std::pair<std::string, std::size_t>> verdicts = {

@@ -7,7 +7,7 @@
 namespace tetrace {
 
 /// A PNG file's bytes: colour type 2, 8 bits a channel, not interlaced.
-/// rgb: 3 width height bytes of sRGB, row after row from the top. Throws Error{internal} where their number differs.
+/// rgb: 3 width height bytes of sRGB, row after row from the top. Throws Error{internal} if their number differs.
 /// Source: Portable Network Graphics (PNG) Specification, W3C, third edition.
 [[nodiscard]] std::string png_bytes(std::uint32_t width, std::uint32_t height, std::string_view rgb);
 

@@ -53,7 +53,7 @@ struct RowGroup {
 [[nodiscard]] std::vector<RowGroup> rated_groups(const std::vector<ResultFile>& files,
                                                  const std::vector<ReportRow>& rows);
 
-/// A result's name on the page: A, B, ... Z, then 27, 28, ...; empty where there is only one.
+/// A result's name on the page: A, B, ... Z, then 27, 28, ...; empty if there is only one.
 [[nodiscard]] std::string file_letter(std::size_t file, std::size_t files);
 
 /// A title followed by that name: "bunny · A".

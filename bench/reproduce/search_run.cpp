@@ -66,7 +66,7 @@ Verdicts judge_all(const SearchRays& rays, const Faces& faces, std::uint32_t ray
         case SearchVerdict::lost: ++verdicts.lost; break;
         }
         if (verdicts.clean() || verdicts.first_wrong) continue;
-        const std::uint32_t tet = link_tet(rays.link(ray));
+        const std::uint32_t tet = half_face_tet(rays.half_face(ray));
         const auto exact_face = static_cast<std::uint32_t>(std::countr_zero(rays.exits[ray]));
         const auto number = static_cast<std::uint32_t>(ray % rays_per_tet);
         verdicts.first_wrong = WrongRay{tet, number, 0, as_hit(faces[ray], tet), exact_face, 0, {}};
@@ -155,7 +155,7 @@ private:
         const Faces& reference = references_.of(row.key.kernel, rays_);
         for (std::size_t ray = 0; ray < faces_.size(); ++ray) {
             if (faces_[ray] == reference[ray]) continue;
-            const std::uint32_t tet = link_tet(rays_.link(ray));
+            const std::uint32_t tet = half_face_tet(rays_.half_face(ray));
             const auto number = static_cast<std::uint32_t>(ray % run_->size.rays);
             if (verdict.different++ == 0)
                 verdict.first_different =

@@ -14,17 +14,17 @@ namespace tetrace {
 namespace {
 
 /// Where a row runs: its hardware, and the API too if that is emulated.
-using Place = std::tuple<DeviceKind, std::size_t, std::string>;
+using DeviceKey = std::tuple<DeviceKind, std::size_t, std::string>;
 
 /// Empty if nothing is known. A row whose scene could not be loaded has no device: openmp's and Embree's is the host's.
-std::optional<Place> place_of(const RowRecord& row, std::size_t hardware)
+std::optional<DeviceKey> place_of(const RowRecord& row, std::size_t hardware)
 {
     if (row.device.name.empty()) {
         if (!on_reference(row.key) && !is_embree(row.key.kernel.layout)) return std::nullopt;
-        return Place{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}};
+        return DeviceKey{DeviceKind::cpu, std::numeric_limits<std::size_t>::max(), {}};
     }
     const bool is_emulated = row.device.kind == DeviceKind::emulated;
-    return Place{row.device.kind, hardware, is_emulated ? device_label(row.key) : std::string()};
+    return DeviceKey{row.device.kind, hardware, is_emulated ? device_label(row.key) : std::string()};
 }
 
 /// Adds the row's API unless it is there.
@@ -55,7 +55,7 @@ std::vector<Contest> contests_of(const std::vector<RowRecord>& rows, const std::
         devices.push_back(row.device);
     const auto hardware = physical_devices(devices);
     std::vector<Contest> contests;
-    std::vector<Place> places;
+    std::vector<DeviceKey> places;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const RowRecord& row = rows[i];
         const auto place = place_of(row, hardware[i]);

@@ -91,7 +91,7 @@ std::array<PaperCell, 2> paid_cells(const RowRecord* walk, const RowRecord* bvh)
     return {when, when};
 }
 
-/// How Embree runs on the processor; empty if it has no row.
+/// How Embree runs on the CPU; empty without a row of it.
 std::string embree_note(const std::vector<Contest>& contests)
 {
     for (const Contest& contest : contests)

@@ -12,7 +12,7 @@ namespace tetrace {
 inline constexpr double reproduce_confidence = 0.95;
 
 /// A number estimated from a sample of views, with its 95 % interval. Without bounds it is exact (nothing was left
-/// out), or unbounded: the sample does not tell how far off it may be.
+/// out), or unbounded: the sample does not show how far off it may be.
 struct Estimate {
     double value = 0;
     std::optional<double> low, high;
@@ -29,7 +29,7 @@ private:
 enum class Sampling {
     whole, ///< all of them, with all rays that the paper's images have: nothing is left to chance
     even,  ///< spread evenly over the set, or all of them with fewer rays
-    chosen ///< otherwise: they say nothing of the others, and what is estimated from them has no bounds
+    chosen ///< otherwise: they say nothing about the others, and estimates from them are without bounds
 };
 
 /// Whether views (ascending numbers below population) are spread evenly: no gap, those at the ends included, is longer
@@ -42,7 +42,7 @@ inline constexpr std::size_t min_views = 10;
 
 /// The mean of counts, one a view, as an estimate of the mean over the whole set.
 /// whole: exact. even: percentile bootstrap over the views (2,000 resamples, fixed seed), without a correction for the
-/// finite population, which errs on the safe side. A sample without any count has no upper bound: the views left out
+/// finite population, which errs on the safe side. A sample without any count gives no upper bound: the views left out
 /// may hold any number. Throws Error{internal} for no counts.
 [[nodiscard]] Estimate mean_count(const std::vector<double>& counts, Sampling sampling);
 
@@ -58,7 +58,7 @@ inline constexpr std::size_t min_views = 10;
                                      Sampling sampling = Sampling::even);
 
 /// Pearson's correlation with its interval by Fisher's z, which takes the views as independent draws of two normal
-/// variables. Empty for fewer than min_views pairs, or where one of the two does not vary.
+/// variables. Empty for fewer than min_views pairs, or if one of the two does not vary.
 /// Throws Error{internal} for lists of different lengths.
 [[nodiscard]] std::optional<Estimate> correlation(const std::vector<double>& x, const std::vector<double>& y,
                                                   Sampling sampling = Sampling::even);

@@ -18,8 +18,8 @@ struct MedianRatio {
 
 /// The median of the numerator's samples over that of the denominator's, with a 95 % interval by the percentile
 /// bootstrap: both sets are drawn again with replacement, independently, since rows are interleaved at random and no
-/// sample of one belongs to a sample of the other; the interval is the middle 95 % of the ratios that come out. The
-/// drawing starts from a fixed seed: equal samples give equal intervals.
+/// sample of one belongs to a sample of the other; the interval is the middle 95 % of the resulting ratios. The drawing
+/// starts from a fixed seed: equal samples give equal intervals.
 /// Source: Efron and Tibshirani, "An Introduction to the Bootstrap" (1993), chapters 13 and 16; that times of programs
 /// want ratios with intervals from resampling: Kalibera and Jones, "Rigorous Benchmarking in Reasonable Time" (2013).
 /// Throws Error{internal} for no samples, or one that is not positive and finite.

@@ -10,8 +10,7 @@ namespace tetrace {
 
 namespace {
 
-/// Student's 97.5 % quantile, by degrees of freedom from 1 on; beyond, that of the largest, which errs on the safe
-/// side.
+/// Student's 97.5 % quantile, by degrees of freedom from 1 on; above, that of the largest, which errs on the safe side.
 double student_quantile(std::size_t degrees)
 {
     static constexpr std::array<double, 20> quantiles = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646,

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t max_counted = 50; // samples; counting takes n * m * n * m / 2 steps
 
-/// The lower half of the distribution of U, the number of pairs in which the one set has the larger value, where both
-/// sets are drawn from one distribution: P(U = u) for u up to n * m / 2, by the recursion of Mann and Whitney.
+/// The lower half of the distribution of U, the number of pairs in which the one set has the larger value, if both sets
+/// are drawn from one distribution: P(U = u) for u up to n * m / 2, by the recursion of Mann and Whitney.
 std::vector<double> pair_count_distribution(std::size_t n, std::size_t m)
 {
     const std::size_t size = n * m / 2 + 1;
@@ -52,7 +52,7 @@ std::size_t approximate_values(std::size_t n, std::size_t m, double tail)
         const double deviations = (static_cast<double>(u) + 0.5 - pairs / 2) / deviation;
         return std::erfc(-deviations / std::sqrt(2.0)) / 2 <= tail;
     };
-    std::size_t inside = 0, outside = n * m / 2 + 1; // the first value that is not in the tail lies between
+    std::size_t inside = 0, outside = n * m / 2 + 1; // the first value that is not in the tail is between
     while (inside < outside) {
         const std::size_t middle = (inside + outside) / 2;
         (is_in_tail(middle) ? inside : outside) = is_in_tail(middle) ? middle + 1 : middle;

@@ -7,13 +7,13 @@ namespace tetrace {
 /// Samples above this spread make a row noisy.
 inline constexpr double noisy_spread = 0.05;
 
-/// A row is noisy, too, where the pulse beside half of its samples or more took this many times its fastest, or longer.
-/// Two results of one machine whose pulses are that far apart do not compare.
+/// A row is also noisy if calibration took at least this many times its fastest during half of its samples or more. Two
+/// results of one machine whose pulses are that far apart do not compare.
 inline constexpr double noisy_pulse = 1.25;
 
-/// The one rule on samples: with fewer, a row's rate has no interval, neither beside another row of its run nor beside
-/// the same row of another result. Of 3 samples, the bootstrap's 95 % intervals hold the true ratio in 90 % of cases
-/// (median_ratio.h), and ranks give none at all for `compare`'s 1 % of false alarms (speed_verdict.h).
+/// The one rule on samples: with fewer, a row's rate lacks an interval, compared both with another row of its run and
+/// with the same row of another result. Of 3 samples, the bootstrap's 95 % intervals hold the true ratio in 90 % of
+/// cases (median_ratio.h), and ranks give none at all for `compare`'s 1 % of false alarms (speed_verdict.h).
 inline constexpr unsigned min_samples = 5;
 
 /// Median and quartiles of a row's samples.

@@ -58,7 +58,7 @@ void say_when_interrupted(const std::string& text);
 /// may quote files and drivers.
 void say(const std::string& message);
 
-/// Clears the progress line, then writes a result to standard output. Throws Error{invalid_input} where writing fails.
+/// Clears the progress line, then writes a result to standard output. Throws Error{invalid_input} if writing fails.
 void print(const std::string& text);
 
 } // namespace tetrace

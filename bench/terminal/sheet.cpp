@@ -43,7 +43,7 @@ std::string without_last_newlines(std::string text)
     return text;
 }
 
-/// Which columns a terminal is too narrow for; empty where none.
+/// Which columns a terminal is too narrow for; empty if none.
 std::string left_out(const std::vector<std::string>& titles, std::size_t indent, std::size_t width)
 {
     if (titles.empty()) return {};

@@ -17,7 +17,7 @@ using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
     return std::holds_alternative<std::monostate>(cell);
 }
 
-/// A cell that is empty where the text is.
+/// A cell that is empty if the text is.
 [[nodiscard]] inline Cell text_cell(const std::string& text)
 {
     return text.empty() ? Cell() : Cell(text);
@@ -45,7 +45,7 @@ class Table {
 public:
     explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
-    /// Throws Error{internal} where the number of cells differs from the number of columns.
+    /// Throws Error{internal} if the number of cells differs from the number of columns.
     void add(std::vector<Cell> cells);
     /// A line of text above the rows that are added next; CSV does not have it.
     void add_heading(const std::string& text) { headings_.emplace(rows_.size(), text); }

@@ -28,7 +28,7 @@ double sum_of(Double3 a)
 struct ExactSearch::Builder {
     static constexpr std::uint32_t leaf_size = 4;
     static constexpr int bins = 16;
-    static constexpr int deepest = 60; // below, halves: the stack of visit() has room for both
+    static constexpr int deepest = 60; // below, halves: the stack of visit() holds both
 
     struct Box {
         std::array<float, 3> low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
@@ -173,7 +173,7 @@ struct ExactSearch::Tube {
         return near <= far * (1 + 1e-12) ? near : nowhere;
     }
 
-    // Where a triangle lies, as the tube's line sees it.
+    // A triangle's position, as the tube's line sees it.
     struct Seen {
         Double3 a, b, c; // its corners from the origin: exact, as all coordinates are on the grid
         bool is_outside; // by more than the radius
@@ -291,7 +291,7 @@ private:
         best_ = triangle;
         t_ = t;
         error_ = error;
-        tube_.end = t + reach; // of the part: nothing beyond the triangle's far end in the tube is asked for
+        tube_.end = t + reach; // of the part: nothing past the triangle's far end in the tube is needed
     }
     void keep(double from) { nearest_other_ = std::min(nearest_other_, from - tube_.radius / tube_.speed); }
 
@@ -313,7 +313,7 @@ namespace {
 
 double last_of(const RayPart& part)
 {
-    // Beyond the end by far more than t can be off: a triangle there may be within its error of the end.
+    // Past the end by far more than t can be off: a triangle there may be within its error of the end.
     return part.has_end() ? static_cast<double>(part.end) * 1.0625 + 0.0625 : nowhere;
 }
 

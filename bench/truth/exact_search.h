@@ -11,7 +11,7 @@ namespace tetrace {
 /// What a ray meets first.
 struct FirstHit {
     std::uint32_t face = NO_HIT;
-    bool is_clear = true; ///< nothing but that triangle lies within the radius of the ray up to it, and no edge of it;
+    bool is_clear = true; ///< nothing but that triangle is within the radius of the ray up to it, and no edge of it;
                           ///< otherwise `face` says nothing
 };
 

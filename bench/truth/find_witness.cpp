@@ -90,8 +90,8 @@ private:
             lines_.push_back(edge.line);
     }
 
-    // Where the planes of triangles are met at the origin's depth. On one side of such a line a triangle lies behind a
-    // curve's start, on the other ahead.
+    // Where the planes of triangles are met at the origin's depth. On one side of such a line a triangle is farther
+    // than a curve's start, on the other ahead.
     void add_start_lines(std::vector<Ranked>& ranked) const
     {
         const std::size_t edges = ranked.size();
@@ -126,7 +126,7 @@ private:
         }
     }
 
-    // That one of the answer's triangle, and on both sides of it, where one that is seen edge-on is met at its depth.
+    // That of the answer's triangle, and both sides of it, where a triangle seen edge-on is met at its depth.
     void add_places_at(const Facet& facet, const std::optional<Double3>& point)
     {
         if (!point) return;
@@ -185,7 +185,7 @@ private:
                 if (cuts[k] > cuts[k - 1])
                     add_both_sides(line, foot + line.along * ((cuts[k] + cuts[k - 1]) / 2), count);
         }
-        // On a line double precision cannot tell what is met.
+        // On a line, double precision cannot decide what is met.
         std::erase_if(places_, [&](Double2 place) {
             return std::ranges::any_of(
                 lines_, [&](const EdgeLine& line) { return std::abs(line.side(place)) < radius_ * 1e-9; });
@@ -245,7 +245,7 @@ private:
         return question_.part.has_end() ? std::min(last, end_depth() * (1 + 1e-14) + 1e-15) : last;
     }
 
-    // The depth at which the line through a place ends, beyond the gap's far end; or nothing where that is another
+    // The depth at which the line through a place ends, past the gap's far end; or nothing if that is another
     // triangle's.
     [[nodiscard]] std::optional<double> finish(const std::vector<Gap>& gaps, std::size_t gap) const
     {
@@ -342,7 +342,7 @@ private:
         return {places_[place].x, places_[place].y, depth};
     }
 
-    // What a segment meets: nothing, the answer's triangle alone, or another one.
+    // What a segment meets: nothing, only the answer's triangle, or another one.
     enum class Meets { nothing, answer, another };
     [[nodiscard]] Meets meets(Double3 from, Double3 to) const
     {
@@ -356,7 +356,7 @@ private:
     }
 
     // Moves across at one depth, early or late, where the gaps overlap. Returns a witness where the move meets the
-    // answer's triangle: one that is seen edge-on is met from its side alone.
+    // answer's triangle: one that is seen edge-on is met only from its side.
     [[nodiscard]] Witness move(const std::vector<Node>& nodes, std::size_t from, Node& to,
                                const std::vector<std::vector<Gap>>& gaps, int& moves_left) const
     {

@@ -42,7 +42,7 @@ struct Differences {
 /// distance (see SelfTest::allowed_ulps). Any-hit answers: both hit or both miss.
 [[nodiscard]] bool is_same_hit(const Hit& a, const Hit& b, Allowance allowed);
 
-/// Compares a device's hits with openmp's. Throws Error{internal} where the numbers of hits differ.
+/// Compares a device's hits with openmp's. Throws Error{internal} if the numbers of hits differ.
 [[nodiscard]] Differences compare_hits(std::span<const Hit> hits, std::span<const Hit> reference, Allowance allowed);
 
 } // namespace tetrace

@@ -16,7 +16,7 @@ struct HitPoint {
 };
 [[nodiscard]] HitPoint point_of(const TriangleMesh& mesh, const ExactRay& ray, std::uint32_t triangle);
 
-/// How far beyond a ray's end, or before it, a triangle may be met and count as on the other side: the error of t, and
+/// How far past a ray's end, or before it, a triangle may be met and count as on the other side: the error of t, and
 /// the bound.
 [[nodiscard]] double end_error_of(const TriangleMesh& mesh, const ExactRay& ray, std::uint32_t triangle, double bound);
 
@@ -28,7 +28,7 @@ enum class HitFormula {
 
 /// Whether a hit's t, u and v are right.
 /// By the kernels' formula: each is within its error of the exact one. Or the triangle may count as seen edge-on, the
-/// point lies in the triangle, and t between the depths of its vertices.
+/// point is in the triangle, and t between the depths of its vertices.
 /// By another formula: origin + t direction is the barycentric point of the triangle, up to bound (1 + 2 |e1| |e2| |u|
 /// / |determinant|). bound: of a decision, in domain units.
 [[nodiscard]] bool names_right_point(const TriangleMesh& mesh, const ExactRay& ray, const Hit& hit, HitFormula formula,

@@ -41,7 +41,7 @@ const char* Judge::flaw_of(const JudgedRay& judged, const Hit& hit, HitFormula f
     if (!names_right_point(mesh_, judged.traced, hit, formula, bound))
         return "its t, u and v are not those of the point";
     const bool is_beyond = hit.t > judged.part.end && !point_of(mesh_, judged.traced, hit.face_id).may_be_edge_on;
-    return is_beyond ? "its t lies beyond the ray's end" : nullptr;
+    return is_beyond ? "its t is past the ray's end" : nullptr;
 }
 
 std::optional<Flaw> Judge::judge(Verdicts& verdicts, const JudgedRay& judged, const Hit& hit, HitFormula formula) const

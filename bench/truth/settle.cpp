@@ -31,7 +31,7 @@ struct Settler::Case {
     RayPart part;
     std::uint32_t answer;
     double bound;
-    std::vector<std::uint32_t> near; // what lies within the bound of the ray
+    std::vector<std::uint32_t> near; // what is within the bound of the ray
 
     // The part's end, and the triangle's t: each may be off, but no more than the triangle and the bound allow.
     [[nodiscard]] bool is_beyond_end(const TriangleMesh& mesh, std::uint32_t triangle) const

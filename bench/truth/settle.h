@@ -28,7 +28,7 @@ struct Settlement {
 /// triangle first; for NO_HIT, if such a curve meets none up to the end (docs/spec/numbers.md, N6). The exact ray is
 /// such a curve. Any other must be found, and is checked exactly: no witness, no tie. Where any hit will do, the
 /// triangle need not be the first. The end of a part is compared with a rounded t: a triangle is neither before nor
-/// beyond it where they differ by no more than the error of t.
+/// past it if they differ by no more than the error of t.
 class Settler {
 public:
     /// mesh, search: kept by reference.

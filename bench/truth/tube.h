@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-/// What lies near a ray, as the ray sees it, in double precision.
+/// What is near a ray, as the ray sees it, in double precision.
 namespace tetrace::tube {
 
 /// A place across the ray, in its tube's cross-section.
@@ -141,8 +141,8 @@ std::optional<Double3> point_within(const Facet& facet, double radius, const At&
     return middle + inwards * std::min(0.25, radius / (64 * std::max(length(across(inwards)), 1e-300)));
 }
 
-/// Least and most depth, within a radius of the ray, of a facet that covers all that lies within it; for any other
-/// facet an infinite range.
+/// Minimum and maximum depth, within a radius of the ray, of a facet that covers all within it; for any other facet an
+/// infinite range.
 inline std::pair<double, double> depths_across(const Facet& facet, double radius)
 {
     const auto& [a, b, c] = facet.corners;

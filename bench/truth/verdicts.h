@@ -21,7 +21,7 @@ struct WrongRay {
 /// Verdicts on the rays of an image; each ray is in exactly one of agreed, ties, settled, offset, wrong, lost.
 struct Verdicts {
     std::uint64_t rays = 0;
-    std::uint64_t agreed = 0;  ///< the exact ray's answer, and no edge or other triangle lies within tie_bound() of it
+    std::uint64_t agreed = 0;  ///< the exact ray's answer, and no edge or other triangle is within tie_bound() of it
     std::uint64_t settled = 0; ///< the exact ray's answer, although some do
     std::uint64_t ties = 0;    ///< another answer, that of a curve within tie_bound() of the ray: its witness
     std::uint64_t offset = 0;  ///< of given rays: right only for the offset origin that a BVH starts from

@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// The job of one pixel alone, an image of one ray: the same ray, bit for bit.
+/// The job of only one pixel, an image of one ray: the same ray, bit for bit.
 [[nodiscard]] TraceJob single_pixel(TraceJob job, std::uint32_t x, std::uint32_t y);
 
 /// The first tets that a walk leaves, in order, as positions in the packed scene, up to the given number. A walk that
@@ -19,7 +19,7 @@ namespace tetrace {
                                                    std::uint32_t most);
 
 /// The first tets that one pixel's walk leaves, in order, as positions in the packed scene, up to the given number. The
-/// session's device traces the pixel alone. Throws what the session throws.
+/// session's device traces only the pixel. Throws what the session throws.
 [[nodiscard]] std::vector<std::uint32_t> walk_path(Session& session, const TraceJob& job, std::uint32_t x,
                                                    std::uint32_t y, std::uint32_t most);
 

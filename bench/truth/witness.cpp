@@ -71,7 +71,7 @@ Meeting meeting_of(Double3 from, Double3 to, const std::array<Double3, 3>& trian
     const auto& [a, b, c] = triangle;
     const int before = side_of(a, b, c, from), after = side_of(a, b, c, to);
     if (before * after > 0) return Meeting::none;
-    if (before == 0 && after == 0) return Meeting::touched; // maybe not, but it lies in the plane
+    if (before == 0 && after == 0) return Meeting::touched; // maybe not, but it is in the plane
     const int sides[] = {side_of(from, to, a, b), side_of(from, to, b, c), side_of(from, to, c, a)};
     const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
     if (least < 0 && most > 0) return Meeting::none;

@@ -27,8 +27,8 @@ struct WitnessQuestion {
 
 /// Checks a witness by exact arithmetic. The curve starts at the ray's origin, or within the bound of it where the part
 /// starts on a triangle. Its last segment passes through the interior of the answer's triangle and meets no other; the
-/// other segments meet none. For NO_HIT no segment meets any, and the last corner lies beyond all of them, or at the
-/// part's end. A triangle that a segment touches counts as met.
+/// other segments meet none. For NO_HIT no segment meets any, and the last corner is past all of them, or at the part's
+/// end. A triangle that a segment touches counts as met.
 [[nodiscard]] bool is_witness(const TriangleMesh& mesh, const WitnessQuestion& question, const Witness& witness);
 
 /// Looks for a witness, in double precision, and checks what it finds; empty: none was found. Tries parallel rays

@@ -62,7 +62,7 @@ Fraction distance_to_plane(Float3 origin, Float3 direction, Float3 v0, Float3 v1
 
 float snap_to_grid(float coordinate)
 {
-    // Floats of magnitude 2^-16 and more have no bit below 2^-40.
+    // All bits of floats of magnitude 2^-16 and more are at least 2^-40.
     if (std::abs(coordinate) >= 0x1p-16f) return coordinate;
     const double rounded = std::nearbyint(coordinate * points_per_unit) * coordinate_grid;
     return static_cast<float>(rounded) + 0.0f; // never -0

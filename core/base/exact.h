@@ -21,7 +21,7 @@ inline constexpr double coordinate_grid = 0x1p-40;
 struct ExactCrossing {
     bool met = false; ///< the closed triangle is met at t >= 0; never for a ray in the triangle's plane
     double t = 0;     ///< rounded to nearest only at the end; for messages
-    /// Signs of the ray's position with respect to the edges v0v1, v1v2, v2v0; all >= 0 or all <= 0 where the line
+    /// Signs of the ray's position with respect to the edges v0v1, v1v2, v2v0; all >= 0 or all <= 0 if the line
     /// meets it.
     int edge_side[3] = {0, 0, 0};
 };

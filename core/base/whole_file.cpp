@@ -20,7 +20,7 @@ namespace {
 [[noreturn]] void fail(const fs::path& path, int reason)
 {
     throw Error(ErrorKind::invalid_input, "writing " + path.string() + ": " + std::strerror(reason) +
-                                              "; check that it may be written to and that there is space left");
+                                              "; check that it may be written to and that the disk is not full");
 }
 
 fs::path folder_of(const fs::path& path)

@@ -12,7 +12,7 @@ namespace tetrace {
 /// Writes a file. Throws Error{invalid_input} naming the path and the system's reason where not every byte is written.
 void write_whole(const std::filesystem::path& path, std::string_view bytes);
 
-/// Throws what write_whole() would throw at once; leaves nothing behind, and changes nothing.
+/// Throws what write_whole() would throw at once; leaves no file, and changes nothing.
 void require_writable(const std::filesystem::path& path);
 
 } // namespace tetrace

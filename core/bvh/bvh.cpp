@@ -13,7 +13,9 @@ std::string node_text(std::size_t node)
 Defect child_defect(const Bvh& bvh, std::size_t parent, std::vector<bool>& is_child)
 {
     for (const auto child : bvh.nodes[parent].child) {
-        if (child <= parent || child >= bvh.nodes.size()) return node_text(parent) + "has a child before it or beyond";
+        if (child <= parent || child >= bvh.nodes.size())
+            return node_text(parent) + "has a child before it or past "
+                                       "the last node";
         if (is_child[child]) return node_text(child) + "is a child twice";
         is_child[child] = true;
         if (!contains(bvh.nodes[parent].box, bvh.nodes[child].box))
@@ -31,12 +33,12 @@ struct BvhCoverage {
 Defect leaf_defect(const Bvh& bvh, std::size_t leaf, BvhCoverage& coverage)
 {
     const auto& [box, child, first, count] = bvh.nodes[leaf];
-    if (std::uint64_t{first} + count > bvh.references.size()) return node_text(leaf) + "has references beyond the last";
+    if (std::uint64_t{first} + count > bvh.references.size()) return node_text(leaf) + "has references past the last";
     for (std::size_t i = first; i < std::size_t{first} + count; ++i) {
         const std::uint32_t triangle = bvh.references[i];
         if (coverage.referred[i]) return "reference " + std::to_string(i) + " is in two leaves";
         coverage.referred[i] = true;
-        if (triangle >= coverage.of_triangle.size()) return node_text(leaf) + "names a triangle beyond the last";
+        if (triangle >= coverage.of_triangle.size()) return node_text(leaf) + "names a triangle past the last";
         for (std::size_t j = first; j < i; ++j)
             if (bvh.references[j] == triangle) return node_text(leaf) + "names a triangle twice";
         coverage.of_triangle[triangle] = merged(coverage.of_triangle[triangle], box);
@@ -71,7 +73,7 @@ std::uint32_t depth_of(const Bvh& bvh)
 
 std::optional<std::string> find_defect(const Bvh& bvh, const TriangleMesh& mesh)
 {
-    if (bvh.nodes.empty()) return "there is no root";
+    if (bvh.nodes.empty()) return "the root is missing";
     std::vector<bool> is_child(bvh.nodes.size());
     BvhCoverage coverage{std::vector<bool>(bvh.references.size()), std::vector<Box>(mesh.triangles.size())};
     for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {

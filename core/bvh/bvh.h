@@ -33,8 +33,8 @@ struct Bvh {
 [[nodiscard]] std::uint32_t depth_of(const Bvh& bvh);
 
 /// What is wrong with a BVH of this mesh; empty if nothing is. Each node but the root is the child of one node and
-/// comes after it; its box lies in its parent's; each reference belongs to one leaf; a leaf names existing triangles
-/// once each; the leaves of a triangle together cover its box.
+/// comes after it; its box is in its parent's; each reference belongs to one leaf; a leaf names existing triangles once
+/// each; the leaves of a triangle together cover its box.
 [[nodiscard]] std::optional<std::string> find_defect(const Bvh& bvh, const TriangleMesh& mesh);
 
 } // namespace tetrace

@@ -10,7 +10,7 @@ struct TriangleParts {
 };
 
 /// Cuts a triangle at a plane across an axis. Returns the boxes of the parts on either side that lie in `box`, rounded
-/// outwards; empty where there is no such part. What lies in the plane is in both.
+/// outwards; empty if that part is empty. What is in the plane is in both.
 [[nodiscard]] TriangleParts split_triangle(const Float3 (&corners)[3], int axis, float position, const Box& box);
 
 } // namespace tetrace

@@ -28,7 +28,7 @@ struct WideChild {
 /// 1 to WideShape::children children.
 using WideNode = std::vector<WideChild>;
 
-/// A BVH whose nodes have up to four or eight children; the root first, a child after its parent, the root alone may
+/// A BVH whose nodes have up to four or eight children; the root first, a child after its parent, only the root may
 /// have one child.
 struct WideBvh {
     std::vector<WideNode> nodes;

@@ -6,11 +6,11 @@
 
 namespace tetrace {
 
-/// A backend that this build was made without: it has no kernel, and one device whose reason says why it cannot be
+/// A backend that this build was made without: it has one device, without kernels, whose reason says why it cannot be
 /// used.
 class AbsentBackend : public Backend {
 public:
-    /// reason: what was missing and which package brings it.
+    /// reason: what was missing and which package to install.
     AbsentBackend(std::string name, const std::string& reason) : name_(std::move(name))
     {
         devices_.push_back(unusable_device("none", reason));

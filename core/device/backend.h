@@ -78,7 +78,7 @@ struct TraceJob {
     [[nodiscard]] std::size_t rays() const { return std::size_t{width} * height; }
 };
 
-/// The cap of walks through so many tets: one step more than there are tets, because a path visits none twice
+/// The cap of walks through this many tets: one step more than the number of tets, because a path visits none twice
 /// (docs/spec/project.md, P6); less on a device with max_steps.
 [[nodiscard]] std::uint32_t step_cap(std::uint64_t tets, const Device& device);
 
@@ -114,7 +114,7 @@ struct Yardstick {
     double launch_s = 0;         ///< an empty kernel, from launch to the end of wait on the host's clock; median
     std::array<CopyRate, 6> copies = {}; ///< of ascending sizes; those of no bytes were not measured
 
-    /// The rate of the level of memory that holds so many bytes: the best of the copies that are as large or larger,
+    /// The rate of the level of memory that holds this many bytes: the best of the copies that are as large or larger,
     /// else that of the largest. Launching makes small copies slow on a GPU, so a larger one may be the best.
     [[nodiscard]] double copy_bytes_per_s_of(std::uint64_t bytes) const;
 };
@@ -137,14 +137,14 @@ public:
     void launch(std::span<const TraceJob> jobs);
     /// The same for one job.
     void launch(const TraceJob& job) { launch(std::span(&job, 1)); }
-    /// Waits for the launch; returns device seconds of the kernel alone, of all its jobs and passes together.
+    /// Waits for the launch; returns device seconds of only the kernel, of all its jobs and passes together.
     [[nodiscard]] virtual double wait() = 0;
     /// Copies the hits of the last launch, job after job, row after row; hits.size(): the sum of width * height.
     /// Throws Error{wrong_result} if the kernel wrote outside its output.
     void read_back(std::span<Hit> hits);
     /// Task search: copies the faces that the last launch found, 0 to 3 or NO_EXIT, in the order of the rays.
     /// faces.size(): the number of rays. Throws Error{wrong_result} if the kernel wrote outside its output, or a word
-    /// that is no face.
+    /// that is not a face.
     void read_back(std::span<std::uint32_t> faces);
     /// launch(), wait() and read_back(); returns device seconds.
     [[nodiscard]] double trace(std::span<const TraceJob> jobs, std::span<Hit> hits);
@@ -184,15 +184,15 @@ public:
     [[nodiscard]] virtual const std::vector<Device>& devices() const = 0;
     /// Whether this build has the kernel for this API, regardless of what the host and its devices can run.
     [[nodiscard]] virtual bool has_kernel(const KernelId& kernel) const = 0;
-    /// Empty where the kernel can run on the device (its index in devices()), else the reason.
+    /// Empty if the kernel can run on the device (its index in devices()), else the reason.
     [[nodiscard]] virtual std::string why_not(std::size_t device, const KernelId& kernel) const = 0;
     [[nodiscard]] virtual std::unique_ptr<Session> open(std::size_t device, const KernelId& kernel,
                                                         const SceneData& scene, const SessionOptions& options) = 0;
     /// Runs kernels/probe.h, one work item per quad of {operation, a, b, c}; returns one word per quad
-    /// (core/device/self_test.h). Empty where the API runs none of our kernels.
+    /// (core/device/self_test.h). Empty if the API runs none of our kernels.
     [[nodiscard]] virtual std::vector<std::uint32_t> probe(std::size_t device, MathMode math,
                                                            std::span<const Quad> operations) = 0;
-    /// Measures the device, in about a second; empty where the API has no memory and no launches of its own.
+    /// Measures the device, in about a second; empty if the API has neither memory nor launches of its own.
     [[nodiscard]] virtual std::optional<Yardstick> yardstick(std::size_t device, const SessionOptions& options) = 0;
 
     // For those who look into a driver or a compiler. A backend overrides what it can do.

@@ -15,24 +15,24 @@ Quad given_quad(Float3 a, std::uint32_t last)
             last};
 }
 
-std::uint32_t packed_link(std::uint32_t link, const PackedScene& packed)
+std::uint32_t packed_half_face(std::uint32_t half_face, const PackedScene& packed)
 {
-    if (link == NO_LINK) return NO_LINK;
-    if (link_tet(link) >= packed.packed_of_mesh.size())
-        throw Error(ErrorKind::internal, "packing rays: one starts in tet " + std::to_string(link_tet(link)) + " of " +
-                                             std::to_string(packed.packed_of_mesh.size()));
-    return make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
+    if (half_face == NO_HALF_FACE) return NO_HALF_FACE;
+    if (half_face_tet(half_face) >= packed.packed_of_mesh.size())
+        throw Error(ErrorKind::internal, "packing rays: one starts in tet " + std::to_string(half_face_tet(half_face)) +
+                                             " of " + std::to_string(packed.packed_of_mesh.size()));
+    return make_half_face(packed.packed_of_mesh[half_face_tet(half_face)], half_face_index(half_face));
 }
 
-// link_of and origin_of: the link and the origin that the quads hold for a ray.
-template <class LinkOf, class OriginOf>
-std::vector<Quad> quads_of_rays(const RaySet& set, const LinkOf& link_of, const OriginOf& origin_of)
+// half_face_of and origin_of: the half-face and the origin that the quads hold for a ray.
+template <class HalfFaceOf, class OriginOf>
+std::vector<Quad> quads_of_rays(const RaySet& set, const HalfFaceOf& half_face_of, const OriginOf& origin_of)
 {
     const std::size_t count = set.rays.size();
     std::vector<Quad> quads(GIVEN_RAY_QUADS * count);
     for (std::size_t i = 0; i < count; ++i) {
         const GivenRay& ray = set.rays[i];
-        quads[i] = given_quad(ray.direction, link_of(ray));
+        quads[i] = given_quad(ray.direction, half_face_of(ray));
         quads[count + i] = given_quad(origin_of(ray), std::bit_cast<std::uint32_t>(ray.end));
     }
     return quads;
@@ -43,14 +43,15 @@ std::vector<Quad> quads_of_rays(const RaySet& set, const LinkOf& link_of, const 
 std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed)
 {
     return quads_of_rays(
-        set, [&](const GivenRay& ray) { return packed_link(ray.link, packed); },
+        set, [&](const GivenRay& ray) { return packed_half_face(ray.half_face, packed); },
         [](const GivenRay& ray) { return ray.origin; });
 }
 
 std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh)
 {
     return quads_of_rays(
-        set, [](const GivenRay&) { return NO_LINK; }, [&](const GivenRay& ray) { return offset_origin(ray, mesh); });
+        set, [](const GivenRay&) { return NO_HALF_FACE; },
+        [&](const GivenRay& ray) { return offset_origin(ray, mesh); });
 }
 
 } // namespace tetrace

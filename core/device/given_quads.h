@@ -8,11 +8,11 @@
 namespace tetrace {
 
 /// The rays in the form of Session::set_rays: GIVEN_RAY_QUADS per ray (kernels/layouts/layout.h).
-/// packed: tets of the set's scene; the links in the result are numbered in its order.
-/// Throws Error{internal} where a link names none of its tets.
+/// packed: tets of the set's scene; the half-faces in the result are numbered in its order.
+/// Throws Error{internal} if a half-face names none of its tets.
 [[nodiscard]] std::vector<Quad> given_quads(const RaySet& set, const PackedScene& packed);
 
-/// The same for a BVH: origins are offset, and there are no links.
+/// The same for a BVH: origins are offset, without half-faces.
 [[nodiscard]] std::vector<Quad> given_quads_offset(const RaySet& set, const TriangleMesh& mesh);
 
 } // namespace tetrace

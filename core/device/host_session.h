@@ -22,7 +22,7 @@ private:
     virtual void run(const TraceJob& job, std::span<std::uint32_t> output) = 0;
 
     Task task_;
-    /// The first hit, behind the guard, begins a cache line as the first guard does.
+    /// The first hit, after the guard, starts a cache line, as the first guard does.
     std::vector<std::uint32_t, boost::alignment::aligned_allocator<std::uint32_t, 64>> output_;
     double kernel_s_ = 0;
 };

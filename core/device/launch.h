@@ -36,7 +36,7 @@ static_assert(sizeof(LaunchParams) == 128, "every backend reads LaunchParams, se
 /// Words that a kernel writes per ray: a hit, or a face.
 [[nodiscard]] std::size_t words_per_ray(Task task);
 
-/// Throws Error{unsupported} with both numbers if a launch's output exceeds the largest buffer; 0 is no limit.
+/// Throws Error{unsupported} with both numbers if a launch's output exceeds the largest buffer; 0 is not a limit.
 void require_output_fits(std::size_t words, std::uint64_t max_buffer_bytes);
 /// The same for a session's rays.
 void require_rays_fit(std::span<const Quad> quads, std::uint64_t max_buffer_bytes);
@@ -77,7 +77,7 @@ public:
         : size_(tile_height), max_piece_tiles_(max_piece_tiles)
     {
     }
-    /// Starts a launch of pieces, which are in flight together, so many times.
+    /// Starts a launch of pieces, which are in flight together, this many times.
     using Enqueue = std::function<void(std::span<const LaunchPiece> pieces, std::uint32_t passes)>;
     /// Calls enqueue for each launch. images: the params of each job, from its first tile on. passes: of all jobs; if a
     /// launch may have all their tiles, as many passes as fit into a second are one call. take_times must call took().

@@ -4,11 +4,11 @@
 
 namespace tetrace {
 
-/// The first check of every Backend::open. Throws Error{missing} where the device cannot be used, unsupported where the
+/// The first check of every Backend::open. Throws Error{missing} if the device cannot be used, unsupported where the
 /// kernel does not run on it.
 void require_kernel(const Backend& backend, std::size_t device, const KernelId& kernel);
 
-/// The packed scene of a kernel that reads one; call it after require_kernel(). Throws Error{internal} where it is not
+/// The packed scene of a kernel that reads one; call it after require_kernel(). Throws Error{internal} if it is not
 /// packed in the kernel's layout.
 [[nodiscard]] const PackedScene& packed_scene(const Backend& backend, std::size_t device, const KernelId& kernel,
                                               const SceneData& scene);

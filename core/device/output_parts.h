@@ -8,7 +8,7 @@
 
 namespace tetrace {
 
-/// Where a launch's jobs write their results in its output: each job between GUARD_WORDS of its own before and behind
+/// Where a launch's jobs write their results in its output: each job between GUARD_WORDS of its own before and after
 /// them, one job after the other. All sizes are in words.
 class OutputParts {
 public:

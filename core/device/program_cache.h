@@ -18,7 +18,7 @@ public:
     /// folder: created when first written to; empty: nothing is kept.
     explicit ProgramCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// The program kept under a key; empty where there is none, or it is damaged.
+    /// The program kept under a key; empty if there is none, or it is damaged.
     [[nodiscard]] std::optional<std::vector<unsigned char>> find(std::uint64_t key) const;
     void keep(std::uint64_t key, std::span<const unsigned char> program) const;
 

@@ -32,7 +32,7 @@ struct TetParts {
     unsigned log2_bytes = 31;
     [[nodiscard]] std::span<const std::byte> part(std::span<const std::byte> tets, unsigned index) const;
 };
-/// max_buffer_bytes: of the device; 0 is no limit. One part where the array fits.
+/// max_buffer_bytes: of the device; 0 is not a limit. One part where the array fits.
 /// Throws Error{unsupported} naming the array and both numbers where any other array exceeds it, any array of a BVH
 /// does, or the tets need more than MAX_TET_PARTS parts.
 [[nodiscard]] TetParts tet_parts(const PackedScene& scene, std::uint64_t max_buffer_bytes);

@@ -39,7 +39,7 @@ struct SelfTest {
 /// The operations to run: some hundreds of quads {operation, a, b, c}.
 [[nodiscard]] const std::vector<Quad>& self_test_operations();
 
-/// results: one word for each of self_test_operations(). Throws Error{internal} where the counts differ.
+/// results: one word for each of self_test_operations(). Throws Error{internal} if the counts differ.
 [[nodiscard]] SelfTest judge_self_test(std::span<const std::uint32_t> results);
 
 } // namespace tetrace

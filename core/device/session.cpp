@@ -27,7 +27,7 @@ void check_guards(std::span<const std::uint32_t> output, const OutputParts& part
         const bool is_last = job == parts.count();
         const std::size_t end = is_last ? output.size() : parts.begin(job) + GUARD_WORDS;
         check_guard(output.subspan(begin, end - begin), job == 0  ? "before"
-                                                        : is_last ? "behind"
+                                                        : is_last ? "after"
                                                                   : "between the jobs of");
         if (!is_last) begin = parts.begin(job) + parts.size(job) - GUARD_WORDS;
     }
@@ -65,7 +65,7 @@ Backend* find_backend(std::string_view name, const std::vector<Backend*>& backen
 Backend& backend_named(std::string_view name, const std::vector<Backend*>& backends)
 {
     Backend* const found = find_backend(name, backends);
-    if (found == nullptr) throw Error(ErrorKind::internal, "there is no backend " + std::string(name));
+    if (found == nullptr) throw Error(ErrorKind::internal, "unknown backend " + std::string(name));
     return *found;
 }
 

@@ -47,7 +47,7 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Reads what a ByteWriter wrote, in the same order. Throws Error{internal} where fewer bytes are left than are asked
+/// Reads what a ByteWriter wrote, in the same order. Throws Error{internal} if fewer bytes are left than are asked
 /// for.
 class ByteReader {
 public:

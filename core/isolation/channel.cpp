@@ -13,7 +13,7 @@ namespace tetrace {
 
 namespace {
 
-/// What sendmsg() and recvmsg() take: one piece of memory, and room for one file.
+/// The arguments of sendmsg() and recvmsg(): one piece of memory, and space for one file.
 class Envelope {
 public:
     Envelope(void* bytes, std::size_t count) : piece_{bytes, count}

@@ -27,12 +27,12 @@ public:
     struct Pair;
     [[nodiscard]] static Pair make_pair();
 
-    /// file: goes with the message; -1 for none. False where the other end is closed. Throws Error{internal} for a
+    /// file: goes with the message; -1 for none. False if the other end is closed. Throws Error{internal} for a
     /// message above max_message_bytes.
     [[nodiscard]] bool send(std::span<const std::byte> bytes, int file = -1) const;
     /// Whether receive() would return at once. Waits up to that long.
     [[nodiscard]] bool wait(int milliseconds) const;
-    /// The next message; empty where the other end is closed.
+    /// The next message; empty if the other end is closed.
     [[nodiscard]] std::optional<Message> receive() const;
 
     [[nodiscard]] int number() const { return socket_.get(); }

@@ -22,7 +22,8 @@ constexpr int tick_ms = 100;
 constexpr double max_tick_s = 1; ///< we were stopped too, if it took longer
 constexpr double farewell_s = 5; ///< for a process to end after its socket is closed
 
-/// What posix_spawn() is told. Only its own calls may run before the program is replaced: other threads hold locks.
+/// The instructions for posix_spawn(). Only its own calls may run before the program is replaced: other threads hold
+/// locks.
 class SpawnPlan {
 public:
     explicit SpawnPlan(int socket)

@@ -18,8 +18,8 @@ struct DriverProcesses {
     double call_limit_s = 0;                ///< of each call; 0: by the size of its work, see call_limit_s()
 };
 
-/// Seconds that a call may take, with so many rays to trace or bytes to copy: far more than any driver needs that will
-/// ever answer. The slowest known, an interpreter of kernels, takes a millisecond a ray.
+/// Seconds that a call may take, with this many rays to trace or bytes to copy: far more than any driver needs that
+/// will ever answer. The slowest known, an interpreter of kernels, takes a millisecond a ray.
 [[nodiscard]] double call_limit_s(std::uint64_t rays, std::uint64_t bytes = 0);
 
 /// A call for a driver's process: "<doing>" is what it does, for the text that says how it ended.
@@ -40,13 +40,13 @@ struct RemoteScene {
 /// process that started it does, however that ends.
 class DriverChild {
 public:
-    /// Throws Error{internal} where no process can be started.
+    /// Throws Error{internal} if no process can be started.
     DriverChild(const DriverProcesses& processes, const std::string& backend);
     ~DriverChild();
     DriverChild(const DriverChild&) = delete;
     DriverChild& operator=(const DriverChild&) = delete;
 
-    /// What an answer has after its outcome. Throws what the call threw there. Throws Error{driver} where the process
+    /// What an answer has after its outcome. Throws what the call threw there. Throws Error{driver} if the process
     /// ended or is past its limit: it is then gone, and is_lost().
     [[nodiscard]] ByteReader call(const DriverCall& call);
     [[nodiscard]] bool is_lost() const { return pid_ < 0; }
@@ -60,7 +60,7 @@ public:
     [[nodiscard]] std::shared_ptr<const RemoteScene> add_scene(const void* here);
 
 private:
-    /// False where the process has not answered in time.
+    /// False if the process has not answered in time.
     [[nodiscard]] bool await_answer(double limit_s) const;
     /// Gives the process that long to end by itself, ends it, and says how: "was ended by signal 11 (...)".
     [[nodiscard]] std::string end(double patience_s);

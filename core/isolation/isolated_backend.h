@@ -29,7 +29,7 @@ public:
     [[nodiscard]] bool runs_defects() const override { return inner_->runs_defects(); }
     [[nodiscard]] std::vector<std::uint32_t> run_defect(std::size_t device, std::string_view name) override;
 
-    /// The device's process, started where there is none. Throws Error{missing} where the device cannot be used,
+    /// The device's process, started where there is none. Throws Error{missing} if the device cannot be used,
     /// Error{driver} where it cannot be found again.
     [[nodiscard]] std::shared_ptr<DriverChild> child_of(std::size_t device) const;
 
@@ -42,7 +42,7 @@ private:
     DriverProcesses processes_;
     mutable std::once_flag once_;
     mutable std::vector<Device> devices_;
-    mutable std::vector<std::shared_ptr<DriverChild>> children_; ///< device by device; null where none was needed yet
+    mutable std::vector<std::shared_ptr<DriverChild>> children_; ///< device by device; null if none was needed yet
     mutable std::shared_ptr<DriverChild> spare_;                 ///< listed the devices; for the first that is used
 };
 

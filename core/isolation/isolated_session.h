@@ -4,8 +4,8 @@
 
 namespace tetrace {
 
-/// A session in its device's process. Where that process was lost by another session's call, this one is opened again
-/// in the next process before it goes on: with its rays, and where it is waited for or read, after its last launch.
+/// A session in its device's process. If that process was lost by another session's call, this one is opened again in
+/// the next process before it goes on: with its rays, and if it is waited for or read, after its last launch.
 class IsolatedSession : public Session {
 public:
     /// Opens it, as Backend::open does. backend and scene outlive it.

@@ -45,14 +45,14 @@ void each_number(Device& device, const Visit& visit)
 template <class Visit>
 void each_array(PackedScene& scene, const Visit& visit)
 {
-    auto& [layout, tet_count, divisions, stack_entries, tets, triangles, lines, entry_ranges, entry_links, vertices,
-           entry_faces, occlusive_faces, nodes, leaf_triangles, packed_of_mesh, number_of_vertex, last_neighbours,
-           fall_back] = scene;
+    auto& [layout, tet_count, divisions, stack_entries, tets, triangles, lines, entry_ranges, entry_half_faces,
+           vertices, entry_faces, occlusive_faces, nodes, leaf_triangles, packed_of_mesh, number_of_vertex,
+           last_neighbours, fall_back] = scene;
     static_cast<void>(std::tie(layout, tet_count, divisions, stack_entries, packed_of_mesh, number_of_vertex,
                                last_neighbours, fall_back));
     for (std::vector<Quad>* array : {&tets, &triangles, &vertices, &entry_faces, &nodes, &leaf_triangles})
         visit(*array);
-    for (std::vector<std::uint32_t>* array : {&lines, &entry_ranges, &entry_links, &occlusive_faces})
+    for (std::vector<std::uint32_t>* array : {&lines, &entry_ranges, &entry_half_faces, &occlusive_faces})
         visit(*array);
 }
 
@@ -127,7 +127,7 @@ std::vector<Device> get_devices(ByteReader& from)
         each_number(device, [&](auto& number) { number = from.get<std::remove_reference_t<decltype(number)>>(); });
         if (static_cast<std::size_t>(device.kind) >= enum_names<DeviceKind>.size())
             throw Error(ErrorKind::internal,
-                        "a message from a driver's process is damaged: it has no such kind of device");
+                        "a message from a driver's process is damaged: its kind of device is unknown");
     }
     return devices;
 }

@@ -45,7 +45,7 @@ struct SentScene {
     [[nodiscard]] SceneData data() const { return {is_packed ? nullptr : &mesh, is_packed ? &packed : nullptr}; }
 };
 
-/// What a session of the kernel reads: its packed scene, or its mesh. Null where the caller gave none.
+/// What a session of the kernel reads: its packed scene, or its mesh. Null if the caller gave none.
 [[nodiscard]] const void* scene_of(const KernelId& kernel, const SceneData& scene);
 /// Writes its counts to the message and its arrays to memory that is to be sent with it. What stays on the host of a
 /// packed scene (PackedScene::packed_of_mesh and so on) stays here.

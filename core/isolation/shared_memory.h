@@ -11,15 +11,15 @@ namespace tetrace {
 class SharedMemory {
 public:
     SharedMemory() = default;
-    /// Zeros. Throws Error{unsupported} naming the size where there is not so much memory.
+    /// Zeros. Throws Error{unsupported} naming the size if memory is not sufficient.
     explicit SharedMemory(std::size_t bytes);
-    /// Maps what the other process made. Throws Error{internal} where the file has fewer bytes.
+    /// Maps what the other process made. Throws Error{internal} if the file has fewer bytes.
     SharedMemory(Descriptor file, std::size_t bytes);
     SharedMemory(SharedMemory&& other) noexcept;
     SharedMemory& operator=(SharedMemory&& other) noexcept;
     ~SharedMemory();
 
-    /// To be sent with a message; -1 where there is no memory.
+    /// To be sent with a message; -1 without memory.
     [[nodiscard]] int file() const { return file_.get(); }
     [[nodiscard]] std::span<std::byte> bytes() const { return bytes_; }
 

@@ -23,7 +23,7 @@ struct Rectangle {
 };
 
 struct BoundaryFace {
-    std::uint32_t link, side;
+    std::uint32_t half_face, side;
     Corners corners; ///< along the two other axes of the side, in cyclic order
 };
 
@@ -41,15 +41,16 @@ std::uint32_t side_of(const Domain& domain, const std::array<Float3, 3>& corners
     return 6;
 }
 
-BoundaryFace boundary_face(const Domain& domain, const TetMesh& mesh, std::uint32_t link)
+BoundaryFace boundary_face(const Domain& domain, const TetMesh& mesh, std::uint32_t half_face)
 {
     std::array<Float3, 3> at;
     for (std::size_t i = 0; i < 3; ++i)
-        at[i] = mesh.vertices[mesh.tets[link_tet(link)].vertices[face_corners[link_face(link)][i]]];
-    BoundaryFace face{link, side_of(domain, at), {}};
+        at[i] =
+            mesh.vertices[mesh.tets[half_face_tet(half_face)].vertices[face_corners[half_face_index(half_face)][i]]];
+    BoundaryFace face{half_face, side_of(domain, at), {}};
     if (face.side == 6)
-        throw Error(ErrorKind::invalid_input, "making the entry grid: tet " + std::to_string(link_tet(link)) +
-                                                  " has a boundary face that lies on no side of the domain");
+        throw Error(ErrorKind::invalid_input, "making the entry grid: tet " + std::to_string(half_face_tet(half_face)) +
+                                                  " has a boundary face that is on no side of the domain");
     const auto axis = static_cast<int>(face.side / 2);
     for (std::size_t i = 0; i < 3; ++i)
         face.corners[i] = {at[i][(axis + 1) % 3], at[i][(axis + 2) % 3]};
@@ -61,8 +62,8 @@ std::vector<BoundaryFace> boundary_faces(const Domain& domain, const TetMesh& me
     std::vector<BoundaryFace> faces;
     for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
         for (std::uint32_t face = 0; face < 4; ++face)
-            if (mesh.tets[tet].links[face] == NO_LINK)
-                faces.push_back(boundary_face(domain, mesh, make_link(tet, face)));
+            if (mesh.tets[tet].neighbours[face] == NO_HALF_FACE)
+                faces.push_back(boundary_face(domain, mesh, make_half_face(tet, face)));
     return faces;
 }
 
@@ -126,7 +127,7 @@ std::pair<std::uint32_t, std::uint32_t> intervals_near(const std::vector<float>&
 }
 
 struct Listed {
-    std::uint32_t square, share, link;
+    std::uint32_t square, share, half_face;
 };
 
 /// Calls visit(Listed) for each square that a face touches or nearly touches.
@@ -145,7 +146,7 @@ void for_each_square(const Domain& domain, const BoundaryFace& face, const Visit
             const Rectangle near{{square.low.x - entry_margin, square.low.y - entry_margin},
                                  {square.high.x + entry_margin, square.high.y + entry_margin}};
             if (is_parted(face.corners, near)) continue;
-            visit(Listed{(face.side * n + j) * n + i, share_of(face.corners, square), face.link});
+            visit(Listed{(face.side * n + j) * n + i, share_of(face.corners, square), face.half_face});
         }
 }
 
@@ -157,22 +158,24 @@ EntryGrid make_entry_grid(const Domain& domain, const TetMesh& mesh)
     std::vector<Listed> listed;
     for (const BoundaryFace& face : boundary_faces(domain, mesh)) {
         for_each_square(domain, face, [&](const Listed& entry) { listed.push_back(entry); });
-        listed.push_back({squares + face.side, 0, face.link});
+        listed.push_back({squares + face.side, 0, face.half_face});
     }
     std::ranges::sort(listed, [](const Listed& a, const Listed& b) {
-        return a.square != b.square ? a.square < b.square : a.share != b.share ? a.share > b.share : a.link < b.link;
+        return a.square != b.square ? a.square < b.square
+               : a.share != b.share ? a.share > b.share
+                                    : a.half_face < b.half_face;
     });
     EntryGrid grid;
     grid.ranges.assign(std::size_t{squares} + 7, 0);
     for (const Listed& entry : listed) {
         grid.ranges[entry.square + 1]++;
-        grid.links.push_back(entry.link);
+        grid.half_faces.push_back(entry.half_face);
     }
     const auto empty = std::find(grid.ranges.begin() + 1, grid.ranges.end(), 0U);
     if (empty != grid.ranges.end())
         throw Error(ErrorKind::invalid_input, "making the entry grid: square " +
                                                   std::to_string(empty - grid.ranges.begin() - 1) +
-                                                  " of the domain has no boundary face");
+                                                  " of the domain touches no boundary face");
     for (std::size_t i = 1; i < grid.ranges.size(); ++i)
         grid.ranges[i] += grid.ranges[i - 1];
     return grid;

@@ -84,10 +84,10 @@ WalkEnd walk_to(const TetMesh& mesh, std::uint32_t from, Float3 point, std::uint
             if (side_of_face(corners, face, point) > 0) beyond = face;
         }
         if (beyond == 4) return {WalkEnd::Kind::arrived, tet, end.steps};
-        const std::uint32_t link = mesh.tets[tet].links[beyond];
-        if (link == NO_LINK) return {WalkEnd::Kind::outside, NO_TET, end.steps}; // the domain is convex
+        const std::uint32_t half_face = mesh.tets[tet].neighbours[beyond];
+        if (half_face == NO_HALF_FACE) return {WalkEnd::Kind::outside, NO_TET, end.steps}; // the domain is convex
         if (end.steps == max_steps) return end;
-        tet = link_tet(link);
+        tet = half_face_tet(half_face);
     }
 }
 

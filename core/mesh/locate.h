@@ -8,7 +8,7 @@ namespace tetrace {
 
 /// The tet that holds a point, by exact orientation tests (a visibility walk; Devillers, Pion, Teillaud 2002).
 /// point: coordinates on the 2^-40 grid. Tets are closed: a point on a face, edge or vertex gets any tet that has it.
-/// NO_TET where the point is outside the domain.
+/// NO_TET if the point is outside the domain.
 [[nodiscard]] std::uint32_t locate(const TetMesh& mesh, Float3 point);
 
 /// How a walk from one tet to that of a point ended.
@@ -39,12 +39,12 @@ struct Start {
 /// Whether the tet holds the start's origin in its interior, so that no other tet does.
 [[nodiscard]] bool is_inside(const Scene& scene, const Start& start);
 
-/// Finds a tet that holds a point in the domain; NO_TET where it finds none.
+/// Finds a tet that holds a point in the domain; NO_TET if it finds none.
 using Locator = std::function<std::uint32_t(Float3)>;
 
 /// Locates a camera. A camera nearer than 2^-16 to a face of its tet is within the rounding of a walk's decisions. It
 /// moves by at most 2^-12 in each coordinate, to the candidate with the most clearance. All structures trace from the
-/// moved origin. A scene without tets has no such tet.
+/// moved origin. Not for a scene without tets.
 [[nodiscard]] Start find_start(const Scene& scene, Float3 origin);
 /// The same by another way to find tets. The result does not depend on which of the tets that hold a point the locator
 /// names, as long as is_inside() says yes to it.

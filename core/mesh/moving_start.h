@@ -6,7 +6,7 @@
 
 namespace tetrace {
 
-/// When a camera's new tet is looked for from its old one. Beyond either limit it is located exactly.
+/// When a camera's new tet is looked for from its old one. Past either limit it is located exactly.
 struct MoveLimit {
     double distance;     ///< of the camera's move, in domain units
     std::uint32_t steps; ///< from tet to tet
@@ -17,7 +17,7 @@ struct MoveLimit {
 /// What a moving camera's starts took.
 struct MoveCounts {
     std::uint32_t walked = 0;    ///< starts found by walking from the one before
-    std::uint32_t located = 0;   ///< starts found by exact location: the first, those behind one outside or too far off
+    std::uint32_t located = 0;   ///< starts found by exact location: the first, those after one outside or too far off
     std::uint64_t steps = 0;     ///< from tet to tet, of all walks, also of those that gave up
     std::uint32_t max_steps = 0; ///< of a single walk
 };
@@ -37,7 +37,7 @@ public:
 
 private:
     [[nodiscard]] bool is_near(Float3 point) const;
-    /// The start by walking from the last one's tet; empty where a walk gives up.
+    /// The start by walking from the last one's tet; empty if a walk gives up.
     [[nodiscard]] std::optional<Start> walk(Float3 origin);
 
     const Scene* scene_;

@@ -13,7 +13,7 @@ namespace tetrace {
 
 /// How the domain was filled with tets. Scene files hold the values.
 enum class TetsKind {
-    cdt = 0,  ///< TetGen's, a constrained Delaunay tetrahedralization; or those of `cubes`, as they are made
+    cdt = 0,  ///< TetGen's, a constrained Delaunay tetrahedralization; or those of `cubes`, unchanged
     rays = 1, ///< then changed so that rays cross fewer faces (scenes/optimise); no longer Delaunay
 };
 
@@ -47,7 +47,7 @@ struct OptimisedInfo {
     TetsKind tets = TetsKind::cdt; ///< what the scene has
     std::string reason;            ///< why these differ
     int effort = 0;
-    double cost_before = 0, cost_after = 0; ///< 0 where no optimiser ran
+    double cost_before = 0, cost_after = 0; ///< 0 if no optimiser ran
     double seconds = 0;                     ///< part of BuildInfo::build_s
     std::uint32_t rounds = 0;
     std::vector<OptimiserOperation> operations = {};
@@ -72,7 +72,7 @@ struct RepairInfo {
 struct BuildInfo {
     std::string source;            ///< the mesh file's name, or the generator
     std::uint64_t source_hash = 0; ///< XXH3 of the mesh file's bytes
-    std::string switches;          ///< TetGen's switches as passed; empty where no TetGen ran
+    std::string switches;          ///< TetGen's switches as passed; empty if no TetGen ran
     std::string tool;              ///< program and version that made the tets
     double build_s = 0;            ///< seconds from mesh file to checked tets
     int scale_exponent = 0;        ///< domain units = mesh units * 2^scale_exponent
@@ -100,7 +100,7 @@ struct Scene {
     friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-/// The source's triangle of a Hit::face_id: what users are told. What names no triangle (NO_HIT, LOST) stays.
+/// The source's triangle of a Hit::face_id: what users see. What names no triangle (NO_HIT, LOST) stays.
 [[nodiscard]] std::uint32_t source_triangle(const Scene& scene, std::uint32_t face_id);
 
 /// 64-bit hash of all that decides a ray's answer: mesh, tets, domain. Neither name nor origins nor build time is part

@@ -35,11 +35,12 @@ double height_of(const std::array<Double3, 3>& corners)
     return length(cross(ab, ac)) / std::max({length(ab), length(ac), length(bc)});
 }
 
-double height_of(const TetMesh& mesh, std::uint32_t link)
+double height_of(const TetMesh& mesh, std::uint32_t half_face)
 {
     std::array<Double3, 3> corners;
     for (std::uint32_t i = 0, n = 0; i < 4; ++i)
-        if (i != link_face(link)) corners[n++] = to_double(mesh.vertices[mesh.tets[link_tet(link)].vertices[i]]);
+        if (i != half_face_index(half_face))
+            corners[n++] = to_double(mesh.vertices[mesh.tets[half_face_tet(half_face)].vertices[i]]);
     return height_of(corners);
 }
 
@@ -47,7 +48,7 @@ std::string domain_too_large(const Domain& domain)
 {
     for (int axis = 0; axis < 3; ++axis)
         if (domain.low()[axis] < -1 || domain.high()[axis] > 1)
-            return std::string("the domain reaches beyond [-1, 1] along axis ") + "xyz"[axis] +
+            return std::string("the domain exceeds [-1, 1] along axis ") + "xyz"[axis] +
                    "; scale mesh and domain by a power of two";
     return "";
 }
@@ -72,11 +73,11 @@ std::string mesh_too_near(const Scene& scene, double needed)
 std::string face_too_thin(const Scene& scene, const EntryGrid& grid, double needed)
 {
     for (std::uint32_t side = 0; side < 6; ++side)
-        for (const std::uint32_t link : faces_of_side(grid, side)) {
-            const double height = height_of(scene.tets, link);
+        for (const std::uint32_t half_face : faces_of_side(grid, side)) {
+            const double height = height_of(scene.tets, half_face);
             if (height >= needed) continue;
             std::ostringstream text;
-            text << "a boundary face of tet " << link_tet(link) << ", on the domain's "
+            text << "a boundary face of tet " << half_face_tet(half_face) << ", on the domain's "
                  << side_name(static_cast<int>(side / 2), side % 2 == 1) << ", has a height of " << height
                  << ", rounding asks for " << needed << "; use fewer divisions, or tets without such a face";
             return text.str();

@@ -29,7 +29,7 @@ bool indices_exist(const TetMesh& mesh, const Tet& tet, std::size_t triangle_cou
 {
     for (std::size_t i = 0; i < 4; ++i) {
         if (tet.vertices[i] >= mesh.vertices.size()) return false;
-        if (tet.links[i] != NO_LINK && link_tet(tet.links[i]) >= mesh.tets.size()) return false;
+        if (tet.neighbours[i] != NO_HALF_FACE && half_face_tet(tet.neighbours[i]) >= mesh.tets.size()) return false;
         if (tet.faces[i] != FREE_FACE && tet.faces[i] >= triangle_count) return false;
     }
     return true;
@@ -44,15 +44,15 @@ std::array<std::uint32_t, 3> sorted_face(const Tet& tet, std::uint32_t face)
     return vertices;
 }
 
-bool links_are_symmetric(const TetMesh& mesh, std::uint32_t index)
+bool neighbours_are_symmetric(const TetMesh& mesh, std::uint32_t index)
 {
     const Tet& tet = mesh.tets[index];
     for (std::uint32_t face = 0; face < 4; ++face) {
-        const std::uint32_t link = tet.links[face];
-        if (link == NO_LINK) continue;
-        const Tet& other = mesh.tets[link_tet(link)];
-        if (other.links[link_face(link)] != make_link(index, face)) return false;
-        if (sorted_face(other, link_face(link)) != sorted_face(tet, face)) return false;
+        const std::uint32_t half_face = tet.neighbours[face];
+        if (half_face == NO_HALF_FACE) continue;
+        const Tet& other = mesh.tets[half_face_tet(half_face)];
+        if (other.neighbours[half_face_index(half_face)] != make_half_face(index, face)) return false;
+        if (sorted_face(other, half_face_index(half_face)) != sorted_face(tet, face)) return false;
     }
     return true;
 }
@@ -60,8 +60,10 @@ bool links_are_symmetric(const TetMesh& mesh, std::uint32_t index)
 bool faces_are_symmetric(const TetMesh& mesh, const Tet& tet)
 {
     for (std::uint32_t face = 0; face < 4; ++face) {
-        const std::uint32_t link = tet.links[face];
-        if (link != NO_LINK && mesh.tets[link_tet(link)].faces[link_face(link)] != tet.faces[face]) return false;
+        const std::uint32_t half_face = tet.neighbours[face];
+        if (half_face != NO_HALF_FACE &&
+            mesh.tets[half_face_tet(half_face)].faces[half_face_index(half_face)] != tet.faces[face])
+            return false;
     }
     return true;
 }
@@ -93,7 +95,8 @@ std::vector<double> covered_areas(const TetMesh& mesh, std::size_t triangle_coun
     for (std::uint32_t index = 0; index < mesh.tets.size(); ++index) {
         const Tet& tet = mesh.tets[index];
         for (std::uint32_t face = 0; face < 4; ++face) {
-            const bool counted_here = tet.links[face] == NO_LINK || make_link(index, face) < tet.links[face];
+            const bool counted_here =
+                tet.neighbours[face] == NO_HALF_FACE || make_half_face(index, face) < tet.neighbours[face];
             if (tet.faces[face] == FREE_FACE || !counted_here) continue;
             const auto v = sorted_face(tet, face);
             covered[tet.faces[face]] += area(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]);
@@ -113,8 +116,8 @@ double perimeter(const TriangleMesh& mesh, std::size_t triangle)
 
 std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triangle_count)
 {
-    Finding bad_index, asymmetric_link, inverted, flat, asymmetric_face;
-    if (mesh.tets.empty()) return TetMeshDefect{Kind::bad_index, 0, 0, "the mesh has no tets"};
+    Finding bad_index, asymmetric_neighbour, inverted, flat, asymmetric_face;
+    if (mesh.tets.empty()) return TetMeshDefect{Kind::bad_index, 0, 0, "the mesh is empty"};
     if (mesh.tets.size() > MAX_TETS)
         return TetMeshDefect{Kind::bad_index, MAX_TETS, 1, "more tets than a link of 30 bits can name"};
     for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
@@ -123,15 +126,15 @@ std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triang
         return bad_index.defect(Kind::bad_index, "a tet names a vertex, tet or triangle that is not there");
 
     for (std::uint32_t i = 0; i < mesh.tets.size(); ++i) {
-        if (!links_are_symmetric(mesh, i)) asymmetric_link.add(i);
+        if (!neighbours_are_symmetric(mesh, i)) asymmetric_neighbour.add(i);
         if (!faces_are_symmetric(mesh, mesh.tets[i])) asymmetric_face.add(i);
         const int sign = orientation_of(mesh, mesh.tets[i]);
         if (sign > 0) inverted.add(i);
         if (sign == 0) flat.add(i);
     }
-    if (asymmetric_link.count > 0)
-        return asymmetric_link.defect(Kind::asymmetric_link,
-                                      "a tet's neighbour does not name it back over the same face");
+    if (asymmetric_neighbour.count > 0)
+        return asymmetric_neighbour.defect(Kind::asymmetric_neighbour,
+                                           "a tet's neighbour does not name it back over the same face");
     if (asymmetric_face.count > 0)
         return asymmetric_face.defect(Kind::asymmetric_face, "the two sides of a face name different input triangles");
     if (inverted.count > 0) return inverted.defect(Kind::inverted, "a tet is inverted");
@@ -175,12 +178,13 @@ std::vector<bool> reached_tets(const TetMesh& mesh)
         reached[tet] = true;
     };
     for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
-        if (std::ranges::count(mesh.tets[tet].links, NO_LINK) > 0) reach(tet);
+        if (std::ranges::count(mesh.tets[tet].neighbours, NO_HALF_FACE) > 0) reach(tet);
     while (!pending.empty()) {
         const Tet& tet = mesh.tets[pending.back()];
         pending.pop_back();
         for (std::size_t face = 0; face < 4; ++face)
-            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
+            if (tet.faces[face] == FREE_FACE && tet.neighbours[face] != NO_HALF_FACE)
+                reach(half_face_tet(tet.neighbours[face]));
     }
     return reached;
 }
@@ -194,7 +198,7 @@ TetMeshCounts count_faces(const TetMesh& mesh)
     for (const Tet& tet : mesh.tets) {
         for (std::size_t face = 0; face < 4; ++face) {
             const bool occlusive = tet.faces[face] != FREE_FACE;
-            const bool boundary = tet.links[face] == NO_LINK;
+            const bool boundary = tet.neighbours[face] == NO_HALF_FACE;
             if (boundary) ++counts.boundary_faces;
             if (boundary && occlusive) ++counts.occlusive_faces;
             if (!boundary) (occlusive ? occlusive_sides : inner_sides)++;

@@ -11,24 +11,25 @@
 
 namespace tetrace {
 
-/// A link names one side of a face: tet << 2 | local face. NO_LINK beyond the domain's boundary.
-[[nodiscard]] constexpr std::uint32_t make_link(std::uint32_t tet, std::uint32_t face)
+/// A half-face is one side of a face: tet << 2 | local face. NO_HALF_FACE outside the domain.
+[[nodiscard]] constexpr std::uint32_t make_half_face(std::uint32_t tet, std::uint32_t face)
 {
     return tet << 2 | face;
 }
-[[nodiscard]] constexpr std::uint32_t link_tet(std::uint32_t link)
+[[nodiscard]] constexpr std::uint32_t half_face_tet(std::uint32_t half_face)
 {
-    return link >> 2;
+    return half_face >> 2;
 }
-[[nodiscard]] constexpr std::uint32_t link_face(std::uint32_t link)
+[[nodiscard]] constexpr std::uint32_t half_face_index(std::uint32_t half_face)
 {
-    return link & 3u;
+    return half_face & 3u;
 }
 
 /// One tetrahedron. Local face i is opposite vertex i.
 struct Tet {
     std::array<std::uint32_t, 4> vertices;
-    std::array<std::uint32_t, 4> links; ///< the same face seen from its other side, or NO_LINK on the boundary
+    std::array<std::uint32_t, 4>
+        neighbours;                     ///< the same face seen from its other side, or NO_HALF_FACE on the boundary
     std::array<std::uint32_t, 4> faces; ///< the input triangle that the face is a part of (occlusive), or FREE_FACE
 
     friend bool operator==(const Tet&, const Tet&) = default;
@@ -36,7 +37,7 @@ struct Tet {
 
 /// A tetrahedralization of the domain.
 /// Every tet has det(V1-V0, V2-V0, V3-V0) < 0, the orientation of the paper's Table 2 (GRAPP 2017, section 3.2);
-/// links name each other; both sides of a face carry the same input triangle.
+/// half-faces name each other; both sides of a face carry the same input triangle.
 struct TetMesh {
     std::vector<Float3> vertices;
     std::vector<Tet> tets;
@@ -47,13 +48,13 @@ struct TetMesh {
 /// The first defect of a tet mesh, and how many of its kind there are.
 struct TetMeshDefect {
     enum class Kind {
-        bad_index,          ///< a vertex, link or input triangle that does not exist
-        asymmetric_link,    ///< a neighbour that does not name the tet back, or shares other vertices
-        inverted,           ///< det > 0 in exact arithmetic on the stored floats
-        flat,               ///< det = 0 in exact arithmetic on the stored floats
-        asymmetric_face,    ///< the two sides of a face name different input triangles
-        uncovered_triangle, ///< an input triangle whose occlusive faces do not add up to its area
-        open_boundary,      ///< the volumes of the tets do not sum to the domain's
+        bad_index,            ///< a vertex, half-face or input triangle that does not exist
+        asymmetric_neighbour, ///< a neighbour that does not name the tet back, or shares other vertices
+        inverted,             ///< det > 0 in exact arithmetic on the stored floats
+        flat,                 ///< det = 0 in exact arithmetic on the stored floats
+        asymmetric_face,      ///< the two sides of a face name different input triangles
+        uncovered_triangle,   ///< an input triangle whose occlusive faces do not add up to its area
+        open_boundary,        ///< the volumes of the tets do not sum to the domain's
     };
     Kind kind;
     std::uint64_t first; ///< index of the first tet (or input triangle) concerned
@@ -61,7 +62,7 @@ struct TetMeshDefect {
     std::string what;    ///< a sentence that says so, with numbers
 };
 
-/// Checks structure (indices, links, faces) and exact orientation. Linear in the number of tets.
+/// Checks structure (indices, half-faces, faces) and exact orientation. Linear in the number of tets.
 /// triangle_count: number of input triangles that faces may name.
 [[nodiscard]] std::optional<TetMeshDefect> find_defect(const TetMesh& mesh, std::size_t triangle_count);
 

@@ -19,7 +19,7 @@ struct TriangleMesh {
 /// The mesh's lowest and highest coordinates. Precondition: at least one vertex, all finite.
 [[nodiscard]] std::array<Double3, 2> bounding_box(const TriangleMesh& mesh);
 
-/// The sphere round the mesh's bounding box: its centre and half its diagonal. Camera distances and wide domains are
+/// The sphere around the mesh's bounding box: its centre and half its diagonal. Camera distances and wide domains are
 /// measured in its radius.
 struct BoundingSphere {
     Double3 centre;

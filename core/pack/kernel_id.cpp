@@ -36,7 +36,7 @@ const std::vector<KernelRow>& kernel_rows()
     return rows;
 }
 
-/// Without tasks, schedules and claims if the list has no such kernel.
+/// Without tasks, schedules and claims if the list lacks the kernel.
 KernelRow row_of(const KernelId& kernel)
 {
     const auto& rows = kernel_rows();

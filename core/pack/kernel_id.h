@@ -57,7 +57,7 @@ enum class Task { trace, rays, search };
 template <>
 inline constexpr auto enum_names<Task> = names_up_to<Task::search>("trace", "rays", "search");
 /// The order of the tets in memory: along a space-filling curve; the same, with the tets that no ray from outside
-/// reaches (inside closed surfaces) after all others; the same in chains, each tet followed by its neighbour behind its
+/// reaches (inside closed surfaces) after all others; the same in chains, each tet followed by its neighbour across its
 /// largest free face; as the tetrahedralization wrote them.
 enum class TetOrder { chains, hilbert, reached, input };
 template <>
@@ -79,7 +79,7 @@ struct KernelId {
 /// the CDT, then of our BVHs, then foreign ones; each by schedule, tiles first, and math mode, exact first.
 [[nodiscard]] const std::vector<KernelId>& all_kernels();
 
-/// Whether the list has the kernel with that task, in any math mode; exit searches have schedule tiles alone.
+/// Whether the list has the kernel with that task, in any math mode; exit searches have only schedule tiles.
 [[nodiscard]] bool has_task(const KernelId& kernel);
 
 /// Whether the kernel has packets; its schedule is ignored. Only one walk is written for packets, in exact mode.

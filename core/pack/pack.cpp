@@ -46,10 +46,10 @@ std::vector<std::uint32_t> in_chains(const TetMesh& mesh, const std::vector<std:
             next = NO_TET;
             double largest = -1;
             for (std::uint32_t face = 0; face < 4; ++face) {
-                const bool leads_on =
-                    tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK && !is_placed[link_tet(tet.links[face])];
+                const bool leads_on = tet.faces[face] == FREE_FACE && tet.neighbours[face] != NO_HALF_FACE &&
+                                      !is_placed[half_face_tet(tet.neighbours[face])];
                 const double size = leads_on ? size_of(mesh, tet, face) : -1;
-                if (size > largest) next = link_tet(tet.links[face]);
+                if (size > largest) next = half_face_tet(tet.neighbours[face]);
                 largest = std::max(largest, size);
             }
         }
@@ -72,12 +72,14 @@ std::vector<std::uint32_t> packing_order(const Scene& scene, TetOrder order)
     return order == TetOrder::reached ? tets : in_chains(scene.tets, tets);
 }
 
-std::uint32_t renumbered(std::uint32_t link, const std::vector<std::uint32_t>& packed_of_mesh)
+std::uint32_t renumbered(std::uint32_t half_face, const std::vector<std::uint32_t>& packed_of_mesh)
 {
-    return link == NO_LINK ? NO_LINK : make_link(packed_of_mesh[link_tet(link)], link_face(link));
+    return half_face == NO_HALF_FACE
+               ? NO_HALF_FACE
+               : make_half_face(packed_of_mesh[half_face_tet(half_face)], half_face_index(half_face));
 }
 
-// The scene's tets in packed order, with links in that numbering.
+// The scene's tets in packed order, with half-faces in that numbering.
 TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& tets,
                         const std::vector<std::uint32_t>& packed_of_mesh)
 {
@@ -85,8 +87,8 @@ TetMesh in_packed_order(const TetMesh& mesh, const std::vector<std::uint32_t>& t
     result.tets.reserve(tets.size());
     for (const auto index : tets) {
         Tet tet = mesh.tets[index];
-        for (auto& link : tet.links)
-            link = renumbered(link, packed_of_mesh);
+        for (auto& half_face : tet.neighbours)
+            half_face = renumbered(half_face, packed_of_mesh);
         result.tets.push_back(tet);
     }
     return result;
@@ -119,8 +121,8 @@ void pack_domain(PackedScene& packed, const Scene& scene)
             packed.lines.push_back(std::bit_cast<std::uint32_t>(line));
     EntryGrid grid = make_entry_grid(scene.domain, scene.tets);
     packed.entry_ranges = std::move(grid.ranges);
-    for (const auto link : grid.links)
-        packed.entry_links.push_back(renumbered(link, packed.packed_of_mesh));
+    for (const auto half_face : grid.half_faces)
+        packed.entry_half_faces.push_back(renumbered(half_face, packed.packed_of_mesh));
 }
 
 } // namespace
@@ -130,7 +132,8 @@ std::size_t PackedScene::bytes() const
     return (tets.size() + triangles.size() + vertices.size() + entry_faces.size() + nodes.size() +
             leaf_triangles.size()) *
                sizeof(Quad) +
-           (lines.size() + entry_ranges.size() + entry_links.size() + occlusive_faces.size()) * sizeof(std::uint32_t);
+           (lines.size() + entry_ranges.size() + entry_half_faces.size() + occlusive_faces.size()) *
+               sizeof(std::uint32_t);
 }
 
 PackedDomain domain_of(const PackedScene& scene)

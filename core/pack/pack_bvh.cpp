@@ -41,7 +41,7 @@ Box grown_box(const WideChild& child)
 void refuse_to_pack(Layout layout, std::uint64_t found, const char* what, std::uint64_t most)
 {
     throw Error(ErrorKind::unsupported, "packing a BVH as " + std::string(name_of(layout)) + ": " +
-                                            std::to_string(found) + ' ' + what + ", its kernels have room for " +
+                                            std::to_string(found) + ' ' + what + ", but its kernels support at most " +
                                             std::to_string(most) + "; use a smaller mesh");
 }
 

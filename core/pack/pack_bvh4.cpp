@@ -98,7 +98,7 @@ PackedScene pack_bvh4(const TriangleMesh& mesh, const Bvh& bvh)
     if (packed.stack_entries <= BVH4_STACK + 1) return packed;
     const std::string fall_back = "two binary levels are one of four children: of the cheapest nodes, " +
                                   std::to_string(packed.stack_entries - 1) + " children would wait on a ray's stack, " +
-                                  "which has room for " + std::to_string(BVH4_STACK);
+                                  "which holds " + std::to_string(BVH4_STACK);
     packed = packed_as(Collapse::shallow);
     if (packed.stack_entries > BVH4_STACK + 1)
         refuse_to_pack(Layout::bvh4, packed.stack_entries - 1, "children would wait on a ray's stack", BVH4_STACK);

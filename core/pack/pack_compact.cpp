@@ -25,23 +25,23 @@ bool has_vertex(const Tet& tet, std::uint32_t vertex)
 /// Whether a walk that leaves the tet by the face knows three vertices of the next tet.
 bool is_named_back(const TetMesh& mesh, std::uint32_t tet, std::uint32_t face)
 {
-    const std::uint32_t link = mesh.tets[tet].links[face];
-    const Tet& next = mesh.tets[link_tet(link)];
-    if (next.links[link_face(link)] != make_link(tet, face)) return false;
+    const std::uint32_t half_face = mesh.tets[tet].neighbours[face];
+    const Tet& next = mesh.tets[half_face_tet(half_face)];
+    if (next.neighbours[half_face_index(half_face)] != make_half_face(tet, face)) return false;
     for (const std::uint32_t i : face_corners[face])
         if (!has_vertex(next, mesh.tets[tet].vertices[i])) return false;
-    return !has_vertex(mesh.tets[tet], next.vertices[link_face(link)]);
+    return !has_vertex(mesh.tets[tet], next.vertices[half_face_index(half_face)]);
 }
 
 void require_walkable(const TetMesh& mesh, Layout layout)
 {
     for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
         for (std::uint32_t face = 0; face < 4; ++face) {
-            const bool is_boundary = mesh.tets[tet].links[face] == NO_LINK;
+            const bool is_boundary = mesh.tets[tet].neighbours[face] == NO_HALF_FACE;
             if (is_boundary && mesh.tets[tet].faces[face] != FREE_FACE)
                 reject(layout, "tet " + std::to_string(tet) + " has an occlusive face on the domain's boundary");
             if (!is_boundary && !is_named_back(mesh, tet, face))
-                reject(layout, "tet " + std::to_string(tet) + " and its neighbour behind face " + std::to_string(face) +
+                reject(layout, "tet " + std::to_string(tet) + " and its neighbour across face " + std::to_string(face) +
                                    " do not name each other");
         }
 }
@@ -78,28 +78,29 @@ FourWords numbered(const Tet& tet, const std::vector<std::uint32_t>& number)
     return vertices;
 }
 
-/// What is behind each face of each tet, in the form of layout.h; fills the table of occlusive faces.
+/// What is across each face of each tet, in the form of layout.h; fills the table of occlusive faces.
 std::vector<FourWords> words_behind(const TetMesh& mesh, std::vector<std::uint32_t>& occlusive_faces, Layout layout)
 {
     std::vector<FourWords> behind(mesh.tets.size());
     for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
         for (std::uint32_t face = 0; face < 4; ++face) {
-            const std::uint32_t link = mesh.tets[tet].links[face];
+            const std::uint32_t half_face = mesh.tets[tet].neighbours[face];
             const std::uint32_t triangle = mesh.tets[tet].faces[face];
-            if (link == NO_LINK || triangle == FREE_FACE) {
-                behind[tet][face] = link == NO_LINK ? NO_LINK : link_tet(link);
-            } else if (tet < link_tet(link)) {
+            if (half_face == NO_HALF_FACE || triangle == FREE_FACE) {
+                behind[tet][face] = half_face == NO_HALF_FACE ? NO_HALF_FACE : half_face_tet(half_face);
+            } else if (tet < half_face_tet(half_face)) {
                 const std::size_t side = 2 * (occlusive_faces.size() / OCCLUSIVE_WORDS);
                 if (side >= OCCLUSIVE - 2) reject(layout, "more than 1,073,741,823 occlusive faces");
-                occlusive_faces.insert(occlusive_faces.end(), {triangle, tet, link_tet(link)});
+                occlusive_faces.insert(occlusive_faces.end(), {triangle, tet, half_face_tet(half_face)});
                 behind[tet][face] = OCCLUSIVE | static_cast<std::uint32_t>(side);
-                behind[link_tet(link)][link_face(link)] = OCCLUSIVE | static_cast<std::uint32_t>(side + 1);
+                behind[half_face_tet(half_face)][half_face_index(half_face)] =
+                    OCCLUSIVE | static_cast<std::uint32_t>(side + 1);
             }
         }
     return behind;
 }
 
-/// What is behind the faces, sorted by the numbers of their opposite vertices.
+/// What is across the faces, sorted by the numbers of their opposite vertices.
 FourWords sorted_by(const FourWords& vertices, const FourWords& behind)
 {
     std::array<std::uint32_t, 4> order{0, 1, 2, 3};
@@ -123,13 +124,13 @@ std::vector<Quad> quads_of_words(std::vector<std::uint32_t> words)
 
 void name_entry_faces(PackedScene& packed, const TetMesh& mesh)
 {
-    for (const std::uint32_t link : packed.entry_links) {
-        const FourWords vertices = numbered(mesh.tets[link_tet(link)], packed.number_of_vertex);
-        const auto& corners = face_corners[link_face(link)];
+    for (const std::uint32_t half_face : packed.entry_half_faces) {
+        const FourWords vertices = numbered(mesh.tets[half_face_tet(half_face)], packed.number_of_vertex);
+        const auto& corners = face_corners[half_face_index(half_face)];
         packed.entry_faces.push_back(
-            {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], link_tet(link)});
+            {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], half_face_tet(half_face)});
     }
-    packed.entry_links.clear();
+    packed.entry_half_faces.clear();
 }
 
 } // namespace

@@ -17,7 +17,7 @@ void pack_corners(PackedScene& packed, const TetMesh& mesh, std::uint32_t vertex
             words.resize(words.size() + vertex_words - 3);
         }
         for (std::size_t face = 0; face < 4; ++face)
-            words.insert(words.end(), {tet.links[face], tet.faces[face]});
+            words.insert(words.end(), {tet.neighbours[face], tet.faces[face]});
         for (std::size_t i = 0; i < words.size(); i += 4)
             packed.tets.push_back({words[i], words[i + 1], words[i + 2], words[i + 3]});
     }

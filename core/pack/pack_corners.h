@@ -5,7 +5,7 @@
 namespace tetrace {
 
 /// Packs tets that hold their corners: each vertex's coordinates, padded with 0 to vertex_words words, then each face's
-/// {link, input triangle}.
+/// {half-face, input triangle}.
 /// mesh: see PackTets in core/pack/traits.h.
 void pack_corners(PackedScene& packed, const TetMesh& mesh, std::uint32_t vertex_words);
 

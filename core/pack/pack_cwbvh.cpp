@@ -151,7 +151,7 @@ PackedScene pack_cwbvh(const TriangleMesh& mesh, const Bvh& bvh)
     if (const auto levels = levels_of(wide); levels > CWBVH_STACK) {
         wide = make_wide(binary, eight_wide, Collapse::shallow);
         fall_back = "three binary levels are one of eight children: the cheapest nodes would be " +
-                    std::to_string(levels) + " deep, a ray's stack has room for " + std::to_string(CWBVH_STACK);
+                    std::to_string(levels) + " deep, but a ray's stack holds " + std::to_string(CWBVH_STACK);
     }
     if (const auto levels = levels_of(wide); levels > CWBVH_STACK)
         refuse_to_pack(Layout::cwbvh, levels, "pairs would wait on a ray's stack", CWBVH_STACK);

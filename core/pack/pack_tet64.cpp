@@ -10,43 +10,44 @@
 namespace tetrace {
 namespace {
 
-const Tet& tet_of(const TetMesh& mesh, std::uint32_t link)
+const Tet& tet_of(const TetMesh& mesh, std::uint32_t half_face)
 {
-    return mesh.tets[link_tet(link)];
+    return mesh.tets[half_face_tet(half_face)];
 }
 
-// Vertex `face ^ fold` of the tet is vertex `face ^ fold` of the tet behind that face, each with its own number of it.
+// Vertex `face ^ fold` of the tet is vertex `face ^ fold` of the tet across that face, each with its own number of it.
 std::uint32_t fold_at(const TetMesh& mesh, const Tet& tet, std::uint32_t face)
 {
-    const Tet& next = tet_of(mesh, tet.links[face]);
-    const std::uint32_t entry = link_face(tet.links[face]);
+    const Tet& next = tet_of(mesh, tet.neighbours[face]);
+    const std::uint32_t entry = half_face_index(tet.neighbours[face]);
     for (std::uint32_t fold = 1; fold < 3; ++fold)
         if (tet.vertices[face ^ fold] == next.vertices[entry ^ fold]) return fold;
-    return 3; // also if no corner is shared: tests damage links
+    return 3; // also if no corner is shared: tests damage half-faces
 }
 
-std::uint32_t side_word(std::uint32_t link)
+std::uint32_t side_word(std::uint32_t half_face)
 {
-    return link == NO_LINK ? NO_LINK : EXIT_IS_NORMAL | link;
+    return half_face == NO_HALF_FACE ? NO_HALF_FACE : EXIT_IS_NORMAL | half_face;
 }
 
-// The row of each occlusive face, by its link; replaces the rows of the input triangles by them.
+// The row of each occlusive face, by its half-face; replaces the rows of the input triangles by them.
 std::vector<std::uint32_t> pack_rows(PackedScene& packed, const TetMesh& mesh)
 {
-    std::vector<std::uint32_t> row_of(mesh.tets.size() * 4, NO_LINK);
+    std::vector<std::uint32_t> row_of(mesh.tets.size() * 4, NO_HALF_FACE);
     std::vector<Quad> rows;
     for (std::uint32_t own = 0; own < row_of.size(); ++own) {
-        const std::uint32_t triangle = tet_of(mesh, own).faces[link_face(own)];
-        const std::uint32_t link = tet_of(mesh, own).links[link_face(own)];
+        const std::uint32_t triangle = tet_of(mesh, own).faces[half_face_index(own)];
+        const std::uint32_t half_face = tet_of(mesh, own).neighbours[half_face_index(own)];
         if (triangle == FREE_FACE) continue;
-        const bool has_row = link < own && row_of[link] != NO_LINK && tet_of(mesh, link).links[link_face(link)] == own;
-        row_of[own] = has_row ? row_of[link] : static_cast<std::uint32_t>(rows.size() / TRIANGLE_QUADS);
+        const bool has_row = half_face < own && row_of[half_face] != NO_HALF_FACE &&
+                             tet_of(mesh, half_face).neighbours[half_face_index(half_face)] == own;
+        row_of[own] = has_row ? row_of[half_face] : static_cast<std::uint32_t>(rows.size() / TRIANGLE_QUADS);
         if (has_row) continue;
         const Quad* const quads = &packed.triangles.at(std::size_t{TRIANGLE_QUADS} * triangle);
         rows.insert(rows.end(), quads, quads + TRIANGLE_QUADS);
         rows[rows.size() - 3].w = NORMAL_BIAS + triangle;
         rows[rows.size() - 2].w = side_word(own);
-        rows[rows.size() - 1].w = side_word(link);
+        rows[rows.size() - 1].w = side_word(half_face);
     }
     packed.triangles = std::move(rows);
     return row_of;
@@ -54,9 +55,9 @@ std::vector<std::uint32_t> pack_rows(PackedScene& packed, const TetMesh& mesh)
 
 std::uint32_t exit_word(const TetMesh& mesh, const Tet& tet, std::uint32_t face, std::uint32_t row)
 {
-    if (row != NO_LINK) return EXIT_IS_NORMAL | row << 2 | EXIT_END;
-    const std::uint32_t link = tet.links[face];
-    return link == NO_LINK ? NO_LINK : EXIT_IS_NORMAL | link << 2 | fold_at(mesh, tet, face) % 3;
+    if (row != NO_HALF_FACE) return EXIT_IS_NORMAL | row << 2 | EXIT_END;
+    const std::uint32_t half_face = tet.neighbours[face];
+    return half_face == NO_HALF_FACE ? NO_HALF_FACE : EXIT_IS_NORMAL | half_face << 2 | fold_at(mesh, tet, face) % 3;
 }
 
 } // namespace
@@ -71,10 +72,10 @@ void pack_tet64(PackedScene& packed, const TetMesh& mesh)
     packed.tets.reserve(row_of.size());
     for (std::uint32_t own = 0; own < row_of.size(); ++own) {
         const Tet& tet = tet_of(mesh, own);
-        const Float3 vertex = mesh.vertices[tet.vertices[link_face(own)]];
+        const Float3 vertex = mesh.vertices[tet.vertices[half_face_index(own)]];
         packed.tets.push_back({std::bit_cast<std::uint32_t>(vertex.x), std::bit_cast<std::uint32_t>(vertex.y),
                                std::bit_cast<std::uint32_t>(vertex.z),
-                               exit_word(mesh, tet, link_face(own), row_of[own])});
+                               exit_word(mesh, tet, half_face_index(own), row_of[own])});
     }
 }
 

@@ -37,11 +37,11 @@ struct PackedScene {
     std::vector<Quad> tets;           ///< TET80_QUADS or TET96_QUADS a tet; for each of its faces HALF32_QUADS, or one
     std::vector<Quad> triangles;      ///< TRIANGLE_QUADS an input triangle, or of tet64 an occlusive face
     std::vector<std::uint32_t> lines; ///< 3 (divisions + 1) float bits: the domain's lines, axis after axis
-    std::vector<std::uint32_t> entry_ranges; ///< EntryGrid::ranges
-    std::vector<std::uint32_t> entry_links;  ///< EntryGrid::links, in packed order
+    std::vector<std::uint32_t> entry_ranges;     ///< EntryGrid::ranges
+    std::vector<std::uint32_t> entry_half_faces; ///< EntryGrid::half_faces, in packed order
 
     std::vector<Quad> vertices;    ///< of tet20 and tet16: their positions (kernels/layouts/layout.h)
-    std::vector<Quad> entry_faces; ///< of tet20 and tet16, in place of entry_links: three vertices and a tet
+    std::vector<Quad> entry_faces; ///< of tet20 and tet16, in place of entry_half_faces: three vertices and a tet
     std::vector<std::uint32_t> occlusive_faces; ///< of tet20 and tet16: OCCLUSIVE_WORDS per face
 
     std::vector<Quad> nodes;          ///< of a BVH: BVH2_, BVH4_ or CWBVH_NODE_QUADS a node, the root first
@@ -49,13 +49,13 @@ struct PackedScene {
 
     std::vector<std::uint32_t> packed_of_mesh;   ///< stays on the host: position of each tet of the scene in `tets`
     std::vector<std::uint32_t> number_of_vertex; ///< of tet20 and tet16, stays too: by vertex of the scene's tets
-    std::vector<std::uint32_t> last_neighbours;  ///< stays too: what is behind the face opposite each tet's last vertex
-    std::string fall_back; ///< stays too: why a BVH's nodes are not the cheapest of its tree; empty where they are
+    std::vector<std::uint32_t> last_neighbours;  ///< stays too: what is across the face opposite each tet's last vertex
+    std::string fall_back; ///< stays too: why a BVH's nodes are not the cheapest of its tree; empty if they are
 
     [[nodiscard]] std::size_t bytes() const; ///< of all arrays that are copied to a device
 };
 
-/// The domain's box and its squares along a side, which kernels are told beside the arrays.
+/// The domain's box and its squares along a side, which kernels get in addition to the arrays.
 struct PackedDomain {
     std::uint32_t divisions = 1;
     Float3 low, high;

@@ -26,8 +26,8 @@ struct MethodTraits {
 enum class Family { cdt, compact, bvh, foreign };
 
 /// Fills `tets` of a packed scene, and the arrays of its family, from tets in packed order.
-/// packed: its layout, triangles, lines and entry links are set. mesh: the scene's tets in packed order, with links in
-/// that numbering.
+/// packed: its layout, triangles, lines and entry half-faces are set. mesh: the scene's tets in packed order, with
+/// half-faces in that numbering.
 using PackTets = void(PackedScene& packed, const TetMesh& mesh);
 /// Packs a BVH of the mesh: nodes and leaf triangles.
 using PackBvh = PackedScene(const TriangleMesh& mesh, const Bvh& bvh);

@@ -16,10 +16,10 @@ struct Aim {
     friend bool operator==(const Aim&, const Aim&) = default;
 };
 
-/// Own cameras are within so many radii of the centre: the bounds on rounding are derived for such.
+/// Own cameras are within this many radii of the centre: the bounds on rounding are derived for them.
 inline constexpr double farthest_aim = 3;
 
-/// Why there is no such camera, as the end of a sentence that begins with the name of a member; empty where there is
+/// Why such a camera is not possible, as the end of a sentence that begins with the name of a member; empty if there is
 /// one.
 [[nodiscard]] std::string why_no_camera(const Aim& aim);
 

@@ -49,11 +49,11 @@ GivenRay primary_given(const RaySource& source, std::uint32_t pixel)
 {
     const Float3 direction = ray_kernel::pixel_direction(source.view, pixel % source.width, pixel / source.width);
     const Float3 origin = source.view.origin;
-    const std::uint32_t link =
+    const std::uint32_t half_face =
         source.start_tet == NO_TET
-            ? NO_LINK
-            : make_link(source.start_tet, face_behind(source.scene.tets, source.start_tet, origin, direction));
-    return {origin, direction, NO_END, link, FREE_FACE, pixel};
+            ? NO_HALF_FACE
+            : make_half_face(source.start_tet, face_behind(source.scene.tets, source.start_tet, origin, direction));
+    return {origin, direction, NO_END, half_face, FREE_FACE, pixel};
 }
 
 // Chords between two uniform points of a sphere are its isotropic uniform lines; those that meet the box are the box's
@@ -80,7 +80,7 @@ GivenRay random_given(const RaySource& source, std::uint32_t pixel)
         const Float3 origin = snap_to_grid(to_float(sphere.centre + from * sphere.radius));
         const Float3 direction = clean_direction(normalized(to - from));
         if (enters(source.scene.domain, to_double(origin), to_double(direction)))
-            return {origin, direction, NO_END, NO_LINK, FREE_FACE, pixel};
+            return {origin, direction, NO_END, NO_HALF_FACE, FREE_FACE, pixel};
     }
 }
 
@@ -88,7 +88,7 @@ std::optional<GivenRay> leaving(const RayStart& start, Float3 direction, float e
                                 std::uint32_t pixel)
 {
     if (!enters(start, direction)) return std::nullopt;
-    return GivenRay{start.origin, direction, end, start.link, triangle, pixel};
+    return GivenRay{start.origin, direction, end, start.half_face, triangle, pixel};
 }
 
 // A uniform point of the unit sphere that touches the surface from its outside: cosine-distributed directions.

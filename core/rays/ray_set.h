@@ -11,18 +11,18 @@
 
 namespace tetrace {
 
-/// Hit::face_id of an answer that says only that there is a hit, for rays where any hit will do: Embree's answers.
+/// Hit::face_id if only the existence of a hit is known, for rays for which any hit will do: Embree's.
 inline constexpr std::uint32_t SOME_HIT = 0xFFFFFFFCu;
 
 /// A ray that is given to a device instead of being made there from a pixel.
 struct GivenRay {
-    Float3 origin;          ///< coordinates on the 2^-40 grid
-    Float3 direction;       ///< components 0 or at least 2^-20 in magnitude, as in kernels/ray.h
-    float end;              ///< ray parameter of its end, NO_END where it has none
-    std::uint32_t link;     ///< tet << 2 | face that it starts on or enters by, numbered as in the scene; NO_LINK from
-                            ///< outside the domain, and in a scene without tets
-    std::uint32_t triangle; ///< input triangle that it starts on, or FREE_FACE
-    std::uint32_t pixel;    ///< y * width + x that it was made for
+    Float3 origin;           ///< coordinates on the 2^-40 grid
+    Float3 direction;        ///< components 0 or at least 2^-20 in magnitude, as in kernels/ray.h
+    float end;               ///< ray parameter of its end, NO_END if it has none
+    std::uint32_t half_face; ///< tet << 2 | face that it starts on or enters by, numbered as in the scene; NO_HALF_FACE
+                             ///< from outside the domain, and in a scene without tets
+    std::uint32_t triangle;  ///< input triangle that it starts on, or FREE_FACE
+    std::uint32_t pixel;     ///< y * width + x that it was made for
 
     friend bool operator==(const GivenRay&, const GivenRay&) = default;
 };
@@ -59,11 +59,11 @@ struct RaySource {
 /// Makes the rays of a kind, in the order of the tiles of 8 x 8 pixels that they are made for, row after row
 /// (docs/spec/given-rays.md, G1):
 /// - primary: the view's own, one per pixel;
-/// - shadow: one per hit, to light_of() at parameter 1, where that is on the viewer's side of the surface;
+/// - shadow: one per hit, to light_of() at parameter 1, if that is on the viewer's side of the surface;
 /// - ao: one per hit, cosine-distributed on the viewer's side, which ends at ao_reach();
 /// - diffuse: the same without an end;
 /// - random: one per pixel, isotropic uniform lines that meet the domain, from outside it.
-/// Throws Error{internal} where hits are not of this image or scene.
+/// Throws Error{internal} if hits are not of this image or scene.
 [[nodiscard]] RaySet make_rays(RayKind kind, const RaySource& source);
 
 /// The point light of a view, near a corner of the domain: on the camera's side along the two axes on which it is

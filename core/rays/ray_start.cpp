@@ -77,19 +77,19 @@ RayStart ray_start(const Scene& scene, const Hit& hit)
 {
     const Double3 point = hit_point(scene.mesh, hit);
     const Tet& tet = scene.tets.tets.at(hit.tet);
-    RayStart start{{}, NO_LINK, {}, {}};
+    RayStart start{{}, NO_HALF_FACE, {}, {}};
     double most = -HUGE_VAL;
     for (std::uint32_t face = 0; face < 4; ++face) {
         if (tet.faces[face] != hit.face_id) continue; // a triangle may have two pieces in a nearly flat tet
         const FaceCorners corners = corners_of_face(scene.tets, hit.tet, face);
         const Double3 inward = normal_of(corners);
         const double depth = depth_in(corners, inward, point);
-        if (start.link != NO_LINK && depth <= most) continue;
+        if (start.half_face != NO_HALF_FACE && depth <= most) continue;
         most = depth;
-        start = {{}, make_link(hit.tet, face), inward, corners};
+        start = {{}, make_half_face(hit.tet, face), inward, corners};
     }
-    if (start.link == NO_LINK)
-        throw Error(ErrorKind::internal, "making rays: tet " + std::to_string(hit.tet) + " has no face of triangle " +
+    if (start.half_face == NO_HALF_FACE)
+        throw Error(ErrorKind::internal, "making rays: tet " + std::to_string(hit.tet) + " lacks a face of triangle " +
                                              std::to_string(hit.face_id) + " that it was hit on");
     start.origin = snap_to_grid(to_float(moved_inside(start.corners, start.inward, point)));
     return start;
@@ -97,7 +97,7 @@ RayStart ray_start(const Scene& scene, const Hit& hit)
 
 RayStart ray_start(const TriangleMesh& mesh, const Hit& hit, Float3 direction)
 {
-    RayStart start{{}, NO_LINK, {}, {}};
+    RayStart start{{}, NO_HALF_FACE, {}, {}};
     for (std::size_t i = 0; i < 3; ++i)
         start.corners[i] = to_double(mesh.vertices[mesh.triangles.at(hit.face_id)[i]]);
     if (dot(normal_of(start.corners), to_double(direction)) > 0) std::swap(start.corners[1], start.corners[2]);

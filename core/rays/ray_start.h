@@ -12,7 +12,7 @@ namespace tetrace {
 /// hit. The walk enters that tet by that face, so it never tests the face itself and needs no epsilon.
 struct RayStart {
     Float3 origin;                  ///< on the face except for rounding; coordinates on the 2^-40 grid
-    std::uint32_t link;             ///< the tet and its face
+    std::uint32_t half_face;        ///< the tet and its face
     Double3 inward;                 ///< the face's unit normal, into the tet
     std::array<Double3, 3> corners; ///< of the face, counter-clockwise as seen from inside
 };
@@ -25,17 +25,18 @@ inline constexpr double edge_margin = 0x1p-17;
 inline constexpr double min_sine = 0x1p-6;
 
 /// hit: of an input triangle; its tet numbered as in the scene.
-/// Throws Error{internal} where the tet has no face of that triangle.
+/// Throws Error{internal} if the tet lacks a face of that triangle.
 [[nodiscard]] RayStart ray_start(const Scene& scene, const Hit& hit);
 
-/// The same without tets: on the triangle that was hit, on the side that a ray of this direction came from; no link.
+/// The same without tets: on the triangle that was hit, on the side that a ray of this direction came from; no
+/// half-face.
 [[nodiscard]] RayStart ray_start(const TriangleMesh& mesh, const Hit& hit, Float3 direction);
 
 /// Whether a ray from there goes into the tet at an angle of at least min_sine, and its line meets the face's plane
 /// inside the face, 2^-19 away from its edges: then a walk enters by that face, however it rounds.
 [[nodiscard]] bool enters(const RayStart& start, Float3 direction);
 
-/// The face by which the line of a ray from inside a tet enters it, behind the origin: a walk that enters by it leaves
+/// The face by which the line of a ray from inside a tet enters it, before the origin: a walk that enters by it leaves
 /// by the face ahead. If the line passes an edge within rounding, the face that it passes further inside.
 [[nodiscard]] std::uint32_t face_behind(const TetMesh& mesh, std::uint32_t tet, Float3 origin, Float3 direction);
 

@@ -183,7 +183,7 @@ PackedScene search_tets(std::uint32_t count, Layout layout)
             mesh.vertices.push_back(to_float(corner));
         const std::uint32_t first = 4 * tet;
         mesh.tets.push_back({{first, first + 1, first + 2, first + 3},
-                             {NO_LINK, NO_LINK, NO_LINK, NO_LINK},
+                             {NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE},
                              {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
     }
     PackedScene packed;
@@ -208,7 +208,7 @@ SearchRays search_rays(std::uint32_t first_tet, std::uint32_t tets, std::uint32_
         for (std::uint32_t number = 0; number < rays_per_tet; ++number, ++i) {
             const StabbingRay stab = ray_of(corners, tet, number);
             const Float3 origin = to_float(stab.ray.origin), direction = to_float(stab.ray.direction);
-            rays.quads[i] = quad_of(direction, make_link(tet, stab.entry));
+            rays.quads[i] = quad_of(direction, make_half_face(tet, stab.entry));
             rays.quads[count + i] = quad_of(origin, 0);
             rays.quads[2 * count + i] = quad_of(cross(origin, direction), 0);
             rays.exits[i] = stab.exits;
@@ -221,11 +221,11 @@ SearchVerdict judge(const SearchRays& rays, std::size_t number, std::uint32_t fa
 {
     if (face == NO_EXIT) return SearchVerdict::lost;
     if ((rays.exits[number] >> face & 1u) != 0) return SearchVerdict::right;
-    const std::uint32_t link = rays.link(number);
-    if (face == link_face(link)) return SearchVerdict::wrong;
+    const std::uint32_t half_face = rays.half_face(number);
+    if (face == half_face_index(half_face)) return SearchVerdict::wrong;
     const IntRay ray = {to_int(rays.quads[rays.count() + number]), to_int(rays.quads[number])};
     const double bound = tie_bound(to_float(ray.origin));
-    const Corners corners = tet_of(link_tet(link));
+    const Corners corners = tet_of(half_face_tet(half_face));
     for (std::size_t i = 0; i < 3; ++i) {
         const Int3 from = corners[face_corners[face][i]], to = corners[face_corners[face][(i + 1) % 3]];
         if (side(ray, from, to) > 0 && distance_of_lines(ray, from, to) > bound) return SearchVerdict::wrong;

@@ -8,12 +8,12 @@
 
 namespace tetrace {
 
-// Exit searches alone (the paper, Table 5): random tets, and random rays through each, the same on every machine. All
-// coordinates are multiples of 2^-16 and below 2^4 in magnitude: floats represent them exactly, and 64-bit integers
-// decide exactly by which face a ray leaves.
+// Exit searches by themselves (the paper, Table 5): random tets, and random rays through each, the same on every
+// machine. All coordinates are multiples of 2^-16 and below 2^4 in magnitude: floats represent them exactly, and 64-bit
+// integers decide exactly by which face a ray leaves.
 
 /// Random tets with corners uniform in the cube [-1, 1)^3, without those flatter than 2^-20 of the unit cube, and
-/// without links. layout: of tets that hold their corners, as the kernels of task search need.
+/// without half-faces. layout: of tets that hold their corners, as the kernels of task search need.
 [[nodiscard]] PackedScene search_tets(std::uint32_t count, Layout layout);
 
 /// Rays that each enter a tet through the inside of a known face.
@@ -23,7 +23,10 @@ struct SearchRays {
                                      ///< where it meets an edge
 
     [[nodiscard]] std::size_t count() const { return exits.size(); }
-    [[nodiscard]] std::uint32_t link(std::size_t ray) const { return quads[ray].w; } ///< the tet and its entry face
+    [[nodiscard]] std::uint32_t half_face(std::size_t ray) const
+    {
+        return quads[ray].w;
+    } ///< the tet and its entry face
 };
 
 /// The first rays_per_tet rays of each of the tets from first_tet on, tet after tet. A ray goes from a random point of

@@ -26,7 +26,7 @@ STRUCT(Nearest)
 #define NEVER real(3.0e38f)
 // More than rounding can change a depth in a box test; needed only where bounds of different axes are compared.
 #define BOX_SLACK real(1.000003814697265625f) // 1 + 2^-18
-// A hit lies before the ray's origin unless its depth is at least 2^-100.
+// A hit with a smaller depth than 2^-100 is not in front of the ray's origin.
 #define LEAST_DEPTH real(8.67361737988403547e-19f) // 2^-60, in depth times 2^40
 
 // A function, because glslang does not terminate on a precise local that depends on a struct which the loop assigns as

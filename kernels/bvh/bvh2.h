@@ -24,11 +24,11 @@ KERNEL_FN real box_entry(RayFrame frame, real limit, uint x_low, uint x_high, ui
 }
 #endif
 
-// A traversal is text, not functions, because kernels have no pointers to its stack: trace_ray() has it, and so have
+// A traversal is text, not functions, because kernels have no pointers to its stack: trace_ray() has it, and so do
 // lanes that go on with another ray (refill_cuda.h). The loop's body is bvh2_loop.h.
 // Entries of the stack: children with their depths; BVH2_END; an entry that is written but not kept.
 #define TRAVERSAL_ENTRIES (BVH2_STACK + 2u)
-// type: of the variables; empty where they are declared already.
+// type: of the variables; empty if they are declared already.
 #define TRAVERSAL_AT_ROOT(type)                                                                                        \
     SET_ENTRY(scene, stack, 0u, BVH2_END, as_bits(real(0.0f)))                                                         \
     type waiting = 1u;                                                                                                 \

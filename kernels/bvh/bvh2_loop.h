@@ -14,7 +14,7 @@
             real a = box_entry(frame, nearest.depth, xy_a.x, xy_a.y, xy_a.z, xy_a.w, z.x, z.y);
             real b = box_entry(frame, nearest.depth, xy_b.x, xy_b.y, xy_b.z, xy_b.w, z.z, z.w);
             bool b_first = b < a;
-            // BVH2_LEAF alone is an empty leaf: the ray enters neither box.
+            // BVH2_LEAF by itself is an empty leaf: the ray enters neither box.
             child = minimum(a, b) == NEVER ? BVH2_LEAF : b_first ? children.y : children.x;
             uint later = b_first ? children.x : children.y;
             SET_ENTRY(scene, stack, waiting, later, as_bits(maximum(a, b)))

@@ -1,4 +1,4 @@
-// Layout bvh4: a tree with four children per node, whose boxes stand side by side; nearest child first.
+// Layout bvh4: a tree with four children per node, whose boxes are stored component by component; nearest child first.
 // Source: Dammertz, Hanika, Keller, "Shallow Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays",
 // EGSR 2008, and Wald, Benthin, Boulos, "Getting Rid of Packets", IRT 2008: the node. The loop is that of bvh2.h.
 

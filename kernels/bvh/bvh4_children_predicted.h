@@ -1,5 +1,5 @@
-// Which child of a node is next, and which wait, where a processor predicts it (docs/spec/devices.md, W10): each set of
-// boxes that a ray may enter has a case of its own, so that the next node is read before this one's boxes are known.
+// Which child of a node is next, and which wait, for processors that predict it (docs/spec/devices.md, W10): each set
+// of boxes that a ray may enter has a case of its own, so that the next node is read before this one's boxes are known.
 // The same order as in bvh4_loop.h. It has the loop's variables, `children`, `keys` without their slots, and `entered`:
 // bit i for child i.
 switch (entered) {

@@ -42,7 +42,7 @@
             PUSH_CHILD(last)
             PUSH_CHILD(third)
             PUSH_CHILD(second)
-            // BVH4_LEAF alone is an empty leaf: the ray enters no box.
+            // BVH4_LEAF by itself is an empty leaf: the ray enters no box.
             child = first == BVH4_NO_KEY ? BVH4_LEAF : child_of(children, first);
 #endif
 #endif

@@ -18,7 +18,7 @@ STRUCT(Visit)
 #ifdef HOST_SSE2
 #include "kernels/bvh/cwbvh_node_sse2.h"
 #else
-// Depth of the node's grid: plane q of an axis lies at q * step + start.
+// Depth of the node's grid: plane q of an axis is at q * step + start.
 STRUCT(GridFrame)
 {
     Vec3 step;
@@ -44,9 +44,9 @@ KERNEL_FN real plane_depth(real step, real start, uint planes, uint shift)
     return multiply_add(to_real(planes >> shift & 0xFFu), step, start);
 }
 
-// Hits of four children, whose planes are the bytes of the words. turn: the ray's octant, inverted. slot xor turn is a
-// child's rank in the order of visits: the highest is visited first.
-KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, uint near_x, uint near_y, uint near_z,
+// Hits of four children, whose planes are the bytes of the words. octant: the ray's octant, inverted. slot xor octant
+// is a child's rank in the order of visits: the highest is visited first.
+KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint octant, uint meta, uint near_x, uint near_y, uint near_z,
                             uint far_x, uint far_y, uint far_z)
 {
     uint hits = 0u;
@@ -58,13 +58,13 @@ KERNEL_FN uint hits_of_four(GridFrame grid, real limit, uint turn, uint meta, ui
                                    plane_depth(grid.step.y, grid.start.y, far_y, shift)),
                            minimum(plane_depth(grid.step.z, grid.start.z, far_z, shift), limit));
         uint child = meta >> shift & 0xFFu;
-        uint bit = (child & 31u) ^ ((child & 24u) == 24u ? turn : 0u);
+        uint bit = (child & 31u) ^ ((child & 24u) == 24u ? octant : 0u);
         hits |= near <= with_slack(far) ? child >> 5u << bit : 0u;
     }
     return hits;
 }
 
-KERNEL_FN Visit visit_of(SceneView scene, RayFrame frame, real limit, uint turn, uint node)
+KERNEL_FN Visit visit_of(SceneView scene, RayFrame frame, real limit, uint octant, uint node)
 {
     COUNT_NODE();
     uint4 r0 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node);
@@ -76,10 +76,10 @@ KERNEL_FN Visit visit_of(SceneView scene, RayFrame frame, real limit, uint turn,
     bool down_x = frame.inverse.x < real(0.0f);
     bool down_y = frame.inverse.y < real(0.0f);
     bool down_z = frame.inverse.z < real(0.0f);
-    uint first = hits_of_four(grid, limit, turn, r1.z, down_x ? r3.z : r2.x, down_y ? r4.x : r2.z, down_z ? r4.z : r3.x,
-                              down_x ? r2.x : r3.z, down_y ? r2.z : r4.x, down_z ? r3.x : r4.z);
-    uint last = hits_of_four(grid, limit, turn, r1.w, down_x ? r3.w : r2.y, down_y ? r4.y : r2.w, down_z ? r4.w : r3.y,
-                             down_x ? r2.y : r3.w, down_y ? r2.w : r4.y, down_z ? r3.y : r4.w);
+    uint first = hits_of_four(grid, limit, octant, r1.z, down_x ? r3.z : r2.x, down_y ? r4.x : r2.z,
+                              down_z ? r4.z : r3.x, down_x ? r2.x : r3.z, down_y ? r2.z : r4.x, down_z ? r3.x : r4.z);
+    uint last = hits_of_four(grid, limit, octant, r1.w, down_x ? r3.w : r2.y, down_y ? r4.y : r2.w,
+                             down_z ? r4.w : r3.y, down_x ? r2.y : r3.w, down_y ? r2.w : r4.y, down_z ? r3.y : r4.w);
     Visit visit;
     visit.hits = first | last;
     visit.inner = r0.w >> 24u;
@@ -89,7 +89,7 @@ KERNEL_FN Visit visit_of(SceneView scene, RayFrame frame, real limit, uint turn,
 }
 
 // The octant that the ray comes from: x is bit 2, y bit 1, z bit 0.
-KERNEL_FN uint turn_of(RayFrame frame)
+KERNEL_FN uint octant_of(RayFrame frame)
 {
     return (frame.inverse.x < real(0.0f) ? 0u : 4u) | (frame.inverse.y < real(0.0f) ? 0u : 2u) |
            (frame.inverse.z < real(0.0f) ? 0u : 1u);
@@ -100,13 +100,13 @@ KERNEL_FN uint turn_of(RayFrame frame)
 #define TRAVERSAL_ENTRIES CWBVH_STACK
 // hits: at first the root; bits 0 to 7 mark the slots of a group that are inner children.
 #define TRAVERSAL_AT_ROOT(type)                                                                                        \
-    type turn = turn_of(frame);                                                                                        \
+    type octant = octant_of(frame);                                                                                    \
     type waiting = 0u;                                                                                                 \
     type base = 0u;                                                                                                    \
     type hits = 0x80000000u;
 #define TRAVERSAL_GOES_ON (hits > 0x00FFFFFFu)
 #ifdef LANES_VOTE
-// A group of triangles may be put off onto entries below this one, so that there is room for all nodes on a path.
+// A group of triangles may be postponed to entries below this one, so that all nodes on a path fit.
 #define CWBVH_PUT_OFF 8u
 #define TOGETHER_ENTRIES (CWBVH_STACK + CWBVH_PUT_OFF)
 #define TOGETHER_GOES_ON (hits != 0u)

@@ -2,13 +2,13 @@
 {
     uint bit = highest_bit(hits);
     hits ^= 1u << bit;
-    uint slot = (bit & 7u) ^ turn;
+    uint slot = (bit & 7u) ^ octant;
     uint node = base + bit_count(hits & ((1u << slot) - 1u));
     if (hits > 0x00FFFFFFu) {
         SET_ENTRY(scene, stack, waiting, base, hits)
         ++waiting;
     }
-    Visit visit = visit_of(scene, frame, nearest.depth, turn, node);
+    Visit visit = visit_of(scene, frame, nearest.depth, octant, node);
     uint triangles = visit.hits & ~CWBVH_INNER_HITS;
     while (triangles != 0u) {
         TEST_NEXT_TRIANGLE(visit.triangles)

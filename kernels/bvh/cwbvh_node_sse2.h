@@ -36,12 +36,12 @@ KERNEL_FN Slots planes_of(const unsigned char* bytes)
 {
     return _mm256_cvtepi32_ps(words_of(bytes));
 }
-KERNEL_FN uint hits_of_slots(Slots near, Slots far, uint turn, const unsigned char* meta)
+KERNEL_FN uint hits_of_slots(Slots near, Slots far, uint octant, const unsigned char* meta)
 {
     const __m256i child = words_of(meta), inner = _mm256_set1_epi32(24);
     const __m256i is_inner = _mm256_cmpeq_epi32(_mm256_and_si256(child, inner), inner);
-    const __m256i turned = _mm256_and_si256(is_inner, _mm256_set1_epi32(static_cast<int>(turn)));
-    const __m256i bit = _mm256_xor_si256(_mm256_and_si256(child, _mm256_set1_epi32(31)), turned);
+    const __m256i octants = _mm256_and_si256(is_inner, _mm256_set1_epi32(static_cast<int>(octant)));
+    const __m256i bit = _mm256_xor_si256(_mm256_and_si256(child, _mm256_set1_epi32(31)), octants);
     const __m256i bits = _mm256_sllv_epi32(_mm256_srli_epi32(child, 5), bit);
     const __m256i met = _mm256_and_si256(bits, _mm256_castps_si256(_mm256_cmp_ps(near, far, _CMP_LE_OQ)));
     const __m128i half = _mm_or_si128(_mm256_castsi256_si128(met), _mm256_extracti128_si256(met, 1));
@@ -80,12 +80,12 @@ KERNEL_FN Slots planes_of(const unsigned char* bytes)
 }
 // SSE2 shifts all lanes by one number, so lanes are shifted by products with powers of two. 2^31 is too large for a
 // signed number, for which the conversion has that very word.
-KERNEL_FN uint hits_of_slots(Slots near, Slots far, uint turn, const unsigned char* meta)
+KERNEL_FN uint hits_of_slots(Slots near, Slots far, uint octant, const unsigned char* meta)
 {
     const __m128i child = words_of(meta), inner = _mm_set1_epi32(24);
     const __m128i is_inner = _mm_cmpeq_epi32(_mm_and_si128(child, inner), inner);
-    const __m128i turned = _mm_and_si128(is_inner, _mm_set1_epi32(static_cast<int>(turn)));
-    const __m128i bit = _mm_xor_si128(_mm_and_si128(child, _mm_set1_epi32(31)), turned);
+    const __m128i octants = _mm_and_si128(is_inner, _mm_set1_epi32(static_cast<int>(octant)));
+    const __m128i bit = _mm_xor_si128(_mm_and_si128(child, _mm_set1_epi32(31)), octants);
     const __m128 power = _mm_castsi128_ps(_mm_slli_epi32(_mm_add_epi32(bit, _mm_set1_epi32(127)), 23));
     const __m128i bits = _mm_cvttps_epi32(_mm_cvtepi32_ps(_mm_srli_epi32(child, 5)) * power);
     const __m128i met = _mm_and_si128(bits, _mm_castps_si128(_mm_cmple_ps(near, far)));
@@ -94,7 +94,7 @@ KERNEL_FN uint hits_of_slots(Slots near, Slots far, uint turn, const unsigned ch
 }
 #endif
 
-KERNEL_FN Visit visit_of(SceneView scene, const RayFrame& frame, real limit, uint turn, uint node)
+KERNEL_FN Visit visit_of(SceneView scene, const RayFrame& frame, real limit, uint octant, uint node)
 {
     COUNT_NODE();
     const uint4& r0 = FETCH(scene, nodes, CWBVH_NODE_QUADS * node);
@@ -114,12 +114,12 @@ KERNEL_FN Visit visit_of(SceneView scene, const RayFrame& frame, real limit, uin
         const auto plane = [&](uint axis, bool is_high, Slots of_step, Slots of_start) {
             return planes_of(low + 8u * axis + (is_high ? 24u : 0u)) * of_step + of_start;
         };
-        const bool up_x = (turn & 4u) != 0u, up_y = (turn & 2u) != 0u, up_z = (turn & 1u) != 0u;
+        const bool up_x = (octant & 4u) != 0u, up_y = (octant & 2u) != 0u, up_z = (octant & 1u) != 0u;
         const Slots near = maximum(maximum(plane(0u, !up_x, steps.x, starts.x), plane(1u, !up_y, steps.y, starts.y)),
                                    maximum(plane(2u, !up_z, steps.z, starts.z), Slots{}));
         const Slots far = minimum(minimum(plane(0u, up_x, steps.x, starts.x), plane(1u, up_y, steps.y, starts.y)),
                                   minimum(plane(2u, up_z, steps.z, starts.z), in_all_slots(limit)));
-        visit.hits |= hits_of_slots(near, far * in_all_slots(BOX_SLACK), turn, bytes + 24u + slot);
+        visit.hits |= hits_of_slots(near, far * in_all_slots(BOX_SLACK), octant, bytes + 24u + slot);
     }
     visit.inner = r0.w >> 24u;
     visit.children = r1.x;
@@ -128,7 +128,7 @@ KERNEL_FN Visit visit_of(SceneView scene, const RayFrame& frame, real limit, uin
 }
 #undef SLOTS_AT_ONCE
 
-KERNEL_FN uint turn_of(const RayFrame& frame)
+KERNEL_FN uint octant_of(const RayFrame& frame)
 {
     const uint down = static_cast<uint>(_mm_movemask_ps(frame.inverse));
     return 7u ^ ((down << 2u & 4u) | (down & 2u) | (down >> 2u & 1u));

@@ -1,10 +1,10 @@
-// Persistent warps whose lanes fetch rays for themselves: where few of a warp's lanes still have a ray, the others
-// write their hits and begin new rays, in the middle of the few's traversals.
+// Persistent warps whose lanes fetch rays for themselves: if few of a warp's lanes still have a ray, the others write
+// their hits and start new rays, in the middle of the traversals of those few.
 //
 // Source: Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3, and its
-// addendum with Karras, 2012, in whose released kernel for Kepler few are less than 20 of 32. There lanes vote that are
-// in the loop; here all lanes of a warp stay in it, because where lanes are scheduled independently (since Volta) a
-// vote waits for those alone that it names.
+// addendum with Karras, 2012, in whose released kernel for Kepler "few" is less than 20 of 32. There, the lanes in the
+// loop vote; here, all lanes of a warp stay in the loop, because with independently scheduled lanes (since Volta) a
+// vote waits only for the lanes that it names.
 #define REFILLS_LANES
 
 #define WHOLE_WARP 0xFFFFFFFFu
@@ -13,13 +13,13 @@
 #endif
 #define NO_ITEM 0xFFFFFFFFu
 
-// What a layout has instead if its lanes go through the loop together.
+// A layout whose lanes go through the loop together defines these instead.
 #ifndef TOGETHER_ENTRIES
 #define TOGETHER_ENTRIES TRAVERSAL_ENTRIES
 #define TOGETHER_GOES_ON TRAVERSAL_GOES_ON
 #endif
 
-// Takes so many numbers from the counter. Returns the first, to the whole warp.
+// Takes `count` numbers from the counter. Returns the first, to the whole warp.
 KERNEL_FN uint fetch_items(uint count, uint* counter)
 {
     uint first = 0u;
@@ -27,8 +27,8 @@ KERNEL_FN uint fetch_items(uint count, uint* counter)
     return __shfl_sync(WHOLE_WARP, first, 0);
 }
 
-// Traces rays until none is left. Rays: those of a launch by number, as backends/cuda/kernel.cu has them. counter: 0 at
-// first.
+// Traces rays until all are traced. Rays: those of a launch by number, as backends/cuda/kernel.cu has them. counter: 0
+// at first.
 template <class Rays>
 KERNEL_FN void trace_refilled(SceneView scene, TraceParams params, const Rays& rays, uint* counter)
 {

@@ -43,8 +43,8 @@ KERNEL_FN RayFrame frame_of(Ray ray)
     return frame;
 }
 
-// The ray of a frame, exactly: products with powers of two are not rounded. A GPU has no registers for it beside the
-// frame.
+// The ray of a frame, exactly: products with powers of two are not rounded. A GPU lacks registers for it in addition to
+// the frame.
 KERNEL_FN Ray ray_of(RayFrame frame)
 {
     PRECISE real a = frame.shear.x * real(-9.5367431640625e-7f); // 2^-20
@@ -56,7 +56,7 @@ KERNEL_FN Ray ray_of(RayFrame frame)
     return make_ray(frame.origin, VEC3(x, y, z));
 }
 
-// A vertex is needed only as its two coordinates and its depth: a GPU has no registers for more of three vertices.
+// A vertex is needed only as its two coordinates and its depth: a GPU lacks registers for more of three vertices.
 KERNEL_FN Seen seen_by(RayFrame frame, uint4 quad)
 {
     Vec3 offset = sub3(VEC3(as_real(quad.x), as_real(quad.y), as_real(quad.z)), frame.origin);
@@ -77,7 +77,7 @@ KERNEL_FN bool has_two_signs(real a, real b, real c)
     return minimum(minimum(a, b), c) < real(0.0f) && maximum(maximum(a, b), c) > real(0.0f);
 }
 
-// Tests leaf triangle `at`. Of equally near triangles the first in the input wins, in any order of the tests.
+// Tests leaf triangle `at`. If several are equally near, the first in the input wins, in any order of the tests.
 // Source: Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; here without a division.
 KERNEL_FN Nearest nearer_triangle(SceneView scene, RayFrame frame, Nearest nearest, uint at)
 {

@@ -23,7 +23,7 @@ KERNEL_FN Lanes3 each_in_all_lanes(__m128 a)
     return {_mm_shuffle_ps(a, a, 0x00), _mm_shuffle_ps(a, a, 0x55), _mm_shuffle_ps(a, a, 0xAA)};
 }
 
-// dot3(); with at most two products that are not zero it has no other order.
+// dot3(); with at most two products that are not zero, any order is the same.
 KERNEL_FN __m128 dot_lanes(Lanes3 a, Lanes3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -101,7 +101,7 @@ KERNEL_FN __m128 lost_in_lanes(__m128 a, __m128 b, __m128 product)
 #endif
 }
 
-// Whether plus - minus is below 0 in some lane, and above in another. One branch: either half of the answer alone is
+// Whether plus - minus is below 0 in some lane, and above in another. One branch: each half of the answer by itself is
 // hard to predict. Only an empty mask is negative less one.
 KERNEL_FN bool has_two_signs(__m128 plus, __m128 minus)
 {
@@ -115,7 +115,7 @@ KERNEL_FN __m128 quad_in_lanes(const uint4& quad)
 }
 
 // The nearer of a hit and leaf triangle `at`, given the sum of its sides and the sum of its depths times 2^40, weighted
-// by the sides. Of equally near triangles the first in the input wins, in any order of the tests.
+// by the sides. If several are equally near, the first in the input wins, in any order of the tests.
 KERNEL_FN Nearest nearer(Nearest nearest, real determinant, real weighted, uint triangle, uint at)
 {
     PRECISE real inverse = reciprocal(magnitude(determinant));

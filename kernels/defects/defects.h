@@ -1,7 +1,7 @@
 // defects/: reduced kernels of defects that drivers' compilers have; core/debugging/defects.h says
-// what each should return, and where it was seen. Include it after a dialect header. Defined by the entry file:
-// DEFECT_WORDS, the parameter that hands over the words that every kernel reads, DEFECT_PASSED, the argument for it,
-// and WORD(index), which reads one.
+// what each should return, and on which drivers it was seen. Include it after a dialect header. Defined by the entry
+// file: DEFECT_WORDS, the parameter that hands over the words that every kernel reads, DEFECT_PASSED, the argument for
+// it, and WORD(index), which reads one.
 
 // A value that is loaded in a loop which items leave at different times, and used after it.
 KERNEL_FN uint value_after_divergent_loop(DEFECT_WORDS uint item)

@@ -1,5 +1,5 @@
-// The kernels' language as CUDA C++, for nvcc and for NVRTC. NVRTC has no headers, so nothing is included here.
-// Compiler options set contraction, division and square root (backends/cuda/CMakeLists.txt).
+// The kernels' language as CUDA C++, for nvcc and for NVRTC. NVRTC lacks headers, so nothing is included here. Compiler
+// options set contraction, division and square root (backends/cuda/CMakeLists.txt).
 #define KERNEL_FN [[maybe_unused]] static __device__ inline
 // A call here would cost all rays more registers than the code itself.
 #define RARE_FN KERNEL_FN

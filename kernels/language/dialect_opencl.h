@@ -25,7 +25,7 @@
 #define GROUP_WORDS(count)
 #define GROUP_WORD(scene, index) ((scene).group_words[(index)*GROUP_ITEMS + get_local_id(0)])
 typedef float real;
-#define real(value) ((real)(value)) // replaced only where a parenthesis follows
+#define real(value) ((real)(value)) // replaced only if a parenthesis follows
 #define HAS_FLOAT4                  // four floats as one value, with operators
 
 KERNEL_FN real as_real(uint bits)

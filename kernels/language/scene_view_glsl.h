@@ -65,7 +65,7 @@ FETCH_FROM_PARTS(uint4, tet_quads, 4u)
 #define fetch_triangles(scene, index) triangles[index]
 #define fetch_lines(scene, index) lines[index]
 #define fetch_entry_ranges(scene, index) entry_ranges[index]
-#define fetch_entry_links(scene, index) entry_links[index]
+#define fetch_entry_half_faces(scene, index) entry_half_faces[index]
 #define fetch_entry_faces(scene, index) entry_faces[index]
 #define fetch_vertices(scene, index) vertices[index]
 #define fetch_occlusive_faces(scene, index) occlusive_faces[index]

@@ -2,6 +2,9 @@
 // would keep an array that is indexed at run time in memory.
 //   face 0: 1 2 3    face 1: 0 3 2    face 2: 0 1 3    face 3: 0 2 1
 // A line that enters through the face has side(c0, c1), side(c1, c2), side(c2, c0) >= 0.
+#ifndef TETRACE_KERNELS_LAYOUTS_FACES_H
+#define TETRACE_KERNELS_LAYOUTS_FACES_H
+
 KERNEL_FN uint corner(uint face, uint index)
 {
     return (0x634B39u >> (6u * face + 2u * index)) & 3u;
@@ -15,17 +18,4 @@ KERNEL_FN uint other_face(uint entry, uint outcome)
     return (0x18D2DEu >> (6u * entry + 2u * outcome)) & 3u;
 }
 
-// Side of the ray with respect to the directed line from vertex `from` to vertex `to` (Pluecker side product), in the
-// frame of `from`: the line's moment vanishes there.
-KERNEL_FN real side_of_edge(Ray ray, Vec3 from, Vec3 to)
-{
-    return dot3(cross3(sub3(ray.origin, from), ray.direction), sub3(to, from));
-}
-
-// The same as the permuted inner product of Pluecker coordinates, {direction, moment} of the ray and {to - from, from x
-// to} of the edge. Swapping from and to negates it exactly.
-KERNEL_FN real edge_product(Ray ray, Vec3 from, Vec3 to)
-{
-    PRECISE real product = dot3(ray.moment, sub3(to, from)) + dot3(ray.direction, cross3(from, to));
-    return product;
-}
+#endif

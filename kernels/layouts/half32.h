@@ -1,12 +1,17 @@
 // Layout half32: for each tet and each face by which a ray may enter it, one aligned record of 32 bytes with everything
-// that a step needs: the new vertex, and what lies behind each of the three other faces (layout.h). A link is its
-// record's number.
+// that a step needs: the new vertex, and what is across each of the three other faces (layout.h). A record's number is
+// its half-face.
+#ifndef TETRACE_KERNELS_LAYOUTS_HALF32_H
+#define TETRACE_KERNELS_LAYOUTS_HALF32_H
+
+#include "kernels/layouts/faces.h"
+
 #define HAS_RECORDS
 #define RecordExits uint4
 #define RECORD_EXITS(scene, record) record_exits(scene, record)
-#define TURN_OF_CORNERS(face) 0u          // of a walk that carries them in the order of faces.h
-#define TURN_AFTER(turn, replaced) (turn) // once the apex has replaced a vertex
-#define EXIT_REPLACING(scene, exits, turn, replaced) exit_replacing(exits, turn, replaced)
+#define ROTATION_OF_CORNERS(face) 0u                  // of a walk that carries them in the order of faces.h
+#define ROTATION_AFTER(rotation, replaced) (rotation) // once the apex has replaced a vertex
+#define EXIT_REPLACING(scene, exits, rotation, replaced) exit_replacing(exits, rotation, replaced)
 
 KERNEL_FN uint4 record_apex(SceneView scene, uint record)
 {
@@ -29,20 +34,20 @@ KERNEL_FN uint exit_to(uint record)
     return record << 2u;
 }
 
-KERNEL_FN uint record_behind(uint exit)
+KERNEL_FN uint record_across(uint exit)
 {
     return exit >> 2u;
 }
 
-KERNEL_FN uint turn_behind(uint turn, uint exit)
+KERNEL_FN uint rotation_at(uint rotation, uint exit)
 {
-    uint sum = turn + (exit & 3u);
+    uint sum = rotation + (exit & 3u);
     return sum >= 3u ? sum - 3u : sum;
 }
 
-KERNEL_FN uint exit_replacing(RecordExits exits, uint turn, uint replaced)
+KERNEL_FN uint exit_replacing(RecordExits exits, uint rotation, uint replaced)
 {
-    uint index = replaced < turn ? replaced + 3u - turn : replaced - turn;
+    uint index = replaced < rotation ? replaced + 3u - rotation : replaced - rotation;
     return index == 0u ? exits.x : index == 1u ? exits.y : exits.z;
 }
 
@@ -53,7 +58,7 @@ KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
     return VEC3(as_real(apex.x), as_real(apex.y), as_real(apex.z));
 }
 
-KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
+KERNEL_FN uint opposite_half_face(SceneView scene, uint tet, uint face)
 {
     return record_exits(scene, (tet << 2u) | face).w;
 }
@@ -69,5 +74,7 @@ KERNEL_FN uint exit_through(SceneView scene, uint tet, uint face)
 KERNEL_FN uint face_triangle(SceneView scene, uint tet, uint face)
 {
     uint exit = exit_through(scene, tet, face);
-    return (exit & 3u) == EXIT_END && exit != NO_LINK ? record_behind(exit) : FREE_FACE;
+    return (exit & 3u) == EXIT_END && exit != NO_HALF_FACE ? record_across(exit) : FREE_FACE;
 }
+
+#endif

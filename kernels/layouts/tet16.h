@@ -1,6 +1,8 @@
-// Layout tet16 (Aman, Demirci, Guedukbay 2022): a quad of the xor of a tet's four vertices, and the xor of each of
-// three neighbours with the fourth. Any one neighbour determines the other three; a walk knows the one that it comes
-// from.
+// Layout tet16 (Aman, Demirci, Guedukbay 2022): a quad with the xor of a tet's four vertices, and the xor of each of
+// three neighbours with the fourth. One neighbour determines the other three; a walk knows the one that it comes from.
+#ifndef TETRACE_KERNELS_LAYOUTS_TET16_H
+#define TETRACE_KERNELS_LAYOUTS_TET16_H
+
 STRUCT(CompactTet)
 {
     uint vertices; // xor of the four vertices
@@ -27,7 +29,7 @@ KERNEL_FN uint neighbour_code(CompactTet tet, uint rank)
     return rank < 2u ? of_first : of_last;
 }
 
-// What is behind the face opposite the vertex of that rank among the four. known: the same for the vertex of
+// What is across the face opposite the vertex of that rank among the four. known: the same for the vertex of
 // `known_rank`.
 KERNEL_FN uint neighbour(CompactTet tet, uint rank, uint known_rank, uint known)
 {
@@ -35,3 +37,5 @@ KERNEL_FN uint neighbour(CompactTet tet, uint rank, uint known_rank, uint known)
 }
 
 #define NEIGHBOUR(scene, tet, rank, known_rank, known) neighbour(tet, rank, known_rank, known)
+
+#endif

@@ -1,5 +1,8 @@
 // Layout tet20 (Aman, Demirci, Guedukbay 2022): the xor of a tet's four vertices, then its four neighbours in the order
 // of their opposite vertices.
+#ifndef TETRACE_KERNELS_LAYOUTS_TET20_H
+#define TETRACE_KERNELS_LAYOUTS_TET20_H
+
 STRUCT(CompactTet)
 {
     uint first_word;
@@ -14,10 +17,12 @@ KERNEL_FN CompactTet compact_tet(SceneView scene, uint tet)
     return result;
 }
 
-// What is behind the face opposite the vertex of that rank among the four.
+// What is across the face opposite the vertex of that rank among the four.
 KERNEL_FN uint neighbour(SceneView scene, CompactTet tet, uint rank)
 {
     return FETCH(scene, tet_words, tet.first_word + 1u + rank);
 }
 
 #define NEIGHBOUR(scene, tet, rank, known_rank, known) neighbour(scene, tet, rank)
+
+#endif

@@ -1,4 +1,7 @@
-// Layout tet80 (the paper, section 4.1): a tet holds its vertices as 12 floats, then {link, triangle} per face.
+// Layout tet80 (the paper, section 4.1): a tet holds its vertices as 12 floats, then {half-face, triangle} per face.
+#ifndef TETRACE_KERNELS_LAYOUTS_TET80_H
+#define TETRACE_KERNELS_LAYOUTS_TET80_H
+
 #ifdef QUADS_COST_AS_WORDS
 #include "kernels/layouts/tet80_quads.h"
 #else
@@ -11,7 +14,7 @@ KERNEL_FN Vec3 vertex(SceneView scene, uint tet, uint corner)
                 as_real(FETCH(scene, tet_words, word + 2u)));
 }
 
-KERNEL_FN uint face_link(SceneView scene, uint tet, uint face)
+KERNEL_FN uint opposite_half_face(SceneView scene, uint tet, uint face)
 {
     return FETCH(scene, tet_words, TET80_WORDS * tet + 12u + 2u * face);
 }
@@ -20,4 +23,6 @@ KERNEL_FN uint face_triangle(SceneView scene, uint tet, uint face)
 {
     return FETCH(scene, tet_words, TET80_WORDS * tet + 13u + 2u * face);
 }
+#endif
+
 #endif

@@ -1,6 +1,11 @@
 // Method ms06: exit face by two or three side products; the sides at the entry face's edges are known.
 // Source: Marmitt and Slusallek, "Fast Ray Traversal of Tetrahedral and Hexahedral Meshes for Direct Volume Rendering",
 // EuroVis 2006. 23 operations a product, as in plucker; (2 + 3 + 3) / 3 products on average.
+#ifndef TETRACE_KERNELS_METHODS_MS06_H
+#define TETRACE_KERNELS_METHODS_MS06_H
+
+#include "kernels/layouts/faces.h"
+#include "kernels/methods/edge_sides.h"
 
 // Two edges to the apex bound the first candidate. If it is not the exit, the third edge decides between the other two.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
@@ -22,3 +27,5 @@ KERNEL_FN real side_at_entry(Ray ray, Vec3 from, Vec3 to)
 {
     return edge_product(ray, from, to);
 }
+
+#endif

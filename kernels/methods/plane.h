@@ -2,6 +2,13 @@
 // Garrity, "Raytracing Irregular Volume Data", Computer Graphics 24(5), 1990; Lagae and Dutre, "Accelerating Ray
 // Tracing using Constrained Tetrahedralizations", EGSR 2008. Three planes per step, without the entry face's; four at
 // the start.
+#ifndef TETRACE_KERNELS_METHODS_PLANE_H
+#define TETRACE_KERNELS_METHODS_PLANE_H
+
+#include KERNEL_LAYOUT_HEADER
+#include "kernels/layouts/faces.h"
+#include "kernels/methods/edge_sides.h"
+#include "kernels/ray.h"
 
 // A face's plane is met at distance / approach along the ray; approach is positive where the ray leaves the tet there.
 STRUCT(Crossing)
@@ -79,3 +86,5 @@ KERNEL_FN real side_at_entry(Ray ray, Vec3 from, Vec3 to)
 {
     return side_of_edge(ray, from, to);
 }
+
+#endif

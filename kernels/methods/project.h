@@ -2,12 +2,17 @@
 // across the ray in every tet, and a sign is never wrong and never zero, so that no two tets disagree and no walk gets
 // lost (docs/spec/project.md, P6). Sources: the walk, Aman, Demirci, Guedukbay, "Compact Tetrahedralization-Based
 // Acceleration Structures for Ray Tracing", Journal of Visualization 25, 2022; the projection, see shear.h; ties,
-// Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9(1), 1990. 46 operations a step: 3
-// for the shear, 13 a vertex (3 + 5 + 5), 2 a sign; a sign at a tie 32 more.
+// Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9(1), 1990. 46 operations per step:
+// 3 for the shear, 13 a vertex (3 + 5 + 5), 2 a sign; a sign at a tie 32 more.
+#ifndef TETRACE_KERNELS_METHODS_PROJECT_H
+#define TETRACE_KERNELS_METHODS_PROJECT_H
+
+#include KERNEL_LAYOUT_HEADER
+#include "kernels/layouts/faces.h"
+#include "kernels/methods/signs.h"
+
 #define TAKES_RAYS
 #define WALKS_PATHS // its walk follows a path that begins at a boundary face that holds the ray, if there is one
-
-#include "kernels/methods/signs.h"
 
 // The two tests of maria, at edges that end in the apex: the edge from c2, then the edge from c0 or c1.
 KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
@@ -21,7 +26,7 @@ KERNEL_FN uint exit_face(SceneView scene, uint tet, uint entry, Ray ray)
     return other_face(entry, outcome);
 }
 
-// The same where float products decide, else TIE_AT | entry.
+// The same if float products decide, else TIE_AT | entry.
 #define TIE_AT 4u
 KERNEL_FN uint rough_exit_face(SceneView scene, uint tet, uint entry, Ray ray)
 {
@@ -49,3 +54,5 @@ KERNEL_FN bool is_ahead(SceneView scene, uint tet, uint face, Ray ray)
     return is_face_ahead(ray, vertex(scene, tet, corner(face, 0u)), vertex(scene, tet, corner(face, 1u)),
                          vertex(scene, tet, corner(face, 2u)));
 }
+
+#endif

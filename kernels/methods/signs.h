@@ -1,14 +1,17 @@
 // The signs of method project: vertices projected across the ray, and the side of the ray at an edge between two of
 // them, which is never wrong and never undecided (docs/spec/project.md, P2 and P3). For walks that read corners from
 // tets (project.h) and for walks that carry them.
+#ifndef TETRACE_KERNELS_METHODS_SIGNS_H
+#define TETRACE_KERNELS_METHODS_SIGNS_H
+
+#include "kernels/ray.h"
+#include "kernels/shear.h"
 
 // For a build that counts which level decides a sign: 0 float products, 1 what they lost, 2 the rule for ties;
 // that build is never timed.
 #ifndef COUNT_SIGN
 #define COUNT_SIGN(level)
 #endif
-
-#include "kernels/shear.h"
 
 // The order that decides ties compares the vertices' positions.
 STRUCT(Projected)
@@ -55,7 +58,7 @@ KERNEL_FN bool is_left_when_moved(Sheared p, Sheared q)
     return p.x > zero;
 }
 
-// Whether p x q is positive, where both of its products are rounded to `product`. p_is_first: in the order of vertices.
+// Whether p x q is positive, if both of its products are rounded to `product`. p_is_first: in the order of vertices.
 KERNEL_FN bool is_left_at_tie(Sheared p, Sheared q, bool p_is_first, real product)
 {
     real plus = lost_by(p.x, q.y, product);
@@ -112,7 +115,7 @@ KERNEL_FN uint roughly_held(Sheared p0, Sheared p1, Sheared p2)
     return is_outside ? NOT_HELD : is_inside ? HELD : HELD_OR_TIE;
 }
 
-// The face of a tet all of whose edges have the ray on their negative side; NO_EXIT where the ray crosses no face.
+// The face of a tet all of whose edges have the ray on their negative side; NO_EXIT if the ray crosses no face.
 KERNEL_FN uint face_left_by(Ray ray, Vec3 a, Vec3 b, Vec3 c, Vec3 d)
 {
     Shear shear = shear_of(ray);
@@ -173,3 +176,5 @@ KERNEL_FN bool is_face_ahead(Ray ray, Vec3 a, Vec3 b, Vec3 c)
     PRECISE real weighted = u * depth_0 + v * depth_1 + w * depth_2;
     return determinant < real(0.0f) ? weighted < real(0.0f) : weighted > real(0.0f);
 }
+
+#endif

@@ -1,6 +1,11 @@
 // Exit face for methods that test the ray's side at all edges of a face. The including method defines AS_SEEN(ray,
 // point), a vertex in the form that its products need, and side_of(ray, from, to) for two such vertices. Swapping the
 // two must negate it exactly: an edge then has the same side in every tet.
+#ifndef TETRACE_KERNELS_METHODS_WHOLE_FACE_H
+#define TETRACE_KERNELS_METHODS_WHOLE_FACE_H
+
+#include "kernels/layouts/faces.h"
+#include "kernels/methods/edge_sides.h"
 
 // A face is the exit if none of its three edges has the ray on its entering side. The three candidates are tested in
 // turn, each until an edge rejects it. No edge is tested twice.
@@ -28,3 +33,5 @@ KERNEL_FN real side_at_entry(Ray ray, Vec3 from, Vec3 to)
 {
     return side_of(ray, AS_SEEN(ray, from), AS_SEEN(ray, to));
 }
+
+#endif

@@ -1,11 +1,15 @@
 // walks/: the walks from tet to tet, one file each, and how rays enter the domain.
-//
-// The vertices that a walk along a path carries, as the ray sees them: those of the face that it is at. A step projects
-// one new vertex, the apex of the tet behind the face, and two signs say which of the three vertices it replaces.
+#ifndef TETRACE_KERNELS_WALKS_CARRIED_H
+#define TETRACE_KERNELS_WALKS_CARRIED_H
+
+#include "kernels/methods/signs.h"
+
+// A vertex that a walk along a path carries, as the ray sees it: one of the three of its current face. A step projects
+// one new vertex, the apex of the next tet, and two signs select the vertex that it replaces.
 STRUCT(Carried)
 {
     Sheared seen;
-    real along; // its depth, as ends_before() of links.h has it; not used for rays without an end
+    real along; // its depth, as ends_before() of half_faces.h has it; not used for rays without an end
 };
 
 KERNEL_FN Carried carried(Ray ray, Shear shear, uint4 vertex)
@@ -17,7 +21,7 @@ KERNEL_FN Carried carried(Ray ray, Shear shear, uint4 vertex)
     return result;
 }
 
-// A corner of the face by which a ray enters, which has no end.
+// A corner of the face by which a ray without an end enters.
 KERNEL_FN Carried carried_from(Sheared corner)
 {
     Carried result;
@@ -35,7 +39,7 @@ KERNEL_FN uint replaced_by(Sheared p0, Sheared p1, Sheared p2, Sheared apex)
     return other_left ? (left ? 2u : 1u) : (left ? 0u : 2u);
 }
 
-// The same by float products alone; UNDECIDED at a tie.
+// The same, using only float products; UNDECIDED at a tie.
 #define UNDECIDED 3u
 KERNEL_FN uint roughly_replaced_by(Sheared p0, Sheared p1, Sheared p2, Sheared apex)
 {
@@ -47,3 +51,5 @@ KERNEL_FN uint roughly_replaced_by(Sheared p0, Sheared p1, Sheared p2, Sheared a
     uint replaced = other_plus > other_minus ? (left ? 2u : 1u) : (left ? 0u : 2u);
     return plus == minus || other_plus == other_minus ? UNDECIDED : replaced;
 }
+
+#endif

@@ -1,8 +1,13 @@
-// For rays from outside: where a ray meets the domain's box, and the boundary face by which it enters.
+// For rays from outside: the point at which a ray meets the domain's box, and the boundary face by which it enters.
 // Only products are compared, never quotients: position <= line is |direction| (line - origin) <= |gap| direction_a.
 // The left side is monotone in the line, so that the squares of one side never contradict each other.
-// Include after this: entry_links.h or entry_faces.h (the boundary faces that squares and sides list), then
-// entry_nearest.h or entry_on_path.h (by which of them a ray enters).
+// Included by entry_half_faces.h and entry_faces.h, which read the boundary faces of squares and sides, after what
+// defines side_at_entry().
+#ifndef TETRACE_KERNELS_WALKS_ENTRY_H
+#define TETRACE_KERNELS_WALKS_ENTRY_H
+
+#include "kernels/ray.h"
+
 #define NO_ENTRY 0xFFFFFFFFu // instead of a boundary face's number
 #define STARTS_IN_TETS       // rays of an image may also begin inside the domain
 
@@ -25,9 +30,8 @@ KERNEL_FN uint second_axis(uint across)
     return across == 0u ? 2u : across - 1u;
 }
 
-// Where the ray meets the plane of a side, along an axis of that side. It is beyond a line there if slope (line -
-// origin)
-// <= reach. first, last: that product for the side's borders.
+// The point at which the ray meets the plane of a side, along an axis of that side. It is past a line there if slope
+// (line - origin) <= reach. first, last: that product for the side's borders.
 STRUCT(SideCrossing)
 {
     uint axis;
@@ -67,13 +71,12 @@ KERNEL_FN bool is_on_side(SideCrossing at)
 // How a ray enters the box: by which side, and where.
 STRUCT(Entry)
 {
-    uint side;      // 2 axis, and 1 more for the high one; 6 where the ray misses the box
+    uint side;      // 2 axis, and 1 more for the high one; 6 if the ray misses the box
     SideCrossing a; // along first_axis() of the side's axis
     SideCrossing b; // along second_axis() of it
 };
 
-// How far the ray is from the plane of the side across an axis that it moves towards; 0 if it does not, or is beyond
-// it.
+// How far the ray is from the plane of the side across an axis that it moves towards; 0 if it does not, or is past it.
 KERNEL_FN real gap_along(DomainBox box, Ray ray, uint axis)
 {
     real direction = component(ray.direction, axis);
@@ -84,8 +87,8 @@ KERNEL_FN real gap_along(DomainBox box, Ray ray, uint axis)
     return maximum(gap, real(0.0f));
 }
 
-// The origin is not inside. Of the sides that it moves towards, a ray enters by the one whose plane it meets last, if
-// at all. Two planes are compared by the products of is_on_side(); since rounding is monotone, at least one of three
+// The origin is not inside. If a ray enters, it is by the side whose plane it meets last, among the sides that it moves
+// towards. Two planes are compared by the products of is_on_side(); since rounding is monotone, at least one of three
 // planes is not met before another.
 KERNEL_FN Entry entry_of(DomainBox box, Ray ray)
 {
@@ -125,3 +128,5 @@ KERNEL_FN real depth_in(EntryFace face, Ray ray)
     real least = ab < bc ? ab : bc;
     return ca < least ? ca : least;
 }
+
+#endif

@@ -1,4 +1,10 @@
-// Boundary faces that hold their vertices, for tets that do not store theirs; include after entry.h.
+// Boundary faces that hold their vertices, for tets that do not store theirs.
+#ifndef TETRACE_KERNELS_WALKS_ENTRY_FACES_H
+#define TETRACE_KERNELS_WALKS_ENTRY_FACES_H
+
+#include "kernels/methods/signs.h"
+#include "kernels/walks/entry.h"
+
 KERNEL_FN Vec3 position_of(SceneView scene, uint vertex)
 {
     uint4 quad = FETCH(scene, vertices, vertex);
@@ -14,3 +20,5 @@ KERNEL_FN EntryFace entry_face(SceneView scene, uint index)
     face.c = position_of(scene, quad.z);
     return face;
 }
+
+#endif

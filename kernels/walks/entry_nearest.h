@@ -1,6 +1,10 @@
-// The boundary face by which a ray enters the domain, for walks by links.
+// The boundary face by which a ray enters the domain, for walks by half-faces.
+#ifndef TETRACE_KERNELS_WALKS_ENTRY_NEAREST_H
+#define TETRACE_KERNELS_WALKS_ENTRY_NEAREST_H
 
-// The place of the domain's line `index` along `axis`.
+#include "kernels/walks/entry_half_faces.h"
+
+// The position of the domain's line `index` along `axis`.
 KERNEL_FN real domain_line(SceneView scene, uint axis, uint index)
 {
     return as_real(FETCH(scene, lines, axis * (scene.divisions + 1u) + index));
@@ -12,7 +16,7 @@ KERNEL_FN bool is_beyond_line(SceneView scene, SideCrossing at, uint index)
     return product <= at.reach;
 }
 
-// The last line that the ray is beyond; that is the number of its column or row.
+// The last line that the ray is past; that is the number of its column or row.
 KERNEL_FN uint line_passed(SceneView scene, SideCrossing at)
 {
     uint first = 0u; // the line is one of `count` lines from here on
@@ -21,7 +25,7 @@ KERNEL_FN uint line_passed(SceneView scene, SideCrossing at)
     return first;
 }
 
-// The square of the box by which the ray enters, or 6 divisions^2 where it misses the box.
+// The square of the box by which the ray enters, or 6 divisions^2 if it misses the box.
 KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 {
     Entry entry = entry_of(scene.domain, ray);
@@ -30,7 +34,7 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 }
 
 // The number of the first of the square's faces that the ray is inside; if it is inside none, of the nearest one;
-// NO_ENTRY where the ray misses the domain.
+// NO_ENTRY if the ray misses the domain.
 KERNEL_FN uint entry_index(SceneView scene, Ray ray)
 {
     uint square = entry_square(scene, ray);
@@ -45,3 +49,5 @@ KERNEL_FN uint entry_index(SceneView scene, Ray ray)
     }
     return best;
 }
+
+#endif

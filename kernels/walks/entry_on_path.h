@@ -1,16 +1,21 @@
-// The boundary face by which a ray's path enters the domain. For walks along paths, which begin only at the end of a
-// path.
+// The boundary face by which a ray's path enters the domain. For walks along paths, which start only at the end of a
+// path. Include it after entry_half_faces.h or entry_faces.h, one of which defines entry_face().
+#ifndef TETRACE_KERNELS_WALKS_ENTRY_ON_PATH_H
+#define TETRACE_KERNELS_WALKS_ENTRY_ON_PATH_H
+
+#include "kernels/methods/signs.h"
+#include "kernels/walks/entry.h"
 
 // For a build that counts how often a path is searched from its beginning: 0 entry_anywhere(), 1 exit_ahead(), 2 a ray
-// that goes on beyond the face that it starts on. That build is never timed.
+// that goes on past the face that it starts on. That build is never timed.
 #ifndef COUNT_SEARCH
 #define COUNT_SEARCH(where)
 #endif
 
-// For a device that executes rare work whether a ray needs it or not: true where a ray that meets a tie, or is in none
-// of its square's faces, is left to a program with the whole kernel (docs/spec/devices.md, W9). Its hit is LEFT.
-#ifndef LEAVES_TIES
-#define LEAVES_TIES false
+// For a device that executes rare work whether a ray needs it or not: true if a ray that meets a tie, or is in none of
+// its square's faces, is deferred to a program with the whole kernel (docs/spec/devices.md, W9). Its hit is DEFERRED.
+#ifndef DEFERS_TIES
+#define DEFERS_TIES false
 #endif
 
 // The vertex at which a product with `factors` is the smallest (or, with them negated, the largest) of all that lie in
@@ -72,7 +77,7 @@ RARE_FN uint entry_anywhere(SceneView scene, Ray ray, uint first, uint last)
     return found;
 }
 
-// The number of the square's column or row, by one quotient. Rounding may name the square beyond a line: that one lists
+// The number of the square's column or row, by one quotient. Rounding may name the square past a line: that one lists
 // all faces near it, and the ray enters by the same face (docs/spec/data-and-rays.md, D5).
 KERNEL_FN uint line_near(uint divisions, SideCrossing at)
 {
@@ -81,7 +86,7 @@ KERNEL_FN uint line_near(uint divisions, SideCrossing at)
     return line < divisions ? line : divisions - 1u;
 }
 
-// A square of the box at which the ray enters, or 6 divisions^2 where it misses the box.
+// A square of the box at which the ray enters, or 6 divisions^2 if it misses the box.
 KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 {
     Entry entry = entry_of(scene.domain, ray);
@@ -95,7 +100,7 @@ KERNEL_FN uint entry_square(SceneView scene, Ray ray)
 // again.
 STRUCT(Entrance)
 {
-    uint index; // the face's number; NO_ENTRY where the ray misses the domain, or LEFT
+    uint index; // the face's number; NO_ENTRY if the ray misses the domain, or DEFERRED
     Sheared p0; // its corners, in the order of faces.h; only if it has a number
     Sheared p1;
     Sheared p2;
@@ -123,8 +128,8 @@ KERNEL_FN Entrance no_entrance(uint why)
     return entrance;
 }
 
-// Where the ray enters. Float products decide nearly all cases. Ties are decided after the loop, since some devices
-// execute a conditional block even if no lane needs it.
+// The face by which the ray enters. Float products decide nearly all cases. Ties are decided after the loop, since some
+// devices execute a conditional block even if no lane needs it.
 KERNEL_FN Entrance entrance_of(SceneView scene, Ray ray, Shear shear)
 {
     uint square = entry_square(scene, ray);
@@ -142,7 +147,9 @@ KERNEL_FN Entrance entrance_of(SceneView scene, Ray ray, Shear shear)
         if (held == HELD_OR_TIE || index + 1u == last) break;
     }
     if (entrance.index != NO_ENTRY) return entrance;
-    if (LEAVES_TIES) return no_entrance(LEFT);
+    if (DEFERS_TIES) return no_entrance(DEFERRED);
     uint found = entry_anywhere(scene, ray, first, last);
     return found == NO_ENTRY ? no_entrance(NO_ENTRY) : entrance_by(scene, ray, shear, found);
 }
+
+#endif

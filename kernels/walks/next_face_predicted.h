@@ -1,22 +1,22 @@
 // next_face() of walk_by_records.h for processors: what a branch decides is predicted, so the next record is loaded
-// before it is known, where a select would wait for it (docs/spec/devices.md, W10).
+// before it is known; a select would wait for it (docs/spec/devices.md, W10).
 
 // replaced: constant, so that what depends on it is, too.
 KERNEL_FN Walker walker_replacing(SceneView scene, RecordExits exits, Walker at, Carried apex, uint replaced)
 {
     Walker next = with_apex(at, apex, replaced);
-    next.exit = EXIT_REPLACING(scene, exits, at.turn, replaced);
+    next.exit = EXIT_REPLACING(scene, exits, at.rotation, replaced);
     return next;
 }
 
 // Decides as roughly_replaced_by() does.
 KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
 {
-    uint record = record_behind(at.exit);
+    uint record = record_across(at.exit);
     Carried apex = carried(ray, shear, record_apex(scene, record));
     RecordExits exits = RECORD_EXITS(scene, record);
     Walker next = at;
-    next.turn = turn_behind(at.turn, at.exit);
+    next.rotation = rotation_at(at.rotation, at.exit);
     next.before = at.exit;
     next.exit = EXIT_AT_TIE;
     next.steps = at.steps + 1u;

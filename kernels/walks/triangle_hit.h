@@ -1,10 +1,15 @@
 // The hit at the end of a walk, on an input triangle.
-// For a layout whose exits name rows of its own: the input triangle of a row, whose first quad is `first`.
+#ifndef TETRACE_KERNELS_WALKS_TRIANGLE_HIT_H
+#define TETRACE_KERNELS_WALKS_TRIANGLE_HIT_H
+
+#include "kernels/hit.h"
+
+// The input triangle of a row, whose first quad is `first`; a layout whose exits name rows of its own defines it.
 #ifndef TRIANGLE_OF
 #define TRIANGLE_OF(row, first) (row)
 #endif
 
-// The hit on an input triangle; NO_HIT where the ray ends before it.
+// The hit on an input triangle; NO_HIT if the ray ends before it.
 KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint row, uint tet, uint steps, real end)
 {
     uint4 r0 = FETCH(scene, triangles, TRIANGLE_QUADS * row);
@@ -16,3 +21,5 @@ KERNEL_FN Hit hit_on(SceneView scene, Ray ray, uint row, uint tet, uint steps, r
     if (is_beyond(ray, v0, edge_1, edge_2, end)) return make_no_hit(NO_HIT, tet, steps);
     return make_hit(ray, TRIANGLE_OF(row, r0), v0, edge_1, edge_2, tet, steps);
 }
+
+#endif

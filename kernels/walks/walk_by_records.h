@@ -1,29 +1,35 @@
 // The walk of project through records (half32.h, tet64.h): it carries the vertices of the current face. Decisions, and
-// so the bits of the hits, are the same as in walk_along_paths.h on tets that hold their vertices
-// (docs/spec/layouts.md, L4). Corner i of a record's entry face is the carried vertex (i + turn) % 3. How an exit
-// changes the turn, and how the turn selects an exit, is the layout's.
+// so the bits of the hits, are the same as in walk_along_paths.h on tets that store their vertices
+// (docs/spec/layouts.md, L4). Corner i of a record's entry face is the carried vertex (i + rotation) % 3. How an exit
+// changes the rotation, and how the rotation selects an exit, is the layout's.
+#ifndef TETRACE_KERNELS_WALKS_WALK_BY_RECORDS_H
+#define TETRACE_KERNELS_WALKS_WALK_BY_RECORDS_H
 
-// What lies behind a face of the tet in which a walk begins, as a record's exit without a rotation: the corners are
-// then fetched from memory.
+#include "kernels/walks/carried.h"
+#include "kernels/walks/path.h"
+#include "kernels/walks/triangle_hit.h"
+
+// What is across a face of the tet in which a walk starts, as a record's exit without a rotation: the corners are then
+// fetched from memory.
 KERNEL_FN uint first_exit(SceneView scene, uint tet, uint face)
 {
     uint exit = exit_through(scene, tet, face);
     return (exit & 3u) == EXIT_END ? exit : exit & ~3u;
 }
 
-// The state of a walk: the current face, and what is behind it.
+// The state of a walk: the current face, and what is across it.
 STRUCT(Walker)
 {
     Carried p0;
     Carried p1;
     Carried p2;
-    uint turn;   // in the previous record, changed by TURN_AFTER()
-    uint exit;   // of that record, or EXIT_AT_TIE
-    uint before; // the exit that led to that record
+    uint rotation; // in the previous record, changed by ROTATION_AFTER()
+    uint exit;     // of that record, or EXIT_AT_TIE
+    uint before;   // the exit that led to that record
     uint steps;
 };
 
-// pause: the number of steps at which the walk halts. reach: of the end, as ends_before() of links.h has it.
+// pause: the number of steps at which the walk halts. reach: of the end, as ends_before() of half_faces.h has it.
 KERNEL_FN bool goes_on(Walker at, uint pause, bool is_endless, real reach)
 {
     return (at.exit & 3u) != EXIT_END && at.steps < pause &&
@@ -37,28 +43,28 @@ KERNEL_FN Walker with_apex(Walker at, Carried apex, uint replaced)
     next.p0 = replaced == 0u ? apex : at.p0;
     next.p1 = replaced == 1u ? apex : at.p1;
     next.p2 = replaced == 2u ? apex : at.p2;
-    next.turn = replaced == UNDECIDED ? at.turn : TURN_AFTER(at.turn, replaced);
+    next.rotation = replaced == UNDECIDED ? at.rotation : ROTATION_AFTER(at.rotation, replaced);
     return next;
 }
 
 #ifdef KEEP_BRANCH
 #include "kernels/walks/next_face_predicted.h"
 #else
-// The face by which the ray leaves the tet behind the current face, as far as float products tell. One branch ends the
-// loop around it: nothing waits for the record's second half alone.
+// The exit face of the tet across the current face, or a tie, if float products do not decide it. One branch ends the
+// loop around it: nothing waits only for the record's second half.
 KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
 {
-    uint record = record_behind(at.exit);
+    uint record = record_across(at.exit);
     Carried apex = carried(ray, shear, record_apex(scene, record));
     RecordExits exits = RECORD_EXITS(scene, record);
-    uint turn = turn_behind(at.turn, at.exit);
+    uint rotation = rotation_at(at.rotation, at.exit);
     uint replaced = roughly_replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
     Walker next = at;
-    next.turn = turn;
+    next.rotation = rotation;
     next.before = at.exit;
     next.steps = at.steps + 1u;
     next = with_apex(next, apex, replaced);
-    uint exit = EXIT_REPLACING(scene, exits, turn, replaced);
+    uint exit = EXIT_REPLACING(scene, exits, rotation, replaced);
     next.exit = replaced == UNDECIDED ? EXIT_AT_TIE : exit;
     return next;
 }
@@ -67,13 +73,13 @@ KERNEL_FN Walker next_face(SceneView scene, Ray ray, Shear shear, Walker at)
 // The same at a tie, which the step to `at` has left undecided.
 KERNEL_FN Walker face_at_tie(SceneView scene, Ray ray, Shear shear, Walker at)
 {
-    uint record = record_behind(at.before);
-    uint turn = at.turn >= 3u ? at.turn - 3u : at.turn;
+    uint record = record_across(at.before);
+    uint rotation = at.rotation >= 3u ? at.rotation - 3u : at.rotation;
     Carried apex = carried(ray, shear, record_apex(scene, record));
     uint replaced = replaced_by(at.p0.seen, at.p1.seen, at.p2.seen, apex.seen);
     RecordExits exits = RECORD_EXITS(scene, record);
     Walker next = with_apex(at, apex, replaced);
-    next.exit = EXIT_REPLACING(scene, exits, turn, replaced);
+    next.exit = EXIT_REPLACING(scene, exits, rotation, replaced);
     return next;
 }
 
@@ -84,18 +90,18 @@ KERNEL_FN Walker walker_with(Carried p0, Carried p1, Carried p2, uint tet, uint 
     at.p0 = p0;
     at.p1 = p1;
     at.p2 = p2;
-    at.turn = 0u;
+    at.rotation = 0u;
     at.exit = exit;
     at.before = exit_to(tet << 2u);
     at.steps = steps;
     return at;
 }
 
-// The walk at the face by which it leaves a tet, its first.
+// The walk at its first exit face.
 KERNEL_FN Walker walker_leaving(SceneView scene, Ray ray, Shear shear, uint tet, uint face)
 {
     uint exit = first_exit(scene, tet, face);
-    uint record = (exit & 3u) == EXIT_END ? tet << 2u : record_behind(exit);
+    uint record = (exit & 3u) == EXIT_END ? tet << 2u : record_across(exit);
     return walker_with(carried(ray, shear, record_apex(scene, record_of_corner(record, 0u))),
                        carried(ray, shear, record_apex(scene, record_of_corner(record, 1u))),
                        carried(ray, shear, record_apex(scene, record_of_corner(record, 2u))), tet, exit, 1u);
@@ -105,30 +111,30 @@ KERNEL_FN Walker walker_leaving(SceneView scene, Ray ray, Shear shear, uint tet,
 STRUCT(Beginning)
 {
     Walker at;
-    uint own; // the face by which the ray leaves its first tet, as tet << 2 | face; NO_LINK where there is none
+    uint own; // the face by which the ray leaves its first tet, as tet << 2 | face; NO_HALF_FACE if there is none
 };
 
-// By a boundary face, the one that the link names.
-#define BEGINNING_AT(scene, ray, link, entrance) beginning_at(link, entrance)
-KERNEL_FN Beginning beginning_at(uint link, Entrance entrance)
+// By the boundary face of the half-face.
+#define BEGINNING_AT(scene, ray, half_face, entrance) beginning_at(half_face, entrance)
+KERNEL_FN Beginning beginning_at(uint half_face, Entrance entrance)
 {
     Beginning first;
-    first.at = walker_with(carried_from(entrance.p0), carried_from(entrance.p1), carried_from(entrance.p2), link >> 2u,
-                           exit_to(link), 0u);
-    first.at.turn = TURN_OF_CORNERS(link & 3u);
-    first.own = link;
+    first.at = walker_with(carried_from(entrance.p0), carried_from(entrance.p1), carried_from(entrance.p2),
+                           half_face >> 2u, exit_to(half_face), 0u);
+    first.at.rotation = ROTATION_OF_CORNERS(half_face & 3u);
+    first.own = half_face;
     return first;
 }
 
-// In a tet that the ray leaves by `face`, or by NO_EXIT.
+// In a tet whose exit face is `face`, or NO_EXIT.
 #define BEGINNING_IN(scene, ray, shear, tet, face) beginning_in(scene, ray, shear, tet, face)
 KERNEL_FN Beginning beginning_in(SceneView scene, Ray ray, Shear shear, uint tet, uint face)
 {
     Beginning first;
     first.at = walker_leaving(scene, ray, shear, tet, face & 3u);
     first.own = (tet << 2u) | face;
-    if (face == NO_EXIT) first.at.exit = NO_LINK;
-    if (face == NO_EXIT) first.own = NO_LINK;
+    if (face == NO_EXIT) first.at.exit = NO_HALF_FACE;
+    if (face == NO_EXIT) first.own = NO_HALF_FACE;
     return first;
 }
 
@@ -150,24 +156,26 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Beginning first
                     at = next_face(scene, ray, shear, at);
                     if (!goes_on(at, pause, is_endless, reach)) break;
                 }
-                if (LEAVES_TIES || at.exit != EXIT_AT_TIE) break;
+                if (DEFERS_TIES || at.exit != EXIT_AT_TIE) break;
                 at = face_at_tie(scene, ray, shear, at);
                 if (!goes_on(at, pause, is_endless, reach)) break;
             }
         }
         bool is_paused = (at.exit & 3u) != EXIT_END && at.steps >= pause;
-        if (!may_begin_anew || (first.own != NO_LINK && !is_paused)) break;
+        if (!may_begin_anew || (first.own != NO_HALF_FACE && !is_paused)) break;
         uint ahead = exit_ahead(scene, params, ray, start, first.own);
         pause = params.max_steps;
         may_begin_anew = false;
-        if (ahead == NO_LINK) at.steps = 0u;
-        if (ahead == NO_LINK) break;
+        if (ahead == NO_HALF_FACE) at.steps = 0u;
+        if (ahead == NO_HALF_FACE) break;
         at = walker_leaving(scene, ray, shear, ahead >> 2u, ahead & 3u);
     }
     if (at.steps == 0u) return make_no_hit(NO_HIT, NO_TET, 0u);
-    uint tet = record_behind(at.before) >> 2u;
-    if (at.exit == NO_LINK || (LEAVES_TIES && at.exit == EXIT_AT_TIE))
-        return make_no_hit(at.exit == NO_LINK ? NO_HIT : LEFT, tet, at.steps);
-    if ((at.exit & 3u) == EXIT_END) return hit_on(scene, ray, record_behind(at.exit), tet, at.steps, end);
+    uint tet = record_across(at.before) >> 2u;
+    if (at.exit == NO_HALF_FACE || (DEFERS_TIES && at.exit == EXIT_AT_TIE))
+        return make_no_hit(at.exit == NO_HALF_FACE ? NO_HIT : DEFERRED, tet, at.steps);
+    if ((at.exit & 3u) == EXIT_END) return hit_on(scene, ray, record_across(at.exit), tet, at.steps, end);
     return make_no_hit(!is_endless && at.steps < params.max_steps ? NO_HIT : LOST, tet, at.steps);
 }
+
+#endif

@@ -1,11 +1,20 @@
 // The walk of project through tets that are the xor of their vertices (tet20.h, tet16.h; docs/spec/layouts.md, L8). It
 // carries the vertices of the current face and their numbers; the numbers and the xor give the tet's fourth vertex.
 // Decisions, and so the bits of the hits, are the same as in walk_along_paths.h.
-// A layout defines CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank, known_rank, known): what is behind the
+// A layout defines CompactTet, compact_tet() and NEIGHBOUR(scene, tet, rank, known_rank, known): what is across the
 // face opposite the vertex of that rank among the four; `known` is the same for known_rank.
+#ifndef TETRACE_KERNELS_WALKS_WALK_COMPACT_H
+#define TETRACE_KERNELS_WALKS_WALK_COMPACT_H
 
-// The current face, by which the ray leaves a tet. Seen from the tet behind, the edges from p0 to p1, p1 to p2, p2 to
-// p0 have the ray on their positive side.
+#include KERNEL_LAYOUT_HEADER
+#include "kernels/layouts/faces.h"
+#include "kernels/walks/carried.h"
+#include "kernels/walks/entry_faces.h"
+#include "kernels/walks/entry_on_path.h"
+#include "kernels/walks/triangle_hit.h"
+
+// The current face, an exit face of the last tet. Seen from the next tet, the edges from p0 to p1, p1 to p2, p2 to p0
+// have the ray on their positive side.
 STRUCT(Gate)
 {
     Carried p0;
@@ -14,9 +23,9 @@ STRUCT(Gate)
     uint v0; // their numbers
     uint v1;
     uint v2;
-    uint tet;    // the tet that is left; NO_TET where the ray enters the domain
-    uint behind; // what the tet names behind the face: a tet, or an end of the walk (layout.h)
-    uint before; // what the tet behind names on this side of the face
+    uint tet;    // the last tet; NO_TET if the ray enters the domain
+    uint across; // what the last tet names across the face: a tet, or an end of the walk (layout.h)
+    uint before; // what the next tet names across the face
 };
 
 // How many of four vertices come before one of them.
@@ -25,7 +34,7 @@ KERNEL_FN uint rank_among(uint vertex, uint a, uint b, uint c, uint d)
     return (a < vertex ? 1u : 0u) + (b < vertex ? 1u : 0u) + (c < vertex ? 1u : 0u) + (d < vertex ? 1u : 0u);
 }
 
-KERNEL_FN uint apex_behind(Gate gate, CompactTet tet)
+KERNEL_FN uint apex_across(Gate gate, CompactTet tet)
 {
     return tet.vertices ^ gate.v0 ^ gate.v1 ^ gate.v2;
 }
@@ -35,7 +44,7 @@ KERNEL_FN Carried carried_vertex(SceneView scene, Ray ray, Shear shear, uint ver
     return carried(ray, shear, FETCH(scene, vertices, vertex));
 }
 
-// Among the vertices of the tet behind a gate, the ranks of the apex, and of the gate's vertex that it replaces.
+// Among the vertices of the tet across a gate, the ranks of the apex, and of the gate's vertex that it replaces.
 // vertex: the apex's number.
 KERNEL_FN uint apex_rank(Gate gate, uint vertex)
 {
@@ -48,8 +57,8 @@ KERNEL_FN uint replaced_rank(Gate gate, uint vertex, uint replaced)
     return rank_among(gone, gate.v0, gate.v1, gate.v2, vertex);
 }
 
-// The face by which the ray leaves the tet behind a gate. vertex: the apex's number; behind: what is behind that face.
-KERNEL_FN Gate gate_beyond(Gate gate, uint vertex, Carried apex, uint replaced, uint behind)
+// The exit face of the tet across a gate. vertex: the apex's number; across: what is across that face.
+KERNEL_FN Gate gate_across(Gate gate, uint vertex, Carried apex, uint replaced, uint across)
 {
     Gate next;
     next.p0 = replaced == 0u ? apex : gate.p0;
@@ -58,9 +67,9 @@ KERNEL_FN Gate gate_beyond(Gate gate, uint vertex, Carried apex, uint replaced, 
     next.v0 = replaced == 0u ? vertex : gate.v0;
     next.v1 = replaced == 1u ? vertex : gate.v1;
     next.v2 = replaced == 2u ? vertex : gate.v2;
-    next.tet = gate.behind;
-    next.behind = behind;
-    next.before = gate.behind;
+    next.tet = gate.across;
+    next.across = across;
+    next.before = gate.across;
     return next;
 }
 
@@ -80,15 +89,15 @@ KERNEL_FN uint replaced_unless_tie(Sheared p0, Sheared p1, Sheared p2, Sheared a
     return other_plus > other_minus ? (left ? 2u : 1u) : (left ? 0u : 2u);
 }
 
-// From a face through the tet behind it to the next face.
+// From a face through the next tet to its exit face.
 KERNEL_FN Gate next_gate(SceneView scene, Ray ray, Shear shear, Gate gate)
 {
-    CompactTet tet = compact_tet(scene, gate.behind);
-    uint vertex = apex_behind(gate, tet);
+    CompactTet tet = compact_tet(scene, gate.across);
+    uint vertex = apex_across(gate, tet);
     Carried apex = carried_vertex(scene, ray, shear, vertex);
     uint replaced = replaced_by(gate.p0.seen, gate.p1.seen, gate.p2.seen, apex.seen);
-    uint behind = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex), gate.before);
-    return gate_beyond(gate, vertex, apex, replaced, behind);
+    uint across = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex), gate.before);
+    return gate_across(gate, vertex, apex, replaced, across);
 }
 
 // The face with these vertices.
@@ -102,8 +111,8 @@ KERNEL_FN Gate gate_of(SceneView scene, Ray ray, Shear shear, uint v0, uint v1, 
     gate.v1 = v1;
     gate.v2 = v2;
     gate.tet = NO_TET;
-    gate.behind = NO_LINK;
-    gate.before = NO_LINK;
+    gate.across = NO_HALF_FACE;
+    gate.before = NO_HALF_FACE;
     return gate;
 }
 
@@ -119,8 +128,8 @@ KERNEL_FN Gate entered_gate(SceneView scene, Entrance entrance)
     gate.v1 = quad.y;
     gate.v2 = quad.z;
     gate.tet = NO_TET;
-    gate.behind = quad.w;
-    gate.before = NO_LINK;
+    gate.across = quad.w;
+    gate.before = NO_HALF_FACE;
     return gate;
 }
 
@@ -141,18 +150,18 @@ KERNEL_FN Gate start_gate(SceneView scene, TraceParams params, Ray ray, Shear sh
     uint v2 = start_vertex(params, corner(face, 2u));
     Gate gate = gate_of(scene, ray, shear, v0, v2, v1); // reversed: corners are listed for the tet itself
     gate.tet = params.start_tet;
-    gate.behind = NEIGHBOUR(scene, compact_tet(scene, params.start_tet), rank, 3u, params.start_neighbour);
+    gate.across = NEIGHBOUR(scene, compact_tet(scene, params.start_tet), rank, 3u, params.start_neighbour);
     gate.before = params.start_tet;
     return gate;
 }
 
-// The same face, but if it is occlusive, with the tet behind it: the ray goes on.
+// The same face, but if it is occlusive, with the tet across it: the ray goes on.
 KERNEL_FN Gate opened(SceneView scene, Gate gate)
 {
     Gate result = gate;
-    if (gate.behind >= OCCLUSIVE && gate.behind != NO_LINK) {
-        uint other_side = (gate.behind ^ OCCLUSIVE) ^ 1u;
-        result.behind = FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * (other_side >> 1u) + 1u + (other_side & 1u));
+    if (gate.across >= OCCLUSIVE && gate.across != NO_HALF_FACE) {
+        uint other_side = (gate.across ^ OCCLUSIVE) ^ 1u;
+        result.across = FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * (other_side >> 1u) + 1u + (other_side & 1u));
         result.before = OCCLUSIVE | other_side;
     }
     return result;
@@ -163,7 +172,7 @@ KERNEL_FN bool is_gate_ahead(SceneView scene, Ray ray, Gate gate)
     return is_face_ahead(ray, position_of(scene, gate.v0), position_of(scene, gate.v1), position_of(scene, gate.v2));
 }
 
-// The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET where the ray has
+// The first face of its path that the ray crosses in front of its origin, as in path.h; tet is NO_TET if the ray has
 // no path. doubted: the first tet of a walk that may be in a circle, or NO_TET. The result's tet is `doubted` if that
 // is on the path, or if the path's end is too far. If neither, the path is followed once more, to the face that is
 // wanted: nothing is kept, as in path.h.
@@ -181,7 +190,7 @@ RARE_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shea
         ++steps;
         if (!ahead) wanted = steps;
         ahead = ahead || is_gate_ahead(scene, ray, gate);
-        bool is_end = gate.behind == NO_LINK;
+        bool is_end = gate.across == NO_HALF_FACE;
         done = is_end || gate.tet == in_doubt || (ahead && in_doubt == NO_TET && steps == wanted);
         if (is_end && in_doubt != NO_TET && gate.tet != in_doubt && steps != wanted) {
             gate = entered_gate(scene, entrance_by(scene, ray, shear, entry));
@@ -194,9 +203,9 @@ RARE_FN Gate gate_ahead(SceneView scene, TraceParams params, Ray ray, Shear shea
     return gate;
 }
 
-// From a face by which the ray leaves a tet to the ray's hit. own: for a ray that starts in a tet, the face of that tet
-// that holds the ray, or NO_EXIT. first_steps: the number of tets left before. Loops test at their end, and ties are
-// decided after the inner loop, as in walk_by_records.h. gate_ahead() is used as exit_ahead() in walk_along_paths.h.
+// From an exit face to the ray's hit. own: for a ray that starts in a tet, the face of that tet that holds the ray, or
+// NO_EXIT. first_steps: the number of tets before. Loops test at their end, and ties are decided after the inner loop,
+// as in walk_by_records.h. gate_ahead() is used as exit_ahead() in walk_along_paths.h.
 KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Gate first, uint first_steps, uint own)
 {
     Gate gate = first;
@@ -204,29 +213,29 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
     bool may_begin_anew = params.start_tet != NO_TET;
     uint pause = may_begin_anew ? first_pause(params) : params.max_steps;
     for (;;) {
-        if (gate.behind < OCCLUSIVE && steps < pause) {
+        if (gate.across < OCCLUSIVE && steps < pause) {
             for (;;) {
                 for (;;) {
-                    CompactTet tet = compact_tet(scene, gate.behind);
-                    uint vertex = apex_behind(gate, tet);
+                    CompactTet tet = compact_tet(scene, gate.across);
+                    uint vertex = apex_across(gate, tet);
                     Carried apex = carried_vertex(scene, ray, shear, vertex);
                     uint replaced = replaced_unless_tie(gate.p0.seen, gate.p1.seen, gate.p2.seen, apex.seen);
                     if (replaced == UNDECIDED) break;
-                    uint behind = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex),
+                    uint across = NEIGHBOUR(scene, tet, replaced_rank(gate, vertex, replaced), apex_rank(gate, vertex),
                                             gate.before);
-                    gate = gate_beyond(gate, vertex, apex, replaced, behind);
+                    gate = gate_across(gate, vertex, apex, replaced, across);
                     ++steps;
-                    if (gate.behind >= OCCLUSIVE || steps >= pause) break;
+                    if (gate.across >= OCCLUSIVE || steps >= pause) break;
                 }
-                if (gate.behind >= OCCLUSIVE || steps >= pause) break;
-                if (LEAVES_TIES) gate.behind = LEFT;
-                if (LEAVES_TIES) break;
+                if (gate.across >= OCCLUSIVE || steps >= pause) break;
+                if (DEFERS_TIES) gate.across = DEFERRED;
+                if (DEFERS_TIES) break;
                 gate = next_gate(scene, ray, shear, gate);
                 ++steps;
-                if (gate.behind >= OCCLUSIVE || steps >= pause) break;
+                if (gate.across >= OCCLUSIVE || steps >= pause) break;
             }
         }
-        if (!may_begin_anew || (own != NO_EXIT && gate.behind >= OCCLUSIVE)) break;
+        if (!may_begin_anew || (own != NO_EXIT && gate.across >= OCCLUSIVE)) break;
         gate = gate_ahead(scene, params, ray, shear, own == NO_EXIT ? NO_TET : params.start_tet);
         if (gate.tet == NO_TET) break;
         if (gate.tet == params.start_tet) gate = start_gate(scene, params, ray, shear, own);
@@ -234,11 +243,11 @@ KERNEL_FN Hit walk(SceneView scene, TraceParams params, Ray ray, Shear shear, Ga
         pause = params.max_steps;
         may_begin_anew = false;
     }
-    if (LEAVES_TIES && gate.behind == LEFT) return make_no_hit(LEFT, gate.tet, steps);
+    if (DEFERS_TIES && gate.across == DEFERRED) return make_no_hit(DEFERRED, gate.tet, steps);
     if (gate.tet == NO_TET) return make_no_hit(NO_HIT, NO_TET, 0u);
-    if (gate.behind == NO_LINK) return make_no_hit(NO_HIT, gate.tet, steps);
-    if (gate.behind < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);
-    uint face = (gate.behind ^ OCCLUSIVE) >> 1u;
+    if (gate.across == NO_HALF_FACE) return make_no_hit(NO_HIT, gate.tet, steps);
+    if (gate.across < OCCLUSIVE) return make_no_hit(LOST, gate.tet, steps);
+    uint face = (gate.across ^ OCCLUSIVE) >> 1u;
     return hit_on(scene, ray, FETCH(scene, occlusive_faces, OCCLUSIVE_WORDS * face), gate.tet, steps, real(NO_END));
 }
 
@@ -247,12 +256,14 @@ KERNEL_FN Hit trace(SceneView scene, TraceParams params, Ray ray)
     Shear shear = shear_of(ray);
     if (params.start_tet == NO_TET) {
         Entrance entrance = entrance_of(scene, ray, shear);
-        if (entrance.index >= LEFT) return make_no_hit(entrance.index == LEFT ? LEFT : NO_HIT, NO_TET, 0u);
+        if (entrance.index >= DEFERRED) return make_no_hit(entrance.index == DEFERRED ? DEFERRED : NO_HIT, NO_TET, 0u);
         return walk(scene, params, ray, shear, entered_gate(scene, entrance), 0u, 0u);
     }
     uint face = face_left_by(ray, position_of(scene, params.start_v0), position_of(scene, params.start_v1),
                              position_of(scene, params.start_v2), position_of(scene, params.start_v3));
     Gate gate = start_gate(scene, params, ray, shear, face & 3u);
-    if (face == NO_EXIT) gate.behind = NO_LINK;
+    if (face == NO_EXIT) gate.across = NO_HALF_FACE;
     return walk(scene, params, ray, shear, gate, 1u, face);
 }
+
+#endif

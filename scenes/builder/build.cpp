@@ -96,7 +96,7 @@ const char* name_of(Kind kind)
 {
     switch (kind) {
     case Kind::bad_index: return "indices";
-    case Kind::asymmetric_link: return "asymmetric neighbours";
+    case Kind::asymmetric_neighbour: return "asymmetric neighbours";
     case Kind::inverted: return "inverted tets";
     case Kind::flat: return "flat tets";
     case Kind::asymmetric_face: return "asymmetric faces";
@@ -128,7 +128,7 @@ void require_sound(const Scene& scene, const TetgenOutput& output, const Roundin
                                      try_other_switches));
 }
 
-// What is wrong with the domain's sides; empty where they are sound.
+// What is wrong with the domain's sides; empty if they are sound.
 std::string flaw_of_sides(const Scene& scene)
 {
     try {

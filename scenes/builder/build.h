@@ -28,7 +28,7 @@ struct BuilderOptions {
     double optimise_for_s = 300; ///< the optimiser stops then, with what it has reached; 0: no limit
 };
 
-/// Called with the stage that begins, and with notes for the user, one line each; and with what a stage tells of
+/// Called with the stage that begins, and with notes for the user, one line each; and with what a stage reports of
 /// itself.
 struct BuilderTalk {
     std::function<void(const std::string&)> stage, note;
@@ -39,7 +39,7 @@ struct BuilderTalk {
 struct PreparedScene {
     Scene scene;
     TriangleMesh surface;       ///< the domain's
-    std::vector<Float3> points; ///< more vertices for TetGen; where switches have no q and tets are for rays
+    std::vector<Float3> points; ///< more vertices for TetGen; if switches lack q and tets are for rays
     OptimiserLimits limits;
     Stopwatch watch; ///< since its mesh was read
 };
@@ -52,13 +52,13 @@ struct PreparedScene {
 /// as repair() does.
 [[nodiscard]] PreparedScene prepare_scene(const BuilderOptions& options, const BuilderTalk& talk);
 
-/// Why optimised tets may not take the place of the scene's own: they cost no less, or fail a check. Empty where they
+/// Why optimised tets may not take the place of the scene's own: they cost no less, or fail a check. Empty if they
 /// may.
 [[nodiscard]] std::string objection_to(const OptimisedTets& result, const Scene& scene);
 
 /// Converts TetGen's output and checks it: structure, orientation, every input triangle covered, the domain filled, the
 /// entry grid complete. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT} naming the check that failed. Then optimises the
-/// tets, where they are for rays; what that cannot better, or what fails a check, stays TetGen's, with the reason.
+/// tets, if they are for rays; what that cannot improve, or what fails a check, stays TetGen's, with the reason.
 [[nodiscard]] Scene finish_scene(PreparedScene prepared, const TetgenOutput& output, const BuilderTalk& talk);
 
 } // namespace tetrace

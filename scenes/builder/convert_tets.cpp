@@ -45,7 +45,7 @@ void require_indices(const TetgenOutput& output)
 {
     const auto points = static_cast<std::int32_t>(output.points.size());
     const auto tets = static_cast<std::int32_t>(output.tets.size());
-    if (output.tets.empty()) absurd("it has no tets");
+    if (output.tets.empty()) absurd("it is without tets");
     if (output.tets.size() > MAX_TETS) absurd(fmt::format("{} tets are more than a link of 30 bits can name", tets));
     for (const auto& face : output.surface_faces)
         for (const std::int32_t corner : face.corners)
@@ -58,15 +58,15 @@ void require_indices(const TetgenOutput& output)
                 absurd(fmt::format("tet {} names a vertex or a neighbour that is not there", i));
 }
 
-std::uint32_t link_across(const TetgenOutput& output, std::size_t tet, std::size_t face)
+std::uint32_t half_face_across(const TetgenOutput& output, std::size_t tet, std::size_t face)
 {
     const std::int32_t neighbour = output.neighbours[tet][face];
-    if (neighbour < 0) return NO_LINK;
+    if (neighbour < 0) return NO_HALF_FACE;
     const auto other = static_cast<std::size_t>(neighbour);
     for (std::uint32_t i = 0; i < 4; ++i)
         if (output.neighbours[other][i] == static_cast<std::int32_t>(tet) &&
             face_of(output.tets[other], i) == face_of(output.tets[tet], face))
-            return make_link(static_cast<std::uint32_t>(neighbour), i);
+            return make_half_face(static_cast<std::uint32_t>(neighbour), i);
     absurd(fmt::format("asymmetric neighbours: tet {} has neighbour {} over face {}, which does not name it back", tet,
                        neighbour, face));
 }
@@ -78,7 +78,7 @@ std::vector<Tet> connect(const TetgenOutput& output)
         tets[i].faces.fill(FREE_FACE);
         for (std::size_t k = 0; k < 4; ++k) {
             tets[i].vertices[k] = static_cast<std::uint32_t>(output.tets[i][k]);
-            tets[i].links[k] = link_across(output, i, k);
+            tets[i].neighbours[k] = half_face_across(output, i, k);
         }
     }
     return tets;
@@ -103,8 +103,8 @@ void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
     const std::vector<bool> on_surface = surface_points(output);
     std::uint64_t sides = 0;
     const auto look_up = [&](std::uint32_t tet, std::uint32_t face) {
-        const std::uint32_t link = tets[tet].links[face];
-        if (link != NO_LINK && link < make_link(tet, face)) return; // looked up from its other side
+        const std::uint32_t half_face = tets[tet].neighbours[face];
+        if (half_face != NO_HALF_FACE && half_face < make_half_face(tet, face)) return; // looked up from its other side
         const Triple corners = face_of(output.tets[tet], face);
         for (const std::int32_t corner : corners)
             if (!on_surface[static_cast<std::size_t>(corner)]) return;
@@ -113,8 +113,8 @@ void mark_faces(const TetgenOutput& output, std::vector<Tet>& tets)
         const auto triangle = static_cast<std::uint32_t>(found->second);
         tets[tet].faces[face] = triangle;
         ++sides;
-        if (link == NO_LINK) return;
-        tets[link_tet(link)].faces[link_face(link)] = triangle;
+        if (half_face == NO_HALF_FACE) return;
+        tets[half_face_tet(half_face)].faces[half_face_index(half_face)] = triangle;
         ++sides;
     };
     for (std::uint32_t tet = 0; tet < tets.size(); ++tet)
@@ -131,7 +131,7 @@ double area(const TetgenOutput& output, const Triple& corners)
     return length(cross(point(1) - point(0), point(2) - point(0))) / 2;
 }
 
-// In TetGen's own coordinates, where a needle's area is not yet blurred by rounding.
+// In TetGen's own coordinates, in which a needle's area is not yet blurred by rounding.
 void require_coverage(const TetgenOutput& output, const TriangleMesh& triangles)
 {
     std::vector<double> covered(triangles.triangles.size(), 0.0);
@@ -156,16 +156,16 @@ void require_coverage(const TetgenOutput& output, const TriangleMesh& triangles)
 // TetGen's tets are all of one orientation; core wants det < 0.
 void orient(std::vector<Tet>& tets)
 {
-    const auto moved = [](std::uint32_t link) {
-        if (link == NO_LINK || link_face(link) > 1) return link;
-        return make_link(link_tet(link), 1 - link_face(link));
+    const auto moved = [](std::uint32_t half_face) {
+        if (half_face == NO_HALF_FACE || half_face_index(half_face) > 1) return half_face;
+        return make_half_face(half_face_tet(half_face), 1 - half_face_index(half_face));
     };
     for (Tet& tet : tets) {
         std::swap(tet.vertices[0], tet.vertices[1]);
-        std::swap(tet.links[0], tet.links[1]);
+        std::swap(tet.neighbours[0], tet.neighbours[1]);
         std::swap(tet.faces[0], tet.faces[1]);
-        for (std::uint32_t& link : tet.links)
-            link = moved(link);
+        for (std::uint32_t& half_face : tet.neighbours)
+            half_face = moved(half_face);
     }
 }
 
@@ -193,7 +193,7 @@ private:
     {
         if (freedom[vertex].steps == 0) return;
         if (tet.faces[face] != FREE_FACE) freedom[vertex].steps = surface_steps;
-        if (tet.links[face] != NO_LINK) return;
+        if (tet.neighbours[face] != NO_HALF_FACE) return;
         for (int axis = 0; axis < 3; ++axis)
             for (const float plane : {domain.low()[axis], domain.high()[axis]})
                 hold_on_side(vertex, axis, plane);

@@ -8,14 +8,14 @@ namespace tetrace {
 
 /// What rounding Steiner points to float did.
 struct Rounding {
-    std::uint64_t damaged = 0;  ///< tets that rounding to nearest alone would leave flat or inverted
+    std::uint64_t damaged = 0;  ///< tets that rounding to nearest by itself would leave flat or inverted
     std::uint64_t repaired = 0; ///< of these, mended by another float near the Steiner point
     std::uint64_t moved_points = 0;
 
     friend bool operator==(const Rounding&, const Rounding&) = default;
 };
 
-/// Makes a tet mesh of TetGen's output: links from its neighbours, input triangles from its surface faces, the
+/// Makes a tet mesh of TetGen's output: half-faces from its neighbours, input triangles from its surface faces, the
 /// orientation of core/mesh/tet_mesh.h. Steiner points are rounded to float and grid; those on a side of the domain
 /// stay in its plane. Where rounding flattens or inverts a tet, floats near its Steiner points are tried; vertices of
 /// the input never move. What cannot be mended stays, for find_defect. Throws BuilderFailure{BUILDER_ABSURD_OUTPUT}

@@ -83,7 +83,7 @@ int guarded(const Work& work)
     }
 }
 
-// Nothing where the command line is complete, else the exit code.
+// Nothing if the command line is complete, else the exit code.
 std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
 {
     CLI::App app{
@@ -113,15 +113,15 @@ std::optional<int> parse(int argc, char** argv, BuilderOptions& options)
     std::string tets(name_of(options.tets));
     const std::string cdt(name_of(TetsKind::cdt)), rays(name_of(TetsKind::rays));
     app.add_option("--tets", tets,
-                   "cdt: as TetGen makes them; rays: then optimised, so that rays cross fewer faces, from a graded set "
-                   "of points where the switches have no q; default: cdt")
+                   "cdt: as TetGen makes them; rays: then optimised, so that rays cross fewer faces, from a graded "
+                   "set of points if the switches lack q; default: cdt")
         ->check(CLI::IsMember({cdt, rays}).description(""))
         ->type_name(cdt + "|" + rays);
     app.add_option("--effort", options.effort, "of the optimiser, 0 (none, and no more points) to 3; default: 2")
         ->check(CLI::Range(0, max_effort).description(""))
         ->type_name("N");
     app.add_option("--optimise-for", options.optimise_for_s,
-                   "the optimiser stops after so many seconds, with what it has reached; default: 300")
+                   "the optimiser stops after this many seconds, with the tets reached so far; default: 300")
         ->check(CLI::Range(0.0, 1e6).description(""))
         ->type_name("S");
     app.footer("After SIGINT the optimiser ends, and what it has reached is checked and written.\n"
@@ -145,8 +145,8 @@ void require_out_folder(const std::filesystem::path& out)
 {
     const auto folder = out.has_parent_path() ? out.parent_path() : std::filesystem::path(".");
     if (!std::filesystem::is_directory(folder))
-        throw Error(ErrorKind::missing,
-                    fmt::format("writing {}: there is no folder {}; make it first", out.string(), folder.string()));
+        throw Error(ErrorKind::missing, fmt::format("writing {}: folder {} does not exist; create it first",
+                                                    out.string(), folder.string()));
 }
 
 void write_mesh_only(const std::filesystem::path& out, PreparedScene& prepared)
@@ -172,7 +172,7 @@ int main(int argc, char** argv)
     if (options.mesh_only) return guarded([&] { write_mesh_only(options.out, prepared); });
 
     say("stage", "TetGen " + options.switches);
-    std::set_terminate(explain_tetgen_failure); // and no handler round the call: see run_tetgen
+    std::set_terminate(explain_tetgen_failure); // and the call is not inside a handler: see run_tetgen
     const TetgenOutput output = run_tetgen(prepared.scene.mesh, prepared.surface, prepared.points, options.switches);
     finish_when_interrupted(prepared);
     return guarded([&] {

@@ -17,7 +17,7 @@ std::string read_bytes(const std::filesystem::path& path)
 {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
-        throw Error(ErrorKind::missing, "reading " + path.string() + ": there is no such file; check the path");
+        throw Error(ErrorKind::missing, "reading " + path.string() + ": the file does not exist; check the path");
     if (std::filesystem::is_directory(path, ignored))
         throw Error(ErrorKind::invalid_input, "reading " + path.string() + ": it is a folder; name a mesh file");
     std::optional<std::string> bytes = file_bytes(path);
@@ -60,9 +60,9 @@ MeshSoup parse_mesh(const std::filesystem::path& path, std::string_view bytes)
     read_as(extension, source);
     MeshSoup& soup = source.soup();
     if (soup.mesh.vertices.empty())
-        source.fail("mesh", "it has no vertices", "export the mesh again, with its geometry");
+        source.fail("mesh", "it lacks vertices", "export the mesh again, with its geometry");
     if (soup.mesh.triangles.empty())
-        source.fail("mesh", "it has no triangles", "a point cloud or a curve has no surface: reconstruct one first");
+        source.fail("mesh", "it lacks triangles", "a point cloud or a curve has no surface: reconstruct one first");
     soup.source_hash = hash_bytes(std::as_bytes(std::span(bytes)));
     return std::move(soup);
 }

@@ -19,7 +19,7 @@ struct MeshSoup {
 /// glTF 2.0 (.glb, or .gltf that holds its buffers; its scene's meshes where its nodes put them, without skins and
 /// morph targets), chosen by the extension and verified by the content; a UTF-8 byte order mark is skipped, but in STL.
 /// Polygons are cut into fans, or by ears where these would overlap; coordinates are rounded to the nearest float.
-/// Throws Error{missing} where there is no such file, and Error{invalid_input} that names file, element and remedy for:
+/// Throws Error{missing} if the file does not exist, and Error{invalid_input} that names file, element and remedy for:
 /// an unknown format, a truncated file, a count that the file cannot hold, a NaN, infinite or too large coordinate, an
 /// index out of range, a mesh without triangles.
 [[nodiscard]] MeshSoup read_mesh(const std::filesystem::path& path);

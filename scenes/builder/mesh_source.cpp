@@ -40,7 +40,7 @@ void MeshSource::add_vertex(Float3 position, const std::string& place)
         if (std::isfinite(value)) continue;
         fail(place,
              fmt::format("coordinate {} is {}", "xyz"[axis],
-                         std::isnan(value) ? "not a number" : "infinite or beyond float's range"),
+                         std::isnan(value) ? "not a number" : "infinite or outside float's range"),
              "remove or repair the vertex (MeshLab: Filters, Cleaning and Repairing), or scale the mesh down");
     }
     if (soup_.mesh.vertices.size() >= std::numeric_limits<std::int32_t>::max())

@@ -30,7 +30,7 @@ public:
 
     /// Throws where `count` elements of at least `min_bytes` each cannot be in the file.
     void require_room(const std::string& elements, std::int64_t count, std::size_t min_bytes) const;
-    /// Adds a vertex; throws where a coordinate is no finite float.
+    /// Adds a vertex; throws where a coordinate is not a finite float.
     void add_vertex(Float3 position, const std::string& place);
     /// Adds a polygon as triangles (cut_polygon); throws where an index is not below `vertex_count`.
     void add_face(const std::vector<std::int64_t>& corners, std::size_t vertex_count, const std::string& place);
@@ -63,8 +63,7 @@ private:
 };
 
 [[nodiscard]] std::vector<std::string_view> split_words(std::string_view line);
-/// A decimal number rounded once to the nearest float; infinite where it is beyond the range; nothing where it is no
-/// number.
+/// A decimal number rounded once to the nearest float; infinite if it is outside the range; nothing if it is no number.
 [[nodiscard]] std::optional<float> parse_float(std::string_view word);
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 [[nodiscard]] std::string lower_case(std::string_view word);
@@ -77,7 +76,7 @@ void read_ply(MeshSource& source);
 void read_obj(MeshSource& source);
 void read_off(MeshSource& source);
 void read_stl(MeshSource& source);
-/// Throws Error{invalid_input} where this was built without tinygltf.
+/// Throws Error{invalid_input} if this was built without tinygltf.
 void read_gltf(MeshSource& source);
 
 } // namespace tetrace

@@ -55,7 +55,7 @@ std::vector<std::array<std::size_t, 3>> fan(std::size_t corners)
     return triangles;
 }
 
-// Triangles of one orientation round a corner, in less than a turn, do not overlap.
+// Triangles of one orientation around a corner, in less than a full rotation, do not overlap.
 bool is_fan_sound(const FlatPolygon& polygon, std::size_t corners)
 {
     for (std::size_t i = 2; i < corners; ++i)

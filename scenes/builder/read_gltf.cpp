@@ -2,7 +2,7 @@
 
 // tinygltf parses the JSON and the chunks; pictures are not decoded, and no other file is opened. What the accessors
 // say is checked here.
-#include <fstream> // which tinygltf forgets where it has no file to open
+#include <fstream> // which tinygltf does not include if it opens no files
 #define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
@@ -79,7 +79,7 @@ tinygltf::Model parse(const MeshSource& source)
     }
     if (errors.find("FS callback") != std::string::npos)
         source.fail("buffers", "a buffer is in another file", "export it as .glb, which holds all in one file");
-    if (!good) source.fail("header", errors.empty() ? "it is no glTF 2.0" : errors.substr(0, 300));
+    if (!good) source.fail("header", errors.empty() ? "it is not glTF 2.0" : errors.substr(0, 300));
     return model;
 }
 
@@ -267,7 +267,7 @@ void add_primitive(MeshSource& source, const tinygltf::Model& model, const tinyg
     if (primitive.indices >= 0)
         indices.emplace(source, model, primitive.indices, TINYGLTF_TYPE_SCALAR, place + ", indices");
     if (indices && indices->component_type() == TINYGLTF_COMPONENT_TYPE_FLOAT)
-        source.fail(place, "its indices are no whole numbers");
+        source.fail(place, "its indices are not whole numbers");
     const bool is_mirrored = determinant(matrix) < 0;
     const std::size_t corners = indices ? indices->count() : positions.count();
     for (auto triangle : triangles_of(source, primitive.mode, corners, place)) {
@@ -283,7 +283,7 @@ void add_primitive(MeshSource& source, const tinygltf::Model& model, const tinyg
     }
 }
 
-// The nodes that the file shows: those of its scene, or all that are no other's.
+// The nodes that the file shows: those of its scene, or all without a parent.
 std::vector<int> roots_of(const MeshSource& source, const tinygltf::Model& model)
 {
     if (!model.scenes.empty())

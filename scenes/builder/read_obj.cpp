@@ -69,7 +69,7 @@ void read_obj(MeshSource& source)
             faces.push_back(std::move(face));
         } else if (std::find(ignored_keywords.begin(), ignored_keywords.end(), words.front()) ==
                    ignored_keywords.end()) {
-            source.fail(lines.place("statement"), fmt::format("'{:.40}' is no keyword of OBJ", words.front()));
+            source.fail(lines.place("statement"), fmt::format("'{:.40}' is not a keyword of OBJ", words.front()));
         }
     }
     for (const Face& face : faces)

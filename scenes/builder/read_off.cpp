@@ -11,13 +11,13 @@ using Words = std::vector<std::string_view>;
 Words read_keyword(const MeshSource& source, LineReader& lines)
 {
     Words words;
-    if (!lines.next(words)) source.fail("header", "the file has no text");
+    if (!lines.next(words)) source.fail("header", "the file is empty");
     std::string_view keyword = words.front();
     for (const std::string_view prefix : {"ST", "C", "N"})
         if (keyword.starts_with(prefix)) keyword.remove_prefix(prefix.size());
     if (keyword != "OFF")
         source.fail("header", fmt::format("it begins with '{:.20}', not with OFF, COFF, NOFF or STOFF", words.front()),
-                    "this is no OFF file of three dimensions: convert it, or give it the right extension");
+                    "this is not an OFF file of three dimensions: convert it, or give it the right extension");
     words.erase(words.begin());
     if (!words.empty() && words.front() == "BINARY")
         source.fail("header", "binary OFF is not supported", "convert it to ascii OFF or to PLY");

@@ -22,7 +22,7 @@ enum class Encoding { ascii, little, big };
 struct Property {
     std::string name;
     Scalar type = Scalar::float32;
-    std::optional<Scalar> list_size; ///< the type of the length, where it is a list
+    std::optional<Scalar> list_size; ///< the type of the length, if it is a list
 };
 
 struct Element {
@@ -50,7 +50,7 @@ Scalar parse_type(const MeshSource& source, std::string_view word, const std::st
                                                            "int32", "uint32", "float32", "float64"};
     for (std::size_t i = 0; i < old_names.size(); ++i)
         if (word == old_names[i] || word == new_names[i]) return static_cast<Scalar>(i);
-    source.fail(place, fmt::format("'{:.40}' is no type of PLY", word));
+    source.fail(place, fmt::format("'{:.40}' is not a type of PLY", word));
 }
 
 Encoding parse_encoding(const MeshSource& source, const Words& words, const std::string& place)
@@ -67,7 +67,7 @@ Property parse_property(const MeshSource& source, const Words& words, const std:
 {
     if (words.size() >= 5 && words[1] == "list") {
         const Scalar length = parse_type(source, words[2], place);
-        if (length >= Scalar::float32) source.fail(place, "a list's length is no integer");
+        if (length >= Scalar::float32) source.fail(place, "a list's length is not an integer");
         return {std::string(words[4]), parse_type(source, words[3], place), length};
     }
     if (words.size() < 3) source.fail(place, "a property without type or name");
@@ -78,7 +78,7 @@ Element parse_element(const MeshSource& source, const Words& words, const std::s
 {
     const auto count = words.size() >= 3 ? parse_integer(words[2]) : std::nullopt;
     if (!count) source.fail(place, "an element without name or count");
-    // Its name stands in the place of each of its messages: a long one, made for each of many elements, takes minutes.
+    // Each of its messages has its name as place: a long one, made for each of many elements, takes minutes.
     return {std::string(words[1].substr(0, 40)), *count, {}};
 }
 
@@ -87,7 +87,7 @@ Header parse_header(const MeshSource& source, LineReader& lines)
     Header header;
     std::string_view line;
     if (!lines.next_raw(line) || split_words(line) != Words{"ply"})
-        source.fail("header", "it does not begin with 'ply'", "this is no PLY file: give it the right extension");
+        source.fail("header", "it does not begin with 'ply'", "this is not a PLY file: give it the right extension");
     while (lines.next_raw(line)) {
         const Words words = split_words(line);
         const auto place = lines.place("header");
@@ -103,7 +103,7 @@ Header parse_header(const MeshSource& source, LineReader& lines)
             source.fail(place, fmt::format("'{:.40}' is not expected here", words[0]));
         }
     }
-    source.fail("header", "it has no 'end_header'");
+    source.fail("header", "'end_header' is missing");
 }
 
 // The values of one element, whatever its encoding, as doubles (exact for every type of PLY).
@@ -159,7 +159,7 @@ public:
     }
 
 private:
-    static float narrow(double value) { return static_cast<float>(value); } // beyond the range: infinite, and refused
+    static float narrow(double value) { return static_cast<float>(value); } // outside the range: infinite, and refused
     std::int64_t whole(double value) const
     {
         if (!(std::abs(value) < 0x1p62) || value != std::nearbyint(value))
@@ -244,7 +244,7 @@ std::vector<std::int64_t> read_indices(ValueReader& values, const Element& eleme
     return indices;
 }
 
-// Every three vertices in a row are a triangle; every other one is turned round, so that all have one orientation. A
+// Every three vertices in a row are a triangle; every other one is reversed, so that all have one orientation. A
 // negative index begins a new strip. Triangles with a vertex twice join strips, and are none.
 void add_strips(MeshSource& source, const std::vector<std::int64_t>& indices, std::size_t vertex_count,
                 const std::string& place)
@@ -269,7 +269,7 @@ std::size_t min_bytes(const Element& element, Encoding encoding)
     return std::max<std::size_t>(bytes, 1);
 }
 
-// An element without properties has no bytes, so that nothing bounds how many of them a file announces.
+// An element without properties needs no bytes, so nothing bounds how many of them a file announces.
 void require_properties(const MeshSource& source, const Element& element)
 {
     if (element.properties.empty() && element.count > 0)

@@ -169,7 +169,7 @@ void require_switches(const std::string& switches)
 TetgenOutput run_tetgen(const TriangleMesh& mesh, const TriangleMesh& surface, const std::vector<Float3>& points,
                         const std::string& switches)
 {
-    // Not on the stack: where TetGen throws, nothing may be unwound.
+    // Not on the stack: if TetGen throws, nothing may be unwound.
     auto* const input = new tetgenio;
     auto* const output = new tetgenio;
     auto* const later = new tetgenio;

@@ -20,7 +20,7 @@ struct TetgenOutput {
     std::vector<Double3> points; ///< the input's first (mesh, surface), in its order; then `points` and Steiner points
     std::size_t input_points = 0;
     std::vector<std::array<std::int32_t, 4>> tets;
-    std::vector<std::array<std::int32_t, 4>> neighbours; ///< -1 beyond the domain
+    std::vector<std::array<std::int32_t, 4>> neighbours; ///< -1 outside the domain
     std::vector<SurfaceFace> surface_faces;
     std::uint64_t flat_tets = 0; ///< no volume, or a negative one, already in TetGen's double coordinates
 };

@@ -81,17 +81,17 @@ void CubeGrid::make_vertices()
             }
 }
 
-std::uint32_t CubeGrid::outer_link(const Cell& cube, std::uint32_t axis, std::int32_t step, std::uint32_t order,
-                                   std::uint32_t path_vertex) const
+std::uint32_t CubeGrid::outer_half_face(const Cell& cube, std::uint32_t axis, std::int32_t step, std::uint32_t order,
+                                        std::uint32_t path_vertex) const
 {
     Cell next = cube;
     next[axis] += step;
-    return in_grid(next) ? make_link(tet_index(next, order), local(order, path_vertex)) : NO_LINK;
+    return in_grid(next) ? make_half_face(tet_index(next, order), local(order, path_vertex)) : NO_HALF_FACE;
 }
 
 // The face opposite path vertex 1 or 2 is shared with the path that swaps the two axes there, in the same cube. The
-// face opposite vertex 0 lies on the cube's high side along the first axis, where the next cube's path ends with that
-// axis; the face opposite vertex 3 lies on the low side along the last axis, where the cube before has it first.
+// face opposite vertex 0 is on the cube's high side along the first axis, where the next cube's path ends with that
+// axis; the face opposite vertex 3 is on the low side along the last axis, where the cube before has it first.
 Tet CubeGrid::make_tet(const Cell& cube, std::uint32_t order) const
 {
     const auto [a, b, c] = orders[order];
@@ -102,10 +102,10 @@ Tet CubeGrid::make_tet(const Cell& cube, std::uint32_t order) const
         tet.vertices[local(order, step)] = vertex_index(corner);
         if (step < 3) ++corner[orders[order][step]];
     }
-    tet.links[local(order, 0)] = outer_link(cube, a, 1, order_of(b, c), 3);
-    tet.links[local(order, 1)] = make_link(tet_index(cube, order_of(b, a)), local(order_of(b, a), 1));
-    tet.links[local(order, 2)] = make_link(tet_index(cube, order_of(a, c)), local(order_of(a, c), 2));
-    tet.links[local(order, 3)] = outer_link(cube, c, -1, order_of(c, a), 0);
+    tet.neighbours[local(order, 0)] = outer_half_face(cube, a, 1, order_of(b, c), 3);
+    tet.neighbours[local(order, 1)] = make_half_face(tet_index(cube, order_of(b, a)), local(order_of(b, a), 1));
+    tet.neighbours[local(order, 2)] = make_half_face(tet_index(cube, order_of(a, c)), local(order_of(a, c), 2));
+    tet.neighbours[local(order, 3)] = outer_half_face(cube, c, -1, order_of(c, a), 0);
     return tet;
 }
 
@@ -129,13 +129,14 @@ CubeGrid::Cell CubeGrid::cube_of(std::uint32_t tet) const
 
 void CubeGrid::mark(const std::function<bool(const Cell&)>& is_solid)
 {
-    std::vector<std::uint32_t> mesh_index(scene_.tets.vertices.size(), NO_LINK);
+    std::vector<std::uint32_t> mesh_index(scene_.tets.vertices.size(), NO_HALF_FACE);
     for (std::uint32_t first = 0; first < scene_.tets.tets.size(); first += 6) {
         if (!is_solid(cube_of(first))) continue;
         for (std::uint32_t tet = first; tet < first + 6; ++tet)
             for (std::uint32_t face = 0; face < 4; ++face) {
-                const std::uint32_t link = scene_.tets.tets[tet].links[face];
-                if (link != NO_LINK && !is_solid(cube_of(link_tet(link)))) add_triangle(tet, face, mesh_index);
+                const std::uint32_t half_face = scene_.tets.tets[tet].neighbours[face];
+                if (half_face != NO_HALF_FACE && !is_solid(cube_of(half_face_tet(half_face))))
+                    add_triangle(tet, face, mesh_index);
             }
     }
 }
@@ -148,16 +149,16 @@ void CubeGrid::add_triangle(std::uint32_t tet, std::uint32_t face, std::vector<s
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t vertex = inner.vertices[outward[face][i]];
-        if (mesh_index[vertex] == NO_LINK) {
+        if (mesh_index[vertex] == NO_HALF_FACE) {
             mesh_index[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
             mesh.vertices.push_back(scene_.tets.vertices[vertex]);
         }
         triangle[i] = mesh_index[vertex];
     }
     mesh.triangles.push_back(triangle);
-    const std::uint32_t link = inner.links[face];
+    const std::uint32_t half_face = inner.neighbours[face];
     inner.faces[face] = id;
-    scene_.tets.tets[link_tet(link)].faces[link_face(link)] = id;
+    scene_.tets.tets[half_face_tet(half_face)].faces[half_face_index(half_face)] = id;
 }
 
 } // namespace tetrace

@@ -22,12 +22,12 @@ public:
     /// A cube, by its place along each axis.
     using Cell = std::array<std::int32_t, 3>;
 
-    /// resolution: 2 to 563; links of 30 bits name no more tets.
+    /// resolution: 2 to 563; half-faces of 30 bits name no more tets.
     explicit CubeGrid(std::uint32_t resolution) : n_(static_cast<std::int32_t>(resolution)) {}
 
     /// A scene whose occlusive faces are those between cubes that are solid and cubes that are not, wound outwards.
     /// is_solid: asked only of cubes of the grid. Reproducible bit for bit. The domain's divisions are the resolution
-    /// up to 128; beyond, each square has as many cubes along its sides as that takes.
+    /// up to 128; above that, each square has as many cubes along its sides as needed.
     [[nodiscard]] Scene make(const std::string& name, const std::function<bool(const Cell&)>& is_solid);
 
 private:
@@ -56,8 +56,8 @@ private:
     void make_vertices();
     void make_tets();
     [[nodiscard]] Tet make_tet(const Cell& cube, std::uint32_t order) const;
-    [[nodiscard]] std::uint32_t outer_link(const Cell& cube, std::uint32_t axis, std::int32_t step, std::uint32_t order,
-                                           std::uint32_t path_vertex) const;
+    [[nodiscard]] std::uint32_t outer_half_face(const Cell& cube, std::uint32_t axis, std::int32_t step,
+                                                std::uint32_t order, std::uint32_t path_vertex) const;
     [[nodiscard]] Cell cube_of(std::uint32_t tet) const;
     void mark(const std::function<bool(const Cell&)>& is_solid);
     void add_triangle(std::uint32_t tet, std::uint32_t face, std::vector<std::uint32_t>& mesh_index);

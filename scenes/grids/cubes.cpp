@@ -10,7 +10,7 @@ namespace tetrace {
 namespace {
 
 /// Centres within 0.6 of the box's half-size, in integers. Two cubes along an axis have none that near: there one cube
-/// stands for the ball, and its surface is open towards the domain's boundary.
+/// represents the ball, and its surface is open towards the domain's boundary.
 bool in_ball(const CubeGrid::Cell& cube, std::int32_t n)
 {
     if (n == 2) return cube == CubeGrid::Cell{0, 0, 0};

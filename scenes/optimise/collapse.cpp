@@ -9,7 +9,7 @@ constexpr std::size_t max_collapsed_tets = 200;
 
 } // namespace
 
-// A face of the vertex and a link edge stays as a face of `onto` and the edge, unless a tet beside it vanishes.
+// A face of the vertex and a link edge stays as a face of `onto` and the edge, unless a tet next to it vanishes.
 double Collapse::cost_after(std::uint32_t onto, double limit) const
 {
     double sum = 0;
@@ -22,7 +22,7 @@ double Collapse::cost_after(std::uint32_t onto, double limit) const
     return sum;
 }
 
-// Neighbours on all sides of the box that the vertex lies on, and for which cost is below the limit, cheapest first.
+// Neighbours on all sides of the box that the vertex is on, and for which cost is below the limit, cheapest first.
 void Collapse::find_candidates(std::uint32_t vertex, double limit)
 {
     neighbours_.clear();

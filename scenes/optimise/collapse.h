@@ -10,7 +10,7 @@ class Collapse {
 public:
     explicit Collapse(EditableMesh& mesh) : mesh_(mesh) {}
 
-    /// Returns by how much cost fell; 0 where the vertex stays, since no neighbour lowers it by more than `least`.
+    /// Returns by how much cost fell; 0 if the vertex stays, since no neighbour lowers it by more than `least`.
     double try_vertex(std::uint32_t vertex, double least);
 
 private:

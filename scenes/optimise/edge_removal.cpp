@@ -19,16 +19,16 @@ std::uint32_t local_index(const Tet& tet, std::uint32_t vertex)
     return 3;
 }
 
-// A tet of the ring: its ring vertices behind and in front, by their local numbers.
-struct Place {
+// A tet of the ring: its ring vertices at the back and the front, by their local numbers.
+struct RingTet {
     std::uint32_t tet, back, front;
 };
 
-Place next_of(const EditableMesh& mesh, const Place& at)
+RingTet next_of(const EditableMesh& mesh, const RingTet& at)
 {
     const Tet& here = mesh.tet(at.tet);
-    const std::uint32_t link = here.links[at.back], tet = link_tet(link);
-    return {tet, local_index(mesh.tet(tet), here.vertices[at.front]), link_face(link)};
+    const std::uint32_t half_face = here.neighbours[at.back], tet = half_face_tet(half_face);
+    return {tet, local_index(mesh.tet(tet), here.vertices[at.front]), half_face_index(half_face)};
 }
 
 enum class RingEnd { closed, at_boundary, refused };
@@ -43,18 +43,18 @@ struct Earlier {
     }
 };
 
-RingEnd follow(const EditableMesh& mesh, const Place& begin, std::size_t most, const Earlier& earlier, EdgeRing& ring)
+RingEnd follow(const EditableMesh& mesh, const RingTet& begin, std::size_t most, const Earlier& earlier, EdgeRing& ring)
 {
     ring.tets.clear();
     ring.vertices.clear();
-    Place at = begin;
+    RingTet at = begin;
     do {
         const Tet& here = mesh.tet(at.tet);
         if (here.faces[at.back] != FREE_FACE || ring.vertices.size() == most || earlier.has(mesh, at.tet))
             return RingEnd::refused;
         ring.tets.push_back(at.tet);
         ring.vertices.push_back(here.vertices[at.back]);
-        if (here.links[at.back] == NO_LINK) {
+        if (here.neighbours[at.back] == NO_HALF_FACE) {
             ring.vertices.push_back(here.vertices[at.front]);
             return ring.vertices.size() <= most ? RingEnd::at_boundary : RingEnd::refused;
         }
@@ -75,8 +75,8 @@ bool find_ring(const EditableMesh& mesh, std::uint32_t tet, std::uint32_t edge, 
     const Earlier earlier{tet, since};
     const RingEnd end = follow(mesh, {tet, c, d}, most, earlier, ring);
     if (end != RingEnd::at_boundary) return end == RingEnd::closed && ring.tets.size() >= 3;
-    Place begin{tet, d, c}; // looking back, where the ring begins
-    for (std::size_t i = 0; mesh.tet(begin.tet).links[begin.back] != NO_LINK; ++i) {
+    RingTet begin{tet, d, c}; // looking back, from the start of the ring
+    for (std::size_t i = 0; mesh.tet(begin.tet).neighbours[begin.back] != NO_HALF_FACE; ++i) {
         if (mesh.tet(begin.tet).faces[begin.back] != FREE_FACE || i == most || earlier.has(mesh, begin.tet))
             return false;
         begin = next_of(mesh, begin);
@@ -149,9 +149,10 @@ double EdgeRemoval::try_edge(std::uint32_t tet, std::uint32_t edge, double least
 double try_face(EditableMesh& mesh, std::uint32_t tet, std::uint32_t face, double least)
 {
     const Tet& here = mesh.tet(tet);
-    const std::uint32_t link = here.links[face];
-    if (link == NO_LINK || here.faces[face] != FREE_FACE) return 0;
-    const std::uint32_t a = here.vertices[face], b = mesh.tet(link_tet(link)).vertices[link_face(link)];
+    const std::uint32_t half_face = here.neighbours[face];
+    if (half_face == NO_HALF_FACE || here.faces[face] != FREE_FACE) return 0;
+    const std::uint32_t a = here.vertices[face],
+                        b = mesh.tet(half_face_tet(half_face)).vertices[half_face_index(half_face)];
     const auto& [i, j, k] = face_corners[face];
     const std::uint32_t p = here.vertices[i], q = here.vertices[j], r = here.vertices[k];
     double gain = area(mesh.point(p), mesh.point(q), mesh.point(r));
@@ -159,7 +160,7 @@ double try_face(EditableMesh& mesh, std::uint32_t tet, std::uint32_t face, doubl
         gain -= area(mesh.point(a), mesh.point(b), mesh.point(corner));
         if (gain <= least) return 0;
     }
-    const std::array<std::uint32_t, 2> old = {tet, link_tet(link)};
+    const std::array<std::uint32_t, 2> old = {tet, half_face_tet(half_face)};
     const std::array<Corners, 3> fresh = {{{a, b, p, q}, {a, b, q, r}, {a, b, r, p}}};
     return mesh.replace(old, fresh) ? gain : 0;
 }

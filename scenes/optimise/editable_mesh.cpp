@@ -24,7 +24,7 @@ bool EditableMesh::may_be_on_boundary(const std::array<std::uint32_t, 3>& vertic
 EditableMesh::Side EditableMesh::side_of(const Corners& corners, std::uint32_t face)
 {
     const auto& [i, j, k] = face_corners[face];
-    Side side{{corners[i], corners[j], corners[k]}, false, false, NO_LINK, FREE_FACE};
+    Side side{{corners[i], corners[j], corners[k]}, false, false, NO_HALF_FACE, FREE_FACE};
     const auto order = [&](std::size_t a, std::size_t b) {
         if (side.key[a] < side.key[b]) return;
         std::swap(side.key[a], side.key[b]);
@@ -36,7 +36,7 @@ EditableMesh::Side EditableMesh::side_of(const Corners& corners, std::uint32_t f
     return side;
 }
 
-// The outer sides of the old tets, and all sides of the fresh ones, sorted. False where a tet cannot be replaced or
+// The outer sides of the old tets, and all sides of the fresh ones, sorted. False if a tet cannot be replaced or
 // made.
 bool EditableMesh::gather_sides(std::span<const std::uint32_t> old, std::span<const Corners> fresh)
 {
@@ -47,11 +47,11 @@ bool EditableMesh::gather_sides(std::span<const std::uint32_t> old, std::span<co
     for (const std::uint32_t t : old)
         for (std::uint32_t face = 0; face < 4; ++face) {
             const Tet& tet = arrays_.tets[t];
-            const bool inner =
-                tet.links[face] != NO_LINK && tet.faces[face] == FREE_FACE && is_marked(link_tet(tet.links[face]));
+            const bool inner = tet.neighbours[face] != NO_HALF_FACE && tet.faces[face] == FREE_FACE &&
+                               is_marked(half_face_tet(tet.neighbours[face]));
             if (inner) continue;
             Side side = side_of(tet.vertices, face);
-            side.link = tet.links[face];
+            side.half_face = tet.neighbours[face];
             side.triangle = tet.faces[face];
             sides_.push_back(side);
         }
@@ -61,12 +61,12 @@ bool EditableMesh::gather_sides(std::span<const std::uint32_t> old, std::span<co
         for (std::uint32_t face = 0; face < 4; ++face) {
             Side side = side_of(fresh[i], face);
             side.fresh = true;
-            side.link = make_link(i, face);
+            side.half_face = make_half_face(i, face);
             sides_.push_back(side);
         }
     }
     std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
-        return a.key != b.key ? a.key < b.key : a.fresh != b.fresh ? b.fresh : a.link < b.link;
+        return a.key != b.key ? a.key < b.key : a.fresh != b.fresh ? b.fresh : a.half_face < b.half_face;
     });
     return true;
 }
@@ -78,7 +78,8 @@ bool EditableMesh::is_pair(std::size_t i) const
 }
 
 // Sides come in twos: an outer one with a fresh one that turns alike, or two fresh ones that turn against each other.
-// Sides that stay alone lie on the box: boundary faces that go, or come. They leave a side of the box alone.
+// Sides that remain unpaired are on the box: boundary faces that vanish, or appear. They do not change a side of the
+// box.
 bool EditableMesh::sides_match() const
 {
     BoxSides touched = 0;
@@ -92,7 +93,7 @@ bool EditableMesh::sides_match() const
         }
         const BoxSides common = common_sides(arrays_, a.key);
         if (common == 0) return false;
-        if (a.fresh ? !may_be_on_boundary(a.key) : a.link != NO_LINK || a.triangle != FREE_FACE) return false;
+        if (a.fresh ? !may_be_on_boundary(a.key) : a.half_face != NO_HALF_FACE || a.triangle != FREE_FACE) return false;
         touched |= common;
     }
     return touched != all_box_sides;
@@ -120,8 +121,8 @@ void EditableMesh::choose_slots(std::span<const std::uint32_t> old, std::size_t 
 
 void EditableMesh::connect_fresh(const Side& a, const Side& b)
 {
-    arrays_.tets[slots_[link_tet(a.link)]].links[link_face(a.link)] =
-        make_link(slots_[link_tet(b.link)], link_face(b.link));
+    arrays_.tets[slots_[half_face_tet(a.half_face)]].neighbours[half_face_index(a.half_face)] =
+        make_half_face(slots_[half_face_tet(b.half_face)], half_face_index(b.half_face));
 }
 
 void EditableMesh::connect()
@@ -135,11 +136,12 @@ void EditableMesh::connect()
             connect_fresh(b, a);
             continue;
         }
-        const std::uint32_t slot = slots_[link_tet(b.link)];
-        arrays_.tets[slot].links[link_face(b.link)] = a.link;
-        arrays_.tets[slot].faces[link_face(b.link)] = a.triangle;
-        if (a.link != NO_LINK)
-            arrays_.tets[link_tet(a.link)].links[link_face(a.link)] = make_link(slot, link_face(b.link));
+        const std::uint32_t slot = slots_[half_face_tet(b.half_face)];
+        arrays_.tets[slot].neighbours[half_face_index(b.half_face)] = a.half_face;
+        arrays_.tets[slot].faces[half_face_index(b.half_face)] = a.triangle;
+        if (a.half_face != NO_HALF_FACE)
+            arrays_.tets[half_face_tet(a.half_face)].neighbours[half_face_index(a.half_face)] =
+                make_half_face(slot, half_face_index(b.half_face));
     }
 }
 
@@ -158,7 +160,7 @@ bool EditableMesh::replace(std::span<const std::uint32_t> old, std::span<const C
         const std::uint32_t slot = slots_[i];
         arrays_.tets[slot].vertices = fresh[i];
         arrays_.tets[slot].faces.fill(FREE_FACE);
-        arrays_.tets[slot].links.fill(NO_LINK);
+        arrays_.tets[slot].neighbours.fill(NO_HALF_FACE);
         arrays_.states[slot] = TetState::reached;
         arrays_.tet_changed[slot] = round;
         for (const std::uint32_t v : fresh[i]) {
@@ -179,7 +181,8 @@ bool EditableMesh::may_stay(const Tet& tet) const
         return false;
     for (std::uint32_t face = 0; face < 4; ++face) {
         const auto& [a, b, c] = face_corners[face];
-        if (tet.links[face] == NO_LINK && tet.faces[face] == FREE_FACE && !may_be_on_boundary({v[a], v[b], v[c]}))
+        if (tet.neighbours[face] == NO_HALF_FACE && tet.faces[face] == FREE_FACE &&
+            !may_be_on_boundary({v[a], v[b], v[c]}))
             return false;
     }
     return true;

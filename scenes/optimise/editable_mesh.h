@@ -29,9 +29,9 @@ public:
 
     /// Operations change no tets but these.
     [[nodiscard]] bool is_reached(std::uint32_t tet) const { return arrays_.states[tet] == TetState::reached; }
-    /// Whether a vertex may move or vanish. It stays on the sides of the domain's box that it lies on.
+    /// Whether a vertex may move or vanish. It stays on the same sides of the domain's box.
     [[nodiscard]] bool is_free(std::uint32_t vertex) const { return arrays_.kinds[vertex] == VertexKind::free; }
-    /// The sides of the domain's box that a vertex lies on: none inside, two on an edge of the box, three at a corner.
+    /// The sides of the domain's box that a vertex is on: none inside, two on an edge of the box, three at a corner.
     [[nodiscard]] BoxSides box_sides(std::uint32_t vertex) const { return arrays_.box_sides[vertex]; }
     /// A tet that has the vertex; NO_TET for a slot without a vertex.
     [[nodiscard]] std::uint32_t tet_of(std::uint32_t vertex) const { return tet_of_[vertex]; }
@@ -40,9 +40,9 @@ public:
     [[nodiscard]] double cost() const { return free_area(arrays_); }
     [[nodiscard]] double boundary_area() const { return tetrace::boundary_area(arrays_); }
 
-    /// Puts `fresh` in the place of `old`, where that is sound: each fresh tet may be made (shape.h), and the fresh
-    /// tets' outer faces are those of the old ones, side by side, but for boundary faces, which may become others of
-    /// the same side (O1), no flatter than shape.h allows. Otherwise returns false and changes nothing.
+    /// Puts `fresh` in the place of `old`, if that is sound: each fresh tet may be made (shape.h), and the fresh tets'
+    /// outer faces are those of the old ones, side by side, but for boundary faces, which may become others of the same
+    /// side (O1), no flatter than shape.h allows. Otherwise returns false and changes nothing.
     /// old: tets that rays reach, each once. Vertices that lose their last tet are dropped.
     bool replace(std::span<const std::uint32_t> old, std::span<const Corners> fresh);
 
@@ -50,7 +50,7 @@ public:
     /// changes nothing. to: on the grid, as a float, and on the vertex's sides of the box.
     bool move(std::uint32_t vertex, std::span<const std::uint32_t> star, Double3 to);
 
-    /// A free vertex without a tet, for the next replace(); drop it where that fails. sides: those that it lies on.
+    /// A free vertex without a tet, for the next replace(); drop it if that fails. sides: those that it is on.
     [[nodiscard]] std::uint32_t add_vertex(Double3 point, BoxSides sides);
     void drop_vertex(std::uint32_t vertex);
 
@@ -61,7 +61,7 @@ public:
 
     /// Marks on tets for a moment: unmark_all() is quick.
     void unmark_all() { ++mark_; }
-    bool mark(std::uint32_t tet) ///< false where it was marked already
+    bool mark(std::uint32_t tet) ///< false if it was marked already
     {
         if (marks_[tet] == mark_) return false;
         marks_[tet] = mark_;
@@ -80,7 +80,7 @@ private:
         std::array<std::uint32_t, 3> key; ///< vertices, ascending
         bool turn;                        ///< whether an odd permutation sorted them
         bool fresh;
-        std::uint32_t link; ///< outer: what is beyond it; fresh: index in `fresh` << 2 | local face
+        std::uint32_t half_face; ///< outer: what is across it; fresh: index in `fresh` << 2 | local face
         std::uint32_t triangle;
     };
 

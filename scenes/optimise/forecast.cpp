@@ -8,7 +8,7 @@ namespace tetrace {
 namespace {
 
 constexpr double highest_ratio = 0.95; // rounds come to an end
-constexpr double min_share = 0.05;     // of a round, from which its time is told
+constexpr double min_share = 0.05;     // of a round, from which its time is predicted
 constexpr double first_rounds = 6;     // as many as bunny has, before the first has ended
 
 } // namespace

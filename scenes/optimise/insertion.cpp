@@ -26,12 +26,13 @@ bool Insertion::is_on_box(std::uint32_t p, std::uint32_t q) const
     return (mesh_.box_sides(p) & mesh_.box_sides(q) & sides_) != 0;
 }
 
-// Whether an outer face of the cavity lies in the plane of a side that the vertex is to lie on: it makes no tet.
+// Whether an outer face of the cavity is in the plane of a side that the vertex is to be on: it makes no tet.
 bool Insertion::is_flush(const Tet& tet, std::uint32_t face) const
 {
     const auto& [i, j, k] = face_corners[face];
-    return tet.links[face] == NO_LINK && (mesh_.box_sides(tet.vertices[i]) & mesh_.box_sides(tet.vertices[j]) &
-                                          mesh_.box_sides(tet.vertices[k]) & sides_) != 0;
+    return tet.neighbours[face] == NO_HALF_FACE &&
+           (mesh_.box_sides(tet.vertices[i]) & mesh_.box_sides(tet.vertices[j]) & mesh_.box_sides(tet.vertices[k]) &
+            sides_) != 0;
 }
 
 // Half the areas of the three faces of a point and a face's edges: each is shared by two tets.
@@ -56,8 +57,8 @@ double Insertion::change_by(Double3 at, std::uint32_t index) const
     const Tet& tet = mesh_.tet(index);
     double change = 0;
     for (std::uint32_t face = 0; face < 4; ++face) {
-        const std::uint32_t link = tet.links[face];
-        if (link != NO_LINK && mesh_.is_marked(link_tet(link))) {
+        const std::uint32_t half_face = tet.neighbours[face];
+        if (half_face != NO_HALF_FACE && mesh_.is_marked(half_face_tet(half_face))) {
             if (tet.faces[face] != FREE_FACE) return impossible;
             change -= spokes(at, tet, face) + face_area(tet, face);
         } else if (!is_flush(tet, face)) {
@@ -72,8 +73,8 @@ void Insertion::add_neighbours(Double3 at, std::uint32_t index)
 {
     const Tet& tet = mesh_.tet(index);
     for (std::uint32_t face = 0; face < 4; ++face) {
-        if (tet.links[face] == NO_LINK || tet.faces[face] != FREE_FACE) continue;
-        const std::uint32_t other = link_tet(tet.links[face]);
+        if (tet.neighbours[face] == NO_HALF_FACE || tet.faces[face] != FREE_FACE) continue;
+        const std::uint32_t other = half_face_tet(tet.neighbours[face]);
         if (mesh_.is_marked(other)) continue;
         const double change = change_by(at, other);
         const auto known = std::find_if(candidates_.begin(), candidates_.end(),
@@ -96,8 +97,8 @@ double Insertion::grow(Double3 at)
     for (const std::uint32_t t : cavity_) {
         const Tet& tet = mesh_.tet(t);
         for (std::uint32_t face = 0; face < 4; ++face) {
-            const std::uint32_t link = tet.links[face];
-            if (link != NO_LINK && mesh_.is_marked(link_tet(link))) {
+            const std::uint32_t half_face = tet.neighbours[face];
+            if (half_face != NO_HALF_FACE && mesh_.is_marked(half_face_tet(half_face))) {
                 if (tet.faces[face] != FREE_FACE) return impossible;
                 cost -= 0.5 * face_area(tet, face);
             } else if (!is_flush(tet, face)) {
@@ -143,7 +144,7 @@ void Insertion::find_outside()
     for (const std::uint32_t t : cavity_) {
         const Tet& tet = mesh_.tet(t);
         for (std::uint32_t face = 0; face < 4; ++face) {
-            if (tet.links[face] != NO_LINK && mesh_.is_marked(link_tet(tet.links[face]))) {
+            if (tet.neighbours[face] != NO_HALF_FACE && mesh_.is_marked(half_face_tet(tet.neighbours[face]))) {
                 inside_area_ += 0.5 * face_area(tet, face);
                 continue;
             }
@@ -181,7 +182,7 @@ double Insertion::try_edge(std::uint32_t tet, std::uint32_t edge, double least)
 {
     if (!find_ring(mesh_, tet, edge, max_ring, since, ring_)) return 0;
     sides_ = ring_.is_open() ? mesh_.box_sides(ring_.a) & mesh_.box_sides(ring_.b) : 0;
-    if (ring_.is_open() && sides_ == 0) return 0; // the domain is no box
+    if (ring_.is_open() && sides_ == 0) return 0; // the domain is not a box
     Double3 at = rounded_point((mesh_.point(ring_.a) + mesh_.point(ring_.b)) * 0.5);
     cavity_ = ring_.tets;
     double gain = 0;

@@ -5,15 +5,15 @@
 
 namespace tetrace {
 
-/// Inserts a vertex near the middle of an edge: the tets round the edge, and others that pay, are replaced by the tets
+/// Inserts a vertex near the middle of an edge: the tets around the edge, and others that pay, are replaced by the tets
 /// of the vertex and their outer faces. The cavity grows by the neighbour that lowers cost most, a few steps past the
 /// best too, and the vertex then moves to the cheapest point of it. On an edge of the domain's boundary, the vertex
-/// stays on the sides that the edge lies on.
+/// stays on the sides that the edge is on.
 class Insertion {
 public:
     explicit Insertion(EditableMesh& mesh) : mesh_(mesh) {}
 
-    /// Returns by how much cost fell; 0 where nothing changed, since it would not fall by more than `least`, and
+    /// Returns by how much cost fell; 0 if nothing changed, since it would not fall by more than `least`, and
     /// min_share of the area of the free faces in the cavity.
     double try_edge(std::uint32_t tet, std::uint32_t edge, double least);
 

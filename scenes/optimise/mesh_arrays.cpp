@@ -24,12 +24,13 @@ void find_reached(MeshArrays& arrays)
     };
     for (std::uint32_t t = 0; t < arrays.tets.size(); ++t)
         for (std::size_t face = 0; face < 4; ++face)
-            if (arrays.tets[t].links[face] == NO_LINK && arrays.tets[t].faces[face] == FREE_FACE) reach(t);
+            if (arrays.tets[t].neighbours[face] == NO_HALF_FACE && arrays.tets[t].faces[face] == FREE_FACE) reach(t);
     while (!front.empty()) {
         const Tet& tet = arrays.tets[front.back()];
         front.pop_back();
         for (std::size_t face = 0; face < 4; ++face)
-            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK) reach(link_tet(tet.links[face]));
+            if (tet.faces[face] == FREE_FACE && tet.neighbours[face] != NO_HALF_FACE)
+                reach(half_face_tet(tet.neighbours[face]));
     }
 }
 
@@ -39,7 +40,7 @@ void find_box_sides(MeshArrays& arrays)
     Double3 low{impossible, impossible, impossible}, high = low * -1.0;
     for (const Tet& tet : arrays.tets)
         for (std::uint32_t face = 0; face < 4; ++face) {
-            if (tet.links[face] != NO_LINK) continue;
+            if (tet.neighbours[face] != NO_HALF_FACE) continue;
             for (const std::uint32_t v : face_vertices(tet, face)) {
                 on_boundary.push_back(v);
                 const Double3 at = arrays.points[v];
@@ -63,7 +64,8 @@ void find_kinds(MeshArrays& arrays)
     for (const Tet& tet : arrays.tets)
         for (std::uint32_t face = 0; face < 4; ++face) {
             const auto vertices = face_vertices(tet, face);
-            if (tet.faces[face] == FREE_FACE && (tet.links[face] != NO_LINK || common_sides(arrays, vertices) != 0))
+            if (tet.faces[face] == FREE_FACE &&
+                (tet.neighbours[face] != NO_HALF_FACE || common_sides(arrays, vertices) != 0))
                 continue;
             for (const std::uint32_t v : vertices)
                 arrays.kinds[v] = VertexKind::held;
@@ -117,8 +119,9 @@ TetMesh mesh_of(const MeshArrays& arrays)
     for (Tet& tet : mesh.tets)
         for (std::size_t i = 0; i < 4; ++i) {
             tet.vertices[i] = vertex_place[tet.vertices[i]];
-            if (tet.links[i] != NO_LINK)
-                tet.links[i] = make_link(tet_place[link_tet(tet.links[i])], link_face(tet.links[i]));
+            if (tet.neighbours[i] != NO_HALF_FACE)
+                tet.neighbours[i] =
+                    make_half_face(tet_place[half_face_tet(tet.neighbours[i])], half_face_index(tet.neighbours[i]));
         }
     return mesh;
 }
@@ -130,7 +133,8 @@ double free_area(const MeshArrays& arrays)
         if (arrays.states[t] != TetState::reached) continue;
         const Tet& tet = arrays.tets[t];
         for (std::uint32_t face = 0; face < 4; ++face)
-            if (tet.faces[face] == FREE_FACE && tet.links[face] != NO_LINK && link_tet(tet.links[face]) > t)
+            if (tet.faces[face] == FREE_FACE && tet.neighbours[face] != NO_HALF_FACE &&
+                half_face_tet(tet.neighbours[face]) > t)
                 sum += face_area(arrays, t, face);
     }
     return sum;
@@ -141,7 +145,7 @@ double boundary_area(const MeshArrays& arrays)
     double sum = 0;
     for (std::uint32_t t = 0; t < arrays.tets.size(); ++t)
         for (std::uint32_t face = 0; face < 4; ++face)
-            if (arrays.states[t] != TetState::unused && arrays.tets[t].links[face] == NO_LINK)
+            if (arrays.states[t] != TetState::unused && arrays.tets[t].neighbours[face] == NO_HALF_FACE)
                 sum += face_area(arrays, t, face);
     return sum;
 }

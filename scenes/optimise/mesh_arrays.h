@@ -21,7 +21,7 @@ inline constexpr BoxSides all_box_sides = 0x3F;
 /// reached: a chain of free faces leads from the domain's boundary to the tet, so that rays from outside may reach it.
 enum class TetState : std::uint8_t { unused, hidden, reached };
 
-/// free: the vertex is on no occlusive face, its tets are reached, it is no corner of the domain, and its boundary
+/// free: the vertex is on no occlusive face, its tets are reached, it is not a corner of the domain, and its boundary
 /// faces lie on the sides of a box. at_wall: it would be free, were there no wall of a region (regions.h) at it.
 enum class VertexKind : std::uint8_t { held, at_wall, free };
 

@@ -11,12 +11,12 @@
 
 namespace tetrace {
 
-/// How hard the optimiser tries: 0 leaves the tets as they are, 3 is the most.
+/// How hard the optimiser tries: 0 leaves the tets unchanged, 3 is the maximum.
 inline constexpr int max_effort = 3, default_effort = 2;
 
 struct OptimiserLimits {
     int effort = default_effort;
-    double time_limit_s = 0;                 ///< it ends after so many seconds; 0: no limit
+    double time_limit_s = 0;                 ///< it ends after this many seconds; 0: no limit
     const std::atomic<bool>* stop = nullptr; ///< it ends after the current operation where this becomes true
     int threads = 0;                         ///< 0: as many as OpenMP has. The result does not depend on it
     std::size_t tets_per_region = 12288; ///< at most (docs/spec/rays-tets.md, In parallel); the result depends on it

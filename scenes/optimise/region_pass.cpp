@@ -28,8 +28,8 @@ bool RegionPass::is_new_tet(std::uint32_t tet) const
 bool RegionPass::is_new_face(std::uint32_t tet, std::uint32_t face) const
 {
     if (!is_new_tet(tet)) return false;
-    const std::uint32_t link = mesh_.tet(tet).links[face];
-    return link == NO_LINK || link_tet(link) > tet || !is_new_tet(link_tet(link));
+    const std::uint32_t half_face = mesh_.tet(tet).neighbours[face];
+    return half_face == NO_HALF_FACE || half_face_tet(half_face) > tet || !is_new_tet(half_face_tet(half_face));
 }
 
 bool RegionPass::is_new_vertex(std::uint32_t vertex) const
@@ -69,7 +69,7 @@ MeshArrays RegionPass::run()
 {
     const std::uint32_t since = orders_.since;
     flip(since);
-    flip(orders_.mark); // what the first left alone would stay again
+    flip(orders_.mark); // what the first did not change would stay again
     orders_.since = since;
     sweep(collapse_edges, mesh_.vertex_slots(),
           [&](std::uint32_t v) { return is_new_vertex(v) ? collapse_.try_vertex(v, orders_.least) : 0.0; });

@@ -71,12 +71,12 @@ void Regions::halve(std::size_t begin, std::size_t end, std::uint32_t depth)
     halve(middle, end, depth + 1);
 }
 
-// The tet's number in the region; NO_LINK where it is in another.
-std::uint32_t Regions::local_link(std::size_t index, std::uint32_t link) const
+// The tet's number in the region; NO_HALF_FACE if it is in another.
+std::uint32_t Regions::local_half_face(std::size_t index, std::uint32_t half_face) const
 {
-    const std::size_t begin = index == 0 ? 0 : ends_[index - 1], position = position_[link_tet(link)];
-    if (position < begin || position >= ends_[index]) return NO_LINK;
-    return make_link(static_cast<std::uint32_t>(position - begin), link_face(link));
+    const std::size_t begin = index == 0 ? 0 : ends_[index - 1], position = position_[half_face_tet(half_face)];
+    if (position < begin || position >= ends_[index]) return NO_HALF_FACE;
+    return make_half_face(static_cast<std::uint32_t>(position - begin), half_face_index(half_face));
 }
 
 Region Regions::cut(std::size_t index, std::uint32_t since, std::uint32_t later, Scratch& scratch) const
@@ -103,13 +103,15 @@ Region Regions::cut(std::size_t index, std::uint32_t since, std::uint32_t later,
         for (std::uint32_t& v : tet.vertices)
             v = place(v);
         for (std::uint32_t face = 0; face < 4; ++face) {
-            if (tet.links[face] == NO_LINK) continue;
-            const std::uint32_t beyond = std::exchange(tet.links[face], local_link(index, tet.links[face]));
-            if (tet.links[face] != NO_LINK) continue;
+            if (tet.neighbours[face] == NO_HALF_FACE) continue;
+            const std::uint32_t beyond =
+                std::exchange(tet.neighbours[face], local_half_face(index, tet.neighbours[face]));
+            if (tet.neighbours[face] != NO_HALF_FACE) continue;
             const auto wall = static_cast<std::uint32_t>(region.walls.size());
             region.walls.push_back(
-                {make_link(t, face), beyond, std::exchange(tet.faces[face], Region::first_wall + wall)});
-            if (whole_.states[link_tet(beyond)] != TetState::reached) continue; // an object's face: no tet waits beyond
+                {make_half_face(t, face), beyond, std::exchange(tet.faces[face], Region::first_wall + wall)});
+            if (whole_.states[half_face_tet(beyond)] != TetState::reached)
+                continue; // an object's face: no tet waits across it
             for (const std::uint32_t corner : face_corners[face])
                 at_wall[tet.vertices[corner]] = 1;
         }
@@ -124,7 +126,7 @@ Region Regions::cut(std::size_t index, std::uint32_t since, std::uint32_t later,
         if (mesh.vertex_changed[v] >= since) mesh.vertex_changed[v] = later;
     }
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-        int corners = 0; // an edge with both ends at walls may have tets beyond
+        int corners = 0; // an edge with both ends at walls may have tets on the other side
         for (const std::uint32_t v : mesh.tets[t].vertices)
             corners += at_wall[v];
         if (corners > 1 && mesh.tet_changed[t] >= since) mesh.tet_changed[t] = later;
@@ -137,15 +139,15 @@ namespace {
 // Puts regions into a whole mesh of which only the hidden tets are left.
 class Joiner {
 public:
-    explicit Joiner(MeshArrays& whole) : whole_(whole), moved_(4 * whole.tets.size(), NO_LINK) {}
+    explicit Joiner(MeshArrays& whole) : whole_(whole), moved_(4 * whole.tets.size(), NO_HALF_FACE) {}
 
     void add_hidden(const MeshArrays& old)
     {
         for (std::uint32_t t = 0; t < old.tets.size(); ++t) {
             if (old.states[t] != TetState::hidden) continue;
             for (std::uint32_t face = 0; face < 4; ++face) {
-                moved_[make_link(t, face)] = make_link(next_tet(), face);
-                if (old.tets[t].links[face] != NO_LINK) open_.push_back(make_link(next_tet(), face));
+                moved_[make_half_face(t, face)] = make_half_face(next_tet(), face);
+                if (old.tets[t].neighbours[face] != NO_HALF_FACE) open_.push_back(make_half_face(next_tet(), face));
             }
             add(old.tets[t], TetState::hidden, old.tet_changed[t]);
         }
@@ -165,14 +167,14 @@ public:
             for (std::uint32_t& v : tet.vertices)
                 v = vertex_place[v];
             for (std::uint32_t face = 0; face < 4; ++face) {
-                std::uint32_t& link = tet.links[face];
-                if (link != NO_LINK) {
-                    link = make_link(tet_place[link_tet(link)], link_face(link));
+                std::uint32_t& half_face = tet.neighbours[face];
+                if (half_face != NO_HALF_FACE) {
+                    half_face = make_half_face(tet_place[half_face_tet(half_face)], half_face_index(half_face));
                 } else if (tet.faces[face] != FREE_FACE && tet.faces[face] >= Region::first_wall) {
                     const Wall& wall = region.walls[tet.faces[face] - Region::first_wall];
-                    moved_[wall.own] = make_link(tet_place[t], face);
-                    open_.push_back(make_link(tet_place[t], face));
-                    link = wall.beyond;
+                    moved_[wall.own] = make_half_face(tet_place[t], face);
+                    open_.push_back(make_half_face(tet_place[t], face));
+                    half_face = wall.beyond;
                     tet.faces[face] = wall.triangle;
                 }
             }
@@ -180,12 +182,12 @@ public:
         }
     }
 
-    // Links of the old mesh become those of the new one.
+    // Half-faces of the old mesh become those of the new one.
     void close()
     {
         for (const std::uint32_t side : open_) {
-            std::uint32_t& link = whole_.tets[link_tet(side)].links[link_face(side)];
-            link = moved_[link];
+            std::uint32_t& half_face = whole_.tets[half_face_tet(side)].neighbours[half_face_index(side)];
+            half_face = moved_[half_face];
         }
     }
 
@@ -224,8 +226,8 @@ private:
     }
 
     MeshArrays& whole_;
-    std::vector<std::uint32_t> moved_; ///< per side of the old mesh that a tet beyond names: that side now
-    std::vector<std::uint32_t> open_;  ///< sides of the new mesh whose links are of the old one
+    std::vector<std::uint32_t> moved_; ///< per side of the old mesh that a tet across it names: that side now
+    std::vector<std::uint32_t> open_;  ///< sides of the new mesh whose half-faces are of the old one
 };
 
 } // namespace

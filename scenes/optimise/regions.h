@@ -9,10 +9,10 @@
 
 namespace tetrace {
 
-/// A face of a region beyond which lies a tet that is not in it. Sides are links of the whole mesh.
+/// A face of a region with a tet across it that is not in the region. Sides are half-faces of the whole mesh.
 struct Wall {
     std::uint32_t own, beyond; ///< the face's two sides
-    std::uint32_t triangle;    ///< what it is a part of, or FREE_FACE
+    std::uint32_t triangle;    ///< the triangle that it is a part of, or FREE_FACE
 };
 
 /// Some tets of a mesh, as a mesh of its own. Its walls are occlusive faces that name triangle `first_wall` + number of
@@ -27,7 +27,7 @@ struct Region {
 
 /// The tets of a mesh that rays reach, in parts of about equal size (docs/spec/rays-tets.md, "In parallel"): they are
 /// halved by planes across the axis along which their centroids reach farthest, until a part has no more than
-/// `max_tets`. They depend on the mesh and `pass` alone, and differ from one pass to the next. Work: n log n.
+/// `max_tets`. They depend only on the mesh and `pass`, and differ from one pass to the next. Work: n log n.
 class Regions {
 public:
     Regions(const MeshArrays& whole, std::uint32_t pass, std::size_t max_tets);
@@ -49,7 +49,7 @@ public:
 
 private:
     void halve(std::size_t begin, std::size_t end, std::uint32_t depth);
-    [[nodiscard]] std::uint32_t local_link(std::size_t index, std::uint32_t link) const;
+    [[nodiscard]] std::uint32_t local_half_face(std::size_t index, std::uint32_t half_face) const;
 
     const MeshArrays& whole_;
     std::uint32_t pass_;

@@ -23,7 +23,7 @@ inline constexpr double min_relative_height = 1e-3;
 }
 
 /// The least height of a boundary face that an operation makes: more than three times what docs/spec/project.md, P10,
-/// asks for, so that no ray sees the face turned over.
+/// asks for, so that no ray sees the face reversed.
 inline constexpr double min_boundary_height = 0x1p-12;
 
 /// Whether a boundary face may be made.
@@ -38,8 +38,8 @@ inline constexpr double impossible = std::numeric_limits<double>::infinity();
 
 /// Whether a tet may be made: it is positive (det(b-a, c-a, d-a) < 0, as core/mesh/tet_mesh.h has it) for certain, and
 /// no height of it is under min_relative_height. Corners are on the 2^-40 grid and at most 2^6 in magnitude, so that
-/// differences are exact in double; a determinant beyond error bound A of ORIENT3D (Shewchuk 1997) has its exact sign.
-/// What that bound leaves undecided is refused, so that no answer needs exact arithmetic.
+/// differences are exact in double; a determinant larger than error bound A of ORIENT3D (Shewchuk 1997) has its exact
+/// sign. What that bound leaves undecided is refused, so that no answer needs exact arithmetic.
 [[nodiscard]] inline bool may_be_made(Double3 a, Double3 b, Double3 c, Double3 d)
 {
     const Double3 u = b - a, v = c - a, w = d - a;

@@ -8,10 +8,10 @@ void add_edges(const EditableMesh& mesh, std::uint32_t vertex, std::uint32_t ind
 {
     const Tet& tet = mesh.tet(index);
     for (std::uint32_t face = 0; face < 4; ++face) {
-        const std::uint32_t link = tet.links[face];
-        if (tet.vertices[face] == vertex || link == NO_LINK || link_tet(link) < index) continue;
+        const std::uint32_t half_face = tet.neighbours[face];
+        if (tet.vertices[face] == vertex || half_face == NO_HALF_FACE || half_face_tet(half_face) < index) continue;
         VertexStar::LinkEdge edge{NO_TET, NO_TET, tet.vertices[face],
-                                  mesh.tet(link_tet(link)).vertices[link_face(link)]};
+                                  mesh.tet(half_face_tet(half_face)).vertices[half_face_index(half_face)]};
         for (std::uint32_t i = 0; i < 4; ++i)
             if (i != face && tet.vertices[i] != vertex) (edge.p == NO_TET ? edge.p : edge.q) = tet.vertices[i];
         star.edges.push_back(edge);
@@ -30,8 +30,9 @@ bool find_star(EditableMesh& mesh, std::uint32_t vertex, std::size_t most, Verte
         if (star.tets.size() > most) return false;
         const Tet& tet = mesh.tet(star.tets[i]);
         for (std::uint32_t face = 0; face < 4; ++face)
-            if (tet.vertices[face] != vertex && tet.links[face] != NO_LINK && mesh.mark(link_tet(tet.links[face])))
-                star.tets.push_back(link_tet(tet.links[face]));
+            if (tet.vertices[face] != vertex && tet.neighbours[face] != NO_HALF_FACE &&
+                mesh.mark(half_face_tet(tet.neighbours[face])))
+                star.tets.push_back(half_face_tet(tet.neighbours[face]));
         add_edges(mesh, vertex, star.tets[i], star);
     }
     return true;

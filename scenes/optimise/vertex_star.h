@@ -28,7 +28,7 @@ struct VertexStar {
     }
 };
 
-/// Finds the star of a free vertex. False where it has more than `most` tets.
+/// Finds the star of a free vertex. False if it has more than `most` tets.
 bool find_star(EditableMesh& mesh, std::uint32_t vertex, std::size_t most, VertexStar& star);
 
 } // namespace tetrace

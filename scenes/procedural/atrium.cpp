@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int32_t bays_x = 7, bays_z = 5; ///< squares with sides of 1; those not at the rim are the court
 constexpr double storey = 1.3;
-constexpr double gap = 1.0 / 128; ///< under what stands free
+constexpr double gap = 1.0 / 128; ///< under free-standing objects
 
 constexpr double capital_y = 0.74, capital_radius = 0.09, vault_rise = 0.46;
 /// Radius and height at the rings of a column.

@@ -1,6 +1,6 @@
 // A tube along an arc of a circle; its radius tapers towards both ends and closes there with round caps. Only + - * /
-// and square roots of doubles, so the same bits come out everywhere: rings and sides turn by constants, and the arc is
-// the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
+// and square roots of doubles, so the same bits come out everywhere: rings and sides rotate by constants, and the arc
+// is the rational one, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)).
 #include "scenes/procedural.h"
 #include "scenes/procedural/turn.h"
 
@@ -132,7 +132,7 @@ TriangleMesh make_banana(std::uint32_t triangles)
     return EvenBanana(static_cast<std::uint32_t>(std::lround(std::sqrt(triangles / triangles_of_one_level)))).mesh;
 }
 
-// Rings lie closer towards the tips, where the caps bend most: they are the projection of a half circle on the arc.
+// Rings are closer towards the tips, where the caps bend most: they are the projection of a half circle on the arc.
 TriangleMesh make_banana()
 {
     TriangleMesh mesh;

@@ -46,14 +46,14 @@ private:
     std::unordered_map<std::array<std::int32_t, 3>, std::uint32_t, HashPlace> index_;
 };
 
-/// The n of the sphere that has nearly so many triangles, at least 1.
+/// The n of the sphere with nearly this many triangles, at least 1.
 [[nodiscard]] std::uint32_t sphere_edges(double triangles);
 
 /// Fractal value noise in [0, 1]: random values on the points of a grid, interpolated smoothly between them; each
 /// octave halves the grid's spacing, which is 1 in the first, and its weight.
 [[nodiscard]] double fractal_noise(Double3 point, std::uint32_t octaves);
 
-/// A random number in [0, 1), a multiple of 2^-24 that depends on its counters alone.
+/// A random number in [0, 1), a multiple of 2^-24 that depends only on its counters.
 [[nodiscard]] double random_unit(std::uint32_t stream, std::uint32_t counter);
 
 } // namespace tetrace

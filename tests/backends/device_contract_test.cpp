@@ -83,11 +83,11 @@ TEST(Session, names_the_side_on_which_a_kernel_wrote_outside_its_hits)
     };
     EXPECT_EQ(error_with(1, GUARD_WORDS + 3 * HIT_WORDS - 1), "");
     EXPECT_TRUE(contains(error_with(1, GUARD_WORDS - 1), "before its output"));
-    EXPECT_TRUE(contains(error_with(1, GUARD_WORDS + 3 * HIT_WORDS), "behind its output"));
+    EXPECT_TRUE(contains(error_with(1, GUARD_WORDS + 3 * HIT_WORDS), "after its output"));
     for (const std::size_t between : {GUARD_WORDS + 3 * HIT_WORDS, 500u, 1023u, 1024 + GUARD_WORDS - 1})
         EXPECT_TRUE(contains(error_with(2, between), "between the jobs of its output")) << between;
     EXPECT_EQ(error_with(2, 1024 + GUARD_WORDS), "");
-    EXPECT_TRUE(contains(error_with(2, 1024 + GUARD_WORDS + 3 * HIT_WORDS), "behind its output"));
+    EXPECT_TRUE(contains(error_with(2, 1024 + GUARD_WORDS + 3 * HIT_WORDS), "after its output"));
 }
 
 TEST(HostSession, gives_the_hits_of_single_launches_to_jobs_that_are_launched_together)
@@ -182,7 +182,7 @@ TEST(PackedScene, is_checked_before_a_session_opens)
     EXPECT_TRUE(contains(error_of([&] {
                              (void)packed_scene(host, 0, {.method = Method::single}, {nullptr, &packed});
                          }),
-                         "has no kernel"));
+                         "lacks kernel"));
     const AbsentBackend absent("opencl", "the headers were missing");
     EXPECT_EQ(error_of([&] {
                   (void)packed_scene(absent, 0, {}, {nullptr, &packed});
@@ -230,7 +230,7 @@ TEST(Searches, find_faces_and_nothing_else)
 {
     std::vector<std::uint32_t> faces(8);
     std::uint32_t written = NO_EXIT;
-    std::size_t guard = GUARD_WORDS; // a word of the output that is no guard
+    std::size_t guard = GUARD_WORDS; // a word of the output that is not a guard
     FixedSession session([&](std::span<std::uint32_t> words) {
         std::fill(words.begin() + GUARD_WORDS, words.end() - GUARD_WORDS, 2u);
         words[GUARD_WORDS + 5] = written;
@@ -246,7 +246,7 @@ TEST(Searches, find_faces_and_nothing_else)
     guard = GUARD_WORDS - 1;
     EXPECT_TRUE(contains(error_of([&] { session.read_back(faces); }), "before its output"));
     guard = GUARD_WORDS + 8;
-    EXPECT_TRUE(contains(error_of([&] { session.read_back(faces); }), "behind its output"));
+    EXPECT_TRUE(contains(error_of([&] { session.read_back(faces); }), "after its output"));
 }
 
 TEST(TetParts, cut_the_tets_at_powers_of_two_and_lose_no_byte)

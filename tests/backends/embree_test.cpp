@@ -65,7 +65,7 @@ std::vector<Quad> chords(std::size_t count)
     const auto place = [&] { return random.between(-0.5F, 0.5F); };
     for (std::size_t i = 0; i < count; ++i) {
         const Float3 from{place(), place(), -2}, to{place(), place(), 2};
-        directions.push_back({bits(to.x - from.x), bits(to.y - from.y), bits(to.z - from.z), NO_LINK});
+        directions.push_back({bits(to.x - from.x), bits(to.y - from.y), bits(to.z - from.z), NO_HALF_FACE});
         const float end = i % 2 == 0 ? 0.125F : std::numeric_limits<float>::infinity();
         origins.push_back({bits(from.x), bits(from.y), bits(from.z), bits(end)});
     }
@@ -155,7 +155,7 @@ TEST(Embree, four_traces_no_packets_wider_than_the_processors_and_no_streams)
     EXPECT_NE(embree::why_not_traced(library(4, 4, false), Method::packet8), "");
     for (const unsigned width : {4u, 8u, 16u})
         EXPECT_EQ(embree::why_not_traced(library(4, width, false), Method::stream),
-                  "Embree 4 has no ray streams (rtcIntersectNM), Embree 3 has");
+                  "Embree 4 lacks ray streams (rtcIntersectNM); Embree 3 has them");
 }
 
 TEST(Embree, three_splits_packets_that_are_wider_than_the_processors)
@@ -166,7 +166,7 @@ TEST(Embree, three_splits_packets_that_are_wider_than_the_processors)
     EXPECT_EQ(embree::why_not_traced(library(3, 1, false), Method::single), "");
     EXPECT_EQ(embree::why_not_traced(library(3, 1, false), Method::packet8),
               "Embree 3 would trace packets of 8 as single rays: its native width on this processor is 1");
-    EXPECT_EQ(embree::why_not_traced(library(3, 1, false), Method::stream), "this build of Embree has no ray streams");
+    EXPECT_EQ(embree::why_not_traced(library(3, 1, false), Method::stream), "this build of Embree lacks ray streams");
 }
 
 TEST(Embree, device_has_the_native_width_and_says_what_it_was_configured_with)

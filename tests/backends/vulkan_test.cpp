@@ -49,7 +49,7 @@ TEST_F(Vulkan, an_allocation_beyond_the_devices_largest_is_refused_with_both_num
         if (!found.facts.usable) continue;
         found.limits.allocation_bytes = 1000;
         const vulkan::Context context(found);
-        const std::string refused = error_of([&] { vulkan::Buffer(context, 4096, vulkan::Place::device); });
+        const std::string refused = error_of([&] { vulkan::Buffer(context, 4096, vulkan::BufferUse::device); });
         EXPECT_TRUE(refused.starts_with("unsupported: ")) << refused;
         EXPECT_TRUE(contains(refused, "4096") && contains(refused, "1000"));
     }

@@ -86,9 +86,9 @@ TEST(Bvh, each_defect_is_found)
         const char* says;
         void (*spoil)(SmallBvh&);
     } rows[] = {
-        {"no root", [](auto& s) { s.bvh.nodes.clear(); }},
-        {"before it or beyond", [](auto& s) { s.bvh.nodes[0].child[1] = 0; }},
-        {"before it or beyond", [](auto& s) { s.bvh.nodes[0].child[1] = 3; }},
+        {"the root is missing", [](auto& s) { s.bvh.nodes.clear(); }},
+        {"before it or past", [](auto& s) { s.bvh.nodes[0].child[1] = 0; }},
+        {"before it or past", [](auto& s) { s.bvh.nodes[0].child[1] = 3; }},
         {"child twice", [](auto& s) { s.bvh.nodes[0].child[1] = 1; }},
         {"nobody's child",
          [](auto& s) {
@@ -96,10 +96,10 @@ TEST(Bvh, each_defect_is_found)
              s.bvh.nodes.push_back({s.bvh.nodes[1].box, {}, 4, 1});
          }},
         {"not in its parent's", [](auto& s) { s.bvh.nodes[0].box.high.x = 2.9f; }},
-        {"references beyond", [](auto& s) { s.bvh.nodes[2].count = 3; }},
+        {"references past", [](auto& s) { s.bvh.nodes[2].count = 3; }},
         {"in two leaves", [](auto& s) { s.bvh.nodes[2].first = 1; }},
         {"in no leaf", [](auto& s) { s.bvh.references.push_back(0); }},
-        {"beyond the last", [](auto& s) { s.bvh.references[3] = 4; }},
+        {"past the last", [](auto& s) { s.bvh.references[3] = 4; }},
         {"triangle twice", [](auto& s) { s.bvh.references[1] = 0; }},
         {"triangle 3 is not covered",
          [](auto& s) {

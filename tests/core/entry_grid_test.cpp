@@ -20,15 +20,16 @@ namespace {
 
 std::span<const std::uint32_t> list_of(const EntryGrid& grid, std::size_t square)
 {
-    return std::span(grid.links).subspan(grid.ranges[square], grid.ranges[square + 1] - grid.ranges[square]);
+    return std::span(grid.half_faces).subspan(grid.ranges[square], grid.ranges[square + 1] - grid.ranges[square]);
 }
 
 /// How far a point of a side's plane is inside a boundary face, along the face's plane; negative outside.
-double depth_in(const TetMesh& mesh, std::uint32_t link, Double3 point)
+double depth_in(const TetMesh& mesh, std::uint32_t half_face, Double3 point)
 {
     double least = 1e9;
     const auto at = [&](std::size_t i) {
-        return to_double(mesh.vertices[mesh.tets[link_tet(link)].vertices[face_corners[link_face(link)][i % 3]]]);
+        return to_double(mesh.vertices[mesh.tets[half_face_tet(half_face)]
+                                           .vertices[face_corners[half_face_index(half_face)][i % 3]]]);
     };
     const Double3 normal = cross(at(1) - at(0), at(2) - at(0));
     for (std::size_t i = 0; i < 3; ++i) {
@@ -61,17 +62,17 @@ TEST(EntryGrid, lists_each_face_of_a_side_once)
     const Scene scene = make_cubes(4);
     const EntryGrid grid = make_entry_grid(scene.domain, scene.tets);
     ASSERT_EQ(grid.ranges.size(), 6u * 4 * 4 + 7);
-    EXPECT_EQ(grid.ranges.back(), grid.links.size());
+    EXPECT_EQ(grid.ranges.back(), grid.half_faces.size());
     std::set<std::uint32_t> seen;
     for (std::uint32_t side = 0; side < 6; ++side) {
         EXPECT_EQ(faces_of_side(grid, side).size(), 2u * 4 * 4);
-        for (const std::uint32_t link : faces_of_side(grid, side)) {
-            EXPECT_TRUE(seen.insert(link).second);
+        for (const std::uint32_t half_face : faces_of_side(grid, side)) {
+            EXPECT_TRUE(seen.insert(half_face).second);
             const float plane = side % 2 == 0 ? -1.0f : 1.0f;
-            for (const std::uint32_t corner : face_corners[link_face(link)])
-                EXPECT_EQ(
-                    scene.tets.vertices[scene.tets.tets[link_tet(link)].vertices[corner]][static_cast<int>(side / 2)],
-                    plane);
+            for (const std::uint32_t corner : face_corners[half_face_index(half_face)])
+                EXPECT_EQ(scene.tets.vertices[scene.tets.tets[half_face_tet(half_face)].vertices[corner]]
+                                             [static_cast<int>(side / 2)],
+                          plane);
         }
     }
     EXPECT_EQ(seen.size(), count_faces(scene.tets).boundary_faces);
@@ -104,8 +105,9 @@ TEST(EntryGrid, lists_all_faces_at_a_square_and_near_it_whatever_squares_there_a
             const double reach = random.below(2) == 0 ? 0 : 0.99 * entry_margin;
             const Double3 point = point_near(domain, side, square, reach, random);
             const auto list = list_of(grid, side * n * n + square);
-            for (const std::uint32_t link : faces_of_side(grid, side))
-                EXPECT_TRUE(depth_in(scene.tets, link, point) < 0 || std::ranges::find(list, link) != list.end())
+            for (const std::uint32_t half_face : faces_of_side(grid, side))
+                EXPECT_TRUE(depth_in(scene.tets, half_face, point) < 0 ||
+                            std::ranges::find(list, half_face) != list.end())
                     << n << " divisions, square " << square;
         }
     }
@@ -158,7 +160,7 @@ TEST(EntryGrid, a_square_without_a_face_is_refused)
 {
     Scene scene = make_cubes(2);
     for (Tet& tet : scene.tets.tets)
-        for (std::uint32_t& link : tet.links)
-            if (link == NO_LINK) link = 0; // no boundary is left
+        for (std::uint32_t& half_face : tet.neighbours)
+            if (half_face == NO_HALF_FACE) half_face = 0; // no boundary is left
     EXPECT_THROW((void)make_entry_grid(scene.domain, scene.tets), Error);
 }

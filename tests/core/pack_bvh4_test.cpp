@@ -166,7 +166,7 @@ TEST(PackBvh4, trees_that_would_need_a_deeper_stack_are_made_shallow_and_say_so)
 {
     const TriangleMesh mesh = nested_in_turn(5, 20, 1000);
     const PackedScene packed = make_bvh_scene(mesh, Layout::bvh4);
-    EXPECT_NE(packed.fall_back.find("room for 96"), std::string::npos) << packed.fall_back;
+    EXPECT_NE(packed.fall_back.find("holds 96"), std::string::npos) << packed.fall_back;
     const Bvh4Reader read(packed, mesh);
     EXPECT_LE(read.max_waiting, BVH4_STACK);
     EXPECT_EQ(packed.stack_entries, read.max_waiting + 1);

@@ -31,7 +31,7 @@ std::map<Place, std::pair<std::uint32_t, std::uint32_t>> faces_of(const TetMesh&
     std::map<Place, std::pair<std::uint32_t, std::uint32_t>> faces;
     for (std::size_t i = 0; i < 4; ++i)
         faces[place_of(mesh, tet.vertices[i])] = {
-            tet.links[i] == NO_LINK ? NO_TET : number_of_tet[link_tet(tet.links[i])], tet.faces[i]};
+            tet.neighbours[i] == NO_HALF_FACE ? NO_TET : number_of_tet[half_face_tet(tet.neighbours[i])], tet.faces[i]};
     return faces;
 }
 
@@ -74,8 +74,8 @@ TEST_P(CompactPacking, sizes_are_those_of_the_layout)
     EXPECT_EQ(packed.tets.size() * sizeof(Quad), (GetParam() == Layout::tet20 ? 20 : 16) * tets);
     EXPECT_EQ(packed.vertices.size(), scene.tets.vertices.size());
     EXPECT_EQ(packed.occlusive_faces.size(), OCCLUSIVE_WORDS * count_faces(scene.tets).occlusive_faces);
-    EXPECT_TRUE(packed.entry_links.empty());
-    EXPECT_EQ(packed.entry_faces.size(), pack(scene, Layout::tet80, TetOrder::chains).entry_links.size());
+    EXPECT_TRUE(packed.entry_half_faces.empty());
+    EXPECT_EQ(packed.entry_faces.size(), pack(scene, Layout::tet80, TetOrder::chains).entry_half_faces.size());
 }
 
 TEST_P(CompactPacking, numbers_the_tets_as_other_layouts_do)
@@ -127,13 +127,14 @@ TEST_P(CompactPacking, refuses_tets_that_a_walk_would_not_know_the_vertices_of)
 {
     Scene scene = make_cubes(3);
     Tet& tet = scene.tets.tets[40];
-    const auto inner = std::find_if(tet.links.begin(), tet.links.end(), [](auto link) { return link != NO_LINK; });
-    *inner = make_link((link_tet(*inner) + 7) % 162, link_face(*inner));
+    const auto inner = std::find_if(tet.neighbours.begin(), tet.neighbours.end(),
+                                    [](auto half_face) { return half_face != NO_HALF_FACE; });
+    *inner = make_half_face((half_face_tet(*inner) + 7) % 162, half_face_index(*inner));
     EXPECT_NE(unsupported_text(scene, GetParam()).find("do not name each other"), std::string::npos);
     Scene walled = make_cubes(3);
     for (Tet& one : walled.tets.tets)
         for (std::size_t i = 0; i < 4; ++i)
-            if (one.links[i] == NO_LINK) one.faces[i] = 0;
+            if (one.neighbours[i] == NO_HALF_FACE) one.faces[i] = 0;
     EXPECT_NE(unsupported_text(walled, GetParam()).find("occlusive face on the domain's boundary"), std::string::npos);
 }
 

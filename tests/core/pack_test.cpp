@@ -31,10 +31,12 @@ void expect_same_tets(const Scene& scene, const PackedScene& packed)
         for (std::size_t k = 0; k < 4; ++k) {
             ASSERT_EQ(scene.tets.vertices[tet.vertices[k]], back.vertices[other.vertices[k]]);
             ASSERT_EQ(tet.faces[k], other.faces[k]);
-            const auto link = tet.links[k];
+            const auto half_face = tet.neighbours[k];
             const auto expected =
-                link == NO_LINK ? NO_LINK : make_link(packed.packed_of_mesh[link_tet(link)], link_face(link));
-            ASSERT_EQ(other.links[k], expected);
+                half_face == NO_HALF_FACE
+                    ? NO_HALF_FACE
+                    : make_half_face(packed.packed_of_mesh[half_face_tet(half_face)], half_face_index(half_face));
+            ASSERT_EQ(other.neighbours[k], expected);
         }
     }
     EXPECT_EQ(find_defect(back, scene.mesh.triangles.size()), std::nullopt);
@@ -48,9 +50,9 @@ void expect_reached_first(const TetMesh& mesh)
         grows = false;
         for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet)
             for (std::size_t face = 0; face < 4 && !reached[tet]; ++face) {
-                const auto link = mesh.tets[tet].links[face];
-                const bool is_open =
-                    link == NO_LINK || (mesh.tets[tet].faces[face] == FREE_FACE && reached[link_tet(link)]);
+                const auto half_face = mesh.tets[tet].neighbours[face];
+                const bool is_open = half_face == NO_HALF_FACE ||
+                                     (mesh.tets[tet].faces[face] == FREE_FACE && reached[half_face_tet(half_face)]);
                 if (is_open) grows = reached[tet] = true, ++count;
             }
     }
@@ -126,10 +128,11 @@ TEST(Pack, chains_go_on_behind_the_largest_free_face_and_begin_along_the_curve)
     for (std::uint32_t tet = 0; tet + 1 < mesh.tets.size(); ++tet) {
         double largest = 0, to_next = 0;
         for (std::uint32_t face = 0; face < 4; ++face) {
-            const std::uint32_t link = mesh.tets[tet].links[face];
-            if (mesh.tets[tet].faces[face] != FREE_FACE || link == NO_LINK || link_tet(link) < tet) continue;
+            const std::uint32_t half_face = mesh.tets[tet].neighbours[face];
+            if (mesh.tets[tet].faces[face] != FREE_FACE || half_face == NO_HALF_FACE || half_face_tet(half_face) < tet)
+                continue;
             largest = std::max(largest, area(tet, face));
-            if (link_tet(link) == tet + 1) to_next = area(tet, face);
+            if (half_face_tet(half_face) == tet + 1) to_next = area(tet, face);
         }
         EXPECT_NEAR(to_next, largest, 1e-12) << "after tet " << tet;
         followed += to_next > 0 ? 1 : 0;
@@ -196,7 +199,7 @@ TEST(Pack, no_word_of_a_record_may_contradict_the_others)
         for (const std::uint32_t bit : {1u, 2u, 4u, 1u << 31}) {
             for (std::size_t word = 0; word < tets_words; ++word)
                 refused(&PackedScene::tets, word, bit);
-            for (const std::size_t word : {7u, 11u}) // a row's two links
+            for (const std::size_t word : {7u, 11u}) // a row's two half-faces
                 if (layout == Layout::tet64) refused(&PackedScene::triangles, word, bit);
         }
     }
@@ -229,8 +232,8 @@ TEST(Pack, rows_of_tet64_name_their_triangle_and_what_is_on_both_sides)
         const Quad* const quads = &packed.triangles[TRIANGLE_QUADS * row];
         const std::uint32_t triangle = quads[0].w - NORMAL_BIAS;
         const std::uint32_t one = quads[1].w ^ EXIT_IS_NORMAL, other = quads[2].w ^ EXIT_IS_NORMAL;
-        ASSERT_EQ(mesh.tets[link_tet(one)].faces[link_face(one)], triangle) << "row " << row;
-        ASSERT_EQ(mesh.tets[link_tet(one)].links[link_face(one)], other) << "row " << row;
+        ASSERT_EQ(mesh.tets[half_face_tet(one)].faces[half_face_index(one)], triangle) << "row " << row;
+        ASSERT_EQ(mesh.tets[half_face_tet(one)].neighbours[half_face_index(one)], other) << "row " << row;
         for (std::size_t i = 0; i < TRIANGLE_QUADS; ++i) {
             const Quad& right = of_triangles.triangles[TRIANGLE_QUADS * triangle + i];
             ASSERT_EQ(std::tie(quads[i].x, quads[i].y, quads[i].z), std::tie(right.x, right.y, right.z)) << row;

@@ -83,9 +83,9 @@ TEST(GivenRows, hold_the_rays_with_links_as_the_scene_is_packed)
         EXPECT_EQ((Float3{as_float(first.x), as_float(first.y), as_float(first.z)}), ray.direction);
         EXPECT_EQ((Float3{as_float(second.x), as_float(second.y), as_float(second.z)}), ray.origin);
         EXPECT_EQ(as_float(second.w), ray.end);
-        EXPECT_EQ(link_face(first.w), link_face(ray.link));
-        EXPECT_EQ(given().mesh_of_packed[link_tet(first.w)], link_tet(ray.link));
-        renumbered = renumbered || first.w != ray.link;
+        EXPECT_EQ(half_face_index(first.w), half_face_index(ray.half_face));
+        EXPECT_EQ(given().mesh_of_packed[half_face_tet(first.w)], half_face_tet(ray.half_face));
+        renumbered = renumbered || first.w != ray.half_face;
     }
     EXPECT_TRUE(renumbered);
 }
@@ -95,7 +95,7 @@ TEST(GivenRows, rays_from_outside_have_no_link)
     const RaySet set = make_rays(RayKind::random, given().source());
     for (const auto& quads : {given_quads(set, given().packed), given_quads_offset(set, given().scene.mesh)})
         for (std::size_t i = 0; i < set.rays.size(); ++i) {
-            ASSERT_EQ(quads[i].w, NO_LINK);
+            ASSERT_EQ(quads[i].w, NO_HALF_FACE);
             ASSERT_EQ(as_float(quads[set.rays.size() + i].x), set.rays[i].origin.x) << "and no offset";
         }
 }
@@ -103,7 +103,7 @@ TEST(GivenRows, rays_from_outside_have_no_link)
 TEST(GivenRows, of_another_scene_are_refused)
 {
     RaySet set = make_rays(RayKind::ao, given().source());
-    set.rays.front().link = make_link(given().packed.tet_count, 0);
+    set.rays.front().half_face = make_half_face(given().packed.tet_count, 0);
     EXPECT_THROW((void)given_quads(set, given().packed), Error);
 }
 
@@ -117,6 +117,6 @@ TEST(GivenRows, of_a_bvh_start_offset)
         ASSERT_NE(origin, set.rays[i].origin);
         // 256 units in the last place of numbers below 1 are at most 2^-16.
         ASSERT_LE(length(to_double(origin) - to_double(set.rays[i].origin)), 0x1p-16 * 1.0001);
-        ASSERT_EQ(quads[i].w, NO_LINK);
+        ASSERT_EQ(quads[i].w, NO_HALF_FACE);
     }
 }

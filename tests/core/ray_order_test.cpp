@@ -82,7 +82,7 @@ TEST(RayOrder, morton_goes_by_cells_of_origins_first)
 {
     RaySet set;
     const auto ray = [](float x, float y, float dx) {
-        return GivenRay{{x, y, 0}, {dx, 0, 0}, NO_END, NO_LINK, FREE_FACE, 0};
+        return GivenRay{{x, y, 0}, {dx, 0, 0}, NO_END, NO_HALF_FACE, FREE_FACE, 0};
     };
     set.rays = {ray(1, 1, 1), ray(0, 1, 1), ray(1, 0, 1), ray(0, 0, 1), ray(0.001F, 0, -1), ray(0, 0.001F, 1)};
     const std::vector<GivenRay> expected = {set.rays[4], set.rays[3], set.rays[5],

@@ -35,20 +35,20 @@ const GivenScene& outside()
 
 Tet tet_of_start(const Scene& scene, const GivenRay& ray)
 {
-    return scene.tets.tets[link_tet(ray.link)];
+    return scene.tets.tets[half_face_tet(ray.half_face)];
 }
 
-std::array<Float3, 4> face_and_apex(const Scene& scene, std::uint32_t link)
+std::array<Float3, 4> face_and_apex(const Scene& scene, std::uint32_t half_face)
 {
-    const auto& vertices = scene.tets.tets[link_tet(link)].vertices;
-    const auto& [a, b, c] = face_corners[link_face(link)];
+    const auto& vertices = scene.tets.tets[half_face_tet(half_face)].vertices;
+    const auto& [a, b, c] = face_corners[half_face_index(half_face)];
     const auto at = [&](std::uint32_t i) { return scene.tets.vertices[vertices[i]]; };
-    return {at(a), at(b), at(c), at(link_face(link))};
+    return {at(a), at(b), at(c), at(half_face_index(half_face))};
 }
 
-Double3 inward_normal(const Scene& scene, std::uint32_t link)
+Double3 inward_normal(const Scene& scene, std::uint32_t half_face)
 {
-    const auto [a, b, c, apex] = face_and_apex(scene, link);
+    const auto [a, b, c, apex] = face_and_apex(scene, half_face);
     const Double3 normal = normalized(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
     return dot(normal, to_double(apex) - to_double(a)) > 0 ? normal : normal * -1;
 }
@@ -163,9 +163,9 @@ TEST(RaySet, secondary_rays_start_on_their_face_and_go_to_the_viewer_s_side)
     const Scene& scene = outside().scene;
     for (const RayKind kind : secondary_kinds)
         for (const GivenRay& ray : make_rays(kind, outside().source()).rays) {
-            ASSERT_EQ(tet_of_start(scene, ray).faces[link_face(ray.link)], ray.triangle);
-            const Double3 normal = inward_normal(scene, ray.link);
-            const Double3 corner = to_double(face_and_apex(scene, ray.link)[0]);
+            ASSERT_EQ(tet_of_start(scene, ray).faces[half_face_index(ray.half_face)], ray.triangle);
+            const Double3 normal = inward_normal(scene, ray.half_face);
+            const Double3 corner = to_double(face_and_apex(scene, ray.half_face)[0]);
             // Each coordinate is rounded by at most half a unit in the last place of numbers below 1: 2^-25 each.
             ASSERT_LE(std::abs(dot(normal, to_double(ray.origin) - corner)), 0x1p-25 * std::sqrt(3.0));
             ASSERT_GE(dot(normal, normalized(to_double(ray.direction))), min_sine);
@@ -211,7 +211,7 @@ CosineMeans cosine_means(const RaySet& set, const DirectionOf& direction_of)
 {
     CosineMeans means;
     for (const GivenRay& ray : set.rays) {
-        const double cosine = dot(inward_normal(outside().scene, ray.link), direction_of(ray));
+        const double cosine = dot(inward_normal(outside().scene, ray.half_face), direction_of(ray));
         means.first += cosine / static_cast<double>(set.rays.size());
         means.second += cosine * cosine / static_cast<double>(set.rays.size());
     }
@@ -236,7 +236,7 @@ TEST(RaySet, ao_and_diffuse_are_cosine_distributed)
 
         const CosineMeans uniform = cosine_means(set, [&](const GivenRay& ray) { // on the hemisphere: 1/2 and 1/3
             const Double3 d = random_direction({7, 0, ray.pixel, 0});
-            return dot(d, inward_normal(outside().scene, ray.link)) < 0 ? d * -1 : d;
+            return dot(d, inward_normal(outside().scene, ray.half_face)) < 0 ? d * -1 : d;
         });
         EXPECT_GT(std::abs(uniform.first - 2.0 / 3), first_bound);
         EXPECT_GT(std::abs(uniform.second - 0.5), second_bound);
@@ -275,7 +275,7 @@ TEST(RaySet, random_rays_are_uniform_chords_of_the_domain)
     double sum = 0, squares = 0, biased = 0;
     for (const GivenRay& ray : set.rays) {
         EXPECT_FALSE(domain.contains(ray.origin));
-        EXPECT_EQ(ray.link, NO_LINK);
+        EXPECT_EQ(ray.half_face, NO_HALF_FACE);
         const double length_inside = chord(domain, to_double(ray.origin), to_double(ray.direction));
         ASSERT_GT(length_inside, 0);
         sum += length_inside;
@@ -335,7 +335,7 @@ RaySet flat_rays_from_edges(const Scene& scene)
                 EXPECT_TRUE(enters(start, direction)) << "tet " << tet;
                 EXPECT_FALSE(enters(start, to_float(flat - start.inward * rise)));
                 EXPECT_FALSE(enters(start, to_float(flat + start.inward * (0.99 * min_sine))));
-                set.rays.push_back({start.origin, direction, NO_END, start.link, triangle, 0});
+                set.rays.push_back({start.origin, direction, NO_END, start.half_face, triangle, 0});
             }
         }
     set.rays.resize(set.rays.size() / TILE_WIDTH * TILE_WIDTH);

@@ -119,10 +119,10 @@ TEST(SearchSet, rays_enter_by_their_face_and_leave_by_the_exits)
     const SearchRays rays = search_rays(0, 300, 64);
     std::array<std::size_t, 16> entries_and_exits{};
     for (std::size_t i = 0; i < rays.count(); ++i) {
-        ASSERT_EQ(link_tet(rays.link(i)), i / 64);
+        ASSERT_EQ(half_face_tet(rays.half_face(i)), i / 64);
         const Tet4 tet = tet_at(tets, i / 64);
         const TestRay ray = ray_at(rays, i);
-        const std::size_t entry = link_face(rays.link(i));
+        const std::size_t entry = half_face_index(rays.half_face(i));
         const ExactCrossing in = cross_face(ray, tet, entry);
         ASSERT_TRUE(in.met) << i;
         unsigned exits = 0;
@@ -147,7 +147,7 @@ TEST(SearchSet, a_face_within_rounding_is_a_tie_and_any_other_is_wrong)
     const SearchRays rays = search_rays(0, 100, 4096);
     std::size_t ties = 0;
     for (std::size_t i = 0; i < rays.count(); ++i) {
-        const std::size_t entry = link_face(rays.link(i));
+        const std::size_t entry = half_face_index(rays.half_face(i));
         EXPECT_EQ(judge(rays, i, NO_EXIT), SearchVerdict::lost);
         EXPECT_EQ(judge(rays, i, static_cast<std::uint32_t>(entry)), SearchVerdict::wrong);
         for (std::size_t face = 0; face < 4; ++face) {

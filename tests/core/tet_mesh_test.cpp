@@ -38,7 +38,7 @@ std::optional<Kind> gap_after(const Spoil& spoil)
 std::uint32_t inner_face_of(const Tet& tet)
 {
     for (std::uint32_t face = 0; face < 4; ++face)
-        if (tet.links[face] != NO_LINK) return face;
+        if (tet.neighbours[face] != NO_HALF_FACE) return face;
     return 4;
 }
 
@@ -53,7 +53,8 @@ TEST(TetMesh, cubes_have_no_defect_and_no_gap)
 TEST(TetMesh, a_bad_index_is_found)
 {
     EXPECT_EQ(defect_after([](Scene& s) { s.tets.tets[5].vertices[2] = 1000000; }), Kind::bad_index);
-    EXPECT_EQ(defect_after([](Scene& s) { s.tets.tets[5].links[1] = make_link(999999, 0); }), Kind::bad_index);
+    EXPECT_EQ(defect_after([](Scene& s) { s.tets.tets[5].neighbours[1] = make_half_face(999999, 0); }),
+              Kind::bad_index);
     EXPECT_EQ(defect_after([](Scene& s) { s.tets.tets[5].faces[1] = 999999; }), Kind::bad_index);
     EXPECT_EQ(defect_after([](Scene& s) { s.tets.tets.clear(); }), Kind::bad_index);
 }
@@ -62,49 +63,51 @@ TEST(TetMesh, an_asymmetric_link_is_found)
 {
     EXPECT_EQ(defect_after([](Scene& s) {
                   Tet& tet = s.tets.tets[7];
-                  tet.links[inner_face_of(tet)] ^= 1u;
+                  tet.neighbours[inner_face_of(tet)] ^= 1u;
               }),
-              Kind::asymmetric_link);
+              Kind::asymmetric_neighbour);
     EXPECT_EQ(defect_after([](Scene& s) {
                   Tet& tet = s.tets.tets[7];
-                  tet.links[inner_face_of(tet)] = NO_LINK;
+                  tet.neighbours[inner_face_of(tet)] = NO_HALF_FACE;
               }),
-              Kind::asymmetric_link);
+              Kind::asymmetric_neighbour);
 }
 
 // Two pairs of neighbours change partners: each names the other back, over faces that have other vertices.
 TEST(TetMesh, neighbours_that_share_other_vertices_are_found)
 {
     EXPECT_EQ(defect_after([](Scene& s) {
-                  const auto link_of = [&](std::uint32_t tet) {
+                  const auto half_face_of = [&](std::uint32_t tet) {
                       const std::uint32_t face = inner_face_of(s.tets.tets[tet]);
                       EXPECT_EQ(s.tets.tets[tet].faces[face], FREE_FACE);
-                      return make_link(tet, face);
+                      return make_half_face(tet, face);
                   };
-                  const auto partner = [&](std::uint32_t link) -> std::uint32_t& {
-                      return s.tets.tets[link_tet(link)].links[link_face(link)];
+                  const auto partner = [&](std::uint32_t half_face) -> std::uint32_t& {
+                      return s.tets.tets[half_face_tet(half_face)].neighbours[half_face_index(half_face)];
                   };
-                  const std::uint32_t a = link_of(0), c = link_of(100);
+                  const std::uint32_t a = half_face_of(0), c = half_face_of(100);
                   const std::uint32_t b = partner(a), d = partner(c);
-                  EXPECT_EQ(s.tets.tets[link_tet(b)].faces[link_face(b)], FREE_FACE);
-                  EXPECT_EQ(s.tets.tets[link_tet(d)].faces[link_face(d)], FREE_FACE);
+                  EXPECT_EQ(s.tets.tets[half_face_tet(b)].faces[half_face_index(b)], FREE_FACE);
+                  EXPECT_EQ(s.tets.tets[half_face_tet(d)].faces[half_face_index(d)], FREE_FACE);
                   partner(a) = d, partner(d) = a;
                   partner(c) = b, partner(b) = c;
               }),
-              Kind::asymmetric_link);
+              Kind::asymmetric_neighbour);
 }
 
 TEST(TetMesh, an_inverted_and_a_flat_tet_are_told_apart)
 {
-    // Two vertices change places, with their faces: links stay symmetric, only the orientation turns.
+    // Two vertices change places, with their faces: half-faces stay symmetric, only the orientation turns.
     EXPECT_EQ(defect_after([](Scene& s) {
                   Tet& tet = s.tets.tets[0];
                   std::swap(tet.vertices[0], tet.vertices[1]);
-                  std::swap(tet.links[0], tet.links[1]);
+                  std::swap(tet.neighbours[0], tet.neighbours[1]);
                   std::swap(tet.faces[0], tet.faces[1]);
                   for (std::uint32_t face = 0; face < 2; ++face) {
-                      const auto link = tet.links[face];
-                      if (link != NO_LINK) s.tets.tets[link_tet(link)].links[link_face(link)] = make_link(0, face);
+                      const auto half_face = tet.neighbours[face];
+                      if (half_face != NO_HALF_FACE)
+                          s.tets.tets[half_face_tet(half_face)].neighbours[half_face_index(half_face)] =
+                              make_half_face(0, face);
                   }
               }),
               Kind::inverted);
@@ -146,12 +149,12 @@ TEST(TetMesh, tets_are_reached_through_free_faces_alone)
         tet.faces.fill(FREE_FACE);
     EXPECT_EQ(count_faces(mesh).reached_tets, mesh.tets.size());
     std::uint32_t inner = 0; // one without a side of the boundary, then walled in
-    while (std::ranges::count(mesh.tets[inner].links, NO_LINK) > 0)
+    while (std::ranges::count(mesh.tets[inner].neighbours, NO_HALF_FACE) > 0)
         ++inner;
     for (std::size_t face = 0; face < 4; ++face) {
-        const std::uint32_t link = mesh.tets[inner].links[face];
+        const std::uint32_t half_face = mesh.tets[inner].neighbours[face];
         mesh.tets[inner].faces[face] = 0;
-        mesh.tets[link_tet(link)].faces[link_face(link)] = 0;
+        mesh.tets[half_face_tet(half_face)].faces[half_face_index(half_face)] = 0;
     }
     EXPECT_EQ(count_faces(mesh).reached_tets, mesh.tets.size() - 1);
     EXPECT_FALSE(reached_tets(mesh)[inner]);

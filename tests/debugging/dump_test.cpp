@@ -8,7 +8,7 @@ namespace {
 
 class Dump : public ProgramTest {
 protected:
-    /// Whether the backend is a part of this build: it exits with 3 where it is not, and with 0 else.
+    /// Whether the backend is a part of this build: it exits with 3 if it is not, and with 0 else.
     bool dumps(const std::string& backend, const std::string& kernel)
     {
         ended_ = run("dump --backend " + backend + " " + kernel + " --out out");

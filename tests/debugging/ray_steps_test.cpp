@@ -120,7 +120,7 @@ TEST_F(RaySteps, lead_from_neighbour_to_neighbour_to_the_triangle_that_is_hit)
             const Tet& tet = mesh().tets[*step.tet];
             const bool is_last = i + 1 == ray.steps.size();
             EXPECT_TRUE(is_last ? tet.faces[*step.face] == ray.hit.face_id
-                                : link_tet(tet.links[*step.face]) == ray.steps[i + 1].tet);
+                                : half_face_tet(tet.neighbours[*step.face]) == ray.steps[i + 1].tet);
             const auto is_positive = [](float product) { return product > 0; };
             const auto positive = std::ranges::count_if(step.products, is_positive);
             EXPECT_TRUE(positive == 0 || positive == 3) << "the ray crosses the face by which it leaves";

@@ -29,13 +29,13 @@ public:
     /// folder in core that has no line of its own. A '#' begins a comment.
     explicit House(const std::filesystem::path& table);
 
-    /// The listed folder that a file lies in; empty where there is none.
+    /// The listed folder that a file lies in; empty if there is none.
     [[nodiscard]] std::string room_of(const std::string& file) const;
-    /// "a.cpp includes b.h: core/base -> core/rays is no arrow of the house" for each include without an arrow.
+    /// "a.cpp includes b.h: core/base -> core/rays is not an arrow of the house" for each include without an arrow.
     [[nodiscard]] std::vector<std::string> forbidden(const std::vector<Include>& includes) const;
     /// "core/base -> core/rays" for each arrow that no include needs.
     [[nodiscard]] std::vector<std::string> unused(const std::vector<Include>& includes) const;
-    /// A folder from which arrows lead back to itself; empty where there is none.
+    /// A folder from which arrows lead back to itself; empty if there is none.
     [[nodiscard]] std::string circle() const;
 
 private:

@@ -18,7 +18,7 @@ namespace {
 
 class Inspect : public ProgramTest {
 protected:
-    /// The programs of a run that ends with that code, or with 3 where no target could be asked.
+    /// The programs of a run that ends with that code, or with 3 if no target could be asked.
     json inspected(const std::string& arguments, int code = 0)
     {
         const Ended ended = run("inspect --out inspect.json " + arguments);
@@ -129,7 +129,7 @@ json figures_of(const json& program)
     return figures;
 }
 
-/// What is expected of a version of a compiler; null where it has no file.
+/// What is expected of a version of a compiler; null if it has no file.
 json expected_of(const std::string& compiler)
 {
     std::ifstream stream(std::filesystem::path(TETRACE_EXPECTED_FOLDER) / ("inspect-" + compiler + ".json"));

@@ -33,21 +33,16 @@ namespace maria_tet80 {
 namespace project_tet80 {
 #include "kernels/kernel_cpp.h"
 }
-#undef Beginning
-#undef BEGINNING_AT
-#undef BEGINNING_IN
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
 namespace project_half32 {
 #include "kernels/kernel_cpp.h"
 }
-#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/tet64.h"
 namespace project_tet64 {
 #include "kernels/kernel_cpp.h"
 }
-#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #undef KERNEL_METHOD_HEADER
 #undef KERNEL_STRUCTURE_HEADER

@@ -64,7 +64,7 @@ Scene cubes_for_rays()
     return scene;
 }
 
-// All boundary faces that the exact ray meets on its way in: none where it misses the box, or only grazes it.
+// All boundary faces that the exact ray meets on its way in: none if it misses the box, or only grazes it.
 std::set<uint> brute_force(Float3 origin, Float3 direction, const PackedCubes& cubes = box())
 {
     std::set<uint> met;
@@ -72,12 +72,12 @@ std::set<uint> brute_force(Float3 origin, Float3 direction, const PackedCubes& c
     const auto& mesh = cubes.scene.tets;
     for (uint index = 0; index < mesh.tets.size(); ++index) {
         for (uint face = 0; face < 4; ++face) {
-            if (mesh.tets[index].links[face] != NO_LINK) continue;
+            if (mesh.tets[index].neighbours[face] != NO_HALF_FACE) continue;
             const auto v = [&](uint k) { return mesh.vertices[mesh.tets[index].vertices[corner(face, k)]]; };
             const auto crossing = cross_exactly(origin, direction, v(0), v(1), v(2));
             const bool entering =
                 crossing.edge_side[0] >= 0 && crossing.edge_side[1] >= 0 && crossing.edge_side[2] >= 0;
-            if (crossing.met && entering) met.insert(make_link(index, face));
+            if (crossing.met && entering) met.insert(make_half_face(index, face));
         }
     }
     return met;
@@ -88,7 +88,7 @@ uint look_up(Float3 origin, Float3 direction, const PackedCubes& cubes = box())
     const Vec3 d = to_vec3(direction);
     const Ray ray = make_ray(to_vec3(origin), VEC3(without_dust(d.x), without_dust(d.y), without_dust(d.z)));
     const SceneView view = view_of(cubes.packed);
-    return entry_link(view, entry_index(view, ray));
+    return entry_half_face(view, entry_index(view, ray));
 }
 
 void expect_brute_force(Float3 origin, Float3 direction)
@@ -96,7 +96,7 @@ void expect_brute_force(Float3 origin, Float3 direction)
     const auto met = brute_force(origin, direction);
     const uint found = look_up(origin, direction);
     if (met.empty())
-        EXPECT_EQ(found, NO_LINK);
+        EXPECT_EQ(found, NO_HALF_FACE);
     else
         EXPECT_TRUE(met.count(found) == 1) << "entered by another face than the exact ray does";
 }
@@ -120,7 +120,7 @@ TEST(Entry, agrees_with_brute_force_from_all_round)
         const auto met = brute_force(origin, direction);
         const uint found = look_up(origin, direction);
         entered += !met.empty();
-        differing += met.empty() ? found != NO_LINK : met.count(found) == 0;
+        differing += met.empty() ? found != NO_HALF_FACE : met.count(found) == 0;
     }
     EXPECT_GT(entered, 1000);
     EXPECT_EQ(differing, 0);
@@ -139,7 +139,7 @@ TEST(Entry, agrees_with_brute_force_where_faces_lie_across_squares)
             const auto met = brute_force(origin, direction, cubes);
             const uint found = look_up(origin, direction, cubes);
             entered += !met.empty();
-            differing += met.empty() ? found != NO_LINK : met.count(found) == 0;
+            differing += met.empty() ? found != NO_HALF_FACE : met.count(found) == 0;
         }
         EXPECT_GT(entered, 700);
         EXPECT_EQ(differing, 0) << divisions << " divisions";
@@ -170,7 +170,7 @@ TEST(Entry, rays_parallel_to_a_side_enter_by_the_side_they_face)
     expect_brute_force({x, y, low.z - 1}, {0, 0, 1});
     expect_brute_force({high.x + 2, y, x}, {-1, 0, 0});
     expect_brute_force({x, y, high.z + 1}, {0, 1, 0}); // beside the box
-    EXPECT_EQ(look_up({x, y, high.z + 1}, {0, 0, 1}), NO_LINK) << "away from the box";
+    EXPECT_EQ(look_up({x, y, high.z + 1}, {0, 0, 1}), NO_HALF_FACE) << "away from the box";
 }
 
 TEST(Entry, rays_through_corners_and_edges_of_the_box_and_of_squares_find_a_face_there)
@@ -193,10 +193,10 @@ TEST(Entry, rays_in_the_plane_of_a_side_or_along_an_edge_of_the_box_miss_it)
     for (const float y : {low.y, high.y, 0.5f * (low.y + high.y)}) {
         expect_brute_force({low.x - 1, y, high.z}, {1, 0, 0});
         expect_brute_force({low.x - 1, y, high.z}, {1, 0, 0.5f});
-        EXPECT_EQ(look_up({low.x - 1, y, high.z}, {1, 0, 0}), NO_LINK);
+        EXPECT_EQ(look_up({low.x - 1, y, high.z}, {1, 0, 0}), NO_HALF_FACE);
     }
     // Through an edge of the box and on inside, the ray does enter.
-    EXPECT_NE(look_up({low.x - 1, 0, high.z + 1}, {1, 0, -1}), NO_LINK);
+    EXPECT_NE(look_up({low.x - 1, 0, high.z + 1}, {1, 0, -1}), NO_HALF_FACE);
     expect_brute_force({low.x - 1, 0, high.z + 1}, {1, 0, -1});
 }
 
@@ -206,7 +206,7 @@ TEST(Entry, a_ray_at_a_corner_of_the_box_is_not_dropped_between_its_sides)
     const Float3 origin{-0x1.581922p+0f, -0x1.f5964p+0f, -0x1.c7ba6ep+0f};
     const Float3 direction{0x1.128d3ep-2f, 0x1.7ead58p-1f, 0x1.37383p-1f};
     ASSERT_EQ(box().scene.domain.low(), (Float3{-1, -1, -1}));
-    EXPECT_NE(look_up(origin, direction), NO_LINK);
+    EXPECT_NE(look_up(origin, direction), NO_HALF_FACE);
 }
 
 TEST(Entry, a_ray_through_a_line_belongs_to_the_square_above_it)

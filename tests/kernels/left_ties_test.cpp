@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#define LEAVES_TIES true
+#define DEFERS_TIES true
 
 using namespace tetrace;
 using namespace tetrace::test;
@@ -29,21 +29,16 @@ namespace {
 namespace leaves_tet80 {
 #include "kernels/kernel_cpp.h"
 }
-#undef Beginning
-#undef BEGINNING_AT
-#undef BEGINNING_IN
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/half32.h"
 namespace leaves_half32 {
 #include "kernels/kernel_cpp.h"
 }
-#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #define KERNEL_LAYOUT_HEADER "kernels/layouts/tet64.h"
 namespace leaves_tet64 {
 #include "kernels/kernel_cpp.h"
 }
-#include "tests/kernels/undefine_records.inc"
 #undef KERNEL_LAYOUT_HEADER
 #undef KERNEL_STRUCTURE_HEADER
 #undef KERNEL_ARRAYS_HEADER
@@ -71,7 +66,7 @@ Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const T
     for (std::uint32_t i = 0; i < hits.size(); ++i) {
         const auto [hit, is_left_at_entry] = trace(rays.packed(), job, i % job.width, i / job.width);
         count.left_at_entry += is_left_at_entry ? 1 : 0;
-        if (hit.face_id == LEFT)
+        if (hit.face_id == DEFERRED)
             ++count.left;
         else if (different_rays({hit}, {hits[i]}, 0) != 0)
             ++count.differing;
@@ -85,7 +80,7 @@ Count count_left(Layout layout, const TraceJob& job, const Scene& scene, const T
         const auto params = walk::params_of(job);                                                                      \
         const auto ray = walk::primary_ray(params, x, y);                                                              \
         return std::pair(std::bit_cast<Hit>(walk::trace(view, params, ray)),                                           \
-                         walk::entrance_of(view, ray, walk::shear_of(ray)).index == LEFT);                             \
+                         walk::entrance_of(view, ray, walk::shear_of(ray)).index == DEFERRED);                         \
     }
 
 void expect_left_at_ties_alone(Layout layout, const auto& trace)

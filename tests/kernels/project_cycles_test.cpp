@@ -26,8 +26,10 @@ std::uint32_t tets_on_path(const Grid& grid, const right::Ray& ray)
 {
     std::uint32_t count = 0;
     const std::uint32_t entry = right::entry_anywhere(grid.view, ray, 0, 0);
-    for (std::uint32_t link = entry == NO_ENTRY ? NO_LINK : grid.packed.entry_links[entry]; link != NO_LINK; ++count)
-        link = right::face_link(grid.view, link >> 2, right::exit_face(grid.view, link >> 2, link & 3u, ray));
+    for (std::uint32_t half_face = entry == NO_ENTRY ? NO_HALF_FACE : grid.packed.entry_half_faces[entry];
+         half_face != NO_HALF_FACE; ++count)
+        half_face = right::opposite_half_face(grid.view, half_face >> 2,
+                                              right::exit_face(grid.view, half_face >> 2, half_face & 3u, ray));
     return count;
 }
 
@@ -46,13 +48,14 @@ double clearance(const TetMesh& mesh, std::uint32_t tet, Float3 point)
     return least;
 }
 
-/// How many steps after it leaves a tet that it crosses a ray enters it again; 0 where it never does.
+/// How many steps after it leaves a tet that it crosses a ray enters it again; 0 if it never does.
 std::uint32_t cycle_length(const Grid& grid, const right::Ray& ray, std::uint32_t tet)
 {
-    std::uint32_t link = right::face_link(grid.view, tet, right::start_face(grid.view, tet, ray));
-    for (std::uint32_t steps = 1; link != NO_LINK; ++steps) {
-        if (link >> 2 == tet) return steps;
-        link = right::face_link(grid.view, link >> 2, right::exit_face(grid.view, link >> 2, link & 3u, ray));
+    std::uint32_t half_face = right::opposite_half_face(grid.view, tet, right::start_face(grid.view, tet, ray));
+    for (std::uint32_t steps = 1; half_face != NO_HALF_FACE; ++steps) {
+        if (half_face >> 2 == tet) return steps;
+        half_face = right::opposite_half_face(grid.view, half_face >> 2,
+                                              right::exit_face(grid.view, half_face >> 2, half_face & 3u, ray));
     }
     return 0;
 }
@@ -64,9 +67,9 @@ bool is_lost_without_beginning_anew(const Grid& grid, const right::Ray& ray, std
     std::uint32_t at = tet, face = right::start_face(grid.view, tet, ray);
     for (std::uint32_t steps = 0; steps < length; ++steps) {
         if (right::face_triangle(grid.view, at, face) != FREE_FACE) return false;
-        const std::uint32_t link = right::face_link(grid.view, at, face);
-        at = link >> 2;
-        face = right::exit_face(grid.view, at, link & 3u, ray);
+        const std::uint32_t half_face = right::opposite_half_face(grid.view, at, face);
+        at = half_face >> 2;
+        face = right::exit_face(grid.view, at, half_face & 3u, ray);
     }
     return length > 0;
 }
@@ -128,7 +131,7 @@ RaySet given_among_others(const Grid& grid, const std::vector<CyclicStart>& star
         ray.origin = starts[i].line.origin;
         ray.direction = starts[i].line.direction;
         ray.end = NO_END;
-        ray.link = make_link(starts[i].tet, static_cast<std::uint32_t>(i % 4));
+        ray.half_face = make_half_face(starts[i].tet, static_cast<std::uint32_t>(i % 4));
     }
     return set;
 }
@@ -235,7 +238,7 @@ TEST(ProjectCycles, is_on_its_path_where_it_starts_in_a_tet_by_more_than_the_bou
     for (std::uint64_t number = 0; number < 60'000; ++number) {
         const auto given = rays.ray(number);
         if (rays.kind_of(number) != HardKind::from_inside) continue;
-        const std::uint32_t tet = given.link >> 2;
+        const std::uint32_t tet = given.half_face >> 2;
         if (clearance(grid.scene.tets, tet, given.origin) <= tie_bound(given.origin)) continue;
         ++starts;
         const auto ray = right::make_ray(right::to_vec3(given.origin), right::to_vec3(given.direction));

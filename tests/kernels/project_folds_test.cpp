@@ -19,16 +19,16 @@ namespace {
 
 /// The boundary faces that contain a ray.
 struct Crossed {
-    std::vector<std::uint32_t> entries; ///< links
+    std::vector<std::uint32_t> entries; ///< half-faces
     std::uint32_t folded = 0;           ///< faces that are seen from their wrong side
 };
 
-/// 1 where the ray enters by the face, -1 where it leaves by it, 0 where the face does not contain it.
-int crossing(const Grid& grid, std::uint32_t link, const right::Ray& ray)
+/// 1 where the ray enters by the face, -1 where it leaves by it, 0 if the face does not contain it.
+int crossing(const Grid& grid, std::uint32_t half_face, const right::Ray& ray)
 {
     const auto side = [&](std::uint32_t i) {
         const auto corner = [&](std::uint32_t k) {
-            return right::vertex(grid.view, link >> 2, right::corner(link & 3u, k % 3));
+            return right::vertex(grid.view, half_face >> 2, right::corner(half_face & 3u, k % 3));
         };
         return right::side_at_entry(ray, corner(i), corner(i + 1)) > 0 ? 1 : -1;
     };
@@ -46,8 +46,8 @@ Crossed crossed_by(const Grid& grid, const Line& line)
             side % 2 == 0 ? line.direction[static_cast<int>(side / 2)] : -line.direction[static_cast<int>(side / 2)];
         const std::size_t list = 6 * squares + side;
         for (auto i = grid.packed.entry_ranges[list]; i < grid.packed.entry_ranges[list + 1]; ++i) {
-            const int way = crossing(grid, grid.packed.entry_links[i], ray);
-            if (way > 0) found.entries.push_back(grid.packed.entry_links[i]);
+            const int way = crossing(grid, grid.packed.entry_half_faces[i], ray);
+            if (way > 0) found.entries.push_back(grid.packed.entry_half_faces[i]);
             if ((way > 0 && inwards <= 0) || (way < 0 && inwards >= 0)) ++found.folded;
         }
     }
@@ -58,11 +58,11 @@ Crossed crossed_by(const Grid& grid, const Line& line)
 std::uint32_t met_from(const Grid& grid, std::uint32_t entry, const Line& line)
 {
     const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
-    for (std::uint32_t link = entry; link != NO_LINK;) {
-        const std::uint32_t face = right::exit_face(grid.view, link >> 2, link & 3u, ray);
-        const std::uint32_t triangle = right::face_triangle(grid.view, link >> 2, face);
+    for (std::uint32_t half_face = entry; half_face != NO_HALF_FACE;) {
+        const std::uint32_t face = right::exit_face(grid.view, half_face >> 2, half_face & 3u, ray);
+        const std::uint32_t triangle = right::face_triangle(grid.view, half_face >> 2, face);
         if (triangle != FREE_FACE) return triangle;
-        link = right::face_link(grid.view, link >> 2, face);
+        half_face = right::opposite_half_face(grid.view, half_face >> 2, face);
     }
     return NO_HIT;
 }

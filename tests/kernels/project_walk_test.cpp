@@ -20,10 +20,10 @@ using namespace tetrace::test;
 namespace {
 
 /// Whether the ray enters by the face.
-bool holds(const Grid& grid, std::uint32_t link, const right::Ray& ray)
+bool holds(const Grid& grid, std::uint32_t half_face, const right::Ray& ray)
 {
     const auto corner = [&](std::uint32_t i) {
-        return right::vertex(grid.view, link >> 2, right::corner(link & 3u, i));
+        return right::vertex(grid.view, half_face >> 2, right::corner(half_face & 3u, i));
     };
     return right::side_at_entry(ray, corner(0), corner(1)) > 0 && right::side_at_entry(ray, corner(1), corner(2)) > 0 &&
            right::side_at_entry(ray, corner(2), corner(0)) > 0;
@@ -74,7 +74,7 @@ TEST(ProjectWalk, loses_no_ray_that_is_given_and_never_hits_the_face_that_it_sta
             if (set.rays[i].triangle != FREE_FACE) {
                 ASSERT_NE(hit.face_id, set.rays[i].triangle) << grid->name << ", ray " << i;
             }
-            if (quads[i].w == NO_LINK) continue;
+            if (quads[i].w == NO_HALF_FACE) continue;
             const auto ray = right::given_ray(quads[i], quads[set.rays.size() + i]);
             elsewhere += !holds(*grid, quads[i].w, ray);
         }
@@ -214,7 +214,7 @@ TEST(ProjectWalk, passes_over_no_boundary_face_that_it_enters_by)
             if (grid->scene.domain.contains(line.origin) || line.direction == Float3{}) continue;
             const auto ray = right::make_ray(right::to_vec3(line.origin), right::to_vec3(line.direction));
             std::uint32_t first = grid->packed.entry_ranges[grid->packed.entry_ranges.size() - 7]; // of all sides
-            const auto faces = static_cast<std::uint32_t>(grid->packed.entry_links.size());
+            const auto faces = static_cast<std::uint32_t>(grid->packed.entry_half_faces.size());
             while (first < faces && right::depth_in(right::entry_face(grid->view, first), ray) < 0)
                 ++first;
             ASSERT_EQ(right::entry_anywhere(grid->view, ray, 0, 0), first == faces ? NO_ENTRY : first)

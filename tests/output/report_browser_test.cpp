@@ -1,4 +1,4 @@
-// The page in Chromium, where there is one: it opens without a message, and every chart has its data.
+// The page in Chromium, if there is one: it opens without a message, and every chart has its data.
 #include "tests/output/report_fixture.h"
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Series are told apart by colour, shape and dash; points that share a path share a definition of their mark.
+// Series are distinguished by colour, shape and dash; points that share a path share a definition of their mark.
 #include "bench/report/charts/line_chart.h"
 #include "bench/report/html/svg.h"
 

@@ -11,7 +11,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// The tags of a page in their order, attributes and text left out. What quotes enclose is no tag.
+/// The tags of a page in their order, attributes and text left out. What quotes enclose is not a tag.
 std::vector<std::string> tags_of(const std::string& page)
 {
     std::vector<std::string> tags;

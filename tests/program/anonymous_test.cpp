@@ -16,7 +16,7 @@ std::string anonymous(const std::string& text)
 
 class AnonymousProgram : public ProgramTest {
 protected:
-    /// The program as on a host of that name; false where this system does not let one be named.
+    /// The program as on a host of that name; false if this system does not let one be named.
     static bool can_name_a_host() { return std::system("unshare -u true 2> /dev/null") == 0; }
     Ended run_on_host(const std::string& name, const std::string& arguments)
     {

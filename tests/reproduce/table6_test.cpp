@@ -235,7 +235,7 @@ TEST(Table6, the_papers_frames_stand_beside_a_gpu_alone)
 TEST(Table6, a_pair_tells_after_how_many_rays_its_builds_are_paid)
 {
     SceneRun run = open_run();
-    set_all(run, 1e-6 * pixels, 2e-6 * pixels); // 7 times that a view on average: 7 and 14 us a ray
+    set_all(run, 1e-6 * pixels, 2e-6 * pixels); // 7 times that a view on average: 7 and 14 us per ray
     const std::size_t cdt = find_row(run, Layout::tet80, Method::maria),
                       bvh = find_row(run, Layout::bvh2, Method::single);
     set_setup_cost(run.rows[cdt], SetupCost{69, 2, 1});

@@ -86,7 +86,8 @@ protected:
         return measure_rows(rows_, options_, read_benchmark_flags({}), limit);
     }
 
-    /// Two rows of a second a view, with time for so many samples of both views beyond the fewest; the budget is kept.
+    /// Two rows of a second per view, with time for so many samples of both views beyond the fewest; the budget is
+    /// kept.
     Measurement run_two_rows(double more_samples)
     {
         rows_.reserve(2);

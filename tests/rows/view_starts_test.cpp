@@ -67,13 +67,13 @@ TEST(ViewStarts, a_walk_that_ends_elsewhere_is_an_error)
     const auto twin = static_cast<std::uint32_t>(scene.tets.tets.size());
     for (std::uint32_t first = 0; first < twin; ++first)
         for (std::size_t face = 0; face < 4; ++face) {
-            const std::uint32_t link = scene.tets.tets[first].links[face];
-            if (link == NO_LINK) continue;
+            const std::uint32_t half_face = scene.tets.tets[first].neighbours[face];
+            if (half_face == NO_HALF_FACE) continue;
             Scene twins = scene;
-            twins.tets.tets.push_back(scene.tets.tets[link_tet(link)]);
-            twins.tets.tets[first].links[face] = make_link(twin, link_face(link));
-            const Float3 from = middle_of(scene, first), to = middle_of(scene, link_tet(link));
-            if (locate(twins.tets, from) != first || locate(twins.tets, to) != link_tet(link)) continue;
+            twins.tets.tets.push_back(scene.tets.tets[half_face_tet(half_face)]);
+            twins.tets.tets[first].neighbours[face] = make_half_face(twin, half_face_index(half_face));
+            const Float3 from = middle_of(scene, first), to = middle_of(scene, half_face_tet(half_face));
+            if (locate(twins.tets, from) != first || locate(twins.tets, to) != half_face_tet(half_face)) continue;
             EXPECT_THROW((void)find_starts(twins, {from, to}), Error);
             EXPECT_NO_THROW((void)find_starts(scene, {from, to}));
             return;

@@ -38,10 +38,10 @@ TetMesh half_fan(std::uint32_t n, Random& random)
         mesh.vertices.push_back(snap_to_grid(to_float({radius * std::cos(angle), y, 0.2 * random.unit() - 0.1})));
     }
     for (std::uint32_t i = 0; i + 1 < n; ++i)
-        mesh.tets.push_back(
-            {{1, 0, 2 + i, 3 + i},
-             {NO_LINK, NO_LINK, i + 2 < n ? make_link(i + 1, 3) : NO_LINK, i > 0 ? make_link(i - 1, 2) : NO_LINK},
-             {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
+        mesh.tets.push_back({{1, 0, 2 + i, 3 + i},
+                             {NO_HALF_FACE, NO_HALF_FACE, i + 2 < n ? make_half_face(i + 1, 3) : NO_HALF_FACE,
+                              i > 0 ? make_half_face(i - 1, 2) : NO_HALF_FACE},
+                             {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
     return mesh;
 }
 
@@ -68,7 +68,7 @@ double side_area(const TetMesh& mesh)
             const auto at = [&](std::size_t i) {
                 return to_double(mesh.vertices[tet.vertices[face_corners[face][i]]]);
             };
-            if (tet.links[face] == NO_LINK && at(0).y == 0 && at(1).y == 0 && at(2).y == 0)
+            if (tet.neighbours[face] == NO_HALF_FACE && at(0).y == 0 && at(1).y == 0 && at(2).y == 0)
                 sum += area(at(0), at(1), at(2));
         }
     return sum;

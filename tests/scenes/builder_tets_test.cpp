@@ -54,7 +54,9 @@ TetMesh four_tets(Float3 middle)
 {
     TetMesh mesh{{{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, middle}, {}};
     for (std::size_t i = 0; i < 4; ++i) {
-        Tet tet{{1, 0, 2, 3}, {NO_LINK, NO_LINK, NO_LINK, NO_LINK}, {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}};
+        Tet tet{{1, 0, 2, 3},
+                {NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE},
+                {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}};
         tet.vertices[i] = 4;
         mesh.tets.push_back(tet);
     }
@@ -238,7 +240,7 @@ TEST_F(Builder, keeps_tetgens_tets_where_the_optimised_ones_fail_a_check)
                          "found nothing to better"));
     EXPECT_TRUE(contains(objection_after([](auto& bad) {
                              std::swap(bad.mesh.tets[7].vertices[0], bad.mesh.tets[7].vertices[1]);
-                             std::swap(bad.mesh.tets[7].links[0], bad.mesh.tets[7].links[1]);
+                             std::swap(bad.mesh.tets[7].neighbours[0], bad.mesh.tets[7].neighbours[1]);
                          }),
                          "fail a check"));
     EXPECT_TRUE(contains(objection_after([](auto& bad) { bad.mesh.tets.pop_back(); }), "fail a check"));

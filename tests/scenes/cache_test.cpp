@@ -224,7 +224,7 @@ TEST_F(Cache, lock_ends_with_its_process)
     EXPECT_FALSE(FileLock::try_take(path));
     ::kill(owner, SIGKILL);
     ::waitpid(owner, nullptr, 0);
-    EXPECT_TRUE(fs::exists(path)); // nobody was there to remove it, and that is no hindrance
+    EXPECT_TRUE(fs::exists(path)); // nobody was there to remove it, and that is not a hindrance
     EXPECT_TRUE(FileLock::try_take(path));
 }
 

@@ -105,7 +105,7 @@ TEST_F(Catalogue, says_how_to_get_a_mesh_that_is_not_here)
 {
     const ScopedVariable wrong("TETRACE_MESHES", folder / "none");
     const std::string reason = why_not_available("bunny");
-    for (const char* part : {"scene bunny", "which is no folder", "libcgal-demo", "apt-get download", "dpkg -x",
+    for (const char* part : {"scene bunny", "which is not a folder", "libcgal-demo", "apt-get download", "dpkg -x",
                              "TETRACE_MESHES", "bunny.ply"})
         EXPECT_TRUE(contains(reason, part));
     EXPECT_EQ(error_of([] { (void)mesh_file(row("bunny")); }), "missing: " + reason);
@@ -141,7 +141,7 @@ TEST_F(Catalogue, refuses_a_damaged_archive)
 {
     make_archive(archive, std::string(900, 'x'), "y");
     EXPECT_EQ(read_archive_member(archive, "data/meshes/bunny00.off", 1000).size(), 900u);
-    EXPECT_TRUE(contains(error_of_member("data/meshes/none.off"), "no such member"));
+    EXPECT_TRUE(contains(error_of_member("data/meshes/none.off"), "lacks this member"));
     EXPECT_TRUE(contains(error_of_member("data/meshes/folder.off/"), "not a regular file"));
     EXPECT_TRUE(contains(error_of_member("data/meshes/bunny00.off", 899), "it has 900 bytes, at most 899"));
     const std::string bytes = read_text(archive);

@@ -34,7 +34,7 @@ TetMesh fan(std::uint32_t n, Random& random)
         const std::uint32_t next = (i + 1) % n, last = (i + n - 1) % n;
         // (1, 0, ring i, ring i + 1) is positive: faces 3 and 2 are shared with the tets before and behind.
         mesh.tets.push_back({{1, 0, 2 + i, 2 + next},
-                             {NO_LINK, NO_LINK, make_link(next, 3), make_link(last, 2)},
+                             {NO_HALF_FACE, NO_HALF_FACE, make_half_face(next, 3), make_half_face(last, 2)},
                              {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
     }
     return mesh;

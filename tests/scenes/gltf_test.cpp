@@ -176,9 +176,9 @@ TEST_F(Gltf, refuses_what_it_would_read_wrongly)
     EXPECT_TRUE(contains(refused(R"("POSITION":0)", R"("POSITION":9)"), "it names accessor 9 of 2"));
     EXPECT_TRUE(contains(refused(R"("mesh":0)", R"("mesh":3)"), "it names mesh 3 of 1"));
     EXPECT_TRUE(contains(refused(R"("componentType":5123,"count":12)", R"("componentType":5126,"count":6)"),
-                         "no whole numbers"));
+                         "not whole numbers"));
     EXPECT_TRUE(contains(refused(R"("mesh":0)", R"("mesh":0,"children":[0])"), "reached by two ways"));
-    EXPECT_TRUE(contains(refused(R"("indices":1)", R"("mode":0)"), "it has no triangles")) << "points";
+    EXPECT_TRUE(contains(refused(R"("indices":1)", R"("mode":0)"), "it lacks triangles")) << "points";
     EXPECT_TRUE(contains(refused(R"("version":"2.0")", R"("verson":"2.0")"), "reading a.glb"));
     std::string nan = tetrahedron_data();
     nan.replace(4, 4, "\xff\xff\xff\xff");

@@ -324,7 +324,7 @@ TEST_F(Load, reads_a_large_mesh_in_pieces)
 TEST_F(Load, trusts_no_builder_that_reports_success)
 {
     EXPECT_TRUE(contains(error_with("exit 0"), "internal: building scene thing"));
-    EXPECT_TRUE(contains(error_with("exit 0"), "there is no such file"));
+    EXPECT_TRUE(contains(error_with("exit 0"), "the file does not exist"));
     EXPECT_TRUE(contains(error_with("echo garbage > \"$4\"; exit 0"), "section `header`"));
     Scene other = expected();
     other.build.source_hash ^= 1;

@@ -33,10 +33,11 @@ void link_tets(TetMesh& mesh)
             for (std::size_t i = 0; i < 3; ++i)
                 key[i] = mesh.tets[t].vertices[face_corners[face][i]];
             std::sort(key.begin(), key.end());
-            const auto [other, is_new] = open.try_emplace(key, make_link(t, face));
+            const auto [other, is_new] = open.try_emplace(key, make_half_face(t, face));
             if (is_new) continue;
-            mesh.tets[t].links[face] = other->second;
-            mesh.tets[link_tet(other->second)].links[link_face(other->second)] = make_link(t, face);
+            mesh.tets[t].neighbours[face] = other->second;
+            mesh.tets[half_face_tet(other->second)].neighbours[half_face_index(other->second)] =
+                make_half_face(t, face);
         }
 }
 
@@ -44,8 +45,9 @@ TetMesh mesh_from(const std::vector<Float3>& points, const std::vector<Corners>&
 {
     TetMesh mesh{points, {}};
     for (const Corners& corners : tets)
-        mesh.tets.push_back(
-            {corners, {NO_LINK, NO_LINK, NO_LINK, NO_LINK}, {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
+        mesh.tets.push_back({corners,
+                             {NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE, NO_HALF_FACE},
+                             {FREE_FACE, FREE_FACE, FREE_FACE, FREE_FACE}});
     link_tets(mesh);
     return mesh;
 }
@@ -105,12 +107,12 @@ double cheapest_instead(const EditableMesh& start, const std::array<std::uint32_
     return best;
 }
 
-// Tries a face; what comes of it has to be the cheapest of all sets of tets, or nothing where there is none.
+// Tries a face; what comes of it has to be the cheapest of all sets of tets, or nothing if there is none.
 bool expect_cheapest(const EditableMesh& start, std::uint32_t tet, std::uint32_t face)
 {
-    const std::uint32_t link = start.tet(tet).links[face];
-    if (link == NO_LINK || !start.is_reached(tet) || start.tet(tet).faces[face] != FREE_FACE) return false;
-    const double best = cheapest_instead(start, {tet, link_tet(link)});
+    const std::uint32_t half_face = start.tet(tet).neighbours[face];
+    if (half_face == NO_HALF_FACE || !start.is_reached(tet) || start.tet(tet).faces[face] != FREE_FACE) return false;
+    const double best = cheapest_instead(start, {tet, half_face_tet(half_face)});
     EditableMesh mesh = start;
     const double gain = try_face(mesh, tet, face, anything);
     EXPECT_EQ(gain == 0, best == impossible);
@@ -158,8 +160,8 @@ double cheapest_cavity(const EditableMesh& start, Double3 at, std::uint32_t roun
             if ((set >> t & 1u) == 0) continue;
             old.push_back(t);
             for (std::uint32_t face = 0; face < 4; ++face) {
-                const std::uint32_t link = start.tet(t).links[face];
-                if (link != NO_LINK && (set >> link_tet(link) & 1u) != 0) continue;
+                const std::uint32_t half_face = start.tet(t).neighbours[face];
+                if (half_face != NO_HALF_FACE && (set >> half_face_tet(half_face) & 1u) != 0) continue;
                 const auto& [i, j, k] = face_corners[face];
                 const Corners& v = start.tet(t).vertices;
                 fresh.push_back({vertex, v[i], v[j], v[k]});

@@ -36,7 +36,7 @@ TEST(MeshReader, skips_a_byte_order_mark)
     std::string stl = binary_stl();
     stl.replace(0, mark.size(), mark); // a binary header may hold anything, and keeps its place
     EXPECT_EQ(read("a.stl", stl), read("b.stl", binary_stl()));
-    expect_error("c.off", mark, {"header", "no text"});
+    expect_error("c.off", mark, {"header", "the file is empty"});
 }
 
 TEST(MeshReader, cuts_polygons_into_fans)

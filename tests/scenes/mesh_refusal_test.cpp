@@ -49,16 +49,16 @@ TEST(MeshRefusal, names_empty_files_and_unknown_formats)
 
 TEST(MeshRefusal, names_meshes_without_geometry)
 {
-    expect_error("a.off", "OFF\n0 0 0\n", {"no vertices"});
-    expect_error("a.off", "OFF\n1 0 0\n1 2 3\n", {"no triangles"});
-    expect_error("a.obj", "v 1 2 3\n", {"no triangles"});
-    expect_error("a.stl", "solid a\nendsolid a\n", {"no vertices"});
+    expect_error("a.off", "OFF\n0 0 0\n", {"lacks vertices"});
+    expect_error("a.off", "OFF\n1 0 0\n1 2 3\n", {"lacks triangles"});
+    expect_error("a.obj", "v 1 2 3\n", {"lacks triangles"});
+    expect_error("a.stl", "solid a\nendsolid a\n", {"lacks vertices"});
 }
 
 TEST(MeshRefusal, names_the_vertex_that_is_no_finite_float)
 {
     for (const auto& [value, problem] : std::vector<std::pair<std::string, std::string>>{
-             {"nan", "not a number"}, {"-inf", "infinite"}, {"1e39", "beyond float"}, {"1e400", "beyond float"}}) {
+             {"nan", "not a number"}, {"-inf", "infinite"}, {"1e39", "outside float"}, {"1e400", "outside float"}}) {
         expect_error("a.off", "OFF\n3 1 0\n0 0 0\n0 " + value + " 0\n0 1 0\n3 0 1 2\n",
                      {"vertex 1 (line 4)", "coordinate y", problem});
         expect_error("a.obj", "v 0 0 0\nv 0 0 " + value + "\n", {"vertex 2 (line 2)", "coordinate z", problem});

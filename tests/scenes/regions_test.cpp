@@ -66,13 +66,13 @@ TEST(Regions, keep_what_lies_at_walls_and_ask_for_it_later)
 {
     const MeshArrays mesh = arrays_of(cubes().tets);
     for (const Region& region : all_regions(mesh, 0, 700)) {
-        std::set<std::uint32_t> at_walls, beside_parts; // an object's inside is no part: its faces are never changed
+        std::set<std::uint32_t> at_walls, beside_parts; // an object's inside is not a part: its faces are never changed
         for (std::size_t t = 0; t < region.mesh.tets.size(); ++t)
             for (std::uint32_t face = 0; face < 4; ++face)
                 if (region.mesh.tets[t].faces[face] != FREE_FACE &&
                     region.mesh.tets[t].faces[face] >= Region::first_wall) {
                     const Wall& wall = region.walls.at(region.mesh.tets[t].faces[face] - Region::first_wall);
-                    const bool has_part_beyond = mesh.states[link_tet(wall.beyond)] == TetState::reached;
+                    const bool has_part_beyond = mesh.states[half_face_tet(wall.beyond)] == TetState::reached;
                     for (const std::uint32_t corner : face_corners[face]) {
                         at_walls.insert(region.mesh.tets[t].vertices[corner]);
                         if (has_part_beyond) beside_parts.insert(region.mesh.tets[t].vertices[corner]);

@@ -203,7 +203,7 @@ TEST_F(SceneFile, allocates_nothing_for_forged_sizes)
             EXPECT_TRUE(contains(error_with(resealed(bytes)), std::string("section `") + section_names[i])) << size;
             bytes = good;
             put(bytes, entry + offset_in_entry, size);
-            EXPECT_TRUE(contains(error_with(resealed(bytes)), "it lies outside the file")) << size;
+            EXPECT_TRUE(contains(error_with(resealed(bytes)), "it is outside the file")) << size;
         }
     }
     std::string bytes = good;
@@ -226,7 +226,7 @@ TEST_F(SceneFile, refuses_content_that_no_scene_has)
     std::swap(bad.tets.tets[7].vertices[0], bad.tets.tets[7].vertices[1]);
     EXPECT_TRUE(contains(error_of_written(path, bad), "section `tets`"));
     bad = sample;
-    bad.tets.tets[7].links[1] = 0x7FFFFFFFu;
+    bad.tets.tets[7].neighbours[1] = 0x7FFFFFFFu;
     EXPECT_TRUE(contains(error_of_written(path, bad), "section `tets`"));
     bad = sample;
     bad.tets.vertices[5].y = std::numeric_limits<float>::quiet_NaN();
@@ -344,7 +344,7 @@ TEST_F(SceneFile, refuses_sides_that_rounding_could_fold)
     Scene bent = make_cubes(3);
     const auto on_side = [](Float3 at) { return at.x == 1 && std::abs(at.y) < 1 && std::abs(at.z) < 1; };
     std::ranges::find_if(bent.tets.vertices, on_side)->x = std::nextafter(1.0f, 0.0f);
-    expect_refused(bent, "has a boundary face that lies on no side of the domain");
+    expect_refused(bent, "has a boundary face that is on no side of the domain");
 
     Scene large = make_cubes(3);
     const auto doubled = [](Float3 at) { return Float3{2 * at.x, 2 * at.y, 2 * at.z}; };
@@ -353,7 +353,7 @@ TEST_F(SceneFile, refuses_sides_that_rounding_could_fold)
     for (auto& lines : large.domain.lines)
         for (float& line : lines)
             line *= 2;
-    expect_refused(large, "the domain reaches beyond [-1, 1] along axis x; scale mesh and domain by a power of two");
+    expect_refused(large, "the domain exceeds [-1, 1] along axis x; scale mesh and domain by a power of two");
 
     const auto even = even_lines(4, 1);
     expect_refused(grid_of({even, even, {-1, -1 + 0x1p-20f, 0, 0.5f, 1}}),

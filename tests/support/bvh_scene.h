@@ -89,7 +89,8 @@ private:
     void add_ray(Float3 from, Float3 to)
     {
         const auto number = static_cast<std::uint32_t>(rays.rays.size());
-        rays.rays.push_back({from, {to.x - from.x, to.y - from.y, to.z - from.z}, NO_END, NO_LINK, FREE_FACE, number});
+        rays.rays.push_back(
+            {from, {to.x - from.x, to.y - from.y, to.z - from.z}, NO_END, NO_HALF_FACE, FREE_FACE, number});
     }
 };
 

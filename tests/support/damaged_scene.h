@@ -19,8 +19,8 @@ inline Scene make_damaged_cubes(std::uint32_t size)
     Random random(30);
     for (Tet& tet : tets)
         for (std::size_t face = 0; face < 4; ++face)
-            if (tet.links[face] != NO_LINK && tet.faces[face] == FREE_FACE)
-                tet.links[face] = make_link(random.below(count), random.below(4));
+            if (tet.neighbours[face] != NO_HALF_FACE && tet.faces[face] == FREE_FACE)
+                tet.neighbours[face] = make_half_face(random.below(count), random.below(4));
     return scene;
 }
 

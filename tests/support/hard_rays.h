@@ -44,7 +44,7 @@ public:
         Draws draws(number);
         const HardKind kind = kind_of(number);
         const Place place = place_of(draws);
-        GivenRay ray{{}, {}, NO_END, NO_LINK, FREE_FACE, 0};
+        GivenRay ray{{}, {}, NO_END, NO_HALF_FACE, FREE_FACE, 0};
         switch (kind) {
         case HardKind::chord: return from_sphere(ray, draws, on_sphere(draws));
         case HardKind::at_vertex: return from_sphere(ray, draws, place.at({1, 0, 0}));
@@ -193,7 +193,7 @@ private:
         if (dot(normal, to_double(place.apex) - a) * dot(normal, to_double(ray.direction)) < 0)
             for (int axis = 0; axis < 3; ++axis)
                 ray.direction[axis] = -ray.direction[axis];
-        ray.link = make_link(place.tet, place.face);
+        ray.half_face = make_half_face(place.tet, place.face);
         ray.triangle = scene_.tets.tets[place.tet].faces[place.face];
         if (ray.triangle == FREE_FACE) ray.triangle = a_place();
         return ray;
@@ -204,7 +204,7 @@ private:
         const double t = draws.below(2) == 0 ? 0.25 : draws.unit();
         ray.origin = snapped(place.at(in_face(draws)) * (1 - t) + to_double(place.apex) * t);
         ray.direction = way_from(draws, to_double(ray.origin));
-        ray.link = make_link(place.tet, face_behind(scene_.tets, place.tet, ray.origin, ray.direction));
+        ray.half_face = make_half_face(place.tet, face_behind(scene_.tets, place.tet, ray.origin, ray.direction));
         ray.triangle = a_place();
         return ray;
     }

@@ -91,7 +91,7 @@ inline PackedScene packed_tets(const std::vector<RandomTet>& tets)
         for (const Float3 v : tet.corners)
             packed.tets.push_back({std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y),
                                    std::bit_cast<std::uint32_t>(v.z), 0});
-        packed.tets.insert(packed.tets.end(), 2, {NO_LINK, FREE_FACE, NO_LINK, FREE_FACE});
+        packed.tets.insert(packed.tets.end(), 2, {NO_HALF_FACE, FREE_FACE, NO_HALF_FACE, FREE_FACE});
     }
     return packed;
 }

@@ -42,9 +42,10 @@ inline void expect_covered_sides(const TetMesh& mesh, const Domain& domain)
     const std::array<double, 3> areas = {size.y * size.z, size.z * size.x, size.x * size.y};
     for (std::uint32_t side = 0; side < 6; ++side) {
         double area = 0;
-        for (const std::uint32_t link : faces_of_side(grid, side)) {
+        for (const std::uint32_t half_face : faces_of_side(grid, side)) {
             const auto at = [&](std::size_t i) {
-                return to_double(mesh.vertices[mesh.tets[link_tet(link)].vertices[face_corners[link_face(link)][i]]]);
+                return to_double(mesh.vertices[mesh.tets[half_face_tet(half_face)]
+                                                   .vertices[face_corners[half_face_index(half_face)][i]]]);
             };
             area += 0.5 * length(cross(at(1) - at(0), at(2) - at(0)));
         }

@@ -23,7 +23,7 @@ public:
     }
     ~TemporaryFolder()
     {
-        std::error_code ignored; // a left-over folder is no failure of the test
+        std::error_code ignored; // a left-over folder is not a failure of the test
         std::filesystem::remove_all(path_, ignored);
     }
     TemporaryFolder(const TemporaryFolder&) = delete;
@@ -75,7 +75,7 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// The error that an action throws, as "kind: text"; empty where it throws none.
+/// The error that an action throws, as "kind: text"; empty if it throws none.
 template <class Action>
 std::string error_of(const Action& action)
 {

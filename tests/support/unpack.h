@@ -47,7 +47,7 @@ inline TetMesh unpack_corners(const PackedScene& packed)
                 mesh.vertices.push_back({std::bit_cast<float>(std::get<0>(key)), std::bit_cast<float>(std::get<1>(key)),
                                          std::bit_cast<float>(std::get<2>(key))});
             mesh.tets[position].vertices[i] = entry->second;
-            mesh.tets[position].links[i] = word(packed.tets, first + map.first_face + 2 * i);
+            mesh.tets[position].neighbours[i] = word(packed.tets, first + map.first_face + 2 * i);
             mesh.tets[position].faces[i] = word(packed.tets, first + map.first_face + 2 * i + 1);
         }
     }
@@ -57,15 +57,16 @@ inline TetMesh unpack_corners(const PackedScene& packed)
 // The triangle that an exit ends at; FREE_FACE where it does not, and at the domain's boundary.
 inline std::uint32_t triangle_at(std::uint32_t exit)
 {
-    return (exit & 3u) == EXIT_END && exit != NO_LINK ? exit >> 2 : FREE_FACE;
+    return (exit & 3u) == EXIT_END && exit != NO_HALF_FACE ? exit >> 2 : FREE_FACE;
 }
 
 // Whether the neighbour behind a face has that face as its own; the domain's boundary always has.
-inline bool is_linked_back(const TetMesh& mesh, std::uint32_t face)
+inline bool is_named_back(const TetMesh& mesh, std::uint32_t face)
 {
-    const std::uint32_t link = mesh.tets[link_tet(face)].links[link_face(face)];
-    return link == NO_LINK ||
-           (link_tet(link) < mesh.tets.size() && mesh.tets[link_tet(link)].links[link_face(link)] == face);
+    const std::uint32_t half_face = mesh.tets[half_face_tet(face)].neighbours[half_face_index(face)];
+    return half_face == NO_HALF_FACE ||
+           (half_face_tet(half_face) < mesh.tets.size() &&
+            mesh.tets[half_face_tet(half_face)].neighbours[half_face_index(half_face)] == face);
 }
 
 [[noreturn]] inline void reject(std::size_t record, const char* why)
@@ -76,10 +77,10 @@ inline bool is_linked_back(const TetMesh& mesh, std::uint32_t face)
 // Whether the tets on both sides of a face have its three vertices.
 inline bool shares_vertices(const TetMesh& mesh, std::uint32_t face)
 {
-    const Tet& tet = mesh.tets[link_tet(face)];
-    if (tet.links[link_face(face)] == NO_LINK) return true;
-    const auto& others = mesh.tets[link_tet(tet.links[link_face(face)])].vertices;
-    return std::ranges::all_of(face_corners[link_face(face)], [&](std::uint32_t corner) {
+    const Tet& tet = mesh.tets[half_face_tet(face)];
+    if (tet.neighbours[half_face_index(face)] == NO_HALF_FACE) return true;
+    const auto& others = mesh.tets[half_face_tet(tet.neighbours[half_face_index(face)])].vertices;
+    return std::ranges::all_of(face_corners[half_face_index(face)], [&](std::uint32_t corner) {
         return std::ranges::find(others, tet.vertices[corner]) != others.end();
     });
 }
@@ -87,7 +88,7 @@ inline bool shares_vertices(const TetMesh& mesh, std::uint32_t face)
 inline void require_neighbours(const TetMesh& mesh)
 {
     for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
-        if (!is_linked_back(mesh, record)) reject(record, "its neighbour does not lead back");
+        if (!is_named_back(mesh, record)) reject(record, "its neighbour does not lead back");
     for (std::uint32_t record = 0; record < 4 * mesh.tets.size(); ++record)
         if (!shares_vertices(mesh, record)) reject(record, "its neighbour has other vertices");
 }
@@ -129,7 +130,7 @@ inline TetMesh unpack_half32(const std::vector<Quad>& records)
         const std::size_t entry = record % 4;
         const Quad &apex = records[HALF32_QUADS * record], &exits = records[HALF32_QUADS * record + 1];
         tet.vertices[entry] = places.number_of(apex);
-        tet.links[entry] = exits.w;
+        tet.neighbours[entry] = exits.w;
         const auto& faces = face_corners[entry];
         tet.faces[faces[0]] = triangle_at(exits.x);
         tet.faces[faces[1]] = triangle_at(exits.y);
@@ -153,14 +154,14 @@ inline TetMesh unpack_tet64(const PackedScene& packed)
         const Quad& quad = packed.tets[record];
         const std::uint32_t behind = (quad.w & (EXIT_IS_NORMAL - 1)) >> 2;
         tet.vertices[record % 4] = places.number_of(quad);
-        tet.links[record % 4] = quad.w == NO_LINK ? NO_LINK : behind;
+        tet.neighbours[record % 4] = quad.w == NO_HALF_FACE ? NO_HALF_FACE : behind;
         tet.faces[record % 4] = FREE_FACE;
-        if (quad.w == NO_LINK || (quad.w & 3) != EXIT_END) continue;
+        if (quad.w == NO_HALF_FACE || (quad.w & 3) != EXIT_END) continue;
         if (packed.triangles.size() < TRIANGLE_QUADS * (std::size_t{behind} + 1)) reject(record, "it names no row");
         const Quad* const row = &packed.triangles[std::size_t{TRIANGLE_QUADS} * behind];
         const std::uint32_t triangle = row[0].w - NORMAL_BIAS;
-        const std::uint32_t link = row[1].w == (EXIT_IS_NORMAL | record) ? row[2].w : row[1].w;
-        tet.links[record % 4] = link == NO_LINK ? NO_LINK : link & (EXIT_IS_NORMAL - 1);
+        const std::uint32_t half_face = row[1].w == (EXIT_IS_NORMAL | record) ? row[2].w : row[1].w;
+        tet.neighbours[record % 4] = half_face == NO_HALF_FACE ? NO_HALF_FACE : half_face & (EXIT_IS_NORMAL - 1);
         tet.faces[record % 4] = triangle;
         if (triangle > packed.triangles.size()) reject(record, "its row names no triangle");
         again.triangles.resize(std::max(again.triangles.size(), TRIANGLE_QUADS * (std::size_t{triangle} + 1)));
@@ -195,7 +196,7 @@ public:
     std::vector<Decoded> decode()
     {
         for (const Quad& face : packed_.entry_faces)
-            see({face.w, {face.x, face.y, face.z}, NO_LINK});
+            see({face.w, {face.x, face.y, face.z}, NO_HALF_FACE});
         while (!waiting_.empty()) {
             const Seen seen = waiting_.back();
             waiting_.pop_back();
@@ -266,7 +267,7 @@ inline void Decoder::enter(const Seen& seen)
 inline void Decoder::look_behind(std::uint32_t tet, std::uint32_t face)
 {
     const std::uint32_t behind = tets_[tet].behind[face];
-    if (behind == NO_LINK) return;
+    if (behind == NO_HALF_FACE) return;
     const auto vertex = [&](std::size_t i) { return tets_[tet].vertices[face_corners[face][i]]; };
     Seen seen{behind, {vertex(0), vertex(2), vertex(1)}, tet};
     if (behind >= OCCLUSIVE) {
@@ -298,15 +299,15 @@ inline Tet linked(const PackedScene& packed, const std::vector<Decoded>& tets, c
     Tet result{tet.vertices, {}, {}};
     for (std::uint32_t face = 0; face < 4; ++face) {
         std::uint32_t behind = tet.behind[face];
-        result.links[face] = NO_LINK;
+        result.neighbours[face] = NO_HALF_FACE;
         result.faces[face] = FREE_FACE;
-        if (behind == NO_LINK) continue;
+        if (behind == NO_HALF_FACE) continue;
         if (behind >= OCCLUSIVE) {
             const std::size_t first = std::size_t{OCCLUSIVE_WORDS} * ((behind ^ OCCLUSIVE) / 2);
             result.faces[face] = packed.occlusive_faces[first];
             behind = packed.occlusive_faces[first + 1 + ((behind & 1u) ^ 1u)];
         }
-        result.links[face] = make_link(behind, face_with(tets[behind], tet, face));
+        result.neighbours[face] = make_half_face(behind, face_with(tets[behind], tet, face));
     }
     return result;
 }
@@ -325,9 +326,9 @@ inline TetMesh unpack_compact(const PackedScene& packed)
 
 } // namespace unpacking
 
-/// The tets of a packed scene again, in packed order: links, faces and coordinates as they were, bit for bit, and one
-/// vertex per position; of tet20 and tet16 with the same vertices, in whichever order gives them their orientation.
-/// Throws Error where the words of half32, tet64, tet20 or tet16 contradict each other.
+/// The tets of a packed scene again, in packed order: half-faces, faces and coordinates as they were, bit for bit, and
+/// one vertex per position; of tet20 and tet16 with the same vertices, in whichever order gives them their orientation.
+/// Throws Error if the words of half32, tet64, tet20 or tet16 contradict each other.
 [[nodiscard]] inline TetMesh unpack(const PackedScene& packed)
 {
     if (packed.layout == Layout::half32) return unpacking::unpack_half32(packed.tets);

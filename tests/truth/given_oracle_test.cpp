@@ -206,7 +206,7 @@ RaySet straight_up(float end, bool any_hit)
     set.kind = any_hit ? RayKind::ao : RayKind::diffuse;
     set.any_hit = any_hit;
     set.width = 1;
-    set.rays = {{{0.25F, 0.25F, 0}, {0, 0, 1}, end, NO_LINK, start_sheet, 0}};
+    set.rays = {{{0.25F, 0.25F, 0}, {0, 0, 1}, end, NO_HALF_FACE, start_sheet, 0}};
     return set;
 }
 

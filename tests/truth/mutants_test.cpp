@@ -14,7 +14,7 @@ using namespace tetrace::test;
 
 namespace {
 
-/// Why a backend cannot be tested here; empty where it can.
+/// Why a backend cannot be tested here; empty if it can.
 std::string why_not(const std::string& name)
 {
     for (const Backend* backend : all_backends()) {

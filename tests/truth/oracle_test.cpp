@@ -226,8 +226,8 @@ TEST(WalkPath, ends_in_the_tet_of_the_hit_and_goes_from_neighbour_to_neighbour)
     const TetMesh mesh = unpack(traced.packed);
     for (std::size_t i = 1; i < path.size(); ++i) {
         bool neighbours = false;
-        for (const auto link : mesh.tets[path[i - 1]].links)
-            neighbours = neighbours || (link != NO_LINK && link_tet(link) == path[i]);
+        for (const auto half_face : mesh.tets[path[i - 1]].neighbours)
+            neighbours = neighbours || (half_face != NO_HALF_FACE && half_face_tet(half_face) == path[i]);
         EXPECT_TRUE(neighbours) << "step " << i;
     }
 }

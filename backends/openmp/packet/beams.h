@@ -12,10 +12,10 @@ constexpr float reach_y = 0.5f * (packet_height - 1);
 struct Packets {
     uint count;
     uint x[max_packets], y[max_packets]; // first pixels
-    uint record[max_packets];     // the record in front of which all rays are, or in whose tet they ended; NO_LINK
+    uint record[max_packets];     // the record in front of which all rays are, or in whose tet they ended; NO_HALF_FACE
                                   // where they share no way: some may be in the domain
     uint carried[3][max_packets]; // of those in front of a record, see Front
-    uint turn[max_packets];       // of those too
+    uint rotation[max_packets];   // of those too
     uint exit[max_packets];       // of those that have ended
     uint steps[max_packets];      // tets left
     bool has_ended[max_packets];
@@ -30,18 +30,18 @@ struct Eye {
     Floats doubt, min_doubt;
 };
 
-LANE_FN double greatest_of(Place a)
+LANE_FN double greatest_of(Double3 a)
 {
     return __builtin_fmax(__builtin_fmax(__builtin_fabs(a.x), __builtin_fabs(a.y)), __builtin_fabs(a.z));
 }
 
 LANE_FN Eye eye_of(const PacketJob& job)
 {
-    const Place across = place_of(job.step_x), upwards = place_of(job.step_y), first = place_of(job.corner);
-    const Place normals[3] = {cross(upwards, first), cross(first, across), cross(across, upwards)};
+    const Double3 across = double3_of(job.step_x), upwards = double3_of(job.step_y), first = double3_of(job.corner);
+    const Double3 normals[3] = {cross(upwards, first), cross(first, across), cross(across, upwards)};
     const double scale = 1 / dot(across, normals[0]), volume = __builtin_fabs(scale);
     Eye eye;
-    const Place rows[3] = {scaled(normals[0], volume), scaled(normals[1], scale), scaled(normals[2], scale)};
+    const Double3 rows[3] = {scaled(normals[0], volume), scaled(normals[1], scale), scaled(normals[2], scale)};
     double distance = 0, extent = 0;
     for (uint i = 0; i < 3; ++i) {
         eye.rows[i] = {all(static_cast<float>(rows[i].x)), all(static_cast<float>(rows[i].y)),
@@ -77,7 +77,7 @@ LANE_FN Imaged select(Mask mask, const Imaged& a, const Imaged& b)
 }
 
 // LANES beams during their walk.
-struct BeamWalk : Way {
+struct BeamWalk : WalkState {
     Imaged carried[3];
     Words apexes[3];    // the records whose apexes the carried vertices are
     Floats column, row; // of their middle
@@ -111,21 +111,21 @@ LANE_FN SureSides sure_sides(const Imaged& p, const Imaged& q)
     return {greater(side, spread), greater(-spread, side)};
 }
 
-// The corners of the faces that lanes' links name.
-LANE_FN void see_corners(const PacketJob& job, const Eye& eye, const BeamWalk& walk, Words links, Imaged* corners)
+// The corners of the faces that lanes' half-faces name.
+LANE_FN void see_corners(const PacketJob& job, const Eye& eye, const BeamWalk& walk, Words half_faces, Imaged* corners)
 {
     for (uint i = 0; i < 3; ++i)
-        corners[i] = imaged(job, eye, walk, corners_of(job, links, i).of);
+        corners[i] = imaged(job, eye, walk, corners_of(job, half_faces, i).of);
 }
 
 // Lets beams enter tets by faces; the beams then carry the corners of these faces.
-LANE_FN void enter_tets_by(BeamWalk& walk, Mask lanes, Words links, const Imaged* corners)
+LANE_FN void enter_tets_by(BeamWalk& walk, Mask lanes, Words half_faces, const Imaged* corners)
 {
     for (uint i = 0; i < 3; ++i) {
         walk.carried[i] = select(lanes, corners[i], walk.carried[i]);
-        walk.apexes[i] = select(lanes, record_of_corner(links, i), walk.apexes[i]);
+        walk.apexes[i] = select(lanes, record_of_corner(half_faces, i), walk.apexes[i]);
     }
-    walk.record = select(lanes, links, walk.record);
+    walk.record = select(lanes, half_faces, walk.record);
     walk.live |= lanes_of(lanes);
 }
 
@@ -136,12 +136,12 @@ LANE_FN void enter_domain(const PacketJob& job, const Eye& eye, BeamWalk& walk, 
     make_rays_through(job, walk.column * eye.sense, walk.row, middle);
     const Words squares = entry_squares(job, middle);
     lanes &= ~lanes_of(equal(squares, all(6 * job.divisions * job.divisions)));
-    ask_faces(job, squares, lanes, [&](Words links, uint asking) {
+    ask_faces(job, squares, lanes, [&](Words half_faces, uint asking) {
         Imaged corners[3];
-        see_corners(job, eye, walk, links, corners);
+        see_corners(job, eye, walk, half_faces, corners);
         const Mask entering = mask_of(asking) & sure_sides(corners[0], corners[1]).left &
                               sure_sides(corners[1], corners[2]).left & sure_sides(corners[2], corners[0]).left;
-        enter_tets_by(walk, entering, links, corners);
+        enter_tets_by(walk, entering, half_faces, corners);
         return lanes_of(entering);
     });
 }
@@ -182,9 +182,9 @@ LANE_FN void step(const PacketJob& job, const Eye& eye, BeamWalk& walk)
         walk.apexes[i] = select(replaced[i], walk.record, walk.apexes[i]);
     }
     walk.steps = select(mask_of(going), walk.steps + all(1u), walk.steps);
-    const Words turn = walk.turn;
+    const Words rotation = walk.rotation;
     const Words exits = exits_of(walk, replaced, at.exits.of);
-    walk.turn = select(mask_of(going), walk.turn, turn); // beams that stop here keep their vertices
+    walk.rotation = select(mask_of(going), walk.rotation, rotation); // beams that stop here keep their vertices
     const uint ended = going & lanes_of(equal(exits & all(3u), all(EXIT_END)));
     walk.exit = select(mask_of(ended), exits, walk.exit);
     walk.ended |= ended;
@@ -210,10 +210,10 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
 [[gnu::noinline]] void begin(const PacketJob& job, const Eye& eye, const Packets& packets, uint first, BeamWalk& walk)
 {
     const uint lanes = aim(eye, packets, first, walk);
-    walk.turn = walk.record = walk.steps = Words{};
+    walk.rotation = walk.record = walk.steps = Words{};
     for (Words& apex : walk.apexes)
         apex = Words{};
-    walk.exit = all(NO_LINK);
+    walk.exit = all(NO_HALF_FACE);
     for (Imaged& vertex : walk.carried)
         vertex = Imaged{Floats{}, Floats{}, Floats{}, Floats{}};
     walk.live = walk.ended = 0;
@@ -227,11 +227,11 @@ LANE_FN uint aim(const Eye& eye, const Packets& packets, uint first, BeamWalk& w
 
 LANE_FN void end(Packets& packets, uint first, const BeamWalk& walk)
 {
-    LaneWords record, carried[3], turn, exit, steps;
-    store(record, select(mask_of(walk.begun), walk.record, all(NO_LINK)));
+    LaneWords record, carried[3], rotation, exit, steps;
+    store(record, select(mask_of(walk.begun), walk.record, all(NO_HALF_FACE)));
     for (uint i = 0; i < 3; ++i)
         store(carried[i], walk.apexes[i]);
-    store(turn, walk.turn);
+    store(rotation, walk.rotation);
     store(exit, walk.exit);
     store(steps, walk.steps);
     for (uint lane = 0; lane < LANES && first + lane < packets.count; ++lane) {
@@ -239,7 +239,7 @@ LANE_FN void end(Packets& packets, uint first, const BeamWalk& walk)
         packets.record[number] = record.of[lane];
         for (uint i = 0; i < 3; ++i)
             packets.carried[i][number] = carried[i].of[lane];
-        packets.turn[number] = turn.of[lane];
+        packets.rotation[number] = rotation.of[lane];
         packets.exit[number] = exit.of[lane];
         packets.steps[number] = steps.of[lane];
         packets.has_ended[number] = (walk.ended >> lane & 1u) != 0;
@@ -250,7 +250,8 @@ LANE_FN void end(Packets& packets, uint first, const BeamWalk& walk)
 LANE_FN Front front_of(const Packets& packets, uint number)
 {
     const auto& carried = packets.carried;
-    return {packets.record[number], {carried[0][number], carried[1][number], carried[2][number]}, packets.turn[number]};
+    return {
+        packets.record[number], {carried[0][number], carried[1][number], carried[2][number]}, packets.rotation[number]};
 }
 
 // Walks the beams of a block's packets as far as they can go.

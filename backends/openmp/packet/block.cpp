@@ -25,7 +25,7 @@ using tetrace::openmp::PacketJob;
 
 #include "backends/openmp/packet/hits.h"
 
-#include "backends/openmp/packet/place.h"
+#include "backends/openmp/packet/double3.h"
 
 #include "backends/openmp/packet/beams.h"
 
@@ -54,12 +54,12 @@ template <int z>
     for (uint i = 0; i < group.count; ++i) {
         const uint lanes = group.lanes[i].of[z], number = group.numbers[i];
         walks[i].shear = shear_of<z>(packets[i].direction);
-        walks[i].turn = walks[i].record = Words{};
+        walks[i].rotation = walks[i].record = Words{};
         for (Seen& seen : walks[i].carried)
             seen = Seen{Floats{}, Floats{}};
         walks[i].live = 0;
         if (lanes == 0) continue;
-        if (block.record[number] != NO_LINK)
+        if (block.record[number] != NO_HALF_FACE)
             go_on_from(job, packets[i], walks[i], lanes, front_of(block, number));
         else if (job.start_tet == NO_TET)
             enter_domain(job, packets[i], walks[i], lanes);
@@ -73,7 +73,7 @@ template <int z>
 LANE_FN void write_counted_hits(const PacketJob& job, Packet& packet)
 {
     const Words most = all(job.max_steps);
-    packet.left_to_scalar |= ~lanes_of(equal(least(packet.steps, most), packet.steps));
+    packet.deferred |= ~lanes_of(equal(least(packet.steps, most), packet.steps));
     write_hits(job, packet, packet.lanes);
 }
 
@@ -85,7 +85,7 @@ void trace_group(const PacketJob& job, const Packets& block, Group& group)
         const uint number = group.numbers[i];
         Packet& packet = group.packets[i];
         make_rays(job, block.x[number], block.y[number], packet);
-        if (block.record[number] != NO_LINK) packet.steps = all(block.steps[number] - steps_before(job));
+        if (block.record[number] != NO_HALF_FACE) packet.steps = all(block.steps[number] - steps_before(job));
         group.lanes[i] = by_deepest_axis(packet);
         for (uint axis = 0; axis < 3; ++axis)
             any[axis] |= group.lanes[i].of[axis];
@@ -103,7 +103,7 @@ void trace_group(const PacketJob& job, const Packets& block, Group& group)
 // A packet whose beam has ended; most have left the domain, and need no rays for that.
 void write_ended(const PacketJob& job, const Packets& block, uint number)
 {
-    if (block.exit[number] == NO_LINK && block.steps[number] <= job.max_steps) {
+    if (block.exit[number] == NO_HALF_FACE && block.steps[number] <= job.max_steps) {
         write_misses(job, block.x[number], block.y[number], block.record[number] >> 2, block.steps[number]);
         return;
     }

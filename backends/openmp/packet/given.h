@@ -1,33 +1,34 @@
-// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. Where a ray enters the domain
-// is found before, and where it meets its triangle after, in packets all of whose lanes have such a ray.
+// Given rays, which do not stay together: a lane whose ray has ended takes a waiting ray. The entry into the domain is
+// found before, and the hit on the triangle after, in packets all of whose lanes have such a ray.
 constexpr uint lanes_wanted = LANES / 4; // a packet takes new rays when it has fewer live lanes
 constexpr uint rays_at_once = 512;       // that a thread takes at a time
 constexpr uint rays_ahead = 32;          // whose tets are prefetched before the rays are taken
 
 constexpr uint record_words = 4 * HALF32_QUADS, tet_words = 4 * record_words;
 
-constexpr uint left_link = NO_LINK - 1; // of no face
+constexpr uint deferred_half_face = NO_HALF_FACE - 1; // of no face
 
 using GivenWalk = Walk<any_axis>;
 
 // Numbers of the rays that this thread has taken, of which those from `next` on wait. entered: by ray from `first` on,
-// the links by which those from outside enter the domain, NO_LINK where they miss it, left_link for the scalar kernel.
+// the half-faces by which those from outside enter the domain, NO_HALF_FACE if they miss it, deferred_half_face for the
+// scalar kernel.
 struct Queue {
     uint first, next, end;
     alignas(4 * LANES) uint entered[rays_at_once];
 };
 
-// Prefetches the two cache lines of the tet that a given ray's link names.
+// Prefetches the two cache lines of the tet that a given ray's half-face names.
 LANE_FN void prefetch_tet(const PacketJob& job, uint number)
 {
-    const uint link = job.directions[4 * std::size_t{number} + 3];
-    if (link == NO_LINK) return;
-    const uint* const records = job.records + std::size_t{tet_words} * (link >> 2);
+    const uint half_face = job.directions[4 * std::size_t{number} + 3];
+    if (half_face == NO_HALF_FACE) return;
+    const uint* const records = job.records + std::size_t{tet_words} * (half_face >> 2);
     __builtin_prefetch(records);
     __builtin_prefetch(records + tet_words / 2);
 }
 
-// Fetches the rays of lanes by their numbers, and returns their links.
+// Fetches the rays of lanes by their numbers, and returns their half-faces.
 LANE_FN Words fetch_rays(const PacketJob& job, Packet& packet, uint lanes)
 {
     const Mask mask = mask_of(lanes);
@@ -64,11 +65,11 @@ LANE_FN void find_squares(const PacketJob& job, Queue& queue, Asking& asking)
         const uint lanes = first_lanes(queue.end - first);
         for (uint lane = 0; lane < LANES; ++lane)
             packet.numbers.of[lane] = lanes >> lane & 1u ? first + lane : first;
-        const Mask outside = equal(fetch_rays(job, packet, every_lane), all(NO_LINK));
+        const Mask outside = equal(fetch_rays(job, packet, every_lane), all(NO_HALF_FACE));
         const Words squares = entry_squares(job, packet);
         const Mask meeting = without(outside, equal(squares, all(6 * job.divisions * job.divisions)));
         *reinterpret_cast<Words*>(queue.entered + (first - queue.first)) =
-            select(meeting, all(left_link), all(NO_LINK)); // left unless a face is found
+            select(meeting, all(deferred_half_face), all(NO_HALF_FACE)); // left unless a face is found
         LaneWords square;
         store(square, squares);
         for (uint left = lanes & lanes_of(meeting); left != 0; left &= left - 1) {
@@ -85,7 +86,7 @@ LANE_FN void find_squares(const PacketJob& job, Queue& queue, Asking& asking)
     asking.count = 0;
     find_squares(job, queue, asking);
     Packet packet{};
-    LaneWords link{};
+    LaneWords half_face{};
     for (uint& number : packet.numbers.of)
         number = queue.first;
     while (asking.count != 0) {
@@ -96,15 +97,15 @@ LANE_FN void find_squares(const PacketJob& job, Queue& queue, Asking& asking)
             for (uint left = lanes; left != 0; left &= left - 1) {
                 const uint lane = first_of(left);
                 packet.numbers.of[lane] = asking.numbers[first + lane];
-                link.of[lane] = job.entry_links[asking.faces[first + lane]];
+                half_face.of[lane] = job.entry_half_faces[asking.faces[first + lane]];
             }
             fetch_rays(job, packet, every_lane);
-            packet.left_to_scalar = 0;
+            packet.deferred = 0;
             const uint entering = lanes_entering_by(job, packet, shear_of<any_axis>(packet.direction), lanes,
-                                                    *reinterpret_cast<const Words*>(link.of));
+                                                    *reinterpret_cast<const Words*>(half_face.of));
             for (uint left = entering; left != 0; left &= left - 1)
-                queue.entered[packet.numbers.of[first_of(left)] - queue.first] = link.of[first_of(left)];
-            for (uint left = lanes & ~(entering | packet.left_to_scalar); left != 0; left &= left - 1) {
+                queue.entered[packet.numbers.of[first_of(left)] - queue.first] = half_face.of[first_of(left)];
+            for (uint left = lanes & ~(entering | packet.deferred); left != 0; left &= left - 1) {
                 const uint i = first + first_of(left);
                 push(asking, asking.numbers[i], asking.faces[i] + 1, asking.ends[i]);
             }
@@ -142,11 +143,11 @@ LANE_FN T carried_behind(const Mask* by_face, const T* of, uint i)
 
 // Lets lanes leave the tets in which their rays start, as exit_from_face() of path.h. steps: of the packet.
 template <bool has_ends>
-LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, uint lanes, Words links, uint steps)
+LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, uint lanes, Words half_faces, uint steps)
 {
     const Mask mask = mask_of(lanes);
     LaneWords offsets;
-    store(offsets, select(mask, (links >> 2) * tet_words, Words{}));
+    store(offsets, select(mask, (half_faces >> 2) * tet_words, Words{}));
     const Records first = load_records(job.records, offsets),
                   second = load_records(job.records + record_words, offsets);
     const Quad apexes[4] = {first.apex, second.apex, load_quads(job.records + 2 * record_words, offsets),
@@ -159,9 +160,9 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     const auto by = [&](Words a, Words b, Words c, Words d) {
         return select(by_face[0], a, select(by_face[1], b, select(by_face[2], c, d)));
     };
-    const uint back = lanes_of(equal(by(all(0u), all(1u), all(2u), all(3u)), links & 3u));
+    const uint back = lanes_of(equal(by(all(0u), all(1u), all(2u), all(3u)), half_faces & 3u));
     const uint leaving = lanes & (left.of[0] | left.of[1] | left.of[2] | left.of[3]) & ~(back | left.ties);
-    packet.left_to_scalar |= lanes & ~leaving;
+    packet.deferred |= lanes & ~leaving;
 
     Words exit = by(second.exits.of[0], first.exits.of[0], first.exits.of[1], first.exits.of[2]);
     Mask is_end = equal(exit & 3u, all(EXIT_END));
@@ -178,9 +179,9 @@ LANE_FN void leave_tets(const PacketJob& job, Packet& packet, GivenWalk& walk, u
     }
     const uint ended = leaving & lanes_of(is_end);
     packet.steps = select(mask, all(1u - steps), packet.steps);
-    end_lanes(packet, ended, exit, links, steps);
+    end_lanes(packet, ended, exit, half_faces, steps);
     walk.live |= leaving & ~ended;
-    walk.turn = select(mask, exit & 3u, walk.turn);
+    walk.rotation = select(mask, exit & 3u, walk.rotation);
     walk.record = select(mask_of(leaving & ~ended), exit >> 2, walk.record);
     store(walk.offsets, walk.record * record_words);
 }
@@ -190,27 +191,27 @@ template <bool has_ends>
 LANE_FN void enter_records(const PacketJob& job, const Queue& queue, Packet& packet, GivenWalk& walk, uint lanes,
                            uint steps)
 {
-    LaneWords link_of{};
+    LaneWords half_face_of{};
     uint entering = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
-        const uint lane = first_of(lanes), link = queue.entered[packet.numbers.of[lane] - queue.first];
-        if (link == left_link) packet.left_to_scalar |= 1u << lane;
-        if (link == left_link || link == NO_LINK) continue;
-        link_of.of[lane] = link;
+        const uint lane = first_of(lanes), half_face = queue.entered[packet.numbers.of[lane] - queue.first];
+        if (half_face == deferred_half_face) packet.deferred |= 1u << lane;
+        if (half_face == deferred_half_face || half_face == NO_HALF_FACE) continue;
+        half_face_of.of[lane] = half_face;
         entering |= 1u << lane;
     }
-    const Words links = *reinterpret_cast<const Words*>(link_of.of);
+    const Words half_faces = *reinterpret_cast<const Words*>(half_face_of.of);
     const Mask mask = mask_of(entering);
     for (uint i = 0; i < 3; ++i) {
-        const Quad corner = corners_of(job, links, i);
+        const Quad corner = corners_of(job, half_faces, i);
         walk.carried[i] = select(mask, seen_at(packet, walk.shear, corner.of), walk.carried[i]);
         if constexpr (has_ends) walk.depths[i] = select(mask, depth_at(packet, corner.of), walk.depths[i]);
     }
     if constexpr (has_ends) walk.reach = depth_of_end(packet);
     packet.steps = select(mask, all(0u - steps), packet.steps);
     walk.live |= entering;
-    walk.turn = select(mask, Words{}, walk.turn);
-    walk.record = select(mask, links, walk.record);
+    walk.rotation = select(mask, Words{}, walk.rotation);
+    walk.record = select(mask, half_faces, walk.record);
     store(walk.offsets, walk.record * record_words);
 }
 
@@ -222,7 +223,7 @@ struct Met {
     alignas(4 * LANES) uint numbers[room], exits[room], records[room], steps[room];
 };
 
-// Adds lanes that have met triangles. There is room for them while fewer than 2 * LANES rays wait.
+// Adds lanes that have met triangles. They fit as long as fewer than 2 * LANES rays wait.
 LANE_FN void push(const PacketJob& job, Met& met, const Packet& packet, uint lanes)
 {
     LaneWords exit, record, steps;
@@ -264,14 +265,14 @@ template <bool has_ends>
     const uint lost = walk.live & are_too_many(packet.steps + all(steps));
     walk.live &= ~lost;
     const uint ended = packet.lanes & ~walk.live;
-    packet.left_to_scalar |= lost | (ended & are_too_many(packet.steps));
+    packet.deferred |= lost | (ended & are_too_many(packet.steps));
     const uint hitting = lanes_hitting(packet, ended);
     if (ended != hitting) write_hits(job, packet, ended & ~hitting);
     push(job, met, packet, hitting);
     while (met.end - met.first >= 2 * LANES)
         write_first(job, met);
     packet.lanes = walk.live;
-    packet.left_to_scalar = 0;
+    packet.deferred = 0;
     uint taken = 0;
     for (uint free = every_lane & ~walk.live; free != 0 && queue.next != queue.end; free &= free - 1) {
         packet.numbers.of[first_of(free)] = queue.next++;
@@ -279,16 +280,16 @@ template <bool has_ends>
         if (queue.next + rays_ahead < job.ray_count) prefetch_tet(job, queue.next + rays_ahead);
     }
     if (taken == 0) return;
-    const Words links = fetch_rays(job, packet, taken);
+    const Words half_faces = fetch_rays(job, packet, taken);
     const Mask mask = mask_of(taken);
     walk.shear = shear_of<any_axis>(packet.direction);
     packet.lanes |= taken;
-    packet.exit = select(mask, all(NO_LINK), packet.exit);
-    packet.record = select(mask, all(NO_LINK), packet.record);
+    packet.exit = select(mask, all(NO_HALF_FACE), packet.exit);
+    packet.record = select(mask, all(NO_HALF_FACE), packet.record);
     packet.steps = select(mask, Words{}, packet.steps);
-    const uint outside = taken & lanes_of(equal(links, all(NO_LINK))), inside = taken & ~outside;
+    const uint outside = taken & lanes_of(equal(half_faces, all(NO_HALF_FACE))), inside = taken & ~outside;
     if (outside != 0) enter_records<has_ends>(job, queue, packet, walk, outside, steps);
-    if (inside != 0) leave_tets<has_ends>(job, packet, walk, inside, links, steps);
+    if (inside != 0) leave_tets<has_ends>(job, packet, walk, inside, half_faces, steps);
 }
 
 template <bool has_ends>
@@ -307,7 +308,7 @@ template <bool has_ends>
     }
     bool goes_on = true;
     for (uint steps = 0; goes_on; ++steps) {
-        goes_on = may_have_rays(job, queue); // even where all lanes have just run out of steps
+        goes_on = may_have_rays(job, queue); // even if all lanes have just run out of steps
         for (uint i = 0; i < packets_in_turns; ++i) {
             const auto live = static_cast<uint>(__builtin_popcount(walks[i].live));
             const bool takes = live < lanes_wanted && has_rays(job, queue);

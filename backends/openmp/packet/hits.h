@@ -8,7 +8,7 @@ struct Hits {
 // The lanes that have met a triangle.
 LANE_FN uint lanes_hitting(const Packet& packet, uint lanes)
 {
-    return lanes & ~packet.left_to_scalar & ~lanes_of(equal(packet.exit, all(NO_LINK)));
+    return lanes & ~packet.deferred & ~lanes_of(equal(packet.exit, all(NO_HALF_FACE)));
 }
 
 LANE_FN void prefetch_triangle(const PacketJob& job, uint exit)
@@ -51,7 +51,7 @@ LANE_FN void meet_triangles(const PacketJob& job, Packet& packet, uint lanes, Hi
     hits.of[3] = select(mask, as_words(dot3(offset, p) / determinant), Words{});
     hits.of[4] = select(mask, as_words(dot3(direction, q) / determinant), Words{});
     const Floats size = dot3(magnitudes(edge_1), cross3_size(magnitudes(direction), magnitudes(edge_2)));
-    packet.left_to_scalar |= lanes & ~lanes_of(greater(magnitude(determinant), size * 0x1p-20f));
+    packet.deferred |= lanes & ~lanes_of(greater(magnitude(determinant), size * 0x1p-20f));
 }
 
 // Hits of LANES lanes, each as its first four words and its last two.
@@ -80,8 +80,8 @@ LANE_FN void write_words(const PacketJob& job, const Packet& packet, uint lanes,
     hits.of[5] = packet.steps;
     const uint hitting = lanes_hitting(packet, lanes);
     if (hitting != 0) meet_triangles(job, packet, hitting, hits);
-    write_words(job, packet, lanes & ~packet.left_to_scalar, hits);
-    for (uint left = lanes & packet.left_to_scalar; left != 0; left &= left - 1)
+    write_words(job, packet, lanes & ~packet.deferred, hits);
+    for (uint left = lanes & packet.deferred; left != 0; left &= left - 1)
         job.trace_one(job, packet.numbers.of[first_of(left)]);
 }
 

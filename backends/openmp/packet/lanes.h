@@ -253,7 +253,7 @@ LANE_FN void prefetch_quads(const uint* base, const LaneWords& offsets)
         __builtin_prefetch(base + offset);
 }
 
-// Both quads of half32's records, one a lane. A load takes a whole record, which lies in one cache line. A record's two
+// Both quads of half32's records, one per lane. A load reads a whole record, which is in one cache line. A record's two
 // quads are then adjacent, and the transposed vectors hold first and second quads alternately.
 struct Records {
     Quad apex, exits;

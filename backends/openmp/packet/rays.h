@@ -30,9 +30,9 @@ LANE_FN Vectors cross3(const Vectors& a, const Vectors& b)
 struct Packet {
     LaneWords numbers; // of the rays: by pixel of the block, row after row, or in the order in which they are given
     Floats origin[3], direction[3];
-    Floats end;          // the largest ray parameter of a hit
-    uint lanes;          // that have a ray
-    uint left_to_scalar; // lanes with a tie or another rare case
+    Floats end;    // the largest ray parameter of a hit
+    uint lanes;    // that have a ray
+    uint deferred; // lanes with a tie or another rare case
     // How a ray has ended: the exit's word, the record of the last tet that it left, the number of tets left. For a ray
     // that has not ended, `steps` is that number minus the packet's steps.
     Words exit, record, steps;
@@ -47,8 +47,8 @@ LANE_FN void make_rays_through(const PacketJob& job, Floats column, Floats row, 
         packet.origin[axis] = all(job.origin[axis]);
     }
     packet.end = all(__builtin_inff());
-    packet.left_to_scalar = 0;
-    packet.exit = packet.record = all(NO_LINK);
+    packet.deferred = 0;
+    packet.exit = packet.record = all(NO_HALF_FACE);
     packet.steps = Words{};
 }
 
@@ -99,8 +99,8 @@ LANE_FN Seen select(Mask mask, const Seen& a, const Seen& b)
     return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
 }
 // shear_of() of project.h for rays whose deepest axis is z, without its products by zero: a point's x comes from its
-// components along z and one other axis, and y likewise. Where the kernel swaps x and y, this negates y, which gives
-// the same products and the same signs.
+// components along z and one other axis, and y likewise. If the kernel swaps x and y, this negates y, which gives the
+// same products and the same signs.
 template <int z>
 struct Shear {
     static constexpr int x = (z + 1) % 3, y = (z + 2) % 3;

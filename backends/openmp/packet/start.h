@@ -51,7 +51,7 @@ LANE_FN Words entry_squares(const PacketJob& job, const Packet& packet)
     return select(met, (side * n + index[1]) * n + index[0], all(6 * n * n));
 }
 
-// The lanes that enter the domain by a boundary face, by its corners; `left_to_scalar` gets those for which a sign is a
+// The lanes that enter the domain by a boundary face, by its corners; `deferred` gets those for which a sign is a
 // tie.
 LANE_FN uint lanes_entering(Packet& packet, uint lanes, const Seen* corners)
 {
@@ -59,7 +59,7 @@ LANE_FN uint lanes_entering(Packet& packet, uint lanes, const Seen* corners)
                 s2 = sides_of(corners[2], corners[0]);
     const uint inside = lanes & lanes_of((s0.left | s0.tie) & (s1.left | s1.tie) & (s2.left | s2.tie));
     const uint ties = inside & lanes_of(s0.tie | s1.tie | s2.tie);
-    packet.left_to_scalar |= ties;
+    packet.deferred |= ties;
     return inside & ~ties;
 }
 
@@ -76,55 +76,56 @@ template <int z>
         uint waiting = lanes & lanes_of(equal(squares, all(here)));
         lanes &= ~waiting;
         for (uint i = job.entry_ranges[here]; waiting != 0 && i < job.entry_ranges[here + 1]; ++i) {
-            const uint link = job.entry_links[i];
+            const uint half_face = job.entry_half_faces[i];
             Seen corners[3];
             for (uint corner_i = 0; corner_i < 3; ++corner_i)
-                corners[corner_i] = apex_seen(job, packet, walk.shear, record_of_corner(link, corner_i));
+                corners[corner_i] = apex_seen(job, packet, walk.shear, record_of_corner(half_face, corner_i));
             const uint entering = lanes_entering(packet, waiting, corners);
-            if (entering != 0) enter_record(job, packet, walk, entering, link);
-            waiting &= ~(entering | packet.left_to_scalar);
+            if (entering != 0) enter_record(job, packet, walk, entering, half_face);
+            waiting &= ~(entering | packet.deferred);
         }
-        packet.left_to_scalar |= waiting; // lanes that need entry_anywhere()
+        packet.deferred |= waiting; // lanes that need entry_anywhere()
     }
 }
 
-// Corner i of the faces that lanes' links name.
-LANE_FN Quad corners_of(const PacketJob& job, Words links, uint i)
+// Corner i of the faces that lanes' half-faces name.
+LANE_FN Quad corners_of(const PacketJob& job, Words half_faces, uint i)
 {
     LaneWords offsets;
-    store(offsets, record_of_corner(links, i) * (4 * HALF32_QUADS));
+    store(offsets, record_of_corner(half_faces, i) * (4 * HALF32_QUADS));
     return load_quads(job.records, offsets);
 }
 
-// Tests the faces of squares of the domain, one per lane at a time, until ask(links, lanes) returns that lanes are
-// done. Returns the lanes whose squares have no more faces.
+// Tests the faces of squares of the domain, one per lane at a time, until ask(half-faces, lanes) returns that lanes are
+// done. Returns the lanes whose squares are done.
 template <class Ask>
 LANE_FN uint ask_faces(const PacketJob& job, Words squares, uint lanes, const Ask& ask)
 {
-    LaneWords square, link{};
+    LaneWords square, half_face{};
     store(square, select(mask_of(lanes), squares, Words{}));
     uint unanswered = 0;
     for (uint face = 0; lanes != 0; ++face) {
         for (uint left = lanes; left != 0; left &= left - 1) {
             const uint lane = first_of(left), index = job.entry_ranges[square.of[lane]] + face;
             if (index < job.entry_ranges[square.of[lane] + 1])
-                link.of[lane] = job.entry_links[index];
+                half_face.of[lane] = job.entry_half_faces[index];
             else
                 unanswered |= 1u << lane;
         }
         lanes &= ~unanswered;
-        lanes &= ~ask(*reinterpret_cast<const Words*>(link.of), lanes);
+        lanes &= ~ask(*reinterpret_cast<const Words*>(half_face.of), lanes);
     }
     return unanswered;
 }
 
-// The lanes that enter the domain by the faces that their links name.
+// The lanes that enter the domain by the faces that their half-faces name.
 template <int z>
-LANE_FN uint lanes_entering_by(const PacketJob& job, Packet& packet, const Shear<z>& shear, uint lanes, Words links)
+LANE_FN uint lanes_entering_by(const PacketJob& job, Packet& packet, const Shear<z>& shear, uint lanes,
+                               Words half_faces)
 {
     Seen corners[3];
     for (uint i = 0; i < 3; ++i)
-        corners[i] = seen_at(packet, shear, corners_of(job, links, i).of);
+        corners[i] = seen_at(packet, shear, corners_of(job, half_faces, i).of);
     return lanes_entering(packet, lanes, corners);
 }
 
@@ -174,5 +175,5 @@ template <int z>
         leave_first(job, packet, walk, waiting & left.of[face], face);
         waiting &= ~left.of[face];
     }
-    packet.left_to_scalar |= (lanes & left.ties) | waiting;
+    packet.deferred |= (lanes & left.ties) | waiting;
 }

@@ -4,15 +4,15 @@
 constexpr uint packets_in_turns = 8; // enough that what one of them prefetches is there when its turn comes
 
 // Where lanes are: in front of the tet and face of their records.
-struct Way {
-    Words turn, record;
+struct WalkState {
+    Words rotation, record;
     LaneWords offsets; // of the records, in words
     uint live;
 };
 
 // The walk of lanes that share one deepest axis.
 template <int z>
-struct Walk : Way {
+struct Walk : WalkState {
     Shear<z> shear;
     Seen carried[3];
     Floats depths[3], reach; // of the carried vertices, and of the rays' ends; used only if rays have ends
@@ -28,20 +28,20 @@ LANE_FN Words corner(Words face, uint index)
 }
 
 // Record of a face's corner: the record whose apex it is.
-LANE_FN uint record_of_corner(uint link, uint index)
+LANE_FN uint record_of_corner(uint half_face, uint index)
 {
-    return (link & ~3u) | corner(link & 3u, index);
+    return (half_face & ~3u) | corner(half_face & 3u, index);
 }
-LANE_FN Words record_of_corner(Words links, uint index)
+LANE_FN Words record_of_corner(Words half_faces, uint index)
 {
-    return (links & all(~3u)) | corner(links & 3u, index);
+    return (half_faces & all(~3u)) | corner(half_faces & 3u, index);
 }
 
 // The common place of several lanes: in front of a record, with the vertices that they carry there.
 struct Front {
     uint record;
     uint carried[3]; // the records whose apexes these vertices are
-    uint turn;
+    uint rotation;
 };
 
 // Lets lanes go on from there.
@@ -51,7 +51,7 @@ LANE_FN void go_on_from(const PacketJob& job, const Packet& packet, Walk<z>& wal
     const Mask mask = mask_of(lanes);
     for (uint i = 0; i < 3; ++i)
         walk.carried[i] = select(mask, apex_seen(job, packet, walk.shear, front.carried[i]), walk.carried[i]);
-    walk.turn = select(mask, all(front.turn), walk.turn);
+    walk.rotation = select(mask, all(front.rotation), walk.rotation);
     walk.record = select(mask, all(front.record), walk.record);
     walk.live |= lanes;
 }
@@ -83,33 +83,33 @@ LANE_FN void end_lanes(Packet& packet, uint lanes, Words exit, Words record, uin
     packet.steps = select(mask, packet.steps + all(steps), packet.steps);
 }
 
-// The lanes that have ended: those of is_end, and those whose ray ends before it enters the tet behind the carried
-// vertices. The exit of the latter becomes NO_LINK.
+// The lanes that have ended: those of is_end, and those whose ray ends before it enters the tet across the carried
+// vertices. The exit of the latter becomes NO_HALF_FACE.
 template <int z>
 LANE_FN Mask end_behind(const Walk<z>& walk, Mask is_end, Words& exit)
 {
     const Mask is_beyond =
         greater(walk.depths[0], walk.reach) & greater(walk.depths[1], walk.reach) & greater(walk.depths[2], walk.reach);
-    exit = select(without(is_beyond, is_end), all(NO_LINK), exit);
+    exit = select(without(is_beyond, is_end), all(NO_HALF_FACE), exit);
     return is_end | is_beyond;
 }
 
 // The exits of lanes. replaced: masks of the lanes in which the apex replaces each carried vertex.
-LANE_FN Words exits_of(Way& way, const Mask* replaced, const Words* exits)
+LANE_FN Words exits_of(WalkState& state, const Mask* replaced, const Words* exits)
 {
-    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - way.turn;
+    const Words place = select(replaced[1], all(1u), select(replaced[2], all(2u), Words{})) - state.rotation;
     const Words index = least(place, place + all(3u)); // of the corner; a value below 0 wraps to a large number
     const Words exit = select(equal(index, all(1u)), exits[1], select(equal(index, all(2u)), exits[2], exits[0]));
-    const Words turned = way.turn + (exit & all(3u));
-    way.turn = least(turned, turned - all(3u));
+    const Words turned = state.rotation + (exit & all(3u));
+    state.rotation = least(turned, turned - all(3u));
     return exit;
 }
 
-// Lets live lanes enter the tets behind their exits; others stay where there is a record.
-LANE_FN void enter_tets(Way& way, Words exits)
+// Lets live lanes enter the tets across their exits; others keep a valid record.
+LANE_FN void enter_tets(WalkState& state, Words exits)
 {
-    way.record = select(mask_of(way.live), exits >> 2, way.record);
-    store(way.offsets, way.record * (4 * HALF32_QUADS));
+    state.record = select(mask_of(state.live), exits >> 2, state.record);
+    store(state.offsets, state.record * (4 * HALF32_QUADS));
 }
 
 // A step of all live lanes. steps: its number in the packet.
@@ -121,7 +121,7 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     const Sides s0 = sides_of(walk.carried[0], apex), s1 = sides_of(walk.carried[1], apex),
                 s2 = sides_of(walk.carried[2], apex);
     // As replaced_by() of kernels/walks/carried.h. Three equal sides mean that the ray misses the tet, which only wrong
-    // links cause; both functions then replace the third vertex.
+    // half-faces cause; both functions then replace the third vertex.
     const Mask first = without(s2.left, s1.left), second = without(s0.left, s2.left);
     const Mask replaced[3] = {first, second, neither(first, second)};
     for (uint i = 0; i < 3; ++i)
@@ -137,12 +137,12 @@ LANE_FN void step(const PacketJob& job, Packet& packet, Walk<z>& walk, uint step
     }
     const uint ended = walk.live & ~ties & lanes_of(is_end);
     end_lanes(packet, ended, exit, walk.record, steps); // without a condition: a branch would mostly be mispredicted
-    packet.left_to_scalar |= ties;
+    packet.deferred |= ties;
     walk.live &= ~(ties | ended);
     enter_tets(walk, exit);
 }
 
-// Walks several packets in turn until all lanes have ended: while one waits for its records, others compute.
+// Walks several packets in rotation until all lanes have ended: while one waits for its records, others compute.
 // steps: the number of tets that the lanes have already left.
 template <int z>
 LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint count, uint steps)
@@ -163,5 +163,5 @@ LANE_FN void walk_on(const PacketJob& job, Packet* packets, Walk<z>* walks, uint
         }
     }
     for (uint i = 0; i < count; ++i)
-        packets[i].left_to_scalar |= walks[i].live; // lost; the scalar kernel confirms it
+        packets[i].deferred |= walks[i].live; // lost; the scalar kernel confirms it
 }

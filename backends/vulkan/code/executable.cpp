@@ -27,7 +27,7 @@ vk::raii::Device make_device(const FoundDevice& found)
             return std::string_view(extension.extensionName.data()) == needed_extension;
         }))
         throw Error(ErrorKind::unsupported,
-                    "the driver of '" + found.facts.name + "' tells nothing of its code: it lacks " + needed_extension);
+                    "the driver of '" + found.facts.name + "' does not report its code: it lacks " + needed_extension);
     const std::array priorities = {1.0f};
     const auto queue = vk::DeviceQueueCreateInfo{}
                            .setQueueFamilyIndex(found.limits.queue_family.value_or(0))
@@ -120,7 +120,8 @@ CompiledCode compiled_code(const FoundDevice& found, const std::optional<KernelI
         const auto executables =
             device.getPipelineExecutablePropertiesKHR(vk::PipelineInfoKHR{}.setPipeline(*pipeline));
         if (executables.empty())
-            throw Error(ErrorKind::unsupported, "the driver of '" + found.facts.name + "' tells nothing of " + id.name);
+            throw Error(ErrorKind::unsupported,
+                        "the driver of '" + found.facts.name + "' does not report the code of " + id.name);
         const auto first = vk::PipelineExecutableInfoKHR{}.setPipeline(*pipeline);
         CompiledCode code{found.facts.driver + ", " + found.facts.name, executables.front().subgroupSize, {}, {}};
         for (const auto& statistic : device.getPipelineExecutableStatisticsKHR(first))

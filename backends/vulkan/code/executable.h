@@ -1,4 +1,4 @@
-// code/: what drivers tell of the code that their compilers make.
+// code/: what drivers report about the code that their compilers make.
 #pragma once
 
 #include "backends/vulkan/device.h"

@@ -55,7 +55,7 @@ std::string what_of(const std::string& variant)
     if (variant.ends_with("_parts")) text += ", with the tets in several buffers";
     if (variant.ends_with("_texels")) text += ", with the scene read as texels, as on emulated devices";
     if (variant.ends_with("_leaves_texels")) text += "; leaves rays at ties to another program";
-    if (variant.ends_with("_left_texels")) text += "; traces the rays that another program has left";
+    if (variant.ends_with("_left_texels")) text += "; traces the rays that another program has deferred";
     if (variant.ends_with("_pipeline")) text += ", made for a ray-tracing pipeline (--schedule pipeline)";
     return text + ", as the driver gets it; constants: 0, a tile's height (8); 1, whether all rays start outside; 2, "
                   "whether a select is faster than a minimum; 3, the entries of a stack in a group's memory; 4, all "

@@ -2,7 +2,7 @@
 
 namespace tetrace::vulkan {
 
-/// A kernel's GLSL with its includes resolved, and the SPIR-V of each of its programs; empty where there is none.
+/// A kernel's GLSL with its includes resolved, and the SPIR-V of each of its programs; empty if there is none.
 [[nodiscard]] std::vector<KernelFile> kernel_files(const KernelId& kernel);
 
 } // namespace tetrace::vulkan

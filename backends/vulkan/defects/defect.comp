@@ -1,5 +1,5 @@
 #version 450
-// A reduced kernel as a compute shader; DEFECT is its name. Compiled alone by
+// A reduced kernel as a compute shader; DEFECT is its name. Compiled by
 // glslangValidator -V --target-env vulkan1.1 -DDEFECT=<name>.
 #include "kernels/language/dialect_glsl.h"
 

@@ -22,9 +22,10 @@ std::vector<std::uint32_t> run_defect(const Context& context, std::string_view n
         const ProgramId id{
             .name = std::string(name), .bindings = {0, 1}, .kernels = vulkan_defects::embedded_kernels()};
         const Program program(context, id, ProgramCache({}));
-        const Buffer from(context, word_bytes.size(), Place::device);
-        const Buffer to(context, result_bytes.size(), Place::device);
-        const Buffer staging = needs_staging(to) ? Buffer(context, result_bytes.size(), Place::read_back) : Buffer();
+        const Buffer from(context, word_bytes.size(), BufferUse::device);
+        const Buffer to(context, result_bytes.size(), BufferUse::device);
+        const Buffer staging =
+            needs_staging(to) ? Buffer(context, result_bytes.size(), BufferUse::read_back) : Buffer();
         upload(context, from, word_bytes);
         program.bind(context, 0, from);
         program.bind(context, 1, to);

@@ -9,7 +9,7 @@
 
 namespace tetrace::vulkan {
 
-/// Compiles and runs a reduced kernel (core/debugging/defects.h). Throws Error where the device fails.
+/// Compiles and runs a reduced kernel (core/debugging/defects.h). Throws Error if the device fails.
 [[nodiscard]] std::vector<std::uint32_t> run_defect(const Context& context, std::string_view name);
 
 } // namespace tetrace::vulkan

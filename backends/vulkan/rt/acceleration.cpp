@@ -88,7 +88,7 @@ void Acceleration::run_timed(const Record& record)
 Acceleration::Level Acceleration::make_level(LevelType type, std::uint64_t bytes) const
 {
     Level level;
-    level.memory = Buffer(*context_, bytes, Place::structure);
+    level.memory = Buffer(*context_, bytes, BufferUse::structure);
     level.handle = context_->device().createAccelerationStructureKHR(
         vk::AccelerationStructureCreateInfoKHR{}.setBuffer(level.memory.handle()).setSize(bytes).setType(type));
     return level;
@@ -102,7 +102,7 @@ Acceleration::Level Acceleration::build(LevelType type, const vk::AccelerationSt
         vk::AccelerationStructureBuildTypeKHR::eDevice, info, count);
     Level level = make_level(type, sizes.accelerationStructureSize);
     const std::uint64_t alignment = context_->found().ray_tracing.scratch_alignment;
-    const Buffer scratch(*context_, sizes.buildScratchSize + alignment, Place::scratch);
+    const Buffer scratch(*context_, sizes.buildScratchSize + alignment, BufferUse::scratch);
     const vk::DeviceAddress aligned = (scratch.address(*context_) + alignment - 1) / alignment * alignment;
     info.setDstAccelerationStructure(*level.handle)
         .setScratchData(vk::DeviceOrHostAddressKHR{}.setDeviceAddress(aligned));
@@ -114,7 +114,7 @@ Acceleration::Level Acceleration::build(LevelType type, const vk::AccelerationSt
 Buffer Acceleration::uploaded(std::span<const std::byte> bytes)
 {
     const Stopwatch watch;
-    Buffer buffer(*context_, bytes.size(), Place::geometry);
+    Buffer buffer(*context_, bytes.size(), BufferUse::geometry);
     upload(*context_, buffer, bytes);
     upload_s_ += watch.seconds();
     return buffer;

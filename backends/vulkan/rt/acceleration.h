@@ -1,4 +1,4 @@
-// rt/: what Vulkan drivers bring for ray tracing: their own BVHs, and ray queries and pipelines that trace through
+// rt/: what Vulkan drivers provide for ray tracing: their own BVHs, and ray queries and pipelines that trace through
 // them.
 #pragma once
 

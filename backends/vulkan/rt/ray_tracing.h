@@ -35,7 +35,8 @@ struct RayTracing {
     }
 };
 
-/// The extensions that a device needs beyond Vulkan 1.1: the tracer's, that of BVHs, and those that they depend on.
+/// The extensions that a device needs in addition to Vulkan 1.1: the tracer's, that of BVHs, and those that they depend
+/// on.
 [[nodiscard]] std::vector<const char*> ray_extensions(RayTracer tracer);
 
 using RayFeatures =

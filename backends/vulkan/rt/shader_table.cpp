@@ -12,7 +12,7 @@ ShaderTable::ShaderTable(const Context& context, const vk::raii::Pipeline& pipel
     const auto aligned = [&](std::uint64_t value) { return (value + alignment - 1) / alignment * alignment; };
     const std::uint64_t stride = aligned(handle_bytes);
     std::vector<std::byte> bytes(parts_.size() * stride + alignment); // addresses of buffers may be less aligned
-    memory_ = Buffer(context, bytes.size(), Place::table);
+    memory_ = Buffer(context, bytes.size(), BufferUse::table);
     const vk::DeviceAddress first = aligned(memory_.address(context));
     const auto handles = pipeline.getRayTracingShaderGroupHandlesKHR<std::byte>(
         0, static_cast<std::uint32_t>(parts_.size()), parts_.size() * handle_bytes);

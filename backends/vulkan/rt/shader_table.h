@@ -12,7 +12,7 @@ public:
     /// pipeline: its groups are these three, in this order. context: of RayTracer::pipeline.
     ShaderTable(const Context& context, const vk::raii::Pipeline& pipeline);
 
-    /// Records a launch of the bound pipeline, a ray for each of so many invocations.
+    /// Records a launch of the bound pipeline, a ray for each of this many invocations.
     void record_launch(const vk::raii::CommandBuffer& commands, std::uint32_t width, std::uint32_t height,
                        std::uint32_t depth) const;
 

@@ -54,7 +54,7 @@ Bytes encoded_exr(unsigned width, unsigned height, const float* linear_rgb)
 Bytes encoded_by_ending(const std::string& ending, unsigned width, unsigned height, const float* linear_rgb)
 {
     if (width == 0 || height == 0) {
-        throw std::runtime_error("the picture has no pixels");
+        throw std::runtime_error("the picture is empty");
     }
     if (ending == ".png") {
         return encoded_png(width, height, linear_rgb);

@@ -96,7 +96,7 @@ Html rate_table(const Campaign& campaign, const std::vector<const CampaignWork*>
     return element("div", {{"class", "beside"}}, table.html());
 }
 
-/// Bars of the means; empty where no other machine shares work with the first.
+/// Bars of the means; empty if no other machine shares work with the first.
 Html mean_chart(const Campaign& campaign, const CampaignGroup& group, const std::vector<const CampaignWork*>& works,
                 const std::vector<std::size_t>& machines)
 {

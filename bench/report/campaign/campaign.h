@@ -16,7 +16,7 @@ namespace tetrace {
 struct CampaignResult {
     std::filesystem::path path;
     ResultHead head;
-    std::optional<double> day;                   ///< its date, in days since 1970-01-01 UTC; empty where it is none
+    std::optional<double> day;                   ///< its date, in days since 1970-01-01 UTC; empty if it is none
     std::map<std::string, std::size_t> statuses; ///< rows and searches by status
     std::string others;                          ///< processors that other work took while rows were timed
     std::vector<std::size_t> machines;           ///< of its rates, each once
@@ -41,7 +41,7 @@ struct CampaignWork {
     std::string label;               ///< "cdt maria tet80  vulkan"
     std::vector<CampaignRate> rates; ///< in the order of their results
 
-    /// The newest of a machine; null where it has none.
+    /// The newest of a machine; null if it has none.
     [[nodiscard]] const CampaignRate* newest_of(std::size_t machine) const;
 };
 

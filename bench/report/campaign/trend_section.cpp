@@ -122,7 +122,7 @@ Html trend_chart(const Campaign& campaign, std::vector<Trend> trends, const std:
     return figure("", draw(chart), caption);
 }
 
-/// Its trends, scene by scene; empty where it has none.
+/// Its trends, scene by scene; empty if it has none.
 Html machine_trends(const Campaign& campaign, std::size_t machine)
 {
     Html html;

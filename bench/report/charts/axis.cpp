@@ -87,9 +87,9 @@ Axis Axis::linear(double low, double high, int intervals)
     check_range(low, high);
     // Widens a range that rounding nearly closes: its ticks could not be counted.
     if (const double size = std::max(std::abs(low), std::abs(high)); high - low <= 1e-9 * size) {
-        const double room = size == 0 ? 1 : size / 2;
-        low -= size == 0 ? 0 : room;
-        high += room;
+        const double margin = size == 0 ? 1 : size / 2;
+        low -= size == 0 ? 0 : margin;
+        high += margin;
     }
     const double step = round_step((high - low) / std::max(intervals, 1));
     const double first = std::floor(low / step + 1e-9), last = std::ceil(high / step - 1e-9);
@@ -122,12 +122,12 @@ Axis Axis::dates(double low, double high)
     return axis;
 }
 
-Axis Axis::logarithmic_at(std::vector<double> values, double room)
+Axis Axis::logarithmic_at(std::vector<double> values, double margin)
 {
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     if (values.empty()) throw Error(ErrorKind::internal, "Axis: no values");
-    const double low = values.front() / room, high = values.back() * room;
+    const double low = values.front() / margin, high = values.back() * margin;
     check_range(low, high);
     check_logarithm(low);
     return {true, low, high, std::move(values)};
@@ -209,12 +209,12 @@ std::vector<double> spread_apart(const std::vector<double>& positions, double ga
             blocks.back().count += last.count;
         }
     }
-    const double room = std::max(low, high - gap * (static_cast<double>(order.size()) - 1));
+    const double margin = std::max(low, high - gap * (static_cast<double>(order.size()) - 1));
     std::vector<double> placed(positions.size());
     std::size_t rank = 0;
     for (const Block& block : blocks)
         for (std::size_t i = 0; i < block.count; ++i, ++rank)
-            placed[order[rank]] = std::clamp(block.mean(), low, room) + gap * static_cast<double>(rank);
+            placed[order[rank]] = std::clamp(block.mean(), low, margin) + gap * static_cast<double>(rank);
     return placed;
 }
 

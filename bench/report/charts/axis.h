@@ -10,7 +10,7 @@ class Axis {
 public:
     /// Ticks at 1, 2 or 5 times a power of ten, about `intervals` of them between low and high, which are rounded
     /// outwards to ticks. The axis has a length even where low equals high, also at 0.
-    /// Throws Error{internal} where low or high is not finite, or low is above high.
+    /// Throws Error{internal} if low or high is not finite, or low is above high.
     static Axis linear(double low, double high, int intervals = 5);
 
     /// Ticks at powers of ten, and at 2 and 5 times them where low and high are within a factor of 1,000; both are
@@ -18,12 +18,12 @@ public:
     static Axis logarithmic(double low, double high);
 
     /// From zero to exactly `high`, with round ticks in between: for bars, whose ends need no enclosing tick.
-    /// Throws Error{internal} where high is negative or not finite.
+    /// Throws Error{internal} if high is negative or not finite.
     static Axis from_zero(double high, int intervals = 4);
 
-    /// Logarithmic, with ticks only at the given values; from the lowest over `room` to the highest times `room`.
-    /// Throws Error{internal} where a value is not positive and finite, or there are none.
-    static Axis logarithmic_at(std::vector<double> values, double room);
+    /// Logarithmic, with ticks only at the given values; from the lowest over `margin` to the highest times `margin`.
+    /// Throws Error{internal} if a value is not positive and finite, or there are none.
+    static Axis logarithmic_at(std::vector<double> values, double margin);
 
     /// Of days since 1970-01-01 UTC: ticks at whole hours, days or weeks, labelled as dates; both ends are rounded
     /// outwards to ticks. Throws as linear() does.
@@ -34,7 +34,7 @@ public:
     [[nodiscard]] const std::vector<double>& ticks() const { return ticks_; }
 
     /// Position of a value when the axis runs from position `begin` to position `end`. Values outside the axis are
-    /// placed at its ends. Throws Error{internal} where the value is not finite.
+    /// placed at its ends. Throws Error{internal} if the value is not finite.
     [[nodiscard]] double place(double value, double begin, double end) const;
 
     /// A tick's label, with as many decimals as the step between ticks needs, and commas between thousands.

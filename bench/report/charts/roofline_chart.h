@@ -18,8 +18,8 @@ struct RooflinePoint {
 /// A device's roof, in the units of the walk: with steps that load b bytes each, memory allows at most bandwidth / b
 /// steps per second.
 /// Source: Williams, Waterman, Patterson, "Roofline: An Insightful Visual Performance Model" (2009). Its horizontal
-/// axis, operations per byte, is inverted here to bytes per step. There is no flat part, because no step rate is given
-/// for arithmetic only.
+/// axis, operations per byte, is inverted here to bytes per step. There is not a flat part, because no step rate is
+/// given for arithmetic only.
 struct Roofline {
     std::string label;
     double copy_bytes_per_s = 0; ///< positive; of memory

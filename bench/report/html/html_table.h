@@ -18,7 +18,7 @@ class HtmlTable {
 public:
     explicit HtmlTable(std::vector<HtmlColumn> columns) : columns_(std::move(columns)) {}
 
-    /// Throws Error{internal} where the number of cells differs from the number of columns.
+    /// Throws Error{internal} if the number of cells differs from the number of columns.
     void add(std::vector<Html> cells);
     [[nodiscard]] bool empty() const { return rows_.empty(); }
     /// Empty if there are no rows. The table scrolls sideways by itself if the page is too narrow for it.

@@ -41,7 +41,7 @@ inline constexpr std::size_t series_marks = 2 * series_styles * series_styles;
 [[nodiscard]] Html svg_cloud(const std::vector<std::pair<double, double>>& points, std::size_t series);
 /// The same for the samples of a bar: a tick at each x.
 [[nodiscard]] Html svg_samples(const std::vector<double>& places, double y);
-/// What the clouds and samples of this markup refer to, once for a page; empty where it has none.
+/// What the clouds and samples of this markup refer to, once for a page; empty if it has none.
 [[nodiscard]] Html mark_definitions(const Html& markup);
 
 /// The group that one row or point is drawn with; tests count these. The tooltip appears under the pointer.

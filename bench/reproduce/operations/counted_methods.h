@@ -31,7 +31,6 @@ namespace plucker {
 #include "kernels/kernel_cpp.h"
 }
 #undef KERNEL_METHOD_HEADER
-#undef AS_SEEN
 
 #define KERNEL_METHOD_HEADER "kernels/methods/stp.h"
 namespace stp {

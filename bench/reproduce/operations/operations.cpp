@@ -80,15 +80,15 @@ public:
     void add(const PackedScene& tets, const SearchRays& rays, std::size_t number, Float3 inside)
     {
         const Float3 direction = float_of(rays.quads[number]), origin = float_of(rays.quads[rays.count() + number]);
-        const std::uint32_t link = rays.link(number);
-        method_->search(tets, link_tet(link), link_face(link), origin, direction);
+        const std::uint32_t half_face = rays.half_face(number);
+        method_->search(tets, half_face_tet(half_face), half_face_index(half_face), origin, direction);
         const int operations = Counted::operations;
         cost_.least = searches_ == 0 ? operations : std::min(cost_.least, operations);
         cost_.most = std::max(cost_.most, operations);
         sum_ += operations;
         squares_ += static_cast<double>(operations) * operations;
         if (method_->products) products_ += products_in(operations, *method_->products, method_->method);
-        method_->start(tets, link_tet(link), inside, direction);
+        method_->start(tets, half_face_tet(half_face), inside, direction);
         start_ += Counted::operations;
         if (method_->start_products)
             start_products_ += products_in(Counted::operations, *method_->start_products, method_->method);
@@ -140,7 +140,7 @@ std::vector<MethodCost> count_operations()
     for (const CountingMethod& method : methods()) {
         Counts counts(method);
         for (std::size_t number = 0; number < rays.count(); ++number)
-            counts.add(tets, rays, number, middle_of(tets, link_tet(rays.link(number))));
+            counts.add(tets, rays, number, middle_of(tets, half_face_tet(rays.half_face(number))));
         costs.push_back(counts.cost());
     }
     return costs;

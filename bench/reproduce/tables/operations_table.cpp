@@ -8,7 +8,7 @@ namespace tetrace {
 
 namespace {
 
-/// What the paper says of a method's search; empty where it says nothing.
+/// What the paper says of a method's search; empty if it says nothing.
 struct PapersCost {
     std::optional<double> operations, products, start_products;
 };

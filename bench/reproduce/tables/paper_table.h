@@ -19,7 +19,7 @@ struct Quantity {
     std::optional<double> paper;
     bool is_compared = true; ///< whether the two are of things so alike that their ratio means something
 
-    /// Ours over the paper's; empty where the paper's is unknown or 0, or they are not compared.
+    /// Ours over the paper's; empty if the paper's is unknown or 0, or they are not compared.
     [[nodiscard]] std::optional<double> ratio() const;
 };
 /// A cell: empty, a text or a number.

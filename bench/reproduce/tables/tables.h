@@ -92,7 +92,7 @@ struct RowPair {
 [[nodiscard]] std::string bvh_text(const RowPair& pair);
 
 /// The number of rays from which the CDT, or the BVH, takes less time in total, including its build; first is the CDT.
-/// Empty where the interval of the ratio of their times contains 1, or a build time is unknown.
+/// Empty if the interval of the ratio of their times contains 1, or a build time is unknown.
 [[nodiscard]] std::optional<BreakEven> break_even(const RowPair& pair);
 
 /// Frames of 1024 x 1024 a second, view by view.

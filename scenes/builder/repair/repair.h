@@ -10,8 +10,8 @@ namespace tetrace {
 /// Passes after which repair() gives up. The crossing meshes of CGAL's data were clean after one (results/repair.md).
 inline constexpr std::uint32_t max_repair_passes = 10;
 
-/// Crossing pairs of pieces at which it gives up, for so many in the mesh: faces that nearly overlap are shattered, and
-/// each pass makes more.
+/// Crossing pairs of pieces at which it gives up, for this many in the mesh: faces that nearly overlap are shattered,
+/// and each pass makes more.
 [[nodiscard]] constexpr std::uint64_t max_pairs_of_pieces(std::uint64_t crossing_pairs)
 {
     return 10 * crossing_pairs + 1000;

@@ -49,7 +49,7 @@ public:
         const Triple a = shared_first(mesh_.triangles[first], mesh_.triangles[second], shared);
         const Triple b = shared_first(mesh_.triangles[second], mesh_.triangles[first], shared);
         if (shared == 0) return CGAL::do_intersect(triangle(a), triangle(b));
-        // What two triangles share beyond a common corner ends on the edge opposite it, of one or the other.
+        // What two triangles share in addition to a common corner ends on the edge opposite it, of one or the other.
         if (shared == 1)
             return CGAL::do_intersect(edge(a[1], a[2]), triangle(b)) ||
                    CGAL::do_intersect(edge(b[1], b[2]), triangle(a));

@@ -18,7 +18,7 @@ struct SelfIntersections {
     std::vector<TrianglePair> first; ///< the first pairs in lexicographic order
 };
 
-/// Exact. The mesh has no degenerate and no duplicate triangles (clean_up). At most `listed` pairs are named.
+/// Exact. The mesh is free of degenerate and duplicate triangles (clean_up). At most `listed` pairs are named.
 [[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh, std::size_t listed = 5);
 
 /// All such pairs, in lexicographic order.

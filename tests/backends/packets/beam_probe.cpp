@@ -24,7 +24,7 @@ using tetrace::test::BeamQuestion;
 
 #include "backends/openmp/packet/start.h"
 
-#include "backends/openmp/packet/place.h"
+#include "backends/openmp/packet/double3.h"
 
 #include "backends/openmp/packet/beams.h"
 

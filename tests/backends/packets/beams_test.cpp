@@ -42,7 +42,7 @@ PacketJob job_of(const PackedScene& scene, const TraceJob& from)
     job.lines = reinterpret_cast<const float*>(scene.lines.data());
     job.divisions = scene.divisions;
     job.entry_ranges = scene.entry_ranges.data();
-    job.entry_links = scene.entry_links.data();
+    job.entry_half_faces = scene.entry_half_faces.data();
     job.start_tet = from.start_tet;
     return job;
 }
@@ -140,9 +140,9 @@ TEST_P(Beams, take_the_ways_of_all_their_rays)
             probe.walk(job, rows, ends.data());
             for (const BeamEnd& end : ends) {
                 ++asked;
-                begun += end.record != NO_LINK ? 1 : 0;
+                begun += end.record != NO_HALF_FACE ? 1 : 0;
                 ended += end.has_ended ? 1 : 0;
-                for (std::uint32_t lane = 0; lane < probe.lanes && end.record != NO_LINK; ++lane) {
+                for (std::uint32_t lane = 0; lane < probe.lanes && end.record != NO_HALF_FACE; ++lane) {
                     const std::uint32_t x = end.x + lane % probe.packet_width, y = end.y + lane / probe.packet_width;
                     const Hit& hit = hits[y * image_size + x];
                     if (!end.has_ended) {
@@ -151,7 +151,7 @@ TEST_P(Beams, take_the_ways_of_all_their_rays)
                     }
                     ASSERT_EQ(end.steps, hit.steps);
                     ASSERT_EQ(end.record >> 2, hit.tet);
-                    ASSERT_EQ(end.exit == NO_LINK ? NO_HIT : end.exit >> 2, hit.face_id);
+                    ASSERT_EQ(end.exit == NO_HALF_FACE ? NO_HIT : end.exit >> 2, hit.face_id);
                 }
             }
         }

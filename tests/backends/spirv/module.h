@@ -36,7 +36,7 @@ struct Array {
 /// A SPIR-V module, as far as the checks read it. Source: SPIR-V Specification 1.6, sections 2.3 and 3.
 class Module {
 public:
-    /// Throws std::runtime_error where the bytes are no module.
+    /// Throws std::runtime_error if the bytes are no module.
     explicit Module(std::span<const std::byte> bytes) : words_(bytes.size() / 4)
     {
         std::memcpy(words_.data(), bytes.data(), 4 * words_.size());
@@ -84,7 +84,7 @@ public:
         return found;
     }
 
-    /// All scalars of the push constants, in order; empty where there are none.
+    /// All scalars of the push constants, in order; empty if there are none.
     [[nodiscard]] std::vector<Member> push_constants() const
     {
         std::vector<Member> members;
